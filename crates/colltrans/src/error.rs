@@ -1,0 +1,216 @@
+//! The typed errors of the crate: each says what is wrong, where, and by how much.
+
+use glam::DVec3;
+use thiserror::Error;
+
+/// Largest magnitude of a coordinate, a translation or a direction component: `2^200`.
+///
+/// Together with [`MIN_MAGNITUDE`] it keeps every product of three coordinates, and
+/// every rounding error of such a product, inside the range of an `f64`, so that the orientation
+/// predicates are exact.
+pub const MAX_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
+
+/// Smallest magnitude of a coordinate that is not zero: `2^-200`. See [`MAX_MAGNITUDE`].
+pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 200) << 52);
+
+/// Why no [`ConvexPolyhedron`](crate::ConvexPolyhedron) could be built.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// The list of points was empty.
+    #[error("no points were given")]
+    NoPoints,
+    /// More points than 32-bit indices can number.
+    #[error("{count} points were given; at most {limit} are supported")]
+    TooManyPoints {
+        /// Number of points given.
+        count: usize,
+        /// Number of points supported.
+        limit: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("point {index} is not finite: {point}")]
+    NotFinite {
+        /// Index of the point in the input.
+        index: usize,
+        /// The point as given.
+        point: DVec3,
+    },
+    /// A coordinate is outside the range in which the predicates are exact.
+    #[error(
+        "point {index} = {point} has a coordinate outside the exact range \
+         (0, or a magnitude from 2^-200 to 2^200); rescale the input"
+    )]
+    OutOfRange {
+        /// Index of the point in the input.
+        index: usize,
+        /// The point as given.
+        point: DVec3,
+    },
+    /// The faces of the mesh do not form one closed, consistently oriented surface.
+    #[error(transparent)]
+    Topology(#[from] TopologyError),
+    /// The mesh is closed but its faces are oriented inwards.
+    #[error("the faces are oriented inwards (signed volume {signed_volume:e}); reverse them")]
+    InsideOut {
+        /// The signed volume that the orientation implies.
+        signed_volume: f64,
+    },
+    /// The mesh is closed but not convex.
+    #[error(
+        "the mesh is not convex: face {face} lies {depth:e} below the convex hull \
+         (tolerated: {tolerance:e})"
+    )]
+    NotConvex {
+        /// The face that lies deepest below the convex hull.
+        face: usize,
+        /// How deep, in the units of the input.
+        depth: f64,
+        /// The depth that would have been tolerated.
+        tolerance: f64,
+    },
+}
+
+/// Why faces do not form the boundary of one body.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum TopologyError {
+    /// A face has fewer than three vertices.
+    #[error("face {face} has {count} vertices; a face needs at least 3")]
+    DegenerateFace {
+        /// Index of the face.
+        face: usize,
+        /// Number of its vertices.
+        count: usize,
+    },
+    /// A face names a vertex that does not exist.
+    #[error("face {face} names vertex {vertex}, but there are only {vertices} vertices")]
+    UnknownVertex {
+        /// Index of the face.
+        face: usize,
+        /// The index that does not exist.
+        vertex: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A face names the same vertex twice.
+    #[error("face {face} passes twice through vertex {vertex}")]
+    RepeatedVertex {
+        /// Index of the face.
+        face: usize,
+        /// The vertex it repeats.
+        vertex: usize,
+    },
+    /// An edge has a face on one side only.
+    #[error(
+        "the surface is open: the edge from vertex {from} to vertex {to} of face {face} has no face on its other side"
+    )]
+    OpenEdge {
+        /// Start of the edge, along its face.
+        from: usize,
+        /// End of the edge.
+        to: usize,
+        /// The face on the side that has one.
+        face: usize,
+    },
+    /// More than two faces meet at an edge, or two run along it in the same direction.
+    #[error(
+        "the edge between vertices {from} and {to} is used {count} times, not once in each direction"
+    )]
+    NonManifoldEdge {
+        /// One end of the edge.
+        from: usize,
+        /// Its other end.
+        to: usize,
+        /// How often faces run along it.
+        count: usize,
+    },
+    /// The faces around a vertex form more than one fan.
+    #[error("the faces around vertex {vertex} form more than one fan")]
+    NonManifoldVertex {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// The faces form several surfaces, or one with handles.
+    #[error(
+        "the surface is not one sphere: {vertices} vertices - {edges} edges + {faces} faces = {euler}, not 2"
+    )]
+    NotASphere {
+        /// Number of vertices in use.
+        vertices: usize,
+        /// Number of edges.
+        edges: usize,
+        /// Number of faces.
+        faces: usize,
+        /// Their alternating sum.
+        euler: i64,
+    },
+    /// There are no faces.
+    #[error("the mesh has no faces")]
+    NoFaces,
+}
+
+/// Why a [`Pose`](crate::Pose) was refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PoseError {
+    /// The quaternion is not finite or its length is not 1.
+    #[error("the rotation (x {x}, y {y}, z {z}, w {w}) has length {length}, not 1")]
+    NotARotation {
+        /// Component x as given.
+        x: f64,
+        /// Component y as given.
+        y: f64,
+        /// Component z as given.
+        z: f64,
+        /// Component w as given.
+        w: f64,
+        /// Its length.
+        length: f64,
+    },
+    /// The translation is not finite, or beyond the range in which the predicates are exact.
+    #[error(
+        "the translation {translation} is not finite or has a component outside the exact range (0, or a magnitude from 2^-200 to 2^200)"
+    )]
+    Translation {
+        /// The translation as given.
+        translation: DVec3,
+    },
+}
+
+/// Why a query has no answer.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum QueryError {
+    /// The direction is zero, not finite, or beyond the exact range.
+    #[error(
+        "the direction {direction} is zero, not finite or has a component outside the exact range (0, or a magnitude from 2^-200 to 2^200)"
+    )]
+    Direction {
+        /// The direction as given.
+        direction: DVec3,
+    },
+    /// The graze tolerance is negative or not finite.
+    #[error("the graze tolerance {tolerance} is negative or not finite")]
+    GrazeTolerance {
+        /// The tolerance as given.
+        tolerance: f64,
+    },
+    /// No solver could close the gap between the bounds to rounding error.
+    #[error(
+        "the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}; please report this case"
+    )]
+    NotConverged {
+        /// Best proven lower bound of the collision translation.
+        lower: f64,
+        /// Best proven upper bound.
+        upper: f64,
+        /// The gap that would have been accepted.
+        tolerance: f64,
+    },
+}
+
+/// Whether a coordinate is finite and inside the exact range.
+pub(crate) fn in_exact_range(v: DVec3) -> bool {
+    v.to_array().into_iter().all(|c| c == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&c.abs()))
+}

@@ -1,0 +1,19 @@
+//! Collision translations of convex polyhedra: how far can one body move before it touches another.
+
+mod certificate;
+mod error;
+mod outcome;
+mod polyhedron;
+mod pose;
+mod query;
+mod setting;
+
+pub use certificate::{Certificate, Separation, VertexPair};
+pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
+pub use glam;
+pub use outcome::{
+    Clearance, Contact, ContactRange, Feature, Grazing, Outcome, Separated, Solver, Steps,
+};
+pub use polyhedron::ConvexPolyhedron;
+pub use pose::Pose;
+pub use query::{Options, cast, cast_with, clearance, contact_range};

@@ -1,0 +1,165 @@
+//! What a query answers: every case has a name and carries its proof.
+
+use glam::DVec3;
+
+use crate::certificate::{Certificate, Separation};
+use crate::polyhedron::ConvexPolyhedron;
+
+/// The answer of [`cast`](crate::cast).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// The moving body meets the fixed one at some translation (which may be negative).
+    Contact(Contact),
+    /// The shadows along the direction overlap sideways by no more than the graze tolerance:
+    /// the bodies slide along each other.
+    Grazing(Grazing),
+    /// The bodies never meet along the direction, however far one moves, forwards or backwards.
+    Separated(Separated),
+}
+
+/// The bodies meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// The collision translation in multiples of the direction (a length if the direction is a unit vector):
+    /// the smallest `t` at which the moving body, moved by `t * direction`, meets the fixed one. Negative: the bodies
+    /// overlap now, or the contact lies behind.
+    pub translation: f64,
+    /// Unit contact normal in the world, from the moving body to the fixed one; `normal . direction > 0`.
+    pub normal: DVec3,
+    /// Witness point on the moving body, in the world, at its *start* pose.
+    pub point_on_moving: DVec3,
+    /// Witness point on the fixed body, in the world: the contact point. It is `point_on_moving + translation * direction`
+    /// up to rounding.
+    pub point_on_fixed: DVec3,
+    /// The part of the moving body that lies in the contact plane.
+    pub moving_feature: Feature,
+    /// The part of the fixed body that lies in the contact plane.
+    pub fixed_feature: Feature,
+    /// Lower and upper bound with their proofs.
+    pub certificate: Certificate,
+    /// The solver that narrowed the search.
+    pub solver: Solver,
+    /// Work done.
+    pub steps: Steps,
+}
+
+/// The bodies slide along each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grazing {
+    /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the fixed one's.
+    pub separating_direction: DVec3,
+    /// How far the shadows overlap along `separating_direction`, in world units: at most the graze tolerance; negative when
+    /// they miss each other by less than rounding error can tell.
+    pub overlap: f64,
+    /// The contact that results if the overlap is taken for real.
+    pub contact: Contact,
+}
+
+/// The bodies never meet along the direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Separated {
+    /// The proof: a unit normal orthogonal to the direction, and the margin along it.
+    pub certificate: Separation,
+    /// The solver that found it.
+    pub solver: Solver,
+    /// Work done.
+    pub steps: Steps,
+}
+
+/// A vertex, an edge or a face of a polyhedron, by index.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Feature {
+    /// A vertex.
+    Vertex(u32),
+    /// An edge, by its two vertices.
+    Edge([u32; 2]),
+    /// A face; its vertices are [`ConvexPolyhedron::face_vertices`].
+    Face(u32),
+}
+
+impl Feature {
+    /// `"vertex"`, `"edge"` or `"face"`.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Vertex(_) => "vertex",
+            Self::Edge(_) => "edge",
+            Self::Face(_) => "face",
+        }
+    }
+
+    /// The vertices of the feature, as indices into [`ConvexPolyhedron::vertices`] of `body`.
+    ///
+    /// # Panics
+    /// If the feature is not one of `body`.
+    pub fn vertices(self, body: &ConvexPolyhedron) -> Vec<u32> {
+        match self {
+            Self::Vertex(v) => vec![v],
+            Self::Edge(ends) => ends.to_vec(),
+            Self::Face(face) => body.face_vertices(face).collect(),
+        }
+    }
+}
+
+/// How the search is narrowed. The answer, its certificate and its accuracy are the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Solver {
+    /// Whichever was measured to be fastest for bodies of these sizes.
+    #[default]
+    Auto,
+    /// The collision translation algorithm: convex minimisation over pairs of planar sections.
+    Cta,
+    /// Portal refinement from scratch.
+    Portal,
+}
+
+/// Work done for one answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Steps {
+    /// Planar problems solved (minimisation steps of the collision translation algorithm).
+    pub planar_problems: u32,
+    /// Supporting planes of the Minkowski difference computed (one support point on each body).
+    pub supports: u32,
+    /// Portals visited.
+    pub pivots: u32,
+}
+
+/// All translations at which the bodies meet: `enter.translation <= t <= exit.translation`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactRange {
+    /// The bodies meet exactly for translations in this interval.
+    Contact {
+        /// First contact along the direction.
+        enter: Contact,
+        /// Last contact along the direction. Its normal points *against* the direction: it is the contact of the cast
+        /// along the opposite direction, with the sign of `translation` and of both bounds turned.
+        exit: Contact,
+    },
+    /// The shadows overlap by no more than the graze tolerance.
+    Grazing {
+        /// First contact along the direction.
+        enter: Grazing,
+        /// Last contact along the direction.
+        exit: Grazing,
+    },
+    /// The bodies never meet.
+    Separated(Separated),
+}
+
+/// How far the moving body can move *from here* along the direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Clearance {
+    /// As far as it likes: the bodies never meet, or only slide, or the contact lies behind.
+    Free,
+    /// Until it touches.
+    Blocked {
+        /// How far, in multiples of the direction; never negative.
+        distance: f64,
+        /// The contact that stops it.
+        contact: Contact,
+    },
+    /// The bodies overlap now.
+    Overlapping {
+        /// The translations at which they do: `[enter, exit]`, with 0 inside.
+        range: [f64; 2],
+    },
+}

@@ -1,0 +1,126 @@
+//! Convex polyhedra, checked once at the door.
+//!
+//! The data's way: points -> [`hull`] (which vertices, which faces) -> [`topology`] (half-edges, no
+//! coordinates) -> the indices built on both (support points, sections).
+
+mod hull;
+mod mesh;
+pub(crate) mod topology;
+
+use glam::DVec3;
+
+use crate::error::BuildError;
+use hull::Hull;
+use topology::Topology;
+
+/// A convex polyhedron in its own frame: the convex hull of finitely many points.
+///
+/// It may be of lower dimension: a flat polygon, a segment, a point. Immutable, `Send` and `Sync`;
+/// everything a query needs is built once, here, in `O(n)` space.
+#[derive(Debug, Clone)]
+pub struct ConvexPolyhedron {
+    vertices: Vec<DVec3>,
+    input_index: Vec<u32>,
+    dimension: u8,
+    hull_error: f64,
+    topology: Topology,
+}
+
+impl ConvexPolyhedron {
+    /// The convex hull of `points` (body frame, any unit).
+    ///
+    /// Coplanar triangles are merged into polygons and points within rounding error of a face
+    /// or an edge are no vertices; [`Self::hull_error`] says how far outside the faces any
+    /// input point was left.
+    ///
+    /// # Errors
+    /// No points, a point that is not finite, a coordinate out of the exact range.
+    pub fn from_points(points: &[DVec3]) -> Result<Self, BuildError> {
+        let hull = hull::convex_hull(points)?;
+        Ok(Self::from_hull(points, &hull))
+    }
+
+    /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of vertex indices,
+    /// counter-clockwise as seen from outside.
+    ///
+    /// The surface must be closed, consistently oriented, one sphere, and nowhere more than `tolerance`
+    /// below its convex hull; the hull is what is kept. Vertices that no face uses are ignored.
+    ///
+    /// # Errors
+    /// What is wrong with the points, the topology, the orientation, or the convexity (with the worst
+    /// face and its depth).
+    pub fn from_mesh<F: AsRef<[u32]>>(
+        vertices: &[DVec3],
+        faces: &[F],
+        tolerance: f64,
+    ) -> Result<Self, BuildError> {
+        mesh::from_mesh(vertices, faces, tolerance)
+    }
+
+    fn from_hull(points: &[DVec3], hull: &Hull) -> Self {
+        let vertices: Vec<DVec3> = hull.vertices.iter().map(|&i| points[i as usize]).collect();
+        let topology = if hull.dimension < 2 {
+            Topology::without_faces(vertices.len())
+        } else {
+            Topology::from_faces(vertices.len(), hull.face_start.clone(), &hull.face_vertices)
+                .expect("a hull is closed")
+        };
+        Self {
+            vertices,
+            input_index: hull.vertices.clone(),
+            dimension: hull.dimension,
+            hull_error: hull.violation,
+            topology,
+        }
+    }
+
+    /// The vertices, in the body frame.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// For each vertex, its index in the points or mesh vertices the polyhedron was made from.
+    pub fn input_indices(&self) -> &[u32] {
+        &self.input_index
+    }
+
+    /// 3 for a solid, 2 for a flat polygon (with a front and a back face), 1 for a segment, 0 for a point.
+    pub fn dimension(&self) -> u8 {
+        self.dimension
+    }
+
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        self.topology.face_count()
+    }
+
+    /// Number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.topology.edge_count()
+    }
+
+    /// The vertices of a face, counter-clockwise as seen from outside.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
+        self.topology.face_vertices(face)
+    }
+
+    /// The vertices joined to `vertex` by an edge, clockwise as seen from outside.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn neighbours(&self, vertex: u32) -> &[u32] {
+        self.topology.neighbours(vertex)
+    }
+
+    /// The largest distance by which an input point lies outside a face plane: the hull's own error.
+    pub fn hull_error(&self) -> f64 {
+        self.hull_error
+    }
+
+    pub(crate) fn topology(&self) -> &Topology {
+        &self.topology
+    }
+}

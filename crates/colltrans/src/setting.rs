@@ -1,0 +1,53 @@
+//! The setting of a query: two placed bodies and a direction, in a frame that all solvers share.
+//!
+//! The *setting frame* has the axes of the world and its origin at the moving body's translation:
+//! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both bodies, however
+//! large, costs no accuracy.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{QueryError, in_exact_range};
+use crate::polyhedron::ConvexPolyhedron;
+use crate::pose::Pose;
+
+/// Two placed bodies and a direction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Setting<'a> {
+    /// The moving body P.
+    pub(crate) moving: &'a ConvexPolyhedron,
+    /// Its rotation `R_P`.
+    pub(crate) moving_matrix: DMat3,
+    /// The fixed body Q.
+    pub(crate) fixed: &'a ConvexPolyhedron,
+    /// Its rotation `R_Q`.
+    pub(crate) fixed_matrix: DMat3,
+    /// `t_Q - t_P`.
+    pub(crate) offset: DVec3,
+    /// The direction as given.
+    pub(crate) direction: DVec3,
+    /// `direction` at length 1.
+    pub(crate) unit: DVec3,
+}
+
+impl<'a> Setting<'a> {
+    pub(crate) fn new(
+        moving: &'a ConvexPolyhedron,
+        moving_pose: &Pose,
+        fixed: &'a ConvexPolyhedron,
+        fixed_pose: &Pose,
+        direction: DVec3,
+    ) -> Result<Self, QueryError> {
+        if direction == DVec3::ZERO || !in_exact_range(direction) {
+            return Err(QueryError::Direction { direction });
+        }
+        Ok(Self {
+            moving,
+            moving_matrix: moving_pose.matrix(),
+            fixed,
+            fixed_matrix: fixed_pose.matrix(),
+            offset: fixed_pose.translation() - moving_pose.translation(),
+            direction,
+            unit: direction.normalize(),
+        })
+    }
+}

@@ -4,13 +4,17 @@
 //! coordinates) -> the indices built on both (support points, sections).
 
 mod hull;
+mod measure;
 mod mesh;
+mod support;
 pub(crate) mod topology;
 
 use glam::DVec3;
 
 use crate::error::BuildError;
 use hull::Hull;
+pub(crate) use measure::Measure;
+use support::SupportIndex;
 use topology::Topology;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
@@ -24,6 +28,8 @@ pub struct ConvexPolyhedron {
     dimension: u8,
     hull_error: f64,
     topology: Topology,
+    measure: Measure,
+    support: SupportIndex,
 }
 
 impl ConvexPolyhedron {
@@ -65,12 +71,20 @@ impl ConvexPolyhedron {
             Topology::from_faces(vertices.len(), hull.face_start.clone(), &hull.face_vertices)
                 .expect("a hull is closed")
         };
+        Self::assemble(vertices, hull, topology)
+    }
+
+    fn assemble(vertices: Vec<DVec3>, hull: &Hull, topology: Topology) -> Self {
+        let measure = Measure::new(&vertices, &topology, hull.dimension);
+        let support = SupportIndex::build(&vertices, &topology, &measure);
         Self {
             vertices,
             input_index: hull.vertices.clone(),
             dimension: hull.dimension,
             hull_error: hull.violation,
             topology,
+            measure,
+            support,
         }
     }
 
@@ -118,6 +132,34 @@ impl ConvexPolyhedron {
     /// The largest distance by which an input point lies outside a face plane: the hull's own error.
     pub fn hull_error(&self) -> f64 {
         self.hull_error
+    }
+
+    /// The volume; 0 for a body of lower dimension.
+    pub fn volume(&self) -> f64 {
+        self.measure.volume
+    }
+
+    /// The vertex farthest along `direction` (body frame, any length): a support point, in `O(log n)`.
+    pub fn support(&self, direction: DVec3) -> u32 {
+        self.support.extreme(&self.vertices, &self.topology, direction)
+    }
+
+    /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
+    pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
+        self.support.extreme_from(&self.vertices, &self.topology, direction, near)
+    }
+
+    /// Bytes of memory that the polyhedron occupies, on the heap and in itself.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.vertices.capacity() * size_of::<DVec3>()
+            + self.input_index.capacity() * size_of::<u32>()
+            + self.topology.heap_bytes()
+            + self.support.heap_bytes()
+    }
+
+    pub(crate) fn measure(&self) -> &Measure {
+        &self.measure
     }
 
     pub(crate) fn topology(&self) -> &Topology {

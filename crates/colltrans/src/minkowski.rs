@@ -76,6 +76,7 @@ impl<'a> Difference<'a> {
     }
 
     /// The point of `M` that is lowest along `normal` (shadow frame, any length).
+    #[inline]
     pub(crate) fn support(&self, normal: DVec3) -> Point {
         let moving = self.setting.moving.support(self.moving_axes * normal);
         let fixed = self.setting.fixed.support(-(self.fixed_axes * normal));
@@ -83,12 +84,14 @@ impl<'a> Difference<'a> {
     }
 
     /// The same, climbing from a pair believed to be near.
+    #[inline]
     pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
         let moving = self.setting.moving.support_from(self.moving_axes * normal, near.moving);
         let fixed = self.setting.fixed.support_from(-(self.fixed_axes * normal), near.fixed);
         self.point(VertexPair { moving, fixed }, normal)
     }
 
+    #[inline]
     fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
         let p = self.setting.moving.vertices()[pair.moving as usize];
         let q = self.setting.fixed.vertices()[pair.fixed as usize];
@@ -105,15 +108,15 @@ impl<'a> Difference<'a> {
     ///
     /// The Minkowski sum of two ellipsoids with matrices `A, B` lies in the ellipsoid with matrix
     /// `K = (1 + r) A + (1 + 1/r) B`, for any `r > 0`; `r^2 = tr B / tr A` makes the sum of its squared axes least.
-    pub(crate) fn ellipsoid(&self) -> (DVec3, DMat3) {
+    pub(crate) fn ellipsoid(&self) -> (DVec3, Symmetric) {
         let (moving, fixed) = (self.setting.moving.measure(), self.setting.fixed.measure());
         let center = (transposed(&self.fixed_axes, fixed.center)
             - transposed(&self.moving_axes, moving.center))
             + self.offset;
-        let a = self.moving_axes.transpose() * (moving.shape * self.moving_axes);
-        let b = self.fixed_axes.transpose() * (fixed.shape * self.fixed_axes);
-        let r = (trace(&fixed.shape) / trace(&moving.shape)).sqrt();
-        (center, a * (1.0 + r) + b * (1.0 + 1.0 / r))
+        let r = fixed.radius / moving.radius;
+        let a = Symmetric::gram(&moving.axes_by_factor(&self.moving_axes));
+        let b = Symmetric::gram(&fixed.axes_by_factor(&self.fixed_axes));
+        (center, a.combine(1.0 + r, &b, 1.0 + 1.0 / r))
     }
 
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between two shadows.
@@ -138,6 +141,56 @@ fn transposed(m: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))
 }
 
-fn trace(m: &DMat3) -> f64 {
-    m.x_axis.x + m.y_axis.y + m.z_axis.z
+/// A symmetric 3 x 3 matrix.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Symmetric {
+    pub(crate) xx: f64,
+    pub(crate) xy: f64,
+    pub(crate) xz: f64,
+    pub(crate) yy: f64,
+    pub(crate) yz: f64,
+    pub(crate) zz: f64,
+}
+
+impl Symmetric {
+    /// `w^T w`.
+    fn gram(w: &DMat3) -> Self {
+        let (x, y, z) = (w.x_axis, w.y_axis, w.z_axis);
+        Self { xx: x.dot(x), xy: x.dot(y), xz: x.dot(z), yy: y.dot(y), yz: y.dot(z), zz: z.dot(z) }
+    }
+
+    /// `f self + g other`.
+    fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
+        Self {
+            xx: f * self.xx + g * other.xx,
+            xy: f * self.xy + g * other.xy,
+            xz: f * self.xz + g * other.xz,
+            yy: f * self.yy + g * other.yy,
+            yz: f * self.yz + g * other.yz,
+            zz: f * self.zz + g * other.zz,
+        }
+    }
+
+    pub(crate) fn apply(&self, v: DVec3) -> DVec3 {
+        DVec3::new(
+            self.xx * v.x + self.xy * v.y + self.xz * v.z,
+            self.xy * v.x + self.yy * v.y + self.yz * v.z,
+            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+        )
+    }
+
+    pub(crate) fn inverse(&self) -> Self {
+        let xx = self.yy * self.zz - self.yz * self.yz;
+        let xy = self.xz * self.yz - self.xy * self.zz;
+        let xz = self.xy * self.yz - self.xz * self.yy;
+        let f = 1.0 / (self.xx * xx + self.xy * xy + self.xz * xz);
+        Self {
+            xx: xx * f,
+            xy: xy * f,
+            xz: xz * f,
+            yy: (self.xx * self.zz - self.xz * self.xz) * f,
+            yz: (self.xy * self.xz - self.xx * self.yz) * f,
+            zz: (self.xx * self.yy - self.xy * self.xy) * f,
+        }
+    }
 }

@@ -140,11 +140,13 @@ impl ConvexPolyhedron {
     }
 
     /// The vertex farthest along `direction` (body frame, any length): a support point, in `O(log n)`.
+    #[inline]
     pub fn support(&self, direction: DVec3) -> u32 {
         self.support.extreme(&self.vertices, &self.topology, direction)
     }
 
     /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
+    #[inline]
     pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
         self.support.extreme_from(&self.vertices, &self.topology, direction, near)
     }

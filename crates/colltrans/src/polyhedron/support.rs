@@ -24,6 +24,9 @@ const DIVIDED: u32 = 1 << 31;
 /// A cell whose corners are farther than this many climbing steps from its centre is divided.
 const NEAR_STEPS: usize = 3;
 
+/// After this many steps a climb from a guess asks the table.
+const PATIENCE: usize = 4;
+
 /// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that single-precision models have.
 const MAX_DEPTH: u32 = 20;
 
@@ -40,13 +43,21 @@ pub(crate) struct SupportIndex {
     resolution: u32,
     /// Entries of the base cells, then groups of four.
     cells: Vec<u32>,
+    /// The vertices of a body small enough to scan.
+    groups: Vec<Group>,
 }
 
 impl SupportIndex {
     pub(crate) fn build(vertices: &[DVec3], topology: &Topology, measure: &Measure) -> Self {
-        let mut index =
-            Self { normalise: measure.cholesky().transpose(), resolution: 0, cells: Vec::new() };
-        if vertices.len() > SCAN_LIMIT {
+        let mut index = Self {
+            normalise: measure.factor.transpose(),
+            resolution: 0,
+            cells: Vec::new(),
+            groups: Vec::new(),
+        };
+        if vertices.len() <= SCAN_LIMIT {
+            index.groups = groups(vertices);
+        } else {
             index.resolution = ((vertices.len() as f64 / 18.0).sqrt() as u32).max(2);
             index.fill(vertices, topology);
         }
@@ -54,14 +65,16 @@ impl SupportIndex {
     }
 
     /// The vertex farthest along `direction` (body frame, any length).
+    #[inline]
     pub(crate) fn extreme(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3) -> u32 {
         if self.resolution == 0 {
-            return scan(vertices, direction);
+            return scan(&self.groups, direction);
         }
-        climb(vertices, topology, direction, self.look_up(direction)).0
+        climb(vertices, topology, direction, self.look_up(direction), usize::MAX).0
     }
 
-    /// The same, starting from a vertex believed to be near.
+    /// The same, starting from a vertex believed to be near; if it is not, the table helps out.
+    #[inline]
     pub(crate) fn extreme_from(
         &self,
         vertices: &[DVec3],
@@ -70,14 +83,20 @@ impl SupportIndex {
         start: u32,
     ) -> u32 {
         if self.resolution == 0 {
-            return scan(vertices, direction);
+            return scan(&self.groups, direction);
         }
-        climb(vertices, topology, direction, start).0
+        let (reached, steps) = climb(vertices, topology, direction, start, PATIENCE);
+        if steps < PATIENCE {
+            return reached;
+        }
+        let other = self.look_up(direction);
+        let ahead = direction.dot(vertices[other as usize] - vertices[reached as usize]) > 0.0;
+        climb(vertices, topology, direction, if ahead { other } else { reached }, usize::MAX).0
     }
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<u32>()
+        self.cells.capacity() * size_of::<u32>() + self.groups.capacity() * size_of::<Group>()
     }
 
     /// The entry of the cell that a direction falls into.
@@ -189,7 +208,7 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     fn support(&self, normalised: DVec3, start: u32) -> (u32, usize) {
-        climb(self.vertices, self.topology, self.to_body * normalised, start)
+        climb(self.vertices, self.topology, self.to_body * normalised, start, usize::MAX)
     }
 
     /// The entry of a cell whose centre has the support point `center`: divided while its corners are far.
@@ -211,27 +230,68 @@ impl Builder<'_> {
     }
 }
 
-/// Looks at every vertex.
-fn scan(vertices: &[DVec3], direction: DVec3) -> u32 {
-    let mut best = 0;
-    let mut reach = f64::NEG_INFINITY;
-    for (v, vertex) in vertices.iter().enumerate() {
-        let along = direction.dot(*vertex);
-        if along > reach {
-            (best, reach) = (v, along);
-        }
-    }
-    best as u32
+/// The coordinates of a small body, in groups of four for a scan without branches.
+#[derive(Debug, Clone, Copy)]
+struct Group {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    z: [f64; LANES],
 }
 
-/// Steepest ascent along edges, and the number of steps it took.
+const LANES: usize = 4;
+
+/// Groups of a body's vertices; the last one is filled up with copies of vertex 0.
+fn groups(vertices: &[DVec3]) -> Vec<Group> {
+    let padded = |chunk: &[DVec3], k: usize| *chunk.get(k).unwrap_or(&vertices[0]);
+    let group = |chunk: &[DVec3]| Group {
+        x: std::array::from_fn(|k| padded(chunk, k).x),
+        y: std::array::from_fn(|k| padded(chunk, k).y),
+        z: std::array::from_fn(|k| padded(chunk, k).z),
+    };
+    vertices.chunks(LANES).map(group).collect()
+}
+
+/// Looks at every vertex. Of equals, one is chosen by position alone, so the answer does not depend on where
+/// a search starts.
+#[inline]
+fn scan(groups: &[Group], direction: DVec3) -> u32 {
+    let mut reach = [f64::NEG_INFINITY; LANES];
+    // Group numbers as f64, so that number and reach are selected by the same mask.
+    let mut best = [0.0; LANES];
+    let mut number = 0.0;
+    for group in groups {
+        for k in 0..LANES {
+            let along =
+                direction.x * group.x[k] + direction.y * group.y[k] + direction.z * group.z[k];
+            let farther = along > reach[k];
+            best[k] = if farther { number } else { best[k] };
+            reach[k] = if farther { along } else { reach[k] };
+        }
+        number += 1.0;
+    }
+    let index = |k: usize| best[k] * LANES as f64 + k as f64;
+    let pick = |a: (f64, f64), b: (f64, f64)| {
+        let second = b.0 > a.0;
+        (if second { b.0 } else { a.0 }, if second { b.1 } else { a.1 })
+    };
+    let low = pick((reach[0], index(0)), (reach[1], index(1)));
+    let high = pick((reach[2], index(2)), (reach[3], index(3)));
+    pick(low, high).1 as u32
+}
+
+/// Steepest ascent along edges, at most `limit` steps, and the number of steps it took.
 ///
 /// Gains are taken from edge vectors, not from differences of dot products, so their rounding error is relative to
 /// the edge and not to the body.
-fn climb(vertices: &[DVec3], topology: &Topology, direction: DVec3, start: u32) -> (u32, usize) {
+fn climb(
+    vertices: &[DVec3],
+    topology: &Topology,
+    direction: DVec3,
+    start: u32,
+    limit: usize,
+) -> (u32, usize) {
     let mut at = start;
-    let mut steps = 0;
-    loop {
+    for steps in 0..limit {
         let here = vertices[at as usize];
         let (mut best, mut gain) = (at, 0.0);
         for &w in topology.neighbours(at) {
@@ -245,6 +305,6 @@ fn climb(vertices: &[DVec3], topology: &Topology, direction: DVec3, start: u32) 
             return (at, steps);
         }
         at = best;
-        steps += 1;
     }
+    (at, limit)
 }

@@ -34,26 +34,11 @@ pub(crate) fn refine(
     mut portal: Portal,
     steps: &mut Steps,
 ) -> Option<Optimum> {
-    let mut interpolate = true;
     for _ in 0..MAX_PORTALS {
         steps.pivots += 1;
         let weights = weights(&portal);
         let near = portal[largest(weights)].point.pair;
         let plane = plane_normal(difference, &portal);
-        if interpolate {
-            // The slope that belongs to the line if slope and shadow were linear in each other: close to the
-            // optimum where `M` is smooth. Its support point is used only if it is below the portal's plane.
-            let slope = portal[0].slope * weights[0]
-                + portal[1].slope * weights[1]
-                + portal[2].slope * weights[2];
-            steps.supports += 1;
-            let point = difference.support_from(normal_of(slope), near);
-            interpolate = depth_below(&portal, plane, &point) > difference.noise * plane.length();
-            if interpolate {
-                exchange(&mut portal, Tangent { point, slope });
-                continue;
-            }
-        }
         steps.supports += 1;
         let point = difference.support_from(plane, near);
         if depth_below(&portal, plane, &point) <= difference.noise * plane.length() {
@@ -65,9 +50,10 @@ pub(crate) fn refine(
     None
 }
 
-/// How far a point lies below the highest of the portal's points along `normal`, times the normal's length.
+/// How far a point lies below all three of the portal's along `normal`, times the normal's length.
 fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
-    normal.dot(portal[0].point.at - point.at)
+    let depth = |t: &Tangent| normal.dot(t.point.at - point.at);
+    depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
 }
 
 /// Replaces the one point whose exchange keeps the line inside.
@@ -87,26 +73,18 @@ fn exchange(portal: &mut Portal, new: Tangent) {
     }
 }
 
-/// The upward normal of the plane through the three points.
+/// The upward normal of the plane through the three points, from the two shorter edges, which determine it best.
 ///
 /// A portal lower than the noise has no plane of its own: then the normal through its longest edge that is
-/// closest to the slope of the newest tangent.
+/// closest to the slopes of the tangents.
 fn plane_normal(difference: &Difference, portal: &Portal) -> DVec3 {
     let [a, b, c] = portal.map(|t| t.point.at);
-    let (ab, ac) = (b - a, c - a);
-    let normal = ab.cross(ac);
-    let edges = [ab, c - b, -ac];
+    let edges = [b - a, c - b, a - c];
     let lengths = edges.map(|e| e.truncate().length_squared());
-    let longest = if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
-        0
-    } else if lengths[1] >= lengths[2] {
-        1
-    } else {
-        2
-    };
-    if normal.z * normal.z > lengths[longest] * (8.0 * difference.noise) * (8.0 * difference.noise)
-        && normal.z > 0.0
-    {
+    let longest = largest(lengths);
+    let normal = edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3]);
+    let least_area = 8.0 * difference.noise * lengths[longest].sqrt();
+    if normal.z > least_area {
         return normal;
     }
     let edge = edges[longest];

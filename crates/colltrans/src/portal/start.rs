@@ -2,10 +2,10 @@
 //!
 //! The line enters the ellipsoid that `M` resembles where a quadratic equation says.
 
-use glam::{DMat2, DMat3, DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 
 use crate::certificate::VertexPair;
-use crate::minkowski::Difference;
+use crate::minkowski::{Difference, Symmetric};
 
 /// Where to begin, and how the shadow of the support point answers to a change of slope.
 #[derive(Debug, Clone, Copy)]
@@ -41,12 +41,12 @@ impl Start {
 
 /// The normal where the axis enters the ellipsoid around `center` with inverse matrix `j`, or, if it misses it,
 /// where it passes closest in the ellipsoid's metric.
-fn entry_normal(j: &DMat3, center: DVec3) -> DVec3 {
-    let jc = *j * center;
-    let middle = jc.z / j.z_axis.z;
-    let discriminant = middle * middle - (center.dot(jc) - 1.0) / j.z_axis.z;
+fn entry_normal(j: &Symmetric, center: DVec3) -> DVec3 {
+    let jc = j.apply(center);
+    let middle = jc.z / j.zz;
+    let discriminant = middle * middle - (center.dot(jc) - 1.0) / j.zz;
     let entry = if discriminant > 0.0 { middle - discriminant.sqrt() } else { middle };
-    let mut normal = jc - j.z_axis * entry;
+    let mut normal = jc - DVec3::new(j.xz, j.yz, j.zz) * entry;
     if discriminant <= 0.0 {
         normal.z = 0.0;
         return normal;
@@ -69,13 +69,13 @@ pub(super) fn steep(lateral: DVec2) -> DVec2 {
 }
 
 /// Inverse of the Hessian of `sqrt(n^T K n)` in the lateral components of `n`.
-fn inverse_hessian(k: &DMat3, normal: DVec3) -> DMat2 {
+fn inverse_hessian(k: &Symmetric, normal: DVec3) -> DMat2 {
     let n = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
-    let kn = *k * n;
+    let kn = k.apply(n);
     let square = n.dot(kn);
     let length = square.sqrt();
     let s: DVec2 = kn.truncate();
-    let lateral = DMat2::from_cols(k.x_axis.truncate(), k.y_axis.truncate());
+    let lateral = DMat2::from_cols(DVec2::new(k.xx, k.xy), DVec2::new(k.xy, k.yy));
     let hessian = (lateral - DMat2::from_cols(s * s.x, s * s.y) * (1.0 / square)) * (1.0 / length);
     hessian.inverse()
 }

@@ -3,6 +3,7 @@
 mod answer;
 mod certificate;
 mod error;
+mod exact;
 mod minkowski;
 mod outcome;
 mod polyhedron;

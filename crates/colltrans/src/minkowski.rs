@@ -9,9 +9,12 @@
 //! three parts `2 u`, the axis itself `2 u`: together less than `10 u S sqrt(3) < 18 u S`. [`Difference::noise`] is `32 u S`, which also covers comparing
 //! two such coordinates along a unit normal of the frame.
 
+use std::cmp::Ordering;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::certificate::VertexPair;
+use crate::exact;
 use crate::setting::Setting;
 
 /// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
@@ -52,7 +55,8 @@ pub(crate) struct Difference<'a> {
 
 impl<'a> Difference<'a> {
     pub(crate) fn new(setting: &'a Setting<'a>) -> Self {
-        let (e1, e2) = setting.unit.any_orthonormal_pair();
+        let e1 = setting.unit.any_orthonormal_vector();
+        let e2 = setting.unit.cross(e1);
         let axes = DMat3::from_cols(e1, e2, setting.unit);
         Self {
             setting,
@@ -121,13 +125,29 @@ impl<'a> Difference<'a> {
 
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between two shadows.
     ///
-    /// The sign is exact for the coordinates of the points. Where the line meets the segment's
-    /// carrier, it is moved, in thought, by `(eps, eps^2)`: so it is never *on* a segment, and three
-    /// consistent answers always mean a triangle that contains it.
-    pub(crate) fn is_left(from: &Point, to: &Point) -> bool {
+    /// Exact: a rounded determinant decides where its error allows, whole numbers otherwise. Where the line meets the
+    /// segment's carrier it is moved, in thought, by `(eps, eps^2)`: so it is never *on* a segment, and
+    /// three consistent answers always mean a triangle that contains it.
+    pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
+        let (a, b) = (from.shadow(), to.shadow());
+        let det = a.perp_dot(b);
+        let size = a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs();
+        if det.abs() > 2.0 * self.noise * (size + self.noise) {
+            return det > 0.0;
+        }
+        self.is_left_exactly(from, to)
+    }
+
+    #[cold]
+    fn is_left_exactly(&self, from: &Point, to: &Point) -> bool {
+        if self.widening == 0.0 {
+            let setting = self.setting;
+            let (a, b) = (setting.exact_difference(from.pair), setting.exact_difference(to.pair));
+            return exact::orientation(&a, &b, setting.direction) == Ordering::Greater;
+        }
+        // Widened bodies exist only in rounded coordinates; their determinant is exact for those.
         let (a, b) = (from.shadow(), to.shadow());
         let coord = |v: DVec2| robust::Coord { x: v.x, y: v.y };
-        // The expansion of orient(a, b, (eps, eps^2)) in powers of eps.
         let det = robust::orient2d(coord(a), coord(b), coord(DVec2::ZERO));
         if det != 0.0 {
             return det > 0.0;

@@ -51,7 +51,7 @@ pub(crate) fn enclose(
         Ok(tangent) => tangent,
         Err(one_side) => return Some(one_side),
     };
-    let mut edge = if Difference::is_left(&first.point, &second.point) {
+    let mut edge = if difference.is_left(&first.point, &second.point) {
         [first, second]
     } else {
         [second, first]
@@ -63,9 +63,9 @@ pub(crate) fn enclose(
             Err(one_side) => return Some(one_side),
         };
         let [from, to] = edge;
-        if !Difference::is_left(&to.point, &third.point) {
+        if !difference.is_left(&to.point, &third.point) {
             edge = [third, to];
-        } else if !Difference::is_left(&third.point, &from.point) {
+        } else if !difference.is_left(&third.point, &from.point) {
             edge = [from, third];
         } else {
             return Some(Enclosure::Portal([from, to, third]));

@@ -45,7 +45,7 @@ pub(crate) fn refine(
             let portal = portal.map(|t| t.point);
             return Some(Optimum { normal: plane, lowest: point.pair, portal, weights });
         }
-        exchange(&mut portal, Tangent { point, slope: plane.truncate() / plane.z });
+        exchange(difference, &mut portal, Tangent { point, slope: plane.truncate() / plane.z });
     }
     None
 }
@@ -57,8 +57,8 @@ fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
 }
 
 /// Replaces the one point whose exchange keeps the line inside.
-fn exchange(portal: &mut Portal, new: Tangent) {
-    let left = [0, 1, 2].map(|i| Difference::is_left(&portal[i].point, &new.point));
+fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) {
+    let left = [0, 1, 2].map(|i| difference.is_left(&portal[i].point, &new.point));
     // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the sides change.
     for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         if !left[i] && left[j] {

@@ -151,6 +151,11 @@ impl ConvexPolyhedron {
         self.support.extreme_from(&self.vertices, &self.topology, direction, near)
     }
 
+    /// Positions among the neighbours of `vertex` that may lie in its supporting plane along `direction`: the first and how many.
+    pub(crate) fn plane_candidates(&self, vertex: u32, direction: DVec3) -> (usize, usize) {
+        self.support.plane_candidates(&self.vertices, &self.topology, vertex, direction)
+    }
+
     /// Bytes of memory that the polyhedron occupies, on the heap and in itself.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>()

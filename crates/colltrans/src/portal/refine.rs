@@ -34,18 +34,19 @@ pub(crate) fn refine(
     mut portal: Portal,
     steps: &mut Steps,
 ) -> Option<Optimum> {
+    let mut newest = 2;
     for _ in 0..MAX_PORTALS {
         steps.pivots += 1;
-        let weights = weights(&portal);
-        let near = portal[largest(weights)].point.pair;
         let plane = plane_normal(difference, &portal);
         steps.supports += 1;
-        let point = difference.support_from(plane, near);
+        let point = difference.support_from(plane, portal[newest].point.pair);
         if depth_below(&portal, plane, &point) <= difference.noise * plane.length() {
+            let weights = weights(&portal);
             let portal = portal.map(|t| t.point);
             return Some(Optimum { normal: plane, lowest: point.pair, portal, weights });
         }
-        exchange(difference, &mut portal, Tangent { point, slope: plane.truncate() / plane.z });
+        newest =
+            exchange(difference, &mut portal, Tangent { point, slope: plane.truncate() / plane.z });
     }
     None
 }
@@ -56,21 +57,21 @@ fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
     depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
 }
 
-/// Replaces the one point whose exchange keeps the line inside.
-fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) {
+/// Replaces the one point whose exchange keeps the line inside, and says which.
+fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize {
     let left = [0, 1, 2].map(|i| difference.is_left(&portal[i].point, &new.point));
     // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the sides change.
     for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         if !left[i] && left[j] {
             portal[k] = new;
-            return;
+            return k;
         }
     }
     // All on one side: the shadows coincide, and the new point takes the place of the one it lies under.
-    let distance = |t: &Tangent| t.point.shadow().distance_squared(new.point.shadow());
-    if let Some(same) = portal.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-        *same = new;
-    }
+    let distances = portal.map(|t| -t.point.shadow().distance_squared(new.point.shadow()));
+    let same = largest(distances);
+    portal[same] = new;
+    same
 }
 
 /// The upward normal of the plane through the three points, from the two shorter edges, which determine it best.
@@ -83,8 +84,8 @@ fn plane_normal(difference: &Difference, portal: &Portal) -> DVec3 {
     let lengths = edges.map(|e| e.truncate().length_squared());
     let longest = largest(lengths);
     let normal = edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3]);
-    let least_area = 8.0 * difference.noise * lengths[longest].sqrt();
-    if normal.z > least_area {
+    let least_height = 8.0 * difference.noise;
+    if normal.z > 0.0 && normal.z * normal.z > least_height * least_height * lengths[longest] {
         return normal;
     }
     let edge = edges[longest];

@@ -108,19 +108,15 @@ impl<'a> Difference<'a> {
         Point { at, pair }
     }
 
-    /// The ellipsoid that `M` resembles: its centre and matrix in the shadow frame.
-    ///
-    /// The Minkowski sum of two ellipsoids with matrices `A, B` lies in the ellipsoid with matrix
-    /// `K = (1 + r) A + (1 + 1/r) B`, for any `r > 0`; `r^2 = tr B / tr A` makes the sum of its squared axes least.
-    pub(crate) fn ellipsoid(&self) -> (DVec3, Symmetric) {
+    /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and their matrices.
+    pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.measure(), self.setting.fixed.measure());
         let center = (transposed(&self.fixed_axes, fixed.center)
             - transposed(&self.moving_axes, moving.center))
             + self.offset;
-        let r = fixed.radius / moving.radius;
         let a = Symmetric::gram(&moving.axes_by_factor(&self.moving_axes));
         let b = Symmetric::gram(&fixed.axes_by_factor(&self.fixed_axes));
-        (center, a.combine(1.0 + r, &b, 1.0 + 1.0 / r))
+        (center, [a, b])
     }
 
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between two shadows.
@@ -180,7 +176,7 @@ impl Symmetric {
     }
 
     /// `f self + g other`.
-    fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
+    pub(crate) fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
         Self {
             xx: f * self.xx + g * other.xx,
             xy: f * self.xy + g * other.xy,

@@ -304,6 +304,7 @@ mod timing {
                 let pq = Pose::new(q(&mut r), d * 5.0 + lat).unwrap();
                 settings.push((i % 4, (i / 4 + 1 + i) % 4, pp, pq, d));
             }
+            let mut sup = vec![];
             let (mut times, mut steps, mut sep) = (vec![], Steps::default(), 0);
             let mut worst = 0.0_f64;
             for pass in 0..(if n == 8 { 60 } else { 5 }) {
@@ -314,6 +315,7 @@ mod timing {
                     match out.unwrap() {
                         Outcome::Contact(c) => {
                             times.push(el);
+                            sup.push((c.steps.supports, c.steps.pivots));
                             steps.supports += c.steps.supports;
                             steps.pivots += c.steps.pivots;
                             worst = worst.max(c.certificate.gap() / c.certificate.tolerance);
@@ -332,6 +334,14 @@ mod timing {
             }
             let clock = t.elapsed().as_nanos() / 1000;
             times.sort_unstable();
+            sup.sort_unstable();
+            println!(
+                "sup p50 {:?} p90 {:?} p99 {:?} max {:?}",
+                sup[sup.len() / 2],
+                sup[sup.len() * 9 / 10],
+                sup[sup.len() * 99 / 100],
+                sup[sup.len() - 1]
+            );
             let k = times.len();
             println!(
                 "n {n:7} {:7} clock {clock} median {:6} p99 {:6} supports {:.2} pivots {:.2} sep {sep} worst {worst:.2} bytes/v {}",

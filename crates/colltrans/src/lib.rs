@@ -1,11 +1,13 @@
 //! Collision translations of convex polyhedra: how far can one body move before it touches another.
 
 mod certificate;
+mod cta;
 mod error;
 mod outcome;
 mod polyhedron;
 mod pose;
 mod query;
+mod section;
 mod setting;
 
 pub use certificate::{Certificate, Separation, VertexPair};

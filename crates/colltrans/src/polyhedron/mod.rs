@@ -10,6 +10,7 @@ pub(crate) mod topology;
 use glam::DVec3;
 
 use crate::error::BuildError;
+use crate::section::SectionIndex;
 use hull::Hull;
 use topology::Topology;
 
@@ -24,6 +25,7 @@ pub struct ConvexPolyhedron {
     dimension: u8,
     hull_error: f64,
     topology: Topology,
+    sections: SectionIndex,
 }
 
 impl ConvexPolyhedron {
@@ -65,12 +67,18 @@ impl ConvexPolyhedron {
             Topology::from_faces(vertices.len(), hull.face_start.clone(), &hull.face_vertices)
                 .expect("a hull is closed")
         };
+        let sections = if hull.dimension == 3 {
+            SectionIndex::build(&vertices, &topology)
+        } else {
+            SectionIndex::default()
+        };
         Self {
             vertices,
             input_index: hull.vertices.clone(),
             dimension: hull.dimension,
             hull_error: hull.violation,
             topology,
+            sections,
         }
     }
 
@@ -122,5 +130,36 @@ impl ConvexPolyhedron {
 
     pub(crate) fn topology(&self) -> &Topology {
         &self.topology
+    }
+
+    pub(crate) fn sections(&self) -> &SectionIndex {
+        &self.sections
+    }
+
+    /// Bytes on the heap: vertices, topology and indices.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        self.vertices.capacity() * size_of::<DVec3>()
+            + self.input_index.capacity() * size_of::<u32>()
+            + self.topology.heap_bytes()
+            + self.sections.heap_bytes()
+    }
+
+    /// A body of dimension 3 from its faces, which the caller knows to be convex.
+    #[cfg(test)]
+    pub(crate) fn from_convex_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Self {
+        let mut face_start = vec![0];
+        let mut face_vertices = Vec::new();
+        for face in faces {
+            face_vertices.extend_from_slice(face);
+            face_start.push(face_vertices.len() as u32);
+        }
+        let hull = Hull {
+            dimension: 3,
+            vertices: (0..vertices.len() as u32).collect(),
+            face_start,
+            face_vertices,
+            violation: 0.0,
+        };
+        Self::from_hull(vertices, &hull)
     }
 }

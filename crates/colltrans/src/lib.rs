@@ -2,6 +2,7 @@
 
 mod answer;
 mod certificate;
+mod cta;
 mod error;
 mod exact;
 mod minkowski;
@@ -10,6 +11,7 @@ mod polyhedron;
 mod portal;
 mod pose;
 mod query;
+mod section;
 mod setting;
 
 pub use certificate::{Certificate, CertificateError, Separation, VertexPair};

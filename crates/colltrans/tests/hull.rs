@@ -67,11 +67,7 @@ fn check(body: &ConvexPolyhedron, points: &[DVec3]) {
         let corners: Vec<DVec3> =
             body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let mut normal = DVec3::ZERO;
-        for k in 0..corners.len() {
-            normal += (corners[k] - middle).cross(corners[(k + 1) % corners.len()] - middle);
-        }
-        let normal = normal.normalize();
+        let normal = body.face_normal(face);
         for p in points {
             let outside = normal.dot(*p - middle);
             assert!(outside <= body.hull_error() + 1e-14 * size, "{outside:e} outside face {face}");

@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::hull::{self, Hull};
+use super::plane::polygon_normal;
 use super::topology::Topology;
 use super::{ConvexPolyhedron, Measure};
 use crate::error::{BuildError, TopologyError};
@@ -166,12 +167,8 @@ impl<'a> Depths<'a> {
         let at = |v: u32| surface.points[hull.vertices[v as usize] as usize];
         let plane = |face: u32| {
             let corners = hull.topology.face_vertices(face).map(at);
-            let middle = corners.clone().sum::<DVec3>() / corners.len() as f64;
-            let next = corners.clone().cycle().skip(1);
-            let normal: DVec3 =
-                corners.zip(next).map(|(a, b)| (a - middle).cross(b - middle)).sum();
-            let normal = normal.normalize_or_zero();
-            (normal, normal.dot(middle))
+            let normal = polygon_normal(corners.clone());
+            (normal, corners.map(|p| normal.dot(p)).fold(f64::NEG_INFINITY, f64::max))
         };
         let planes = (0..hull.topology.face_count() as u32).map(plane).collect();
         Self { surface, hull, planes, in_hull }

@@ -6,6 +6,7 @@
 mod hull;
 mod measure;
 mod mesh;
+mod plane;
 mod support;
 pub(crate) mod topology;
 
@@ -119,6 +120,14 @@ impl ConvexPolyhedron {
     /// If there is no such face.
     pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
         self.topology.face_vertices(face)
+    }
+
+    /// Unit normal of a face, outwards, in the body frame.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn face_normal(&self, face: u32) -> DVec3 {
+        plane::polygon_normal(self.face_vertices(face).map(|v| self.vertices[v as usize]))
     }
 
     /// The vertices joined to `vertex` by an edge, clockwise as seen from outside.

@@ -9,6 +9,8 @@
 
 use glam::DVec3;
 
+use crate::polyhedron::plane::triangle_normal;
+
 const NONE: u32 = u32::MAX;
 
 /// A triangle with its neighbours across the edges `corner[k] -> corner[k + 1]`.
@@ -176,21 +178,13 @@ impl<'a> Builder<'a> {
     /// A new triangle without neighbours.
     fn add(&mut self, corners: [u32; 3]) -> u32 {
         let [a, b, c] = corners.map(|i| self.at(i));
-        // The two shorter edges determine the normal best.
-        let edges = [b - a, c - b, a - c];
-        let lengths = edges.map(DVec3::length);
-        let longest = if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
-            0
-        } else if lengths[1] >= lengths[2] {
-            1
-        } else {
-            2
-        };
-        let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
-        let normal = edges[i].cross(edges[j]);
+        let normal = triangle_normal([a, b, c]);
         let area = normal.length();
-        // The cross product's components and the distance of a point `extent` away are off by a few roundings.
-        let doubt = 16.0 * f64::EPSILON * lengths[i] * lengths[j] * self.extent / area;
+        // The product of the two shorter edges, and the distance of a point `extent` away, are off by a few roundings.
+        let lengths = [a.distance(b), b.distance(c), c.distance(a)];
+        let longest = lengths[0].max(lengths[1]).max(lengths[2]);
+        let product = lengths[0] * lengths[1] * lengths[2] / longest;
+        let doubt = 16.0 * f64::EPSILON * product * self.extent / area;
         let triangle = Triangle {
             corners,
             neighbours: [NONE; 3],

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::quickhull::Simplicial;
+use crate::polyhedron::plane::polygon_normal;
 use crate::polyhedron::topology::Topology;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to face.
@@ -38,14 +39,13 @@ impl Locator {
     fn of_faces(vertices: &[DVec3], topology: &Topology) -> Self {
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let plane = |face: u32| {
-            let corners = topology.face_vertices(face).map(|v| vertices[v as usize] - center);
-            let count = corners.len() as f64;
-            let middle = corners.clone().sum::<DVec3>() / count;
-            let next = corners.clone().cycle().skip(1);
-            let normal: DVec3 =
-                corners.zip(next).map(|(a, b)| (a - middle).cross(b - middle)).sum();
-            let normal = normal.normalize_or_zero();
-            (normal, normal.dot(middle))
+            let corners = topology.face_vertices(face).map(|v| vertices[v as usize]);
+            let normal = polygon_normal(corners.clone());
+            (
+                normal,
+                corners.map(|p| normal.dot(p - center)).sum::<f64>()
+                    / topology.face(face).len() as f64,
+            )
         };
         let faces = 0..topology.face_count() as u32;
         let mut neighbour_start = vec![0];

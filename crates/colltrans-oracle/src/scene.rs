@@ -84,11 +84,6 @@ impl Scene {
 
 /// The numbers as integers in one common unit `2^exponent`.
 pub(crate) fn in_common_unit(numbers: &[Dyadic]) -> (Vec<IBig>, i32) {
-    let exponent = numbers
-        .iter()
-        .filter(|x| !x.is_zero())
-        .map(Dyadic::exponent)
-        .min()
-        .unwrap_or(0);
+    let exponent = numbers.iter().filter(|x| !x.is_zero()).map(Dyadic::exponent).min().unwrap_or(0);
     (numbers.iter().map(|x| x.in_units_of(exponent)).collect(), exponent)
 }

@@ -374,7 +374,8 @@ fn face_face(rng: &mut Rng) -> Draft {
     let mut moving = cuboid(half);
     moving.truncate(rng.pick(&[8, 8, 7, 6]));
     let fixed = prism(rng.int(3, 6) as u32, rng.range(0.3, 2.0), half.z, rng.unit());
-    let direction = if rng.one_in(2) { DVec3::Z } else { (rng.vector() + DVec3::Z * 2.0).normalize() };
+    let direction =
+        if rng.one_in(2) { DVec3::Z } else { (rng.vector() + DVec3::Z * 2.0).normalize() };
     let height = 2.0 * half.z + rng.pick(&[0.0, 0.0, 1.0, rng.clone().unit(), -0.25]);
     let at = rng.vector() * DVec3::new(1.5, 1.5, 0.0) + DVec3::Z * height;
     Draft::new(moving, fixed, at, direction)
@@ -390,7 +391,8 @@ fn edge_edge_parallel(rng: &mut Rng) -> Draft {
     };
     let (moving, fixed) = (roof(1.0), roof(-1.0));
     let lateral = rng.pick(&[DVec3::ZERO, DVec3::Y * 1e-13, DVec3::X, DVec3::X * 0.3, DVec3::Y]);
-    let direction = if rng.one_in(3) { DVec3::new(0.0, rng.range(-0.4, 0.4), 1.0) } else { DVec3::Z };
+    let direction =
+        if rng.one_in(3) { DVec3::new(0.0, rng.range(-0.4, 0.4), 1.0) } else { DVec3::Z };
     let at = DVec3::Z * rng.whole(0, 9) + lateral;
     Draft::new(moving, fixed, at, direction)
 }
@@ -454,11 +456,8 @@ fn peg(rng: &mut Rng) -> Draft {
 fn needle_plate(rng: &mut Rng) -> Draft {
     let mut body = || {
         let long = rng.pick(&[100.0, 1000.0]);
-        let axes = if rng.one_in(2) {
-            DVec3::new(1.0, 1.0, long)
-        } else {
-            DVec3::new(long, long, 1.0)
-        };
+        let axes =
+            if rng.one_in(2) { DVec3::new(1.0, 1.0, long) } else { DVec3::new(long, long, 1.0) };
         let points: Vec<_> = cloud(rng).into_iter().map(|v| v * axes).collect();
         points
     };
@@ -475,8 +474,8 @@ fn size_ratio(rng: &mut Rng) -> Draft {
     draft.fixed.iter_mut().for_each(|v| *v *= factor);
     if factor > 1.0 {
         let corner = draft.fixed[0];
-        draft.fixed_at += draft.direction * 2.0 * factor
-            - draft.fixed_rotation * corner * rng.pick(&[0.0, 1.0]);
+        draft.fixed_at +=
+            draft.direction * 2.0 * factor - draft.fixed_rotation * corner * rng.pick(&[0.0, 1.0]);
     }
     draft
 }
@@ -527,7 +526,8 @@ fn flat_body(rng: &mut Rng) -> Vec<DVec3> {
 fn flat(rng: &mut Rng) -> Draft {
     let moving = flat_body(rng);
     let fixed = if rng.one_in(2) { flat_body(rng) } else { whole_box(rng) };
-    let direction = rng.pick(&[DVec3::Z, DVec3::X, DVec3::new(1.0, 1.0, 1.0), rng.clone().direction()]);
+    let direction =
+        rng.pick(&[DVec3::Z, DVec3::X, DVec3::new(1.0, 1.0, 1.0), rng.clone().direction()]);
     let at = direction * rng.whole(-2, 6) + rng.grid(-1, 1);
     let draft = Draft::new(moving, fixed, at, direction);
     match rng.int(0, 2) {
@@ -554,11 +554,7 @@ fn segment_point(rng: &mut Rng) -> Draft {
     let at = direction * rng.whole(-1, 5) + rng.grid(-1, 1) * rng.pick(&[0.0, 1.0]);
     let swap = rng.one_in(2);
     let draft = Draft::new(moving, fixed, at, direction);
-    if swap {
-        Draft { moving: draft.fixed, fixed: draft.moving, ..draft }
-    } else {
-        draft
-    }
+    if swap { Draft { moving: draft.fixed, fixed: draft.moving, ..draft } } else { draft }
 }
 
 /// Tied settings whose ties are broken in the last digits.

@@ -57,8 +57,8 @@ pub fn sideways_overlap(scene: &Scene) -> SignedDistance {
         .min()
         .expect("a body has a point");
     let origin = [&IBig::ZERO, &IBig::ZERO];
-    let inside = hull.len() > 2
-        && { sides }.all(|(i, j)| turn(shadows[hull[i]], shadows[hull[j]], origin) == Ordering::Greater);
+    let inside = hull.len() > 2 && { sides }
+        .all(|(i, j)| turn(shadows[hull[i]], shadows[hull[j]], origin) == Ordering::Greater);
     let unit = Ratio::new(Dyadic::new(1.0), &square * &square);
     let sign = match (inside, distance.is_zero()) {
         (_, true) => Ordering::Equal,
@@ -125,7 +125,11 @@ mod tests {
         let square = square.map(|(x, y)| DVec3::new(x, y, 7.0 + x));
         let pose = Pose::from_translation(DVec3::new(x, y, 3.0)).unwrap();
         let direction = DVec3::Z * -3.0;
-        sideways_overlap(&Scene::new((&[DVec3::ZERO], &pose), (&square, &Pose::IDENTITY), direction))
+        sideways_overlap(&Scene::new(
+            (&[DVec3::ZERO], &pose),
+            (&square, &Pose::IDENTITY),
+            direction,
+        ))
     }
 
     #[test]

@@ -20,9 +20,8 @@ pub fn collision_translation(scene: &Scene) -> Option<Ratio> {
     let points = scene.differences();
     let (shadows, heights): (Vec<_>, Vec<_>) =
         points.iter().map(|m| (scene.shadow(m), scene.height(m))).unzip();
-    let row = |i: usize| {
-        in_common_unit(&shadows.iter().map(|s| s[i].clone()).collect::<Vec<_>>()).0
-    };
+    let row =
+        |i: usize| in_common_unit(&shadows.iter().map(|s| s[i].clone()).collect::<Vec<_>>()).0;
     let (costs, unit) = in_common_unit(&heights);
     let ones = vec![IBig::ONE; points.len()];
     let right_side = [IBig::ZERO, IBig::ZERO, IBig::ONE];
@@ -76,8 +75,7 @@ impl Tableau {
     }
 
     fn minimise(&mut self, objective: usize) {
-        while let Some(column) =
-            (0..self.variables).find(|&j| self.rows[objective][j] < IBig::ZERO)
+        while let Some(column) = (0..self.variables).find(|&j| self.rows[objective][j] < IBig::ZERO)
         {
             let row = self.leaving_row(column).expect("weights that sum to 1 are bounded");
             self.pivot(row, column);

@@ -135,8 +135,17 @@ fn run(arguments: &Arguments) -> bool {
     );
     println!(
         "{:<20} {:>8} {:>8} {:>8} {:>9} {:>9} {:>7} {:>10} {:>7} {:>7} {:>6}",
-        "family", "settings", "contact", "grazing", "separated", "proven", "lp", "gap/size", "gap/tol",
-        "miss/u", "wrong"
+        "family",
+        "settings",
+        "contact",
+        "grazing",
+        "separated",
+        "proven",
+        "lp",
+        "gap/size",
+        "gap/tol",
+        "miss/u",
+        "wrong"
     );
     let mut total = Tally::default();
     for name in families {

@@ -4,8 +4,9 @@
 //! table [--quick] [--sizes 8,128,2000] [--json FILE] [--seed S]
 //! ```
 //!
-//! A query is timed alone, with the clock's own cost taken off. The solvers take turns over blocks of settings, so that each meets its
-//! bodies as cold as a program that does many different queries does, and a disturbance of the machine hits all of them.
+//! A query is timed alone, with the clock's own cost taken off. The solvers take turns, each on a block of settings that none of the others has just
+//! visited: each meets its bodies as cold as a program that does many different queries does, and a
+//! disturbance of the machine hits all of them.
 
 use std::fs;
 use std::hint::black_box;
@@ -23,7 +24,10 @@ const SOLVERS: [(&str, Solver); 3] =
     [("cta", Solver::Cta), ("portal", Solver::Portal), ("auto", Solver::Auto)];
 
 /// Settings that one solver works through before the next takes its turn.
-const BLOCK: usize = 50;
+const BLOCK: usize = 25;
+
+/// Our solvers and parry.
+const CONTESTANTS: usize = SOLVERS.len() + 1;
 
 /// Two answers agree when they differ by less than this share of the bodies' length; parry stops at about as much.
 const AGREEMENT: f64 = 1e-4;
@@ -143,6 +147,29 @@ struct Measured {
 }
 
 impl Measured {
+    fn measure(&mut self, bodies: &[ConvexPolyhedron], solver: Solver, block: &[Setting]) {
+        let clock = clock_cost();
+        for setting in block {
+            let started = Instant::now();
+            let outcome = black_box(black_box(setting).cast(bodies, solver));
+            let spent = started.elapsed();
+            let Ok(outcome) = outcome else {
+                self.failures += 1;
+                continue;
+            };
+            self.note(spent, clock);
+            let steps = steps(&outcome);
+            self.steps.planar_problems += steps.planar_problems;
+            self.steps.supports += steps.supports;
+            self.steps.pivots += steps.pivots;
+        }
+    }
+
+    fn note(&mut self, spent: Duration, clock: f64) {
+        self.nanoseconds.push((spent.as_nanos() as f64 - clock).max(0.0));
+        self.answers += 1;
+    }
+
     fn quantile(&self, share: f64) -> f64 {
         let last = self.nanoseconds.len().saturating_sub(1);
         self.nanoseconds.get((last as f64 * share).round() as usize).copied().unwrap_or(f64::NAN)
@@ -182,7 +209,7 @@ impl Row {
     fn measure(bodies: &Bodies, meeting: Meeting, arguments: &Arguments) -> Self {
         let mut rng = Rng::new(arguments.seed.wrapping_mul(77) ^ bodies.asked as u64);
         let count = match (bodies.asked, arguments.quick) {
-            (100_000.., true) => 50,
+            (100_000.., true) => 100,
             (100_000.., false) => 200,
             (_, true) => 200,
             (_, false) => 1000,
@@ -204,9 +231,19 @@ impl Row {
             settings: count,
         };
         let passes = if arguments.quick { 2 } else { 5 };
+        let blocks: Vec<&[Setting]> = settings.chunks(BLOCK).collect();
         for pass in 0..passes {
-            for block in settings.chunks(BLOCK) {
-                row.measure_block(bodies, block, pass);
+            for turn in 0..blocks.len() {
+                let block = |contestant: usize| {
+                    blocks[(turn + contestant * blocks.len() / CONTESTANTS) % blocks.len()]
+                };
+                for (index, (_, solver)) in SOLVERS.into_iter().enumerate() {
+                    row.ours[index].measure(&bodies.ours, solver, block(index));
+                }
+                // Parry's linear support search at these sizes needs no second look.
+                if pass == 0 || bodies.asked < 10_000 {
+                    row.measure_parry(bodies, block(SOLVERS.len()), pass == 0);
+                }
             }
         }
         for measured in row.ours.iter_mut().chain([&mut row.theirs]) {
@@ -215,29 +252,8 @@ impl Row {
         row
     }
 
-    fn measure_block(&mut self, bodies: &Bodies, block: &[Setting], pass: u32) {
+    fn measure_parry(&mut self, bodies: &Bodies, block: &[Setting], compare: bool) {
         let clock = clock_cost();
-        for (measured, (_, solver)) in self.ours.iter_mut().zip(SOLVERS) {
-            for setting in block {
-                let started = Instant::now();
-                let outcome = black_box(black_box(setting).cast(&bodies.ours, solver));
-                let spent = started.elapsed();
-                let Ok(outcome) = outcome else {
-                    measured.failures += 1;
-                    continue;
-                };
-                measured.nanoseconds.push((spent.as_nanos() as f64 - clock).max(0.0));
-                measured.answers += 1;
-                let steps = steps(&outcome);
-                measured.steps.planar_problems += steps.planar_problems;
-                measured.steps.supports += steps.supports;
-                measured.steps.pivots += steps.pivots;
-            }
-        }
-        // Parry's linear support search at these sizes needs no second look.
-        if pass > 0 && bodies.asked >= 10_000 {
-            return;
-        }
         for setting in block {
             let pair = (&bodies.theirs[setting.moving], &bodies.theirs[setting.fixed]);
             let (Some(moving), Some(fixed)) = pair else {
@@ -247,10 +263,8 @@ impl Row {
             let theirs = ParrySetting::new(setting);
             let started = Instant::now();
             let answer = black_box(black_box(&theirs).cast(moving, fixed));
-            let spent = started.elapsed();
-            self.theirs.nanoseconds.push((spent.as_nanos() as f64 - clock).max(0.0));
-            self.theirs.answers += 1;
-            if pass == 0 && !agrees(setting, &bodies.ours, answer) {
+            self.theirs.note(started.elapsed(), clock);
+            if compare && !agrees(setting, &bodies.ours, answer) {
                 self.disagreements += 1;
             }
         }

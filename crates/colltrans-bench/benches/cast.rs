@@ -18,11 +18,11 @@ fn cast(criterion: &mut Criterion) {
         (Shape::Needle(100.0), 2_000, Meeting::Colliding),
     ] {
         let mut rng = Rng::new(1);
-        let bodies: Vec<_> =
-            (0..4).map(|_| shape.draw(n, &mut rng).expect("a body")).collect();
+        let bodies: Vec<_> = (0..4).map(|_| shape.draw(n, &mut rng).expect("a body")).collect();
         let settings: Vec<_> =
             (0..256).map(|_| Setting::draw(&bodies, meeting, &mut rng)).collect();
-        let mut group = criterion.benchmark_group(format!("{} {n} {}", shape.name(), meeting.name()));
+        let mut group =
+            criterion.benchmark_group(format!("{} {n} {}", shape.name(), meeting.name()));
         for (name, solver) in
             [("cta", Solver::Cta), ("portal", Solver::Portal), ("auto", Solver::Auto)]
         {

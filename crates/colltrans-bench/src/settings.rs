@@ -70,11 +70,7 @@ impl Setting {
     ///
     /// # Errors
     /// As [`colltrans::cast_with`].
-    pub fn cast(
-        &self,
-        bodies: &[ConvexPolyhedron],
-        solver: Solver,
-    ) -> Result<Outcome, QueryError> {
+    pub fn cast(&self, bodies: &[ConvexPolyhedron], solver: Solver) -> Result<Outcome, QueryError> {
         colltrans::cast_with(
             &bodies[self.moving],
             &self.moving_pose,

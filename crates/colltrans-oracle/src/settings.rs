@@ -529,8 +529,7 @@ fn flat(rng: &mut Rng) -> Draft {
     let moving = flat_body(rng);
     let fixed = if rng.one_in(2) { flat_body(rng) } else { whole_box(rng) };
     let any = rng.direction();
-    let direction =
-        rng.pick(&[DVec3::Z, DVec3::X, DVec3::ONE, any]);
+    let direction = rng.pick(&[DVec3::Z, DVec3::X, DVec3::ONE, any]);
     let at = direction * rng.whole(-2, 6) + rng.grid(-1, 1);
     let draft = Draft::new(moving, fixed, at, direction);
     match rng.int(0, 2) {

@@ -60,7 +60,9 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
         let number = |text: &str| text.parse().map_err(|_| format!("{text} is not a number"));
         match word.as_str() {
-            "--sizes" => arguments.sizes = value.split(',').map(number).collect::<Result<_, _>>()?,
+            "--sizes" => {
+                arguments.sizes = value.split(',').map(number).collect::<Result<_, _>>()?
+            }
             "--seed" => arguments.seed = number(&value)? as u64,
             "--json" => arguments.json = Some(value),
             _ => return Err(format!("unknown option {word}")),
@@ -89,7 +91,8 @@ fn run(arguments: &Arguments) -> ExitCode {
             }
         }
     }
-    let report = json!({ "date": date(), "machine": machine(), "seed": arguments.seed, "rows": rows });
+    let report =
+        json!({ "date": date(), "machine": machine(), "seed": arguments.seed, "rows": rows });
     if let Some(path) = &arguments.json
         && let Err(error) = fs::write(path, format!("{report:#}\n"))
     {
@@ -320,11 +323,32 @@ impl Row {
 }
 
 fn print_header() {
-    println!("median and 99th percentile in ns; x = parry's median / ours; planar problems and supports on average");
+    println!(
+        "median and 99th percentile in ns; x = parry's median / ours; planar problems and supports on average"
+    );
     println!(
         "{:<14} {:>7} {:<10} {:>9} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>7} {:>7} {:>7} {:>6} {:>6} {:>6} {:>4} {:>4}",
-        "shape", "n", "", "build ms", "B/n", "cta", "p99", "portal", "p99", "auto", "p99", "parry",
-        "p99", "x cta", "x port", "x auto", "planar", "s cta", "s port", "fail", "diff"
+        "shape",
+        "n",
+        "",
+        "build ms",
+        "B/n",
+        "cta",
+        "p99",
+        "portal",
+        "p99",
+        "auto",
+        "p99",
+        "parry",
+        "p99",
+        "x cta",
+        "x port",
+        "x auto",
+        "planar",
+        "s cta",
+        "s port",
+        "fail",
+        "diff"
     );
 }
 
@@ -355,7 +379,8 @@ fn clock_cost() -> f64 {
 
 fn machine() -> Value {
     let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = cpu.lines().find(|l| l.starts_with("model name")).and_then(|l| l.split(": ").nth(1));
+    let model =
+        cpu.lines().find(|l| l.starts_with("model name")).and_then(|l| l.split(": ").nth(1));
     json!({
         "cpu": model,
         "threads": std::thread::available_parallelism().map_or(1, usize::from),

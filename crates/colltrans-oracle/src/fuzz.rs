@@ -1,1 +1,183 @@
-//! x
+//! What the fuzz targets do with their bytes. The corpora run through the same functions as ordinary tests.
+//!
+//! Bytes become bodies in one of two ways, chosen by the first byte: as the bits of `f64` numbers, which reaches every
+//! special value and magnitude, or as small whole numbers, which reaches every tie.
+
+use colltrans::{ConvexPolyhedron, Options, Pose, Solver};
+use glam::{DQuat, DVec3};
+
+use crate::check::Judge;
+use crate::exact::Vector;
+use crate::scene::Scene;
+
+/// Points of a body: more would only make a run slower.
+const MOST_POINTS: usize = 64;
+/// Points of a body that is judged in exact arithmetic.
+const MOST_JUDGED: usize = 10;
+
+/// Bytes, read one number after the other; zeros after the end.
+#[derive(Debug, Clone)]
+pub struct Reader<'a> {
+    bytes: &'a [u8],
+    whole: bool,
+}
+
+impl<'a> Reader<'a> {
+    /// The first byte says how to read the others.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        let (mode, bytes) = bytes.split_first().unwrap_or((&0, &[]));
+        Self { bytes, whole: mode % 2 == 1 }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    fn byte(&mut self) -> u8 {
+        let (first, rest) = self.bytes.split_first().unwrap_or((&0, &[]));
+        self.bytes = rest;
+        *first
+    }
+
+    fn number(&mut self) -> f64 {
+        if self.whole {
+            return f64::from(self.byte().cast_signed());
+        }
+        let mut bits = [0; 8];
+        bits.fill_with(|| self.byte());
+        f64::from_le_bytes(bits)
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.number(), self.number(), self.number())
+    }
+
+    fn points(&mut self, most: usize) -> Vec<DVec3> {
+        let count = usize::from(self.byte()) % (most + 1);
+        (0..count).map(|_| self.vector()).collect()
+    }
+
+    fn rotation(&mut self) -> DQuat {
+        let bytes = [0; 4].map(|_| f64::from(self.byte().cast_signed()));
+        let q = DQuat::from_array(bytes);
+        if q.length_squared() > 0.0 { q.normalize() } else { DQuat::IDENTITY }
+    }
+}
+
+/// The convex hull of any points is a body whose vertices are among the points, that is the same when it is built again from
+/// its own vertices' bits, and that leaves no point farther outside than it says.
+///
+/// # Panics
+/// If it is not.
+pub fn hull(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let mut points = Vec::new();
+    while !reader.is_empty() && points.len() < MOST_POINTS {
+        points.push(reader.vector());
+    }
+    let Ok(body) = ConvexPolyhedron::from_points(&points) else { return };
+    let again = ConvexPolyhedron::from_points(&points).expect("it worked before");
+    assert_eq!(body.vertices(), again.vertices(), "two hulls of the same points");
+    for (vertex, &index) in body.vertices().iter().zip(body.input_indices()) {
+        assert_eq!(*vertex, points[index as usize], "a vertex that is not a point");
+    }
+    check_surface(&body);
+    check_inside(&body, &points);
+}
+
+/// A mesh is refused, or is a body with a closed surface whose vertices are its own.
+///
+/// # Panics
+/// If it is neither.
+pub fn from_mesh(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let tolerance = if reader.byte().is_multiple_of(2) { 0.0 } else { reader.number() };
+    let vertices = reader.points(MOST_POINTS);
+    let mut faces = Vec::new();
+    while !reader.is_empty() {
+        let corners = usize::from(reader.byte() % 9);
+        faces.push((0..corners).map(|_| u32::from(reader.byte())).collect::<Vec<u32>>());
+    }
+    let Ok(body) = ConvexPolyhedron::from_mesh(&vertices, &faces, tolerance) else { return };
+    for (vertex, &index) in body.vertices().iter().zip(body.input_indices()) {
+        assert_eq!(*vertex, vertices[index as usize], "a vertex that is not the mesh's");
+    }
+    check_surface(&body);
+}
+
+/// A cast is refused, or its answer is approved by the exact judge, and both solvers say the same.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn cast(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let turned = reader.byte();
+    let mut body = || ConvexPolyhedron::from_points(&reader.points(MOST_JUDGED));
+    let (Ok(moving), Ok(fixed)) = (body(), body()) else { return };
+    let mut pose = |is_turned: bool| {
+        let rotation = if is_turned { reader.rotation() } else { DQuat::IDENTITY };
+        Pose::new(rotation, reader.vector())
+    };
+    let (Ok(moving_pose), Ok(fixed_pose)) = (pose(turned & 1 == 1), pose(turned & 2 == 2)) else {
+        return;
+    };
+    let direction = reader.vector();
+    for solver in [Solver::Cta, Solver::Portal, Solver::Auto] {
+        let options = Options { solver, ..Options::default() };
+        let answer =
+            colltrans::cast_with(&moving, &moving_pose, &fixed, &fixed_pose, direction, &options);
+        let outcome = match answer {
+            Ok(outcome) => outcome,
+            Err(colltrans::QueryError::Direction { .. }) => return,
+            Err(error) => panic!("{solver:?}: {error}"),
+        };
+        let scene = Scene::of_bodies((&moving, &moving_pose), (&fixed, &fixed_pose), direction);
+        let judge = Judge { scene, moving: &moving, fixed: &fixed, graze_tolerance: 0.0 };
+        judge.check(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
+        judge.compare_with_oracle(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
+    }
+}
+
+/// The surface is a sphere: Euler's formula, and every edge in two faces.
+fn check_surface(body: &ConvexPolyhedron) {
+    let (vertices, edges, faces) = (body.vertices().len(), body.edge_count(), body.face_count());
+    match body.dimension() {
+        0 => assert_eq!((vertices, edges, faces), (1, 0, 0)),
+        1 => assert_eq!((vertices, edges, faces), (2, 1, 0)),
+        _ => assert_eq!(vertices + faces, edges + 2, "Euler's formula"),
+    }
+    let sides: usize = (0..faces as u32).map(|f| body.face_vertices(f).len()).sum();
+    assert_eq!(sides, if faces == 0 { 0 } else { 2 * edges }, "an edge has two faces");
+    let degrees: usize = (0..vertices as u32).map(|v| body.neighbours(v).len()).sum();
+    assert_eq!(degrees, 2 * edges, "an edge has two ends");
+}
+
+/// No point is farther outside a face's plane than the hull's own error says, with the plane taken through three of its corners.
+fn check_inside(body: &ConvexPolyhedron, points: &[DVec3]) {
+    let reach = points.iter().map(|p| p.length()).fold(0.0, f64::max);
+    for face in 0..body.face_count() as u32 {
+        let corners: Vec<DVec3> =
+            body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();
+        let Some((anchor, normal)) = plane(&corners) else { continue };
+        let [anchor, exact_normal] = [anchor, normal].map(Vector::new);
+        for point in points {
+            let outside = exact_normal.dot(&Vector::new(*point).minus(&anchor)).to_f64();
+            // A plane through rounded corners is turned by as much as they are rounded.
+            let allowed = 4.0 * body.hull_error() + 64.0 * f64::EPSILON * reach;
+            assert!(
+                outside <= allowed,
+                "{point} is {outside:e} outside face {face}, hull error {:e}",
+                body.hull_error()
+            );
+        }
+    }
+}
+
+/// A point of a face and its unit normal, by Newell's sum in units of its own extent; `None` for faces too narrow to have one.
+fn plane(corners: &[DVec3]) -> Option<(DVec3, DVec3)> {
+    let anchor = corners[0];
+    let extent = corners.iter().map(|c| c.distance(anchor)).fold(0.0, f64::max);
+    let spokes: Vec<DVec3> = corners.iter().map(|c| (*c - anchor) / extent).collect();
+    let normal: DVec3 = spokes.windows(2).map(|w| w[0].cross(w[1])).sum();
+    (normal.length() > 1e-3).then(|| (anchor, normal.normalize()))
+}

@@ -24,6 +24,8 @@ pub struct Scene {
     pub size: f64,
     /// What the library states as its rounding error: `32 u S`, with `u = 2^-53`.
     pub noise: f64,
+    /// The sideways overlap up to which the library calls a contact grazing by itself: `8` times that.
+    pub touching: f64,
     /// The axis `k` along which `d` is largest.
     pub(crate) main_axis: usize,
 }
@@ -40,12 +42,14 @@ impl Scene {
         let size = reach(moving) + reach(fixed) + offset.length();
         let sizes = direction.abs().to_array();
         let main_axis = (0..3).fold(0, |k, i| if sizes[i] > sizes[k] { i } else { k });
+        let noise = 16.0 * f64::EPSILON * size;
         Self {
             moving: place(moving_pose.matrix(), moving_pose.translation(), moving),
             fixed: place(fixed_pose.matrix(), fixed_pose.translation(), fixed),
             direction: Vector::new(direction),
             size,
-            noise: 16.0 * f64::EPSILON * size,
+            noise,
+            touching: 8.0 * noise,
             main_axis,
         }
     }

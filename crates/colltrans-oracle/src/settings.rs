@@ -376,7 +376,8 @@ fn face_face(rng: &mut Rng) -> Draft {
     let fixed = prism(rng.int(3, 6) as u32, rng.range(0.3, 2.0), half.z, rng.unit());
     let direction =
         if rng.one_in(2) { DVec3::Z } else { (rng.vector() + DVec3::Z * 2.0).normalize() };
-    let height = 2.0 * half.z + rng.pick(&[0.0, 0.0, 1.0, rng.clone().unit(), -0.25]);
+    let any = rng.unit();
+    let height = 2.0 * half.z + rng.pick(&[0.0, 0.0, 1.0, any, -0.25]);
     let at = rng.vector() * DVec3::new(1.5, 1.5, 0.0) + DVec3::Z * height;
     Draft::new(moving, fixed, at, direction)
 }
@@ -422,7 +423,8 @@ fn rim(rng: &mut Rng) -> Draft {
     let reach = moving.iter().map(|v| v.x).fold(0.0, f64::max);
     let inside = rng.pick(&[0.0, 0.0, 0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9]);
     let lateral = if rng.one_in(2) { half.x } else { half.x + reach } - inside * half.x;
-    let along = rng.pick(&[0.0, half.y, rng.clone().unit()]);
+    let any = rng.unit();
+    let along = rng.pick(&[0.0, half.y, any]);
     let at = DVec3::new(lateral, along, rng.whole(-5, 9));
     Draft::new(moving, fixed, at, DVec3::Z)
 }
@@ -514,10 +516,10 @@ fn far(rng: &mut Rng) -> Draft {
 }
 
 fn flat_body(rng: &mut Rng) -> Vec<DVec3> {
-    let n = rng.int(3, 7);
+    let (n, whole) = (rng.int(3, 7), rng.one_in(2));
     (0..n)
         .map(|_| {
-            let v = if rng.clone().one_in(2) { rng.grid(-2, 2) } else { rng.vector() * 2.0 };
+            let v = if whole { rng.grid(-2, 2) } else { rng.vector() * 2.0 };
             DVec3::new(v.x, v.y, 0.0)
         })
         .collect()
@@ -526,8 +528,8 @@ fn flat_body(rng: &mut Rng) -> Vec<DVec3> {
 fn flat(rng: &mut Rng) -> Draft {
     let moving = flat_body(rng);
     let fixed = if rng.one_in(2) { flat_body(rng) } else { whole_box(rng) };
-    let direction =
-        rng.pick(&[DVec3::Z, DVec3::X, DVec3::new(1.0, 1.0, 1.0), rng.clone().direction()]);
+    let any = rng.direction();
+    let direction = rng.pick(&[DVec3::Z, DVec3::X, DVec3::ONE, any]);
     let at = direction * rng.whole(-2, 6) + rng.grid(-1, 1);
     let draft = Draft::new(moving, fixed, at, direction);
     match rng.int(0, 2) {

@@ -47,7 +47,7 @@ fn agree(a: &Outcome, b: &Outcome, scene: &Scene, graze_tolerance: f64) -> Resul
     // Different kinds only where rounding decides: at the graze tolerance, or at zero overlap.
     let overlap = sideways_overlap(scene).to_f64();
     let band = 4.0 * scene.noise;
-    let border = graze_tolerance.max(scene.noise);
+    let border = graze_tolerance.max(scene.touching);
     if overlap.abs() <= band + scene.noise || (overlap - border).abs() <= band {
         Ok(())
     } else {
@@ -127,7 +127,7 @@ proptest! {
             (s, t) if std::mem::discriminant(&s) == std::mem::discriminant(&t) => {}
             (s, t) => {
                 let overlaps = [sideways_overlap(&a).to_f64(), sideways_overlap(&b).to_f64()];
-                let border = setting.graze_tolerance.max(a.noise);
+                let border = setting.graze_tolerance.max(a.touching);
                 let near = |o: f64| o.abs() <= border + rounding || (o - border).abs() <= rounding;
                 prop_assert!(overlaps.into_iter().all(near), "{setting}: {s:?} {t:?} {overlaps:?}");
             }
@@ -166,7 +166,7 @@ proptest! {
             setting.direction, &options,
         ).unwrap();
         let here = scene(&setting, &bodies);
-        let border = setting.graze_tolerance.max(here.noise);
+        let border = setting.graze_tolerance.max(here.touching);
         let overlap = sideways_overlap(&here).to_f64();
         if overlap <= border + 4.0 * here.noise {
             // Grazing does not block; at its border either answer is right.

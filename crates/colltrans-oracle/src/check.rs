@@ -30,20 +30,11 @@ use crate::simplex::collision_translation;
 /// each is allowed one.
 const TWO_ROUNDINGS: f64 = 2.0;
 
-<<<<<<< HEAD
-/// How many units of rounding error the witness points of a contact may miss each other by: the bodies
-/// are widened by up to three for a grazing contact, in two directions, and each of the two points is rounded.
-/// Shadows that overlap by no more than this many times the rounding error always count as touching.
-const TOUCHING_ROUNDINGS: f64 = 8.0;
-
-const RESIDUAL_ROUNDINGS: f64 = 48.0;
-=======
 /// How many units of rounding error the witness points of a contact may miss each other by: each of the two is allowed one.
 const RESIDUAL_ROUNDINGS: f64 = 2.0;
 
 /// The same for a grazing contact, whose bodies the library widens by up to 33 units along either lateral axis.
 const GRAZING_RESIDUAL_ROUNDINGS: f64 = 48.0;
->>>>>>> oracle
 
 /// Relative error that computing a unit vector may leave.
 const UNIT_ERROR: f64 = 16.0 * f64::EPSILON;
@@ -119,11 +110,7 @@ impl Judge<'_> {
         let meets = overlap.sign != Ordering::Less;
         require!(truth.is_some() == meets, "the oracle contradicts itself");
         let slack = TWO_ROUNDINGS * self.scene.noise;
-<<<<<<< HEAD
-        let graze = self.graze_tolerance.max(TOUCHING_ROUNDINGS * self.scene.noise) + slack;
-=======
         let border = self.border();
->>>>>>> oracle
         let is = overlap.to_f64();
         match outcome {
             Outcome::Contact(contact) => {
@@ -386,11 +373,7 @@ impl Judge<'_> {
             (overlap - claimed).abs() <= TWO_ROUNDINGS * noise,
             "overlap {claimed:e} claimed, {overlap:e} along the separating direction"
         );
-<<<<<<< HEAD
-        let tolerated = self.graze_tolerance.max(TOUCHING_ROUNDINGS * noise);
-=======
         let tolerated = self.border();
->>>>>>> oracle
         require!(claimed <= tolerated, "overlap {claimed:e} tolerated as {tolerated:e}");
         let proof = self.check_contact(&grazing.contact, GRAZING_RESIDUAL_ROUNDINGS)?;
         // The residual has just bounded the overlap from below.

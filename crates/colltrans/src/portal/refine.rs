@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use super::enclose::{Enclosure, close_widely};
 use super::{Portal, Tangent};
 use crate::certificate::VertexPair;
-use crate::exact::accurate_det;
+use crate::exact::{accurate_cross, accurate_det};
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 
@@ -26,6 +26,9 @@ pub(crate) struct Optimum {
     /// Their barycentric weights at the line.
     pub(crate) weights: [f64; 3],
 }
+
+/// Sine of the angle below which the product of two edges loses so many digits that it is formed without cancellation.
+const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Bound on the number of portals; reaching it is reported, never hidden.
 const MAX_PORTALS: usize = 10_000;
@@ -163,7 +166,12 @@ fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
     let edges = [b - a, c - b, a - c];
     let lengths = edges.map(|e| e.truncate().length_squared());
     let longest = largest(lengths);
-    let normal = edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3]);
+    let (first, second) = (edges[(longest + 1) % 3], edges[(longest + 2) % 3]);
+    let mut normal = first.cross(second);
+    let size = first.length_squared() * second.length_squared();
+    if normal.length_squared() < NEARLY_PARALLEL * NEARLY_PARALLEL * size {
+        normal = accurate_cross(first, second);
+    }
     let least = difference.touching();
     let wide = normal.z > 0.0 && normal.z * normal.z > least * least * lengths[longest];
     wide.then_some(normal)

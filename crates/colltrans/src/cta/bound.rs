@@ -8,6 +8,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::ROUNDING;
 use super::cell::{Affine, Piece};
 
 /// The sides of the rectangle of levels, the artificial bound, and one piece per step.
@@ -103,8 +104,10 @@ impl LowerBound {
         for (index, piece) in self.pieces[..self.count].iter().enumerate() {
             let violation = self.violation(piece);
             if violation > most && !self.basis.contains(&index) {
-                let size = piece.bound.value.abs().max((piece.weight * self.t).abs());
-                if violation > 8.0 * f64::EPSILON * size {
+                let size = piece.bound.value.abs()
+                    + piece.bound.gradient.length() * self.at.length()
+                    + (piece.weight * self.t).abs();
+                if violation > ROUNDING * size {
                     (worst, most) = (Some(index), violation);
                 }
             }
@@ -116,11 +119,13 @@ impl LowerBound {
     /// or if rounding makes the new basis singular.
     fn pivot(&mut self, entering: usize) -> Result<(), Option<DVec3>> {
         let multipliers = self.inverse * DVec3::X;
-        let rates = self.inverse * column(&self.pieces[entering]);
+        let entering_column = column(&self.pieces[entering]);
+        let rates = self.inverse * entering_column;
+        let noise = ROUNDING * entering_column.length();
         let mut leaving = None;
         let mut least = f64::INFINITY;
         for slot in 0..3 {
-            if rates[slot] > 0.0 {
+            if rates[slot] > noise * self.inverse.row(slot).length() {
                 let ratio = multipliers[slot].max(0.0) / rates[slot];
                 if ratio < least {
                     (leaving, least) = (Some(slot), ratio);

@@ -118,13 +118,13 @@ impl Planar {
                 weight: 1.0,
                 normal: frame.axes[1 - upper],
             },
-            Self::Edges { edges, h } => {
+            Self::Edges { edges, contact } => {
                 let motion = contact_motion(edges);
                 let [r, s] = edges.each_ref().map(|edge| edge.direction);
                 let [c, g] = frame.shadow;
                 Piece {
                     bound: Affine {
-                        value: base + h,
+                        value: base + contact.x,
                         gradient: slope + DVec2::new(motion[0].x, motion[1].x),
                     },
                     weight: 1.0,
@@ -166,9 +166,8 @@ impl Planar {
                     }
                 }
             }
-            Self::Edges { edges, h } => {
+            Self::Edges { edges, contact } => {
                 let motion = contact_motion(edges);
-                let contact = contact_point(edges, *h);
                 for (body, edge) in edges.iter().enumerate() {
                     let ranges = [edge.low.levels, edge.high.levels];
                     cell.keep_levels(unit(body), levels[body], &ranges);
@@ -176,7 +175,7 @@ impl Planar {
                         let along = edge.direction * sign;
                         let moved = DVec2::new(along.dot(motion[0]), along.dot(motion[1]));
                         cell.keep(
-                            along.dot(contact - end.w),
+                            along.dot(*contact - end.w),
                             moved - unit(body) * along.dot(end.drift),
                         );
                     }
@@ -202,11 +201,4 @@ fn contact_motion(edges: &[Bracket; 2]) -> [DVec2; 2] {
         s * (r.perp_dot(edges[0].low.drift) / cross),
         r * (s.perp_dot(edges[1].low.drift) / cross) * -1.0,
     ]
-}
-
-/// The point at height `h` on the less horizontal of the two edges.
-fn contact_point(edges: &[Bracket; 2], h: f64) -> DVec2 {
-    let steepness = |edge: &Bracket| edge.direction.x / edge.direction.length();
-    let edge = &edges[usize::from(steepness(&edges[1]) > steepness(&edges[0]))];
-    DVec2::new(h, edge.g_at(h))
 }

@@ -77,7 +77,11 @@ impl<'a> Query<'a> {
         let axes = [pair.moving.1 / along[0], pair.fixed.1 / along[1]];
         let c = axes[0] - axes[1];
         let frame = Frame { axes, along, shadow: [c, d.cross(c)] };
-        let side = |body: &'a ConvexPolyhedron, matrix: glam::DMat3, axis: usize, body_index: usize, offset: DVec3| {
+        let side = |body: &'a ConvexPolyhedron,
+                    matrix: glam::DMat3,
+                    axis: usize,
+                    body_index: usize,
+                    offset: DVec3| {
             let to_body = matrix.transpose();
             let shadow = frame.shadow.map(|covector| to_body * covector);
             let constant = DVec2::new(frame.shadow[0].dot(offset), frame.shadow[1].dot(offset));
@@ -104,7 +108,8 @@ impl<'a> Query<'a> {
         let ranges = [self.sides[0].range(), self.sides[1].range()];
         let origin = DVec2::from_array(ranges.map(|r| f64::midpoint(r[0], r[1])));
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
-        let extent = 2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
+        let extent =
+            2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
         let floor = origin.y / self.frame.along[1] - origin.x / self.frame.along[0]
             + self.sides[0].least_height()
             - extent;

@@ -8,7 +8,8 @@
 
 use glam::DVec2;
 
-use super::side::{Bottom, Bracket, Chain, Crossing, Ends, Located, Side};
+use super::ROUNDING;
+use super::side::{Bottom, Bracket, Chain, Crossing, Ends, Located, Side, is_horizontal};
 
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +17,7 @@ pub(super) enum Planar {
     /// The bottom of one section lies in the other, between two edges of it.
     Vertex { upper: usize, vertex: Crossing, left: Bracket, right: Bracket },
     /// Two edges cross at the lowest common point.
-    Edges { edges: [Bracket; 2], h: f64 },
+    Edges { edges: [Bracket; 2], contact: DVec2 },
     /// Nothing in common: along `u` every point of section 1 is beyond every point of section 0;
     /// `supports` are the closest.
     Separated { u: DVec2, supports: [Crossing; 2] },
@@ -34,8 +35,7 @@ struct Problem<'a, 'b> {
 /// section.
 pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2]) -> Option<Planar> {
     let ends = [sides[0].ends(levels[0])?, sides[1].ends(levels[1])?];
-    let bottoms =
-        [sides[0].bottom(ends[0], levels[0])?, sides[1].bottom(ends[1], levels[1])?];
+    let bottoms = [sides[0].bottom(ends[0], levels[0])?, sides[1].bottom(ends[1], levels[1])?];
     let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
     let h0 = bottoms[upper].vertex.h();
     Problem { sides, levels, ends, upper, h0 }.solve(&bottoms)
@@ -47,7 +47,8 @@ impl Problem<'_, '_> {
         let bottom = &bottoms[self.upper];
         let left_end = flat_end(&bottom.vertex, &bottom.left);
         let right_end = flat_end(&bottom.vertex, &bottom.right);
-        let nearer = if right_end.g() < bottoms[lower].vertex.g() { Chain::Left } else { Chain::Right };
+        let nearer =
+            if right_end.g() < bottoms[lower].vertex.g() { Chain::Left } else { Chain::Right };
         let mut found = [None; 2];
         for chain in [nearer, nearer.opposite()] {
             let edge = match self.sides[lower].locate(
@@ -71,16 +72,15 @@ impl Problem<'_, '_> {
             found[usize::from(chain == Chain::Right)] = Some(edge);
         }
         let (left, right) = (found[0]?, found[1]?);
-        let inside = |end: &Crossing| {
-            left.g_at(self.h0) <= end.g() && end.g() <= right.g_at(self.h0)
-        };
+        let inside =
+            |end: &Crossing| left.g_at(self.h0) <= end.g() && end.g() <= right.g_at(self.h0);
         let ends = [left_end, right_end];
         if let Some(vertex) = ends.into_iter().find(inside) {
             return Some(Planar::Vertex { upper: self.upper, vertex, left, right });
         }
         // The lower section is narrower than the flat bottom of the upper one.
         let flat = Bracket::new(left_end, right_end);
-        Some(Planar::Edges { edges: self.by_body(flat, left), h: self.h0 })
+        Some(crossing_edges(self.by_body(flat, left)))
     }
 
     /// What belongs to the upper and to the lower section, by body.
@@ -97,7 +97,7 @@ impl Problem<'_, '_> {
     fn slide(&self, bottom: &Bottom, chain: Chain, edge: Bracket) -> Option<Planar> {
         let facing = chain.opposite();
         let mut first = Side::first(bottom, facing);
-        if first.direction.x == 0.0 {
+        if is_horizontal(first.direction) {
             let next = self.sides[self.upper].up(facing, &first.high, self.levels[self.upper]);
             first = Bracket::new(first.high, next);
         }
@@ -113,7 +113,20 @@ impl Problem<'_, '_> {
 
 /// The other end of the edge from `vertex` to `next` if it is horizontal, else `vertex`.
 fn flat_end(vertex: &Crossing, next: &Crossing) -> Crossing {
-    if vertex.towards(next).x == 0.0 { *next } else { *vertex }
+    if is_horizontal(vertex.towards(next)) { *next } else { *vertex }
+}
+
+/// Of the angle from edge `r` to edge `s`.
+fn sine(r: &Bracket, s: &Bracket) -> f64 {
+    let size = r.direction.length_squared() * s.direction.length_squared();
+    r.direction.perp_dot(s.direction) / size.sqrt()
+}
+
+/// Two edges that cross, and where.
+fn crossing_edges(edges: [Bracket; 2]) -> Planar {
+    let [r, s] = &edges;
+    let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
+    Planar::Edges { edges, contact: r.low.w + r.direction * step }
 }
 
 /// Newton's method up two chains that face each other.
@@ -130,37 +143,33 @@ impl Slide<'_, '_, '_> {
         let mut edges = start;
         let mut h = self.problem.h0;
         for _ in 0..self.problem.sides[0].step_limit() + self.problem.sides[1].step_limit() {
-            let slope = self.slope(&edges);
-            if slope >= 0.0 {
+            if !self.closes(&edges) {
                 return self.separated_at_least_gap(edges);
             }
-            let meet = h - self.gap(&edges, h) / slope;
-            if meet <= edges[0].high.h().min(edges[1].high.h()) {
-                return Some(Planar::Edges { edges, h: meet });
+            // The edge that ends first decides whether they have met, without a quotient.
+            let ending = usize::from(edges[1].high.h() < edges[0].high.h());
+            let end = &edges[ending].high;
+            let beyond = edges[1 - ending].side_of(end.w);
+            if if ending == self.right { beyond <= 0.0 } else { beyond >= 0.0 } {
+                return Some(crossing_edges(edges));
             }
-            let advanced = [self.advance(0, edges[0], meet), self.advance(1, edges[1], meet)];
-            let mut topped = None;
-            for (body, located) in advanced.into_iter().enumerate() {
-                edges[body] = match located {
+            let meet = (h - self.gap(&edges, h) / self.slope(&edges)).max(end.h());
+            let Some(next) = self.proceed(ending, &edges[ending]) else {
+                return self.separated_at_top(ending, &edges);
+            };
+            edges[ending] = next;
+            h = meet;
+            for body in 0..2 {
+                edges[body] = match self.advance(body, edges[body], meet) {
                     Located::Edge(edge) => edge,
                     Located::Beyond(edge) => {
-                        let lower_top = topped.is_none_or(|other: usize| {
-                            edge.high.h() < edges[other].high.h()
-                        });
-                        if lower_top {
-                            topped = Some(body);
-                        }
+                        h = h.min(edge.high.h());
                         edge
                     }
                 };
             }
-            h = meet;
-            if let Some(body) = topped {
-                h = edges[body].high.h();
-                edges[1 - body] = self.down_to(1 - body, edges[1 - body], h);
-                if self.gap(&edges, h) > 0.0 && self.slope(&edges) < 0.0 {
-                    return self.separated_at_top(body, &edges);
-                }
+            if h < meet {
+                edges = [0, 1].map(|body| self.down_to(body, edges[body], h));
             }
             // NaN: an edge too flat for its slope to be a number.
             if h.is_nan() {
@@ -168,6 +177,11 @@ impl Slide<'_, '_, '_> {
             }
         }
         None
+    }
+
+    /// Whether the gap falls along these edges.
+    fn closes(&self, edges: &[Bracket; 2]) -> bool {
+        sine(&edges[1 - self.right], &edges[self.right]) < -ROUNDING
     }
 
     fn slope(&self, edges: &[Bracket; 2]) -> f64 {
@@ -180,6 +194,10 @@ impl Slide<'_, '_, '_> {
 
     fn advance(&self, body: usize, edge: Bracket, h: f64) -> Located {
         self.problem.sides[body].advance(self.chains[body], edge, h, self.problem.levels[body])
+    }
+
+    fn proceed(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
+        self.problem.sides[body].proceed(self.chains[body], edge, self.problem.levels[body])
     }
 
     fn retreat(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
@@ -212,7 +230,7 @@ impl Slide<'_, '_, '_> {
             if let Some(below) = below {
                 candidate[body] = below;
             }
-            if below.is_none() || self.slope(&candidate) < 0.0 {
+            if below.is_none() || self.closes(&candidate) {
                 return Some(self.separated(&edges[1 - body], edges.map(|edge| edge.low)));
             }
             edges = candidate;

@@ -29,7 +29,8 @@ impl Region {
         let old = *self;
         self.count = 0;
         for i in 0..old.count {
-            let (from, to) = (old.corners[i], old.corners[if i + 1 < old.count { i + 1 } else { 0 }]);
+            let (from, to) =
+                (old.corners[i], old.corners[if i + 1 < old.count { i + 1 } else { 0 }]);
             let (excess, next_excess) = (gradient.dot(from) - limit, gradient.dot(to) - limit);
             if excess <= 0.0 {
                 self.push(from);

@@ -7,10 +7,9 @@
 
 use glam::{DVec2, DVec3};
 
+use super::ROUNDING;
 use crate::polyhedron::topology::Topology;
-use crate::section::{
-    AxisSections, SectionForm, Turn, next_clockwise, next_counter_clockwise,
-};
+use crate::section::{AxisSections, SectionForm, Turn, next_clockwise, next_counter_clockwise};
 
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]
@@ -81,8 +80,13 @@ impl Chain {
     /// Whether `direction` leads up this chain; the horizontal edge at the bottom belongs to the chain that starts
     /// along it, the one at the top to none.
     pub(super) fn ascends(self, direction: DVec2) -> bool {
-        direction.x > 0.0 || (direction.x == 0.0 && self.sign() * direction.y > 0.0)
+        if is_horizontal(direction) { self.sign() * direction.y > 0.0 } else { direction.x > 0.0 }
     }
+}
+
+/// Whether an edge is horizontal up to rounding.
+pub(super) fn is_horizontal(direction: DVec2) -> bool {
+    direction.x.abs() <= ROUNDING * direction.y.abs()
 }
 
 /// An edge of a section on one of its chains.
@@ -103,10 +107,16 @@ impl Bracket {
         self.direction.y / self.direction.x
     }
 
-    /// `g` at height `h` on the line of the edge.
+    /// `g` at height `h` on the edge; its ends bound it, since on a nearly horizontal edge the quotient has no digits.
     pub(super) fn g_at(&self, h: f64) -> f64 {
-        let rise = h - self.low.h();
-        if rise == 0.0 { self.low.g() } else { self.low.g() + rise * self.slope() }
+        let (low, high) = (self.low.g(), self.high.g());
+        let g = low + (h - self.low.h()) * self.slope();
+        if low < high { g.clamp(low, high) } else { g.clamp(high, low) }
+    }
+
+    /// Positive where a point lies to the side of greater `g`.
+    pub(super) fn side_of(&self, w: DVec2) -> f64 {
+        self.direction.perp_dot(w - self.low.w)
     }
 }
 
@@ -343,7 +353,7 @@ impl<'a> Side<'a> {
     pub(super) fn advance(&self, chain: Chain, bracket: Bracket, h: f64, x: f64) -> Located {
         let mut bracket = bracket;
         for _ in 0..self.step_limit() {
-            if bracket.high.h() >= h && bracket.direction.x > 0.0 {
+            if bracket.high.h() > h && !is_horizontal(bracket.direction) {
                 return Located::Edge(bracket);
             }
             let next = self.up(chain, &bracket.high, x);
@@ -353,7 +363,13 @@ impl<'a> Side<'a> {
             }
             bracket = Bracket { low: bracket.high, high: next, direction };
         }
-        Located::Beyond(bracket)
+        if bracket.high.h() >= h { Located::Edge(bracket) } else { Located::Beyond(bracket) }
+    }
+
+    /// The edge above `bracket` on its chain, if there is one.
+    pub(super) fn proceed(&self, chain: Chain, bracket: &Bracket, x: f64) -> Option<Bracket> {
+        let above = Bracket::new(bracket.high, self.up(chain, &bracket.high, x));
+        chain.ascends(above.direction).then_some(above)
     }
 
     /// The edge below `bracket` on its chain, if there is one.

@@ -14,6 +14,9 @@ use crate::polyhedron::topology::Topology;
 /// Edges of vertices passed per entry of a snapshot: about two vertices' worth of upward and downward edges.
 const EDGES_PER_ENTRY: usize = 4;
 
+/// Of a linear form with coefficients up to 1 at a position: three roundings of numbers up to 1, in either of two entries.
+const POSITION_ERROR: f32 = 3.0 * f32::EPSILON;
+
 /// A crossing edge of a snapshot.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
@@ -239,7 +242,14 @@ impl Snapshot<'_> {
     pub(crate) fn extreme(&self, form: &SectionForm, sign: f32) -> usize {
         let count = self.entries.len();
         let value = |i: usize| sign * self.value(form, if i < count { i } else { i - count });
-        let falls = |i: usize| value(i + 1) < value(i);
+        // Entries that `f32` cannot tell apart count as one: positions are at most 1/2 in magnitude.
+        let falls = |i: usize| {
+            let here = value(i);
+            (i + 1..i + count)
+                .map(value)
+                .find(|next| (next - here).abs() > POSITION_ERROR)
+                .is_some_and(|next| next < here)
+        };
         // Invariant: the minimum is among `first..=last`; `first_falls` belongs to `first`.
         let (mut first, mut last) = (0, count);
         let mut first_falls = falls(0);
@@ -247,10 +257,10 @@ impl Snapshot<'_> {
             let middle = usize::midpoint(first, last);
             let middle_falls = falls(middle);
             let beyond = match (first_falls, middle_falls) {
-                (true, true) => value(middle) < value(first),
+                (true, true) => value(middle) <= value(first) + POSITION_ERROR,
                 (true, false) => false,
                 (false, true) => true,
-                (false, false) => value(middle) >= value(first),
+                (false, false) => value(middle) >= value(first) - POSITION_ERROR,
             };
             if beyond {
                 (first, first_falls) = (middle, middle_falls);

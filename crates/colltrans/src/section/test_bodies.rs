@@ -115,13 +115,7 @@ pub(crate) fn cuboid(centre: DVec3, half: DVec3) -> ConvexPolyhedron {
         centre + half * DVec3::new(sign(0), sign(1), sign(2))
     };
     let vertices: Vec<DVec3> = (0..8).map(corner).collect();
-    let faces = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
+    let faces =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     ConvexPolyhedron::from_convex_faces(&vertices, &faces.map(Vec::from))
 }

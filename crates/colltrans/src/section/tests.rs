@@ -37,7 +37,9 @@ fn crossing(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
     let topology = body.topology();
     let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
     let half_edges = 0..topology.half_edges().len() as u32;
-    half_edges.filter(|&h| !above(topology.half_edge(h).origin) && above(topology.target(h))).collect()
+    half_edges
+        .filter(|&h| !above(topology.half_edge(h).origin) && above(topology.target(h)))
+        .collect()
 }
 
 #[test]

@@ -4,7 +4,9 @@
 //! coordinates) -> the indices built on both (support points, sections).
 
 mod hull;
+mod measure;
 mod mesh;
+mod support;
 pub(crate) mod topology;
 
 use glam::DVec3;
@@ -12,6 +14,8 @@ use glam::DVec3;
 use crate::error::BuildError;
 use crate::section::SectionIndex;
 use hull::Hull;
+pub(crate) use measure::Measure;
+use support::SupportIndex;
 use topology::Topology;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
@@ -25,6 +29,8 @@ pub struct ConvexPolyhedron {
     dimension: u8,
     hull_error: f64,
     topology: Topology,
+    measure: Measure,
+    support: SupportIndex,
     sections: SectionIndex,
 }
 
@@ -67,6 +73,8 @@ impl ConvexPolyhedron {
             Topology::from_faces(vertices.len(), hull.face_start.clone(), &hull.face_vertices)
                 .expect("a hull is closed")
         };
+        let measure = Measure::new(&vertices, &topology, hull.dimension);
+        let support = SupportIndex::build(&vertices, &topology, &measure);
         let sections = if hull.dimension == 3 {
             SectionIndex::build(&vertices, &topology)
         } else {
@@ -78,6 +86,8 @@ impl ConvexPolyhedron {
             dimension: hull.dimension,
             hull_error: hull.violation,
             topology,
+            measure,
+            support,
             sections,
         }
     }
@@ -128,20 +138,48 @@ impl ConvexPolyhedron {
         self.hull_error
     }
 
+    /// The volume; 0 for a body of lower dimension.
+    pub fn volume(&self) -> f64 {
+        self.measure.volume
+    }
+
+    /// The vertex farthest along `direction` (body frame, any length): a support point, in `O(log n)`.
+    #[inline]
+    pub fn support(&self, direction: DVec3) -> u32 {
+        self.support.extreme(&self.vertices, &self.topology, direction)
+    }
+
+    /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
+    #[inline]
+    pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
+        self.support.extreme_from(&self.vertices, &self.topology, direction, near)
+    }
+
+    /// Positions among the neighbours of `vertex` that may lie in its supporting plane along `direction`: the first and how many.
+    pub(crate) fn plane_candidates(&self, vertex: u32, direction: DVec3) -> (usize, usize) {
+        self.support.plane_candidates(&self.vertices, &self.topology, vertex, direction)
+    }
+
+    /// Bytes of memory that the polyhedron occupies, on the heap and in itself.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.vertices.capacity() * size_of::<DVec3>()
+            + self.input_index.capacity() * size_of::<u32>()
+            + self.topology.heap_bytes()
+            + self.support.heap_bytes()
+            + self.sections.heap_bytes()
+    }
+
+    pub(crate) fn measure(&self) -> &Measure {
+        &self.measure
+    }
+
     pub(crate) fn topology(&self) -> &Topology {
         &self.topology
     }
 
     pub(crate) fn sections(&self) -> &SectionIndex {
         &self.sections
-    }
-
-    /// Bytes on the heap: vertices, topology and indices.
-    pub(crate) fn heap_bytes(&self) -> usize {
-        self.vertices.capacity() * size_of::<DVec3>()
-            + self.input_index.capacity() * size_of::<u32>()
-            + self.topology.heap_bytes()
-            + self.sections.heap_bytes()
     }
 
     /// A body of dimension 3 from its faces, which the caller knows to be convex.
@@ -161,5 +199,35 @@ impl ConvexPolyhedron {
             violation: 0.0,
         };
         Self::from_hull(vertices, &hull)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use super::*;
+
+    /// Vertices on an ellipsoid in rings around z.
+    pub(crate) fn ring_ellipsoid(n: usize, axes: DVec3) -> ConvexPolyhedron {
+        let m = ((n as f64 / 2.0).sqrt() * 1.0).round().max(2.0) as usize; // rings
+        let k = ((n - 2) / m).max(3);
+        let mut v = vec![DVec3::Z * axes.z];
+        for i in 0..m {
+            let th = std::f64::consts::PI * (i + 1) as f64 / (m + 1) as f64;
+            for j in 0..k {
+                let ph = std::f64::consts::TAU * j as f64 / k as f64;
+                v.push(DVec3::new(th.sin() * ph.cos(), th.sin() * ph.sin(), th.cos()) * axes);
+            }
+        }
+        v.push(-DVec3::Z * axes.z);
+        let id = |i: usize, j: usize| (1 + i * k + j % k) as u32;
+        let mut faces = vec![];
+        for j in 0..k {
+            faces.push(vec![0, id(0, j), id(0, j + 1)]);
+            for i in 0..m - 1 {
+                faces.push(vec![id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]);
+            }
+            faces.push(vec![id(m - 1, j), (v.len() - 1) as u32, id(m - 1, j + 1)]);
+        }
+        ConvexPolyhedron::from_convex_faces(&v, &faces)
     }
 }

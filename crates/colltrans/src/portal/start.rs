@@ -1,0 +1,101 @@
+//! A first guess of the contact normal: what it would be if both bodies were ellipsoids.
+//!
+//! Notation. `A`, `B` are the matrices of the bodies' inertia ellipsoids and `c` the difference of their centres, all in the
+//! shadow frame; `n = (a, 1)`. The difference of the ellipsoids has `f(a) = c.n - sqrt(n^T A n) - sqrt(n^T B n)`, whose maximum is sought:
+//! first with both replaced by the one ellipsoid `K = (1 + r) A + (1 + 1/r) B` that contains their sum (for any
+//! `r > 0`; `r^2 = tr B / tr A` makes its mean size least), which the line enters where a quadratic equation says; then by one Newton step on `f`.
+
+use glam::{DMat2, DVec2, DVec3};
+
+use crate::certificate::VertexPair;
+use crate::minkowski::{Difference, Symmetric};
+
+/// Where to begin, and how the shadow of the support point answers to a change of slope.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Start {
+    /// Guess of the contact normal in the shadow frame: `(a, 1)`, or lateral (height 0) if the bodies seem to pass each other.
+    pub(crate) normal: DVec3,
+    /// A pair near the contact, if one is known.
+    pub(crate) near: Option<VertexPair>,
+    /// The change of slope that moves the shadow of the support point by minus a given vector: the inverse Hessian of the
+    /// ellipsoids' support functions.
+    pub(crate) slope_per_shadow: DMat2,
+}
+
+/// Least share of a contact normal along the direction that is guessed: a steeper guess
+/// would say nothing about where the walls of the body are.
+const LEAST_INCLINATION: f64 = 0.05;
+
+/// Newton's step is taken if it is shorter than this share of the normal; a longer one leaves the region it knows.
+const LONGEST_STEP: f64 = 0.5;
+
+impl Start {
+    /// The guess from the inertia ellipsoids.
+    pub(crate) fn from_ellipsoids(difference: &Difference) -> Self {
+        let (center, [a, b]) = difference.ellipsoids();
+        let r =
+            difference.setting.fixed.measure().radius / difference.setting.moving.measure().radius;
+        let k = a.combine(1.0 + r, &b, 1.0 + 1.0 / r);
+        let mut normal = entry_normal(&k.inverse(), center);
+        let (shadow, slope_per_shadow) = response([&a, &b], normal);
+        if normal.z > 0.0 {
+            let step = slope_per_shadow * (center.truncate() - shadow);
+            if step.length_squared() < LONGEST_STEP * LONGEST_STEP * normal.length_squared() {
+                normal += step.extend(0.0);
+            }
+        }
+        Self { normal, near: None, slope_per_shadow }
+    }
+
+    /// From a normal (shadow frame) and a pair that another solver found.
+    pub(crate) fn from_guess(difference: &Difference, normal: DVec3, near: VertexPair) -> Self {
+        let (_, [a, b]) = difference.ellipsoids();
+        let normal = tempered(normal);
+        let (_, slope_per_shadow) = response([&a, &b], normal);
+        Self { normal, near: Some(near), slope_per_shadow }
+    }
+}
+
+/// The normal where the axis enters the ellipsoid around `center` with inverse matrix `j`, or, if it misses it,
+/// where it passes closest in the ellipsoid's metric.
+fn entry_normal(j: &Symmetric, center: DVec3) -> DVec3 {
+    let jc = j.apply(center);
+    let middle = jc.z / j.zz;
+    let discriminant = middle * middle - (center.dot(jc) - 1.0) / j.zz;
+    let entry = if discriminant > 0.0 { middle - discriminant.sqrt() } else { middle };
+    let mut normal = jc - DVec3::new(j.xz, j.yz, j.zz) * entry;
+    if discriminant <= 0.0 {
+        normal.z = 0.0;
+        return normal;
+    }
+    tempered(normal)
+}
+
+/// `(a, 1)` along `normal`, or along the nearest direction that is not too steep.
+fn tempered(normal: DVec3) -> DVec3 {
+    if normal.z == 0.0 {
+        return normal;
+    }
+    let along = normal.z.max(LEAST_INCLINATION * normal.length());
+    if along > 0.0 { (normal.truncate() / along).extend(1.0) } else { DVec3::Z }
+}
+
+/// The steepest slope that is guessed, along a lateral direction.
+pub(super) fn steep(lateral: DVec2) -> DVec2 {
+    lateral.normalize_or_zero() / LEAST_INCLINATION
+}
+
+/// Gradient of the ellipsoids' support functions in the lateral components of `normal`, and the inverse of their Hessian.
+fn response(ellipsoids: [&Symmetric; 2], normal: DVec3) -> (DVec2, DMat2) {
+    let n = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
+    let (mut gradient, mut hessian) = (DVec2::ZERO, DMat2::ZERO);
+    for k in ellipsoids {
+        let kn = k.apply(n);
+        let inverse_length = 1.0 / n.dot(kn).sqrt();
+        let g = kn.truncate() * inverse_length;
+        let lateral = DMat2::from_cols(DVec2::new(k.xx, k.xy), DVec2::new(k.xy, k.yy));
+        gradient += g;
+        hessian += (lateral - DMat2::from_cols(g * g.x, g * g.y)) * inverse_length;
+    }
+    (gradient, hessian.inverse())
+}

@@ -163,15 +163,7 @@ impl Slide<'_, '_, '_> {
                 edges[body] = match self.advance(body, edges[body], meet) {
                     Located::Edge(edge) => edge,
                     Located::Beyond(edge) => {
-<<<<<<< HEAD
                         h = h.min(edge.high.h());
-=======
-                        let lower_top =
-                            topped.is_none_or(|other: usize| edge.high.h() < edges[other].high.h());
-                        if lower_top {
-                            topped = Some(body);
-                        }
->>>>>>> main
                         edge
                     }
                 };

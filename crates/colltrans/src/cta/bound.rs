@@ -68,10 +68,7 @@ impl LowerBound {
         for _ in 0..2 * self.count {
             let Some(entering) = self.most_violated() else { break };
             if let Err(normal) = self.pivot(entering) {
-                return match normal {
-                    Some(normal) => Progress::Contradiction(normal),
-                    None => Progress::Bounded,
-                };
+                return Progress::Contradiction(normal);
             }
         }
         Progress::Bounded
@@ -115,9 +112,8 @@ impl LowerBound {
         worst
     }
 
-    /// Exchanges a piece of the basis for `entering`. An error if none can leave, with the normal of the contradiction,
-    /// or if rounding makes the new basis singular.
-    fn pivot(&mut self, entering: usize) -> Result<(), Option<DVec3>> {
+    /// Exchanges a piece of the basis for `entering`. An error if none can leave: the normal of the contradiction.
+    fn pivot(&mut self, entering: usize) -> Result<(), DVec3> {
         let multipliers = self.inverse * DVec3::X;
         let entering_column = column(&self.pieces[entering]);
         let rates = self.inverse * entering_column;
@@ -133,20 +129,29 @@ impl LowerBound {
             }
         }
         let Some(slot) = leaving else {
-            return Err(Some(self.pieces[entering].normal - self.combine(rates)));
+            return Err(self.pieces[entering].normal - self.combine(rates));
         };
-        let left = std::mem::replace(&mut self.basis[slot], entering);
-        let inverse = self.basis_matrix().inverse();
+        self.basis[slot] = entering;
+        self.exchange(slot, rates);
         let values = DVec3::from_array(self.basis.map(|i| self.pieces[i].bound.value));
-        let optimum = inverse.transpose() * values;
-        if !optimum.is_finite() {
-            self.basis[slot] = left;
-            return Err(None);
-        }
-        self.inverse = inverse;
+        let optimum = self.inverse.transpose() * values;
         self.t = optimum.x;
         self.at = -DVec2::new(optimum.y, optimum.z);
         Ok(())
+    }
+
+    /// Gauss-Jordan: the inverse after the column with the coordinates `rates` has replaced that of `slot`.
+    fn exchange(&mut self, slot: usize, rates: DVec3) {
+        let pivot_row = self.inverse.row(slot) / rates[slot];
+        let mut others = rates;
+        others[slot] = 0.0;
+        let mut kept = DVec3::ONE;
+        kept[slot] = 0.0;
+        let mut unit = DVec3::ZERO;
+        unit[slot] = 1.0;
+        let column =
+            |c: usize| (self.inverse.col(c) * kept) - others * pivot_row[c] + unit * pivot_row[c];
+        self.inverse = DMat3::from_cols(column(0), column(1), column(2));
     }
 }
 

@@ -88,19 +88,21 @@ impl Cell {
 
     /// The side that a ray hits first, and after which multiple of `way`.
     fn ray(&self, at: DVec2, way: DVec2, on: Option<usize>) -> Option<(usize, f64)> {
-        let mut hit = None;
-        let mut least = f64::INFINITY;
-        for (index, side) in self.sides[..self.count].iter().enumerate() {
-            let rate = side.gradient.dot(way);
-            if Some(index) == on || rate >= 0.0 {
-                continue;
-            }
-            let step = (side.value + side.gradient.dot(at)).max(0.0) / -rate;
-            if step < least {
-                (hit, least) = (Some((index, step)), step);
-            }
+        // Without branches in the first pass: they would be unpredictable.
+        let mut steps = [f64::INFINITY; CELL_SIDES];
+        for (step, side) in steps.iter_mut().zip(&self.sides) {
+            let rate = -side.gradient.dot(way);
+            let slack = (side.value + side.gradient.dot(at)).max(0.0);
+            *step = if rate > 0.0 { slack / rate } else { f64::INFINITY };
         }
-        hit
+        if let Some(side) = on {
+            steps[side] = f64::INFINITY;
+        }
+        let mut hit = (0, steps[0]);
+        for (index, &step) in steps.iter().enumerate() {
+            hit = if step < hit.1 { (index, step) } else { hit };
+        }
+        (hit.1 < f64::INFINITY).then_some(hit)
     }
 }
 

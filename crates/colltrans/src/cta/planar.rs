@@ -9,7 +9,7 @@
 use glam::DVec2;
 
 use super::ROUNDING;
-use super::side::{Bottom, Bracket, Chain, Crossing, Ends, Located, Side, is_horizontal};
+use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
 
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
@@ -23,10 +23,8 @@ pub(super) enum Planar {
     Separated { u: DVec2, supports: [Crossing; 2] },
 }
 
-struct Problem<'a, 'b> {
-    sides: &'a [Side<'b>; 2],
-    levels: [f64; 2],
-    ends: [Ends; 2],
+struct Problem<'a> {
+    sections: [Section<'a>; 2],
     upper: usize,
     h0: f64,
 }
@@ -34,48 +32,42 @@ struct Problem<'a, 'b> {
 /// Solves the planar problem for the sections at `levels`, each in its body's range. `None` if rounding errors of the mesh hide a
 /// section.
 pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2]) -> Option<Planar> {
-    let ends = [sides[0].ends(levels[0])?, sides[1].ends(levels[1])?];
-    let bottoms = [sides[0].bottom(ends[0], levels[0])?, sides[1].bottom(ends[1], levels[1])?];
+    let sections = [sides[0].section(levels[0])?, sides[1].section(levels[1])?];
+    let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
     let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
-    let h0 = bottoms[upper].vertex.h();
-    Problem { sides, levels, ends, upper, h0 }.solve(&bottoms)
+    Problem { sections, upper, h0: bottoms[upper].vertex.h() }.solve(&bottoms)
 }
 
-impl Problem<'_, '_> {
+impl Problem<'_> {
     fn solve(&self, bottoms: &[Bottom; 2]) -> Option<Planar> {
         let lower = 1 - self.upper;
         let bottom = &bottoms[self.upper];
-        let left_end = flat_end(&bottom.vertex, &bottom.left);
-        let right_end = flat_end(&bottom.vertex, &bottom.right);
+        let left_end = self.sections[self.upper].bottom_end(bottom, Chain::Left);
+        let right_end = self.sections[self.upper].bottom_end(bottom, Chain::Right);
         let nearer =
             if right_end.g() < bottoms[lower].vertex.g() { Chain::Left } else { Chain::Right };
         let mut found = [None; 2];
         for chain in [nearer, nearer.opposite()] {
-            let edge = match self.sides[lower].locate(
-                chain,
-                self.ends[lower],
-                self.h0,
-                self.levels[lower],
-            )? {
+            let edge = match self.sections[lower].locate(chain, self.h0)? {
                 Located::Edge(edge) => edge,
                 Located::Beyond(topmost) => {
                     return Some(self.separated_by_height(&bottom.vertex, &topmost.high));
                 }
+                Located::Short(_) => return None,
             };
-            let outside = match chain {
-                Chain::Left => right_end.g() < edge.g_at(self.h0),
-                Chain::Right => left_end.g() > edge.g_at(self.h0),
-            };
-            if outside {
-                return self.slide(bottom, chain, edge);
+            let g = edge.g_at(self.h0);
+            if chain == Chain::Left && right_end.g() < g {
+                return self.slide(right_end, chain, edge);
+            }
+            if chain == Chain::Right && left_end.g() > g {
+                return self.slide(left_end, chain, edge);
             }
             found[usize::from(chain == Chain::Right)] = Some(edge);
         }
         let (left, right) = (found[0]?, found[1]?);
         let inside =
             |end: &Crossing| left.g_at(self.h0) <= end.g() && end.g() <= right.g_at(self.h0);
-        let ends = [left_end, right_end];
-        if let Some(vertex) = ends.into_iter().find(inside) {
+        if let Some(vertex) = [left_end, right_end].into_iter().find(inside) {
             return Some(Planar::Vertex { upper: self.upper, vertex, left, right });
         }
         // The lower section is narrower than the flat bottom of the upper one.
@@ -93,14 +85,10 @@ impl Problem<'_, '_> {
         Planar::Separated { u: DVec2::new(sign, 0.0), supports: self.by_body(*bottom, *top) }
     }
 
-    /// The upper section's bottom is beyond `chain` of the lower one, whose edge at `h0` is `edge`.
-    fn slide(&self, bottom: &Bottom, chain: Chain, edge: Bracket) -> Option<Planar> {
+    /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose edge at `h0` is `edge`.
+    fn slide(&self, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
         let facing = chain.opposite();
-        let mut first = Side::first(bottom, facing);
-        if is_horizontal(first.direction) {
-            let next = self.sides[self.upper].up(facing, &first.high, self.levels[self.upper]);
-            first = Bracket::new(first.high, next);
-        }
+        let first = Bracket::new(end, self.sections[self.upper].up(facing, &end));
         Slide {
             problem: self,
             chains: self.by_body(facing, chain),
@@ -111,17 +99,6 @@ impl Problem<'_, '_> {
     }
 }
 
-/// The other end of the edge from `vertex` to `next` if it is horizontal, else `vertex`.
-fn flat_end(vertex: &Crossing, next: &Crossing) -> Crossing {
-    if is_horizontal(vertex.towards(next)) { *next } else { *vertex }
-}
-
-/// Of the angle from edge `r` to edge `s`.
-fn sine(r: &Bracket, s: &Bracket) -> f64 {
-    let size = r.direction.length_squared() * s.direction.length_squared();
-    r.direction.perp_dot(s.direction) / size.sqrt()
-}
-
 /// Two edges that cross, and where.
 fn crossing_edges(edges: [Bracket; 2]) -> Planar {
     let [r, s] = &edges;
@@ -130,19 +107,19 @@ fn crossing_edges(edges: [Bracket; 2]) -> Planar {
 }
 
 /// Newton's method up two chains that face each other.
-struct Slide<'a, 'b, 'c> {
-    problem: &'a Problem<'b, 'c>,
+struct Slide<'a, 'b> {
+    problem: &'a Problem<'b>,
     /// The chain that each body shows to the other.
     chains: [Chain; 2],
     /// The body on the right.
     right: usize,
 }
 
-impl Slide<'_, '_, '_> {
+impl Slide<'_, '_> {
     fn solve(&self, start: [Bracket; 2]) -> Option<Planar> {
         let mut edges = start;
         let mut h = self.problem.h0;
-        for _ in 0..self.problem.sides[0].step_limit() + self.problem.sides[1].step_limit() {
+        for _ in 0..self.step_limit() {
             if !self.closes(&edges) {
                 return self.separated_at_least_gap(edges);
             }
@@ -160,12 +137,14 @@ impl Slide<'_, '_, '_> {
             edges[ending] = next;
             h = meet;
             for body in 0..2 {
-                edges[body] = match self.advance(body, edges[body], meet) {
+                let section = &self.problem.sections[body];
+                edges[body] = match section.advance(self.chains[body], edges[body], meet)? {
                     Located::Edge(edge) => edge,
                     Located::Beyond(edge) => {
                         h = h.min(edge.high.h());
                         edge
                     }
+                    Located::Short(_) => return None,
                 };
             }
             if h < meet {
@@ -181,7 +160,13 @@ impl Slide<'_, '_, '_> {
 
     /// Whether the gap falls along these edges.
     fn closes(&self, edges: &[Bracket; 2]) -> bool {
-        sine(&edges[1 - self.right], &edges[self.right]) < -ROUNDING
+        let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
+        let sine = r.perp_dot(*s);
+        sine < 0.0 && sine * sine > ROUNDING * ROUNDING * r.length_squared() * s.length_squared()
+    }
+
+    fn step_limit(&self) -> usize {
+        self.problem.sections[0].step_limit() + self.problem.sections[1].step_limit()
     }
 
     fn slope(&self, edges: &[Bracket; 2]) -> f64 {
@@ -192,16 +177,12 @@ impl Slide<'_, '_, '_> {
         edges[self.right].g_at(h) - edges[1 - self.right].g_at(h)
     }
 
-    fn advance(&self, body: usize, edge: Bracket, h: f64) -> Located {
-        self.problem.sides[body].advance(self.chains[body], edge, h, self.problem.levels[body])
-    }
-
     fn proceed(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
-        self.problem.sides[body].proceed(self.chains[body], edge, self.problem.levels[body])
+        self.problem.sections[body].proceed(self.chains[body], edge)
     }
 
     fn retreat(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
-        self.problem.sides[body].retreat(self.chains[body], edge, self.problem.levels[body])
+        self.problem.sections[body].retreat(self.chains[body], edge)
     }
 
     fn down_to(&self, body: usize, edge: Bracket, h: f64) -> Bracket {
@@ -219,7 +200,7 @@ impl Slide<'_, '_, '_> {
     /// other's edge separates best.
     fn separated_at_least_gap(&self, edges: [Bracket; 2]) -> Option<Planar> {
         let mut edges = edges;
-        for _ in 0..self.problem.sides[0].step_limit() + self.problem.sides[1].step_limit() {
+        for _ in 0..self.step_limit() {
             let body = usize::from(edges[1].low.h() > edges[0].low.h());
             if edges[body].low.h() <= self.problem.h0 {
                 let upper = self.problem.upper;

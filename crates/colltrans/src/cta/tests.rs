@@ -263,13 +263,13 @@ fn figures() {
     }
 }
 
-/// All vertices of a section in order, by brute force on the walk.
+/// All vertices of a section in order, from the bottom up the left chain.
 fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
-    let ends = side.ends(x).unwrap();
-    let first = side.bottom(ends, x).unwrap().vertex;
+    let section = side.section(x).unwrap();
+    let first = section.bottom().unwrap().vertex;
     let mut all = vec![first];
     loop {
-        let next = side.up(super::side::Chain::Left, &all[all.len() - 1], x);
+        let next = section.up(super::side::Chain::Left, &all[all.len() - 1]);
         if next.up == first.up {
             return all;
         }
@@ -353,5 +353,33 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
                 assert!(u.dot(c.w - supports[1].w) > -1e-9, "{name}");
             }
         }
+    }
+}
+
+#[test]
+#[ignore = "for a profiler"]
+fn profile() {
+    let count = std::env::var("COUNT").map_or(8, |c| c.parse().unwrap());
+    let mut random = Random(11);
+    let [p, q] = [0, 1].map(|_| {
+        let axes = [0, 1, 2].map(|_| random.within(0.6, 1.4));
+        ellipsoid(count, DVec3::from_array(axes))
+    });
+    let examples: Vec<Example> = (0..1000).map(|_| colliding(&mut random)).collect();
+    for max_steps in [0, 1, 2, 64] {
+        let options = CtaOptions { max_steps, ..CtaOptions::default() };
+        let begin = std::time::Instant::now();
+        let mut problems = 0;
+        for _ in 0..40 {
+            for e in &examples {
+                let setting = Setting::new(&p, &e.poses[0], &q, &e.poses[1], e.d).unwrap();
+                problems += minimise(&setting, &options).planar_problems;
+            }
+        }
+        println!(
+            "{max_steps}: {:.0} ns, {}",
+            begin.elapsed().as_nanos() as f64 / 40e3,
+            f64::from(problems) / 40e3
+        );
     }
 }

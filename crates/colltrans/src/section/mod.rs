@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use crate::polyhedron::topology::Topology;
 pub(crate) use axes::{AXES, AxisPair};
-pub(crate) use snapshots::{AxisSections, SectionForm, Turn};
+pub(crate) use snapshots::{AxisSections, SectionForm, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};
 
 /// The sections of one body across its four section axes; empty for a body of dimension below 3.

@@ -98,11 +98,11 @@ impl Cell {
         if let Some(side) = on {
             steps[side] = f64::INFINITY;
         }
-        let mut hit = (0, steps[0]);
-        for (index, &step) in steps.iter().enumerate() {
-            hit = if step < hit.1 { (index, step) } else { hit };
-        }
-        (hit.1 < f64::INFINITY).then_some(hit)
+        let least = steps
+            .iter()
+            .fold(f64::INFINITY, |least, &step| if step < least { step } else { least });
+        let side = steps.iter().position(|&step| step == least)?;
+        (least < f64::INFINITY).then_some((side, least))
     }
 }
 

@@ -40,12 +40,15 @@ pub(crate) enum Guess {
     Nothing,
 }
 
+/// Two mesh edges of each body, as two pairs of vertices.
+type Features = [[u32; 4]; 2];
+
 /// The result of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Narrowed {
     pub(crate) guess: Guess,
     /// The two mesh edges of each body nearest to the contact or the separating plane, as two pairs of vertices.
-    pub(crate) vertices: [[u32; 4]; 2],
+    pub(crate) vertices: Features,
     /// Planar problems solved.
     pub(crate) planar_problems: u32,
     /// Least `phi` found, an upper bound of the collision translation in units of length; infinite without a contact.
@@ -142,8 +145,9 @@ struct Search<'q, 'a> {
     region: Region,
     bound: LowerBound,
     upper: f64,
-    best: Option<Planar>,
-    last_separation: Option<(Planar, DVec3)>,
+    /// Features of the best contact.
+    best: Option<Features>,
+    last_separation: Option<(Features, DVec3)>,
     contradiction: Option<DVec3>,
     planar_problems: u32,
 }
@@ -177,11 +181,11 @@ impl Search<'_, '_> {
             let least = local.bound.value + cell.least(bound.gradient);
             if least < self.upper {
                 self.upper = least;
-                self.best = Some(answer);
+                self.best = Some(answer.features());
             }
             limit = self.upper;
         } else {
-            self.last_separation = Some((answer, local.normal));
+            self.last_separation = Some((answer.features(), local.normal));
         }
         self.region.cut(bound.gradient, limit - bound.value);
         if let Progress::Contradiction(normal) = self.bound.add(Piece { bound, ..local }) {
@@ -192,17 +196,17 @@ impl Search<'_, '_> {
     }
 
     fn result(&self) -> Narrowed {
-        let (guess, answer) = match (self.best, self.last_separation) {
-            (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, Some(best)),
-            (None, Some((answer, normal))) => {
+        let (guess, vertices) = match (self.best, self.last_separation) {
+            (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, best),
+            (None, Some((features, normal))) => {
                 let direction = self.contradiction.unwrap_or(normal);
-                (Guess::Separation { direction }, Some(answer))
+                (Guess::Separation { direction }, features)
             }
-            (None, None) => (Guess::Nothing, None),
+            (None, None) => (Guess::Nothing, Features::default()),
         };
         Narrowed {
             guess,
-            vertices: answer.map_or([[0; 4]; 2], |answer| answer.features()),
+            vertices,
             planar_problems: self.planar_problems,
             upper: self.upper + self.query.constant,
             lower: self.bound.t + self.query.constant,
@@ -212,7 +216,7 @@ impl Search<'_, '_> {
 
 impl Planar {
     /// The two mesh edges of each body that the answer rests on.
-    fn features(&self) -> [[u32; 4]; 2] {
+    fn features(&self) -> Features {
         let pair = |p: &Crossing, q: &Crossing| {
             [p.vertices[0], p.vertices[1], q.vertices[0], q.vertices[1]]
         };

@@ -22,8 +22,8 @@ mod tests;
 
 pub(crate) use minimise::{CtaOptions, Guess, Narrowed, minimise};
 
-/// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^64 < 1e-12` of the region by then.
-pub(crate) const MAX_STEPS: u32 = 64;
+/// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^40 < 2e-8` of the region by then.
+pub(crate) const MAX_STEPS: u32 = 40;
 
 /// Relative rounding error of a sum of a few products, with a margin for the errors of their factors. Only guesses hang on it.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;

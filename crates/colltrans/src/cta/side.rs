@@ -297,13 +297,10 @@ impl Section<'_> {
                 topology.outgoing(vertex).iter().zip(topology.neighbours(vertex))
             {
                 let end = self.side.point(neighbour);
-                if end.level > start.level {
-                    let drift = (end.shadow.x - start.shadow.x) / (end.level - start.level);
-                    let candidate = score(start.shadow.x + drift * (self.x - start.level));
-                    if candidate < best || next.is_none() {
-                        (best, next) = (candidate, Some(h));
-                    }
-                }
+                let drift = (end.shadow.x - start.shadow.x) / (end.level - start.level);
+                let candidate = score(start.shadow.x + drift * (self.x - start.level));
+                let better = end.level > start.level && (next.is_none() || candidate < best);
+                (best, next) = if better { (candidate, Some(h)) } else { (best, next) };
             }
             up = next?;
         }

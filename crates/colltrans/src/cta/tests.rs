@@ -366,20 +366,22 @@ fn profile() {
         ellipsoid(count, DVec3::from_array(axes))
     });
     let examples: Vec<Example> = (0..1000).map(|_| colliding(&mut random)).collect();
-    for max_steps in [0, 1, 2, 64] {
+    let rounds = std::env::var("ROUNDS").map_or(40_u32, |c| c.parse().unwrap());
+    for max_steps in [0, 1, 2, 4, 64] {
         let options = CtaOptions { max_steps, ..CtaOptions::default() };
-        let begin = std::time::Instant::now();
         let mut problems = 0;
-        for _ in 0..40 {
+        let mut best = f64::INFINITY;
+        for _ in 0..rounds {
+            let begin = std::time::Instant::now();
             for e in &examples {
                 let setting = Setting::new(&p, &e.poses[0], &q, &e.poses[1], e.d).unwrap();
                 problems += minimise(&setting, &options).planar_problems;
             }
+            best = best.min(begin.elapsed().as_nanos() as f64 / 1e3);
         }
         println!(
-            "{max_steps}: {:.0} ns, {}",
-            begin.elapsed().as_nanos() as f64 / 40e3,
-            f64::from(problems) / 40e3
+            "{count} {max_steps}: {best:.0} ns, {}",
+            f64::from(problems) / (f64::from(rounds) * 1e3)
         );
     }
 }

@@ -35,15 +35,15 @@ pub(super) enum Progress {
 }
 
 impl LowerBound {
-    /// Over the rectangle from `low` to `high`, and with `floor` below every contact.
-    pub(super) fn new(low: DVec2, high: DVec2, floor: f64) -> Self {
+    /// Over the rectangle from `low` to `high`, with a constant piece to begin with.
+    pub(super) fn new(low: DVec2, high: DVec2, floor: Piece) -> Self {
         let side = |value, gradient| Piece {
             bound: Affine { value, gradient },
             weight: 0.0,
             normal: DVec3::ZERO,
         };
         let mut pieces = [Piece::default(); CAPACITY];
-        pieces[0] = Piece { weight: 1.0, ..side(floor, DVec2::ZERO) };
+        pieces[0] = floor;
         pieces[1] = side(low.x, DVec2::NEG_X);
         pieces[2] = side(low.y, DVec2::NEG_Y);
         pieces[3] = side(-high.x, DVec2::X);
@@ -54,7 +54,7 @@ impl LowerBound {
             basis: [0, 1, 2],
             inverse: DMat3::IDENTITY,
             at: low,
-            t: floor,
+            t: floor.bound.value,
         };
         bound.inverse = bound.basis_matrix().inverse();
         bound

@@ -36,6 +36,13 @@ pub(super) struct Piece {
     pub(super) normal: DVec3,
 }
 
+impl Piece {
+    /// A supporting plane of the bodies: a bound that holds for all levels.
+    pub(super) fn constant(t: f64, normal: DVec3) -> Self {
+        Self { bound: Affine { value: t, gradient: DVec2::ZERO }, weight: 1.0, normal }
+    }
+}
+
 /// At most so many half-planes bound a cell: those of a vertex contact.
 const CELL_SIDES: usize = 12;
 

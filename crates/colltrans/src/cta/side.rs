@@ -200,7 +200,7 @@ impl<'a> Side<'a> {
         Some(Section { side: self, snapshot, lowest: snapshot.extreme(&self.height, 1.0), x })
     }
 
-    fn level(&self, vertex: u32) -> f64 {
+    pub(super) fn level(&self, vertex: u32) -> f64 {
         self.axis.dot(self.vertices[vertex as usize])
     }
 

@@ -366,7 +366,30 @@ fn profile() {
         ellipsoid(count, DVec3::from_array(axes))
     });
     let examples: Vec<Example> = (0..1000).map(|_| colliding(&mut random)).collect();
-    let rounds = std::env::var("ROUNDS").map_or(40_u32, |c| c.parse().unwrap());
+    let rounds = std::env::var("ROUNDS").map_or(10_u32, |c| c.parse().unwrap());
+    for solver in [crate::Solver::Portal, crate::Solver::Cta] {
+        let options = crate::Options { solver, ..crate::Options::default() };
+        let mut steps = [0; 3];
+        let mut best = f64::INFINITY;
+        for _ in 0..rounds {
+            let begin = std::time::Instant::now();
+            for e in &examples {
+                let answer =
+                    crate::cast_with(&p, &e.poses[0], &q, &e.poses[1], e.d, &options).unwrap();
+                if let crate::Outcome::Contact(c) = answer {
+                    steps[0] += c.steps.planar_problems;
+                    steps[1] += c.steps.supports;
+                    steps[2] += 1;
+                }
+            }
+            best = best.min(begin.elapsed().as_nanos() as f64 / 1e3);
+        }
+        println!(
+            "{count} {solver:?}: {best:.0} ns, {:.2} problems {:.2} supports",
+            f64::from(steps[0]) / f64::from(steps[2]),
+            f64::from(steps[1]) / f64::from(steps[2])
+        );
+    }
     for max_steps in [0, 1, 2, 4, 64] {
         let options = CtaOptions { max_steps, ..CtaOptions::default() };
         let mut problems = 0;

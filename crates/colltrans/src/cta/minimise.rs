@@ -61,8 +61,13 @@ pub(crate) struct Narrowed {
     /// Planar problems solved.
     pub(crate) planar_problems: u32,
     /// Least `phi` found, an upper bound of the collision translation in units of length; infinite without a contact.
+    #[cfg_attr(
+        not(test),
+        expect(dead_code, reason = "the finish proves its own bounds; the tests compare")
+    )]
     pub(crate) upper: f64,
     /// Lower bound, in units of length.
+    #[cfg_attr(not(test), expect(dead_code, reason = "as `upper`"))]
     pub(crate) lower: f64,
 }
 

@@ -20,7 +20,7 @@ mod side;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use minimise::{CtaOptions, CtaStart, Guess, Narrowed, minimise};
+pub(crate) use minimise::{CtaOptions, CtaStart, Guess, minimise};
 
 /// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^40 < 2e-8` of the region by then.
 pub(crate) const MAX_STEPS: u32 = 40;

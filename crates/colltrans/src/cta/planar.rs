@@ -53,7 +53,7 @@ impl Problem<'_> {
                 Located::Beyond(topmost) => {
                     return Some(self.separated_by_height(&bottom.vertex, &topmost.high));
                 }
-                Located::Short(_) => return None,
+                Located::Short => return None,
             };
             let g = edge.g_at(self.h0);
             if chain == Chain::Left && right_end.g() < g {
@@ -72,7 +72,7 @@ impl Problem<'_> {
         }
         // The lower section is narrower than the flat bottom of the upper one.
         let flat = Bracket::new(left_end, right_end);
-        Some(crossing_edges(self.by_body(flat, left)))
+        Some(crossing_edges(&self.by_body(flat, left)))
     }
 
     /// What belongs to the upper and to the lower section, by body.
@@ -95,15 +95,15 @@ impl Problem<'_> {
             // The body that shows its left chain is the one on the right.
             right: if chain == Chain::Left { 1 - self.upper } else { self.upper },
         }
-        .solve(self.by_body(first, edge))
+        .solve(&self.by_body(first, edge))
     }
 }
 
 /// Two edges that cross, and where.
-fn crossing_edges(edges: [Bracket; 2]) -> Planar {
-    let [r, s] = &edges;
+fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
+    let [r, s] = edges;
     let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
-    Planar::Edges { edges, contact: r.low.w + r.direction * step }
+    Planar::Edges { edges: *edges, contact: r.low.w + r.direction * step }
 }
 
 /// Newton's method up two chains that face each other.
@@ -116,35 +116,35 @@ struct Slide<'a, 'b> {
 }
 
 impl Slide<'_, '_> {
-    fn solve(&self, start: [Bracket; 2]) -> Option<Planar> {
-        let mut edges = start;
+    fn solve(&self, start: &[Bracket; 2]) -> Option<Planar> {
+        let mut edges = *start;
         let mut h = self.problem.h0;
         for _ in 0..self.step_limit() {
             if !self.closes(&edges) {
-                return self.separated_at_least_gap(edges);
+                return self.separated_at_least_gap(&edges);
             }
             // The edge that ends first decides whether they have met, without a quotient.
             let ending = usize::from(edges[1].high.h() < edges[0].high.h());
             let end = &edges[ending].high;
             let beyond = edges[1 - ending].side_of(end.w);
             if if ending == self.right { beyond <= 0.0 } else { beyond >= 0.0 } {
-                return Some(crossing_edges(edges));
+                return Some(crossing_edges(&edges));
             }
             let meet = (h - self.gap(&edges, h) / self.slope(&edges)).max(end.h());
             let Some(next) = self.proceed(ending, &edges[ending]) else {
-                return self.separated_at_top(ending, &edges);
+                return Some(self.separated_at_top(ending, &edges));
             };
             edges[ending] = next;
             h = meet;
-            for body in 0..2 {
+            for (body, edge) in edges.iter_mut().enumerate() {
                 let section = &self.problem.sections[body];
-                edges[body] = match section.advance(self.chains[body], edges[body], meet)? {
+                *edge = match section.advance(self.chains[body], edge, meet)? {
                     Located::Edge(edge) => edge,
                     Located::Beyond(edge) => {
                         h = h.min(edge.high.h());
                         edge
                     }
-                    Located::Short(_) => return None,
+                    Located::Short => return None,
                 };
             }
             if h < meet {
@@ -198,8 +198,8 @@ impl Slide<'_, '_> {
 
     /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one chain, where a line along the
     /// other's edge separates best.
-    fn separated_at_least_gap(&self, edges: [Bracket; 2]) -> Option<Planar> {
-        let mut edges = edges;
+    fn separated_at_least_gap(&self, edges: &[Bracket; 2]) -> Option<Planar> {
+        let mut edges = *edges;
         for _ in 0..self.step_limit() {
             let body = usize::from(edges[1].low.h() > edges[0].low.h());
             if edges[body].low.h() <= self.problem.h0 {
@@ -220,10 +220,10 @@ impl Slide<'_, '_> {
     }
 
     /// `body`'s chain ends, at the top of its section, before the gap closes.
-    fn separated_at_top(&self, body: usize, edges: &[Bracket; 2]) -> Option<Planar> {
+    fn separated_at_top(&self, body: usize, edges: &[Bracket; 2]) -> Planar {
         let mut supports = edges.map(|edge| edge.low);
         supports[body] = edges[body].high;
-        Some(self.separated(&edges[1 - body], supports))
+        self.separated(&edges[1 - body], supports)
     }
 
     fn separated(&self, along: &Bracket, supports: [Crossing; 2]) -> Planar {

@@ -5,6 +5,8 @@
 //! to its highest one where `g` is smaller, the *right* chain where `g` is greater. The *drift* of a crossing
 //! edge is how its section vertex moves per unit of level.
 
+use std::cell::Cell;
+
 use glam::{DVec2, DVec3};
 
 use super::ROUNDING;
@@ -133,7 +135,7 @@ pub(super) enum Located {
     /// The chain ends below: its topmost edge.
     Beyond(Bracket),
     /// Further up than the walk went.
-    Short(Bracket),
+    Short,
 }
 
 /// The lowest vertex of a section and the directions of its polygon edges up both chains.
@@ -197,7 +199,8 @@ impl<'a> Side<'a> {
         if snapshot.is_empty() {
             return None;
         }
-        Some(Section { side: self, snapshot, lowest: snapshot.extreme(&self.height, 1.0), x })
+        let lowest = snapshot.extreme(&self.height, 1.0);
+        Some(Section { side: self, snapshot, lowest, highest: Cell::new(None), x })
     }
 
     pub(super) fn level(&self, vertex: u32) -> f64 {
@@ -226,8 +229,9 @@ impl<'a> Side<'a> {
 pub(super) struct Section<'a> {
     side: &'a Side<'a>,
     snapshot: Snapshot<'a>,
-    /// Where the snapshot is lowest.
+    /// Where the snapshot is lowest and, once asked for, where it is highest.
     lowest: usize,
+    highest: Cell<Option<usize>>,
     x: f64,
 }
 
@@ -338,7 +342,8 @@ impl Section<'_> {
     /// The edge of a chain at height `h`, which is not below the bottom.
     pub(super) fn locate(&self, chain: Chain, h: f64) -> Option<Located> {
         let height = &self.side.height;
-        let highest = self.snapshot.extreme(height, -1.0);
+        let highest = self.highest.get().unwrap_or_else(|| self.snapshot.extreme(height, -1.0));
+        self.highest.set(Some(highest));
         let turn = self.side.turn_up(chain);
         let index = self.snapshot.locate(height, (self.lowest, highest), turn, (h, self.x));
         let up = self.climb(self.snapshot.up(index), |height| (height - h).abs())?;
@@ -381,9 +386,9 @@ impl Section<'_> {
     }
 
     /// From `bracket` up the chain to height `h`: a few steps along the mesh, or a search from scratch.
-    pub(super) fn advance(&self, chain: Chain, bracket: Bracket, h: f64) -> Option<Located> {
-        match self.walk(chain, bracket, h, STEPS_BEFORE_SEARCH) {
-            Located::Short(_) => self.locate(chain, h),
+    pub(super) fn advance(&self, chain: Chain, bracket: &Bracket, h: f64) -> Option<Located> {
+        match self.walk(chain, *bracket, h, STEPS_BEFORE_SEARCH) {
+            Located::Short => self.locate(chain, h),
             found => Some(found),
         }
     }
@@ -400,7 +405,7 @@ impl Section<'_> {
                 None => return Located::Beyond(bracket),
             }
         }
-        Located::Short(bracket)
+        Located::Short
     }
 
     /// The edge above `bracket` on its chain, if there is one.

@@ -2,7 +2,8 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{CtaOptions, Guess, Narrowed, minimise};
+use super::minimise::Narrowed;
+use super::{CtaOptions, Guess, minimise};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
 use crate::section::test_bodies::{Random, cone, cuboid, ellipsoid, prism};
@@ -183,6 +184,68 @@ fn tied_bodies_agree_with_brute_force() {
                 }
             }
         }
+    }
+}
+
+/// Lower bound of the collision translation that a normal proves, by a scan of all vertices.
+fn bound_by(normal: DVec3, p: &Placed, q: &Placed, d: DVec3) -> f64 {
+    let of_p = p.vertices.iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+    let of_q = q.vertices.iter().map(|v| normal.dot(*v)).fold(f64::INFINITY, f64::min);
+    (of_q - of_p) / normal.dot(d)
+}
+
+#[test]
+fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
+    let mut random = Random(17);
+    let bodies = [
+        ellipsoid(3000, DVec3::ONE),
+        ellipsoid(3000, DVec3::new(1000.0, 1.0, 1.0)),
+        ellipsoid(3000, DVec3::new(1000.0, 1000.0, 1.0)),
+        prism(1000, DVec3::ONE),
+        prism(1000, DVec3::new(1.0, 1.0, 1e-3)),
+        cone(1000, DVec3::new(1.0, 1.0, 3.0)),
+    ];
+    for round in 0..400 {
+        let p = &bodies[random.index(bodies.len())];
+        let q = &bodies[random.index(bodies.len())];
+        let d = random.unit();
+        let poses = [0.0, 3.0].map(|t| Pose::new(random.rotation(), d * t).unwrap());
+        let setting = Setting::new(p, &poses[0], q, &poses[1], d).unwrap();
+        let narrowed = minimise(&setting, &EXACT);
+        let (p, q) = (Placed::new(p, &poses[0]), Placed::new(q, &poses[1]));
+        let size = p.vertices.iter().chain(&q.vertices).map(|v| v.length()).fold(0.0, f64::max);
+        // Both centres lie on the line: they meet.
+        let Guess::Contact { normal } = narrowed.guess else {
+            panic!("round {round}: {narrowed:?}")
+        };
+        let proven = bound_by(normal, &p, &q, setting.unit);
+        let (lower, upper) = (narrowed.lower, narrowed.upper);
+        assert!((proven - lower).abs() < 1e-9 * size, "round {round}: {narrowed:?} {proven}");
+        assert!(upper - lower < 1e-6 * size, "round {round}: {narrowed:?}");
+        assert!(upper - lower > -1e-9 * size, "round {round}: {narrowed:?}");
+    }
+}
+
+#[test]
+fn steps_do_not_grow_with_the_bodies() {
+    for count in [8, 128, 2000, 20_000] {
+        let mut random = Random(19);
+        let [p, q] = [0, 1].map(|_| {
+            let axes = [0, 1, 2].map(|_| random.within(0.6, 1.4));
+            ellipsoid(count, DVec3::from_array(axes))
+        });
+        let mut steps = 0;
+        let options = CtaOptions { gap: 2.5e-3, ..EXACT };
+        for _ in 0..300 {
+            let e = colliding(&mut random);
+            let setting = Setting::new(&p, &e.poses[0], &q, &e.poses[1], e.d).unwrap();
+            steps += minimise(&setting, &options).planar_problems;
+        }
+        assert!(
+            steps <= 300 * 10,
+            "{count} vertices: {} steps on average",
+            f64::from(steps) / 300.0
+        );
     }
 }
 

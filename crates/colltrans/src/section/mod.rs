@@ -34,11 +34,6 @@ impl SectionIndex {
         Self { axes: AXES.iter().map(|&a| AxisSections::build(vertices, topology, a)).collect() }
     }
 
-    /// Whether there are no sections: the body is flat.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.axes.is_empty()
-    }
-
     /// The sections across axis `index` of [`AXES`].
     pub(crate) fn axis(&self, index: usize) -> &AxisSections {
         &self.axes[index]

@@ -34,7 +34,7 @@ pub(crate) struct CtaOptions {
 
 impl Default for CtaOptions {
     fn default() -> Self {
-        Self { start: None, max_steps: MAX_STEPS, gap: 2e-3 }
+        Self { start: None, max_steps: MAX_STEPS, gap: 5e-3 }
     }
 }
 

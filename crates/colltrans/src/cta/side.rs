@@ -16,7 +16,7 @@ use crate::section::{
 };
 
 /// Newton's method walks so far up a chain before it searches the snapshot.
-const STEPS_BEFORE_SEARCH: usize = 4;
+const STEPS_BEFORE_SEARCH: usize = 2;
 
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]

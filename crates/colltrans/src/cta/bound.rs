@@ -74,6 +74,14 @@ impl LowerBound {
         Progress::Bounded
     }
 
+    /// The greatest lower bound of `phi` at a point that a piece gives.
+    pub(super) fn below(&self, at: DVec2) -> f64 {
+        let pieces = self.pieces[..self.count].iter().filter(|piece| piece.weight > 0.0);
+        pieces
+            .map(|piece| piece.bound.value + piece.bound.gradient.dot(at))
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// The normal that proves the bound; of no use while the floor is in the basis.
     pub(super) fn normal(&self) -> DVec3 {
         let multipliers = self.inverse * DVec3::X;

@@ -28,6 +28,13 @@ pub(super) struct Frame {
     pub(super) shadow: [DVec3; 2],
 }
 
+impl Frame {
+    /// What the levels add to the height of the contact in `phi`.
+    pub(super) fn base(&self, levels: [f64; 2]) -> f64 {
+        levels[1] / self.along[1] - levels[0] / self.along[0]
+    }
+}
+
 /// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and `normal . d = weight`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Piece {
@@ -116,7 +123,7 @@ impl Cell {
 impl Planar {
     /// The piece that the answer at `levels` gives, up to the constant of `t`.
     pub(super) fn piece(&self, frame: &Frame, levels: [f64; 2]) -> Piece {
-        let base = levels[1] / frame.along[1] - levels[0] / frame.along[0];
+        let base = frame.base(levels);
         let slope = DVec2::new(-1.0 / frame.along[0], 1.0 / frame.along[1]);
         match self {
             Self::Vertex { upper, vertex, .. } => Piece {

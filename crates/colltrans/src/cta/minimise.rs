@@ -196,7 +196,8 @@ impl Search<'_, '_> {
     fn step(&mut self, at: DVec2) -> bool {
         let levels = (self.origin + at).to_array();
         self.planar_problems += 1;
-        let Some(answer) = planar::solve(&self.query.sides, levels) else { return false };
+        let known = self.bound.below(at) - self.query.frame.base(levels);
+        let Some(answer) = planar::solve(&self.query.sides, levels, known) else { return false };
         let local = answer.piece(&self.query.frame, levels);
         let bound = Affine {
             value: local.bound.value - local.bound.gradient.dot(at),

@@ -8,7 +8,7 @@
 //! `phi(x, y) = y/(b.d) - x/(a.d) + psi(x, y)`, `psi` the least `h` common to both sections' shadows.
 //!
 //! The data's way: [`side`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) -> [`cell`] (its linear piece and where it
-//! holds) -> [`region`] (what is left of the levels) and [`bound`] (what the pieces prove together) -> [`minimise`].
+//! holds) -> [`region`] (what is left of the levels) and [`bound`] (what the pieces prove together) -> [`mod@minimise`].
 //! The result is a guess of the contact normal and features, in floating point: portal refinement makes it exact.
 
 mod bound;

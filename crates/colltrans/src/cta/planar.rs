@@ -4,7 +4,8 @@
 //! *upper* section is the one with the higher bottom, at height `h0`. If that bottom lies in the other section it is
 //! the answer. Otherwise one section is to the left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the right chain `r` of the
 //! one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive at `h0`: Newton's method from there never
-//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls.
+//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls. Pieces found earlier bound the answer
+//! from below: then Newton's method starts at that height.
 
 use glam::DVec2;
 
@@ -29,13 +30,15 @@ struct Problem<'a> {
     h0: f64,
 }
 
-/// Solves the planar problem for the sections at `levels`, each in its body's range. `None` if rounding errors of the mesh hide a
-/// section.
-pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2]) -> Option<Planar> {
+/// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is known not to lie below height `known`.
+/// `None` if rounding errors of the mesh hide a section.
+pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
     let sections = [sides[0].section(levels[0])?, sides[1].section(levels[1])?];
     let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
     let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
-    Problem { sections, upper, h0: bottoms[upper].vertex.h() }.solve(&bottoms)
+    let problem = Problem { sections, upper, h0: bottoms[upper].vertex.h() };
+    let shortcut = if known > problem.h0 { problem.slide_from(known, &bottoms) } else { None };
+    shortcut.or_else(|| problem.solve(&bottoms))
 }
 
 impl Problem<'_> {
@@ -75,6 +78,23 @@ impl Problem<'_> {
         Some(crossing_edges(&self.by_body(flat, left)))
     }
 
+    /// Newton's method from height `known` if the sections are apart there and approach each other.
+    fn slide_from(&self, known: f64, bottoms: &[Bottom; 2]) -> Option<Planar> {
+        let likely = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
+        for right in [likely, 1 - likely] {
+            let mut chains = [Chain::Right; 2];
+            chains[right] = Chain::Left;
+            let Located::Edge(first) = self.sections[0].locate(chains[0], known)? else { break };
+            let Located::Edge(second) = self.sections[1].locate(chains[1], known)? else { break };
+            let edges = [first, second];
+            let slide = Slide { problem: self, chains, right };
+            if slide.gap(&edges, known) > 0.0 {
+                return slide.closes(&edges).then(|| slide.solve(&edges, known)).flatten();
+            }
+        }
+        None
+    }
+
     /// What belongs to the upper and to the lower section, by body.
     fn by_body<T>(&self, of_upper: T, of_lower: T) -> [T; 2] {
         if self.upper == 0 { [of_upper, of_lower] } else { [of_lower, of_upper] }
@@ -95,7 +115,7 @@ impl Problem<'_> {
             // The body that shows its left chain is the one on the right.
             right: if chain == Chain::Left { 1 - self.upper } else { self.upper },
         }
-        .solve(&self.by_body(first, edge))
+        .solve(&self.by_body(first, edge), self.h0)
     }
 }
 
@@ -116,9 +136,10 @@ struct Slide<'a, 'b> {
 }
 
 impl Slide<'_, '_> {
-    fn solve(&self, start: &[Bracket; 2]) -> Option<Planar> {
-        let mut edges = *start;
-        let mut h = self.problem.h0;
+    /// From the edges at height `start`, where the gap is positive.
+    fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
+        let mut edges = *edges;
+        let mut h = start;
         for _ in 0..self.step_limit() {
             if !self.closes(&edges) {
                 return self.separated_at_least_gap(&edges);

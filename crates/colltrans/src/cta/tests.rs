@@ -397,7 +397,18 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             }
         }
     }
-    let answer = solve(&query.sides, levels).unwrap();
+    let height = |known: f64| match solve(&query.sides, levels, known).unwrap() {
+        Planar::Vertex { vertex, .. } => vertex.h(),
+        Planar::Edges { contact, .. } => contact.x,
+        Planar::Separated { .. } => f64::INFINITY,
+    };
+    // A bound from below changes the way, not the answer.
+    let unguided = height(f64::NEG_INFINITY);
+    for known in [1e-6, 1e-2, 1.0] {
+        let found = height(least.min(10.0) - known);
+        assert!(found == unguided || (found - unguided).abs() < 1e-9, "{name}: {found} {unguided}");
+    }
+    let answer = solve(&query.sides, levels, f64::NEG_INFINITY).unwrap();
     match answer {
         Planar::Vertex { vertex, .. } => {
             assert!((vertex.h() - least).abs() < 1e-9, "{name}: {least} {}", vertex.h());

@@ -436,8 +436,9 @@ fn profile() {
     let count = std::env::var("COUNT").map_or(8, |c| c.parse().unwrap());
     let mut random = Random(11);
     let [p, q] = [0, 1].map(|_| {
-        let axes = [0, 1, 2].map(|_| random.within(0.6, 1.4));
-        ellipsoid(count, DVec3::from_array(axes))
+        let axes = DVec3::from_array([0, 1, 2].map(|_| random.within(0.6, 1.4)));
+        let stretch: f64 = std::env::var("STRETCH").map_or(1.0, |s| s.parse().unwrap());
+        ellipsoid(count, axes * DVec3::new(stretch, 1.0, 1.0))
     });
     let examples: Vec<Example> = (0..1000).map(|_| colliding(&mut random)).collect();
     let rounds = std::env::var("ROUNDS").map_or(10_u32, |c| c.parse().unwrap());

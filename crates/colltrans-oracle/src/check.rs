@@ -31,7 +31,10 @@ const TWO_ROUNDINGS: f64 = 2.0;
 
 /// How many units of rounding error the witness points of a contact may miss each other by: the bodies
 /// are widened by up to three for a grazing contact, in two directions, and each of the two points is rounded.
-const RESIDUAL_ROUNDINGS: f64 = 8.0;
+/// Shadows that overlap by no more than this many times the rounding error always count as touching.
+const TOUCHING_ROUNDINGS: f64 = 8.0;
+
+const RESIDUAL_ROUNDINGS: f64 = 48.0;
 
 /// Relative error that computing a unit vector may leave.
 const UNIT_ERROR: f64 = 16.0 * f64::EPSILON;
@@ -107,7 +110,7 @@ impl Judge<'_> {
         let meets = overlap.sign != Ordering::Less;
         require!(truth.is_some() == meets, "the oracle contradicts itself");
         let slack = TWO_ROUNDINGS * self.scene.noise;
-        let graze = self.graze_tolerance.max(self.scene.noise) + slack;
+        let graze = self.graze_tolerance.max(TOUCHING_ROUNDINGS * self.scene.noise) + slack;
         let is = overlap.to_f64();
         match outcome {
             Outcome::Contact(contact) => {
@@ -363,7 +366,7 @@ impl Judge<'_> {
             (overlap - claimed).abs() <= TWO_ROUNDINGS * noise,
             "overlap {claimed:e} claimed, {overlap:e} along the separating direction"
         );
-        let tolerated = self.graze_tolerance.max(noise);
+        let tolerated = self.graze_tolerance.max(TOUCHING_ROUNDINGS * noise);
         require!(claimed <= tolerated, "overlap {claimed:e} tolerated as {tolerated:e}");
         let proof = self.check_contact(&grazing.contact)?;
         // The residual has just bounded the overlap from below.

@@ -74,9 +74,17 @@ impl<'a> Difference<'a> {
         16.0 * f64::EPSILON * setting.scale()
     }
 
-    /// The same body, widened sideways.
-    pub(crate) fn widened(&self, widening: f64) -> Self {
-        Self { widening, ..*self }
+    /// The same body, widened sideways by four times [`Self::touching`] and, if the line misses it, by `margin` more: then
+    /// the line passes clearly inside.
+    pub(crate) fn widened(&self, margin: f64) -> Self {
+        Self { widening: margin.max(0.0) + 4.0 * self.touching(), ..*self }
+    }
+
+    /// Sideways distance below which points are not told apart: shadows that overlap by less only touch, and triangles
+    /// of shadows that are narrower have no plane. Eight times the bound on the rounding error, so
+    /// that directions across such a distance are still known to better than 1/8.
+    pub(crate) fn touching(&self) -> f64 {
+        8.0 * self.noise
     }
 
     /// The point of `M` that is lowest along `normal` (shadow frame, any length).

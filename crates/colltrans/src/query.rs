@@ -1,6 +1,6 @@
 //! The public queries, each a one-off function.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::answer;
 use crate::certificate::VertexPair;
@@ -11,7 +11,7 @@ use crate::outcome::{
     Clearance, Contact, ContactRange, Grazing, Outcome, Separated, Solver, Steps,
 };
 use crate::polyhedron::ConvexPolyhedron;
-use crate::portal::{self, Enclosure, Overlap, Start};
+use crate::portal::{self, Enclosure, Overlap, Refined, Start};
 use crate::pose::Pose;
 use crate::setting::Setting;
 
@@ -193,7 +193,7 @@ impl Cast<'_> {
         let noise = self.difference.noise;
         match portal::enclose(&self.difference, &start, &mut self.steps) {
             None => Err(self.not_converged()),
-            Some(Enclosure::Portal(first)) => self.contact_or_grazing(first),
+            Some(Enclosure::Portal(first)) => self.contact_or_grazing(first, &start),
             Some(Enclosure::OneSide { normal, margin, .. }) if margin > noise => {
                 Ok(Outcome::Separated(self.separated(normal, margin)))
             }
@@ -241,11 +241,19 @@ impl Cast<'_> {
         Start::from_guess(&self.difference, self.difference.axes.transpose() * normal, near)
     }
 
-    fn contact_or_grazing(mut self, first: portal::Portal) -> Result<Outcome, QueryError> {
-        let Some(optimum) = portal::refine(&self.difference, first, &mut self.steps) else {
-            return Err(self.not_converged());
+    fn contact_or_grazing(
+        mut self,
+        first: portal::Portal,
+        start: &Start,
+    ) -> Result<Outcome, QueryError> {
+        let optimum = match portal::refine(&self.difference, first, &mut self.steps) {
+            Some(Refined::Optimum(optimum)) => optimum,
+            Some(Refined::Rim { normal, margin }) => {
+                return self.touching(normal, margin, start).map(Outcome::Grazing);
+            }
+            None => return Err(self.not_converged()),
         };
-        let tolerance = self.graze_tolerance.max(self.difference.noise);
+        let tolerance = self.graze_tolerance.max(self.difference.touching());
         let overlap =
             portal::overlap(&self.difference, &optimum.portal, tolerance, &mut self.steps);
         let contact = self.contact(&optimum)?;
@@ -261,18 +269,19 @@ impl Cast<'_> {
     /// sideways by a little more than that.
     fn touching(
         mut self,
-        normal: glam::DVec2,
+        normal: DVec2,
         margin: f64,
         start: &Start,
     ) -> Result<Grazing, QueryError> {
-        let noise = self.difference.noise;
-        self.difference = self.difference.widened(margin.max(0.0) + 2.0 * noise);
+        self.difference = self.difference.widened(margin);
         let Some(Enclosure::Portal(first)) =
             portal::enclose(&self.difference, start, &mut self.steps)
         else {
             return Err(self.not_converged());
         };
-        let Some(optimum) = portal::refine(&self.difference, first, &mut self.steps) else {
+        let Some(Refined::Optimum(optimum)) =
+            portal::refine(&self.difference, first, &mut self.steps)
+        else {
             return Err(self.not_converged());
         };
         let contact = self.contact(&optimum)?;
@@ -283,7 +292,7 @@ impl Cast<'_> {
         answer::contact(&self.difference, self.moving_pose, optimum, self.solver, self.steps)
     }
 
-    fn separated(&self, normal: glam::DVec2, margin: f64) -> Separated {
+    fn separated(&self, normal: DVec2, margin: f64) -> Separated {
         answer::separated(&self.difference, normal, margin, self.solver, self.steps)
     }
 

@@ -19,7 +19,7 @@ pub(crate) enum Enclosure {
     /// A portal.
     Portal(Portal),
     /// All of `M` lies on one side: `normal . s >= margin` for every shadow `s`, up to rounding. The margin may be negative
-    /// by rounding, when the shadow of `M` ends at the line.
+    /// by a few roundings, when the shadow of `M` ends at the line.
     OneSide {
         /// Unit normal in the shadow plane.
         normal: DVec2,
@@ -42,8 +42,8 @@ pub(crate) fn enclose(
     start: &Start,
     steps: &mut Steps,
 ) -> Option<Enclosure> {
-    let mut search = Search { difference, start, steps };
-    let first = match search.first() {
+    let mut search = Search { difference, start: Some(start), steps };
+    let first = match search.first(start) {
         Ok(tangent) => tangent,
         Err(one_side) => return Some(one_side),
     };
@@ -51,41 +51,58 @@ pub(crate) fn enclose(
         Ok(tangent) => tangent,
         Err(one_side) => return Some(one_side),
     };
-    let mut edge = if difference.is_left(&first.point, &second.point) {
-        [first, second]
-    } else {
-        [second, first]
-    };
-    for _ in 0..MAX_POINTS {
-        let (toward_edge, slope) = nearest_on(&edge);
-        let third = match search.beyond(&edge, toward_edge, slope) {
-            Ok(tangent) => tangent,
-            Err(one_side) => return Some(one_side),
-        };
-        let [from, to] = edge;
-        if !difference.is_left(&to.point, &third.point) {
-            edge = [third, to];
-        } else if !difference.is_left(&third.point, &from.point) {
-            edge = [from, third];
-        } else {
-            return Some(Enclosure::Portal([from, to, third]));
-        }
-    }
-    None
+    search.close([first, second])
+}
+
+/// A portal that begins with an edge which the line passes, completed by the widest points: for edges that a narrow portal
+/// left behind. `None` if rounding makes the search run in a circle.
+pub(super) fn close_widely(
+    difference: &Difference,
+    edge: [Tangent; 2],
+    steps: &mut Steps,
+) -> Option<Enclosure> {
+    Search { difference, start: None, steps }.close(edge)
 }
 
 struct Search<'a> {
     difference: &'a Difference<'a>,
-    start: &'a Start,
+    /// What guides the first try of a normal; without it all normals are lateral.
+    start: Option<&'a Start>,
     steps: &'a mut Steps,
 }
 
 impl Search<'_> {
+    /// Adds points until they enclose the line. `None` if rounding makes the search run in a circle.
+    fn close(&mut self, [first, second]: [Tangent; 2]) -> Option<Enclosure> {
+        let difference = self.difference;
+        let mut edge = if difference.is_left(&first.point, &second.point) {
+            [first, second]
+        } else {
+            [second, first]
+        };
+        for _ in 0..MAX_POINTS {
+            let (toward_edge, slope) = nearest_on(&edge);
+            let third = match self.beyond(&edge, toward_edge, slope) {
+                Ok(tangent) => tangent,
+                Err(one_side) => return Some(one_side),
+            };
+            let [from, to] = edge;
+            if !difference.is_left(&to.point, &third.point) {
+                edge = [third, to];
+            } else if !difference.is_left(&third.point, &from.point) {
+                edge = [from, third];
+            } else {
+                return Some(Enclosure::Portal([from, to, third]));
+            }
+        }
+        None
+    }
+
     /// The support point along the guess; if the guess is lateral, it may already separate.
-    fn first(&mut self) -> Result<Tangent, Enclosure> {
-        let normal = self.start.normal;
+    fn first(&mut self, start: &Start) -> Result<Tangent, Enclosure> {
+        let normal = start.normal;
         self.steps.supports += 1;
-        let point = match self.start.near {
+        let point = match start.near {
             Some(near) => self.difference.support_from(normal, near),
             None => self.difference.support(normal),
         };
@@ -110,15 +127,20 @@ impl Search<'_> {
         slope: DVec2,
     ) -> Result<Tangent, Enclosure> {
         let outward = outward(known, near_side);
+        // Points closer to the line than this may be on either side of it.
+        let clearly = -self.difference.touching();
+        let clearly_scaled = clearly * outward.length();
         let near = known[known.len() - 1].point.pair;
-        for factor in OVERSHOOT {
-            let slope = slope + self.start.slope_per_shadow * near_side * factor;
+        let tries = self.start.into_iter().flat_map(|start| {
+            OVERSHOOT.map(|factor| slope + start.slope_per_shadow * near_side * factor)
+        });
+        for slope in tries {
             if !slope.is_finite() || near_side == DVec2::ZERO {
                 break;
             }
             self.steps.supports += 1;
             let point = self.difference.support_from(normal_of(slope), near);
-            if outward.dot(point.shadow()) < 0.0 {
+            if outward.dot(point.shadow()) < clearly_scaled {
                 return Ok(Tangent { point, slope });
             }
         }
@@ -126,7 +148,7 @@ impl Search<'_> {
         self.steps.supports += 1;
         let point = self.difference.support(outward.extend(0.0));
         let margin = outward.dot(point.shadow());
-        if margin >= 0.0 {
+        if margin >= clearly {
             return Err(Enclosure::OneSide { normal: outward, margin, point });
         }
         Ok(Tangent { point, slope })
@@ -150,7 +172,7 @@ fn can_normalize(v: DVec2) -> bool {
 }
 
 /// The point of the edge's shadow nearest to the line, and the slope interpolated there.
-fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
+pub(super) fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
     let [from, to] = edge;
     let (a, b) = (from.point.shadow(), to.point.shadow());
     let along = b - a;

@@ -5,7 +5,8 @@
 //! translation is `max f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
 //!
 //! The way: [`start`] guesses a slope, [`enclose`] finds a first portal or a separating direction, [`refine`] exchanges one point
-//! of the portal after another until its plane supports `M`, [`graze`] measures how far the shadows overlap.
+//! of the portal after another until its plane supports `M`, [`graze`] measures
+//! how far the shadows overlap.
 //! Section 1 of the paper for the bounds; the exchange is the dual of the simplex method with two variables.
 
 mod enclose;
@@ -17,7 +18,7 @@ use glam::{DVec2, DVec3};
 
 pub(crate) use enclose::{Enclosure, enclose, widest_margin};
 pub(crate) use graze::{Overlap, overlap};
-pub(crate) use refine::{Optimum, refine};
+pub(crate) use refine::{Optimum, Refined, refine};
 pub(crate) use start::Start;
 
 use crate::minkowski::Point;

@@ -5,10 +5,12 @@
 //! height at which the line passes the portal falls. The end: no point of `M` is below the plane by more than rounding error; then the plane
 //! proves the lower bound and the portal the upper one.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::{Portal, Tangent, normal_of};
+use super::enclose::{Enclosure, close_widely};
+use super::{Portal, Tangent};
 use crate::certificate::VertexPair;
+use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 
@@ -28,27 +30,94 @@ pub(crate) struct Optimum {
 /// Bound on the number of portals; reaching it is reported, never hidden.
 const MAX_PORTALS: usize = 10_000;
 
+/// What following portals ends with.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Refined {
+    /// The lowest face.
+    Optimum(Optimum),
+    /// The line passes the rim of the shadow of `M`: `normal . s >= margin` for every shadow, and the margin is no less than
+    /// minus [`Difference::touching`].
+    Rim {
+        /// Unit normal in the shadow plane.
+        normal: DVec2,
+        /// The margin.
+        margin: f64,
+    },
+}
+
 /// Follows portals down to the optimum. `None` if rounding makes them run in a circle.
 pub(crate) fn refine(
     difference: &Difference,
     mut portal: Portal,
     steps: &mut Steps,
-) -> Option<Optimum> {
+) -> Option<Refined> {
     let mut newest = 2;
     for _ in 0..MAX_PORTALS {
         steps.pivots += 1;
-        let plane = plane_normal(difference, &portal);
+        let Some(plane) = plane_normal(difference, &portal) else {
+            // Too narrow to have a plane: a wide portal over what is lowest of it.
+            let edge = passed_edge(difference, &portal, steps);
+            match close_widely(difference, edge, steps)? {
+                Enclosure::Portal(wide) => portal = wide,
+                Enclosure::OneSide { normal, margin, .. } => {
+                    return Some(Refined::Rim { normal, margin });
+                }
+            }
+            continue;
+        };
         steps.supports += 1;
         let point = difference.support_from(plane, portal[newest].point.pair);
         if depth_below(&portal, plane, &point) <= difference.noise * plane.length() {
             let weights = weights(&portal);
             let portal = portal.map(|t| t.point);
-            return Some(Optimum { normal: plane, lowest: point.pair, portal, weights });
+            let optimum = Optimum { normal: plane, lowest: point.pair, portal, weights };
+            return Some(Refined::Optimum(optimum));
         }
-        newest =
-            exchange(difference, &mut portal, Tangent { point, slope: plane.truncate() / plane.z });
+        let slope = plane.truncate() / plane.z;
+        newest = exchange(difference, &mut portal, Tangent { point, slope });
     }
     None
+}
+
+/// The edge of a narrow portal which the line passes lowest; if it is too short to have a direction, from its lower point to
+/// one far away.
+fn passed_edge(difference: &Difference, portal: &Portal, steps: &mut Steps) -> [Tangent; 2] {
+    let edge = lowest_edge(difference, portal);
+    let [from, to] = edge.map(|t| t.point);
+    if from.shadow().distance(to.shadow()) > difference.touching() {
+        return edge;
+    }
+    let low = if from.height() <= to.height() { edge[0] } else { edge[1] };
+    let far = [DVec2::X, DVec2::NEG_X].map(|lateral| {
+        steps.supports += 1;
+        difference.support(lateral.extend(0.0))
+    });
+    let distance = |p: &Point| p.shadow().distance_squared(low.point.shadow());
+    let point = if distance(&far[0]) >= distance(&far[1]) { far[0] } else { far[1] };
+    [low, Tangent { point, slope: low.slope }]
+}
+
+/// Of the edges of a narrow portal near which the line passes, the one it passes lowest.
+fn lowest_edge(difference: &Difference, portal: &Portal) -> [Tangent; 2] {
+    let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]]);
+    let passing = edges.map(|edge| {
+        let shadows = edge.map(|t| t.point.shadow());
+        let share = nearest_share(shadows);
+        let [from, to] = edge.map(|t| t.point.height());
+        let near = shadows[0] + (shadows[1] - shadows[0]) * share;
+        (near.length(), from + (to - from) * share)
+    });
+    let nearest = passing.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
+    let close = |k: &usize| passing[*k].0 <= nearest.max(difference.touching());
+    let lowest = (0..3).filter(close).min_by(|&i, &j| passing[i].1.total_cmp(&passing[j].1));
+    edges[lowest.unwrap_or(0)]
+}
+
+/// Where on a segment the line passes nearest, from 0 at its start to 1 at its end.
+fn nearest_share([from, to]: [DVec2; 2]) -> f64 {
+    let along = to - from;
+    let square = along.length_squared();
+    if square > 0.0 { (-from.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// How far a point lies below all three of the portal's along `normal`, times the normal's length.
@@ -74,34 +143,43 @@ fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize
     same
 }
 
-/// The upward normal of the plane through the three points, from the two shorter edges, which determine it best.
-///
-/// A portal lower than the noise has no plane of its own: then the normal through its longest edge that is
-/// closest to the slopes of the tangents.
-fn plane_normal(difference: &Difference, portal: &Portal) -> DVec3 {
+/// The upward normal of the plane through the three points, from the two shorter edges, which determine it best; `None` if
+/// the portal is too narrow to have one.
+fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
     let [a, b, c] = portal.map(|t| t.point.at);
     let edges = [b - a, c - b, a - c];
     let lengths = edges.map(|e| e.truncate().length_squared());
     let longest = largest(lengths);
     let normal = edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3]);
-    let least_height = 8.0 * difference.noise;
-    if normal.z > 0.0 && normal.z * normal.z > least_height * least_height * lengths[longest] {
-        return normal;
-    }
-    let edge = edges[longest];
-    let slope = (portal[0].slope + portal[1].slope + portal[2].slope) / 3.0;
-    let guess = normal_of(slope);
-    let square = edge.length_squared();
-    let upright = if square > 0.0 { guess - edge * (guess.dot(edge) / square) } else { guess };
-    if upright.z > 0.0 { upright } else { guess }
+    let least = difference.touching();
+    let wide = normal.z > 0.0 && normal.z * normal.z > least * least * lengths[longest];
+    wide.then_some(normal)
 }
 
-/// Barycentric coordinates of the line in the shadow of the portal, clamped to it.
+/// Barycentric coordinates of the line in the shadow of the portal.
+///
+/// From determinants without cancellation, so that narrow portals have accurate ones; if the line is outside in the rounded
+/// coordinates, those of the nearest point of the rim.
 fn weights(portal: &Portal) -> [f64; 3] {
-    let [a, b, c] = portal.map(|t| t.point.shadow());
-    let parts = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)].map(|w| w.max(0.0));
+    let shadows = portal.map(|t| t.point.shadow());
+    let [a, b, c] = shadows;
+    let parts = [accurate_det(b, c), accurate_det(c, a), accurate_det(a, b)];
     let sum = parts[0] + parts[1] + parts[2];
-    if sum > 0.0 { parts.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
+    if sum > 0.0 && parts.iter().all(|&part| part >= 0.0) {
+        return parts.map(|part| part / sum);
+    }
+    let mut nearest = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+        let along = shadows[j] - shadows[i];
+        let share = nearest_share([shadows[i], shadows[j]]);
+        let distance = (shadows[i] + along * share).length_squared();
+        if distance < nearest.0 {
+            let mut weights = [0.0; 3];
+            (weights[i], weights[j]) = (1.0 - share, share);
+            nearest = (distance, weights);
+        }
+    }
+    nearest.1
 }
 
 fn largest(weights: [f64; 3]) -> usize {

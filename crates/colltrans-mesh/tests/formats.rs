@@ -169,7 +169,9 @@ fn binary_ply(little: bool) -> Vec<u8> {
     let mut bytes = header.replace("ascii", format).into_bytes();
     let double = |v: f64| if little { v.to_le_bytes() } else { v.to_be_bytes() };
     for vertex in [[0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1e-17, 0.0]] {
-        vertex.iter().for_each(|&c| bytes.extend(double(c)));
+        for c in vertex {
+            bytes.extend(double(c));
+        }
         bytes.push(7);
     }
     bytes.push(3);

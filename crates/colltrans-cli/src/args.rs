@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Move one mesh along a direction until it touches another
     #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
-    Cast(CastArguments),
+    Cast(Box<CastArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = EXIT_CODES, after_long_help = format!("{BATCH_FORMAT}\n\n{EXIT_CODES}"))]
     Batch(BatchArguments),

@@ -14,6 +14,7 @@ mod picture;
 mod record;
 mod report;
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -21,6 +22,9 @@ use clap::Parser;
 use args::{Arguments, Command};
 
 fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(|bug| {
+        let _ = writeln!(io::stderr(), "error: this is a bug, please report it: {bug}");
+    }));
     let result = match Arguments::parse().command {
         Command::Cast(arguments) => cast::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),

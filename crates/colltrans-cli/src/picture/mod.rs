@@ -1,6 +1,35 @@
-//! stub
-use colltrans::glam::DVec3;
+//! A picture of an answer, as one would put it in a paper: both bodies, the moving one at its start
+//! (light) and where it stops, the way it goes, the contact.
+//!
+//! Notation as in [`view`]; `P` is the moving body, `Q` the fixed one, `n` the unit normal from `P` to `Q`.
+//!
+//! Hidden surfaces. A convex body hides its own parts where they look away ([`solid`]). Between
+//! bodies, a plane that separates them tells which is nearer: `Q` if `n.v > 0`. For
+//! a contact ahead, the contact plane separates `Q` from `P` not only at the contact but all along
+//! its way (`n.d > 0`); for separated bodies, the separating plane does (`n.d = 0`). So
+//! drawing from back to front is exact, which for three bodies without such a plane it need not be.
+//!
+//! The data's way: [`story`] (what is to be shown) -> [`view`] (from where) -> [`layout`] (how large)
+//! -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
+
+mod layout;
+mod notes;
+mod solid;
+mod story;
+mod svg;
+mod view;
+
+use colltrans::glam::{DVec2, DVec3};
 use colltrans::{ContactRange, ConvexPolyhedron, Pose};
+
+use layout::Layout;
+use notes::Notes;
+use solid::{Paint, Solid};
+use story::Story;
+use svg::Page;
+use view::View;
+
+/// A query and its answer.
 pub(crate) struct Scene<'a> {
     pub(crate) moving: &'a ConvexPolyhedron,
     pub(crate) moving_pose: Pose,
@@ -9,6 +38,111 @@ pub(crate) struct Scene<'a> {
     pub(crate) direction: DVec3,
     pub(crate) answer: &'a ContactRange,
 }
-pub(crate) fn draw(_: &Scene<'_>) -> String {
-    String::new()
+
+const MOVING: Paint = Paint {
+    dark: [70.0, 108.0, 168.0],
+    light: [214.0, 228.0, 246.0],
+    line: "#1f3a68",
+    fine: "#5676a8",
+};
+const FIXED: Paint = Paint {
+    dark: [148.0, 134.0, 112.0],
+    light: [248.0, 243.0, 232.0],
+    line: "#4a4033",
+    fine: "#8d8069",
+};
+/// Features of the moving and the fixed body in the contact plane.
+const MOVING_MARK: &str = "#0b57d0";
+const FIXED_MARK: &str = "#c2600f";
+
+/// The bodies as they are drawn.
+struct Cast {
+    /// P at its start, unless that is where it stops.
+    start: Option<Solid>,
+    /// P where it stops.
+    stop: Solid,
+    /// Q.
+    fixed: Solid,
+    /// From `start` to `stop`, as drawn.
+    way: DVec3,
+    /// The way is drawn shorter than it is.
+    is_broken: bool,
+}
+
+/// The SVG file.
+pub(crate) fn draw(scene: &Scene<'_>) -> String {
+    let story = Story::of(scene);
+    let cast = Cast::of(scene, &story);
+    let unit = scene.direction.normalize();
+    let view = View::choose([&cast.stop, &cast.fixed], unit, story.normal);
+    let layout = Layout::of(&cast, &view);
+    let on_page = |p: DVec3| layout.on_page(view.project(p));
+    let mut page = Page::new(layout.window);
+    page.open_group(r#"clip-path="url(#window)""#);
+    cast.draw(&mut page, &view, &story, on_page);
+    if let Some(contact) = story.contact {
+        cast.fixed.mark(&mut page, &view, contact.fixed_feature, FIXED_MARK, on_page);
+        cast.stop.mark(&mut page, &view, contact.moving_feature, MOVING_MARK, on_page);
+    }
+    page.close_group();
+    let notes = Notes { cast: &cast, story: &story, layout: &layout, view: &view };
+    notes.draw(&mut page, unit);
+    page.finish(layout.size, layout.window, &story.headline)
+}
+
+impl Cast {
+    fn of(scene: &Scene<'_>, story: &Story<'_>) -> Self {
+        let unit = scene.direction.normalize();
+        let fixed = Solid::new(scene.fixed, &scene.fixed_pose, story.origin);
+        let stop =
+            Solid::new(scene.moving, &scene.moving_pose, story.origin).moved(unit * story.stop);
+        let size = layout::working_size(stop.ball().1, fixed.ball().1, story.stop.abs());
+        let longest = 5.0 * size;
+        let shown = story.stop.clamp(-longest, longest);
+        let way = unit * shown;
+        let start = (shown.abs() > 0.01 * size).then(|| stop.moved(-way));
+        Self { start, stop, fixed, way, is_broken: shown != story.stop }
+    }
+
+    /// From back to front.
+    fn draw(
+        &self,
+        page: &mut Page,
+        view: &View,
+        story: &Story<'_>,
+        on_page: impl Fn(DVec3) -> DVec2 + Copy,
+    ) {
+        let fixed_is_nearer = story.normal.dot(view.toward) > 0.0;
+        let stop_is_nearer = self.way.dot(view.toward) > 0.0;
+        let draw_moving = |page: &mut Page| {
+            let ghost = |page: &mut Page| {
+                if let Some(start) = &self.start {
+                    start.draw_ghost(page, view, &MOVING, on_page);
+                }
+            };
+            if stop_is_nearer {
+                ghost(page);
+            }
+            self.stop.draw(page, view, &MOVING, on_page);
+            if !stop_is_nearer {
+                ghost(page);
+            }
+        };
+        let draw_plane = |page: &mut Page| {
+            if let Some(plane) = story.plane(self) {
+                let look =
+                    r##"fill="#f0b429" fill-opacity="0.28" stroke="#a87600" stroke-width="0.8""##;
+                page.polygons(look, [plane.map(on_page).to_vec()]);
+            }
+        };
+        if fixed_is_nearer {
+            draw_moving(page);
+            draw_plane(page);
+            self.fixed.draw(page, view, &FIXED, on_page);
+        } else {
+            self.fixed.draw(page, view, &FIXED, on_page);
+            draw_plane(page);
+            draw_moving(page);
+        }
+    }
 }

@@ -8,7 +8,20 @@
 //!   `sum w_i (q_i - p_i) = t d`; then `coll <= t`.
 //! - Separation: `n` with `n.d = 0` and `min_Q n.q - max_P n.p > 0`.
 
+//!
+//! Rounding. A bound on `n.q - n.p` for a unit `n` has an error of at most [`Difference::noise`](crate::minkowski::Difference::noise)
+//! `= 32 u S` (`u = 2^-53`, `S` the size of the configuration); dividing by `n.d` turns it into an error of `t`. The plane is
+//! accepted when no point of `M` is below it by more than the noise, the lower and the upper bound each add at most one more:
+//! `upper - lower <= 3 noise / (n.d)`, which is [`Certificate::tolerance`].
+
 use glam::DVec3;
+use thiserror::Error;
+
+use crate::error::QueryError;
+use crate::minkowski::Difference;
+use crate::polyhedron::ConvexPolyhedron;
+use crate::pose::Pose;
+use crate::setting::Setting;
 
 /// One vertex of each body, by index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -44,4 +57,158 @@ pub struct Separation {
     pub normal: DVec3,
     /// `min_Q n.q - max_P n.p > 0`: how far the shadows stay apart along `normal`, in world units.
     pub margin: f64,
+}
+
+/// Why a certificate does not prove what it says.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CertificateError {
+    /// The setting itself is not valid.
+    #[error(transparent)]
+    Setting(#[from] QueryError),
+    /// The normal is not a unit vector with a component along the direction (contact), or orthogonal to it
+    /// (separation).
+    #[error("the normal {normal} is not a unit vector on the right side of the direction")]
+    Normal {
+        /// The normal.
+        normal: DVec3,
+    },
+    /// A vertex index does not exist.
+    #[error("pair {pair} names a vertex that does not exist")]
+    UnknownVertex {
+        /// Index of the pair.
+        pair: usize,
+    },
+    /// The weights are negative or their sum is not 1.
+    #[error("the weights {weights:?} are not barycentric coordinates")]
+    Weights {
+        /// The weights.
+        weights: [f64; 3],
+    },
+    /// The witness points do not come together.
+    #[error("the witness points miss each other by {residual:e} (tolerated: {tolerance:e})")]
+    Residual {
+        /// Distance of the witness points after the translation.
+        residual: f64,
+        /// What rounding explains.
+        tolerance: f64,
+    },
+    /// The bodies reach across the plane.
+    #[error("the plane proves {proven}, not {claimed} (tolerated: {tolerance:e})")]
+    Bound {
+        /// The bound, or margin, that the plane proves.
+        proven: f64,
+        /// The one claimed.
+        claimed: f64,
+        /// What rounding explains.
+        tolerance: f64,
+    },
+}
+
+/// `(min_Q n.q - max_P n.p)` for vertices where the extremes are taken.
+pub(crate) fn distance_along(setting: &Setting, normal: DVec3, pair: VertexPair) -> f64 {
+    let q = setting.fixed.vertices()[pair.fixed as usize];
+    let p = setting.moving.vertices()[pair.moving as usize];
+    (setting.fixed_normal(normal).dot(q) - setting.moving_normal(normal).dot(p))
+        + normal.dot(setting.offset)
+}
+
+/// The pair of vertices where `min_Q n.q - max_P n.p` is taken.
+fn extreme_pair(setting: &Setting, normal: DVec3) -> VertexPair {
+    VertexPair {
+        moving: setting.moving.support(setting.moving_normal(normal)),
+        fixed: setting.fixed.support(-setting.fixed_normal(normal)),
+    }
+}
+
+/// Relative rounding error allowed in the length and the orthogonality of a stored normal.
+const NORMAL_NOISE: f64 = 16.0 * f64::EPSILON;
+
+impl Certificate {
+    /// `upper - lower`: how far apart the proven bounds are, in multiples of the direction.
+    pub fn gap(&self) -> f64 {
+        self.upper - self.lower
+    }
+
+    /// Checks the certificate against the two bodies, in `O(log n)`, and returns the gap that is really proven.
+    ///
+    /// Nothing of the solver is used: two support points for the lower bound, three pairs of vertices for the upper one.
+    ///
+    /// # Errors
+    /// What the certificate fails to prove.
+    pub fn verify(
+        &self,
+        moving: &ConvexPolyhedron,
+        moving_pose: &Pose,
+        fixed: &ConvexPolyhedron,
+        fixed_pose: &Pose,
+        direction: DVec3,
+    ) -> Result<f64, CertificateError> {
+        let setting = Setting::new(moving, moving_pose, fixed, fixed_pose, direction)?;
+        let normal = self.normal;
+        let along = normal.dot(direction);
+        if (normal.length() - 1.0).abs() > NORMAL_NOISE || along.is_nan() || along <= 0.0 {
+            return Err(CertificateError::Normal { normal });
+        }
+        let lower = distance_along(&setting, normal, extreme_pair(&setting, normal)) / along;
+        if lower < self.lower - self.tolerance {
+            let (proven, claimed, tolerance) = (lower, self.lower, self.tolerance);
+            return Err(CertificateError::Bound { proven, claimed, tolerance });
+        }
+        Ok(self.proven_upper(&setting)? - lower)
+    }
+
+    /// The upper bound that the witness pairs prove.
+    fn proven_upper(&self, setting: &Setting) -> Result<f64, CertificateError> {
+        let weights = self.weights;
+        let sum: f64 = weights.iter().sum();
+        if weights.iter().any(|w| w.is_nan() || *w < 0.0) || (sum - 1.0).abs() > NORMAL_NOISE {
+            return Err(CertificateError::Weights { weights });
+        }
+        let mut difference = setting.offset;
+        for (pair, (vertices, weight)) in self.pairs.iter().zip(weights).enumerate() {
+            let unknown = CertificateError::UnknownVertex { pair };
+            let q = setting.fixed.vertices().get(vertices.fixed as usize);
+            let p = setting.moving.vertices().get(vertices.moving as usize);
+            let (Some(&q), Some(&p)) = (q, p) else { return Err(unknown) };
+            difference += (setting.fixed_matrix * q - setting.moving_matrix * p) * weight;
+        }
+        let upper = difference.dot(setting.unit) / setting.direction.length();
+        let residual = (difference - setting.direction * upper).length();
+        // Grazing contacts may miss by the widening, which is a few times the noise.
+        let tolerance = 8.0 * Difference::noise_of(setting);
+        if residual > tolerance {
+            return Err(CertificateError::Residual { residual, tolerance });
+        }
+        Ok(upper)
+    }
+}
+
+impl Separation {
+    /// Checks the separation against the two bodies, in `O(log n)`, and returns the margin that is really proven.
+    ///
+    /// # Errors
+    /// What the certificate fails to prove.
+    pub fn verify(
+        &self,
+        moving: &ConvexPolyhedron,
+        moving_pose: &Pose,
+        fixed: &ConvexPolyhedron,
+        fixed_pose: &Pose,
+        direction: DVec3,
+    ) -> Result<f64, CertificateError> {
+        let setting = Setting::new(moving, moving_pose, fixed, fixed_pose, direction)?;
+        let normal = self.normal;
+        let is_unit = (normal.length() - 1.0).abs() <= NORMAL_NOISE;
+        if !is_unit || normal.dot(setting.unit).abs() > NORMAL_NOISE {
+            return Err(CertificateError::Normal { normal });
+        }
+        let margin = distance_along(&setting, normal, extreme_pair(&setting, normal));
+        let tolerance = Difference::noise_of(&setting);
+        if margin < self.margin - tolerance || margin <= 0.0 {
+            let claimed = self.margin;
+            return Err(CertificateError::Bound { proven: margin, claimed, tolerance });
+        }
+        Ok(margin)
+    }
 }

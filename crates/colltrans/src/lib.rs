@@ -1,14 +1,17 @@
 //! Collision translations of convex polyhedra: how far can one body move before it touches another.
 
+mod answer;
 mod certificate;
 mod error;
+mod minkowski;
 mod outcome;
 mod polyhedron;
+mod portal;
 mod pose;
 mod query;
 mod setting;
 
-pub use certificate::{Certificate, Separation, VertexPair};
+pub use certificate::{Certificate, CertificateError, Separation, VertexPair};
 pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
 pub use glam;
 pub use outcome::{
@@ -16,4 +19,6 @@ pub use outcome::{
 };
 pub use polyhedron::ConvexPolyhedron;
 pub use pose::Pose;
-pub use query::{Options, cast, cast_with, clearance, contact_range};
+pub use query::{
+    Options, cast, cast_with, clearance, contact_range, directional_depth, intersects,
+};

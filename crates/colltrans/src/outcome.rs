@@ -123,26 +123,39 @@ pub struct Steps {
     pub pivots: u32,
 }
 
-/// All translations at which the bodies meet: `enter.translation <= t <= exit.translation`.
+/// All translations at which the bodies meet: an interval, with the contact at either end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactRange {
-    /// The bodies meet exactly for translations in this interval.
+    /// The bodies meet exactly for the translations in [`ContactRange::interval`].
     Contact {
         /// First contact along the direction.
-        enter: Contact,
-        /// Last contact along the direction. Its normal points *against* the direction: it is the contact of the cast
-        /// along the opposite direction, with the sign of `translation` and of both bounds turned.
-        exit: Contact,
+        first: Contact,
+        /// Last contact along the direction: the contact of the cast along the *opposite* direction, as that cast gives it
+        /// (its certificate is for that direction, and its translation counts in multiples of it).
+        last: Contact,
     },
     /// The shadows overlap by no more than the graze tolerance.
     Grazing {
         /// First contact along the direction.
-        enter: Grazing,
-        /// Last contact along the direction.
-        exit: Grazing,
+        first: Grazing,
+        /// Last contact, of the cast along the opposite direction.
+        last: Grazing,
     },
     /// The bodies never meet.
     Separated(Separated),
+}
+
+impl ContactRange {
+    /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet.
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Contact { first, last } => Some([first.translation, -last.translation]),
+            Self::Grazing { first, last } => {
+                Some([first.contact.translation, -last.contact.translation])
+            }
+            Self::Separated(_) => None,
+        }
+    }
 }
 
 /// How far the moving body can move *from here* along the direction.

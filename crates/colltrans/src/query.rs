@@ -2,10 +2,16 @@
 
 use glam::DVec3;
 
+use crate::answer;
 use crate::error::QueryError;
-use crate::outcome::{Clearance, ContactRange, Outcome, Solver};
+use crate::minkowski::Difference;
+use crate::outcome::{
+    Clearance, Contact, ContactRange, Grazing, Outcome, Separated, Solver, Steps,
+};
 use crate::polyhedron::ConvexPolyhedron;
+use crate::portal::{self, Enclosure, Overlap, Start};
 use crate::pose::Pose;
+use crate::setting::Setting;
 
 /// Choices of a query; the default is right for almost everyone.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -18,6 +24,12 @@ pub struct Options {
 }
 
 /// How far `moving` can translate along `direction` before it touches `fixed`.
+///
+/// The poses place both bodies in the world; `direction` is a vector of the world of any length, and translations are in
+/// multiples of it.
+///
+/// # Errors
+/// A direction that is zero, not finite or out of range; bounds that could not be closed.
 pub fn cast(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -29,6 +41,9 @@ pub fn cast(
 }
 
 /// [`cast`] with [`Options`].
+///
+/// # Errors
+/// As [`cast`], and a graze tolerance that is negative or not finite.
 pub fn cast_with(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -37,11 +52,29 @@ pub fn cast_with(
     direction: DVec3,
     options: &Options,
 ) -> Result<Outcome, QueryError> {
-    let _ = (moving, moving_pose, fixed, fixed_pose, options);
-    Err(QueryError::Direction { direction })
+    let tolerance = options.graze_tolerance;
+    if !tolerance.is_finite() || tolerance < 0.0 {
+        return Err(QueryError::GrazeTolerance { tolerance });
+    }
+    let setting = Setting::new(moving, moving_pose, fixed, fixed_pose, direction)?;
+    let solver = match options.solver {
+        Solver::Auto => Solver::Portal,
+        solver => solver,
+    };
+    Cast {
+        difference: Difference::new(&setting),
+        moving_pose,
+        graze_tolerance: tolerance,
+        solver,
+        steps: Steps::default(),
+    }
+    .run()
 }
 
 /// All translations along `direction` at which the bodies meet.
+///
+/// # Errors
+/// As [`cast_with`].
 pub fn contact_range(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -50,11 +83,33 @@ pub fn contact_range(
     direction: DVec3,
     options: &Options,
 ) -> Result<ContactRange, QueryError> {
-    let _ = (moving, moving_pose, fixed, fixed_pose, options);
-    Err(QueryError::Direction { direction })
+    let run = |direction| cast_with(moving, moving_pose, fixed, fixed_pose, direction, options);
+    let forward = run(direction)?;
+    if let Outcome::Separated(separated) = forward {
+        return Ok(ContactRange::Separated(separated));
+    }
+    // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
+    Ok(match (forward, run(-direction)?) {
+        (_, Outcome::Separated(separated)) => ContactRange::Separated(separated),
+        (Outcome::Contact(first), Outcome::Contact(last)) => ContactRange::Contact { first, last },
+        (Outcome::Grazing(first), Outcome::Contact(last)) => {
+            ContactRange::Grazing { first, last: Grazing { contact: last, ..first } }
+        }
+        (Outcome::Contact(first), Outcome::Grazing(last)) => {
+            ContactRange::Grazing { first: Grazing { contact: first, ..last }, last }
+        }
+        (Outcome::Grazing(first), Outcome::Grazing(last)) => ContactRange::Grazing { first, last },
+        (Outcome::Separated(separated), _) => ContactRange::Separated(separated),
+    })
 }
 
-/// How far `moving` can move from where it is along `direction`.
+/// How far `moving` can move along `direction` from where it is.
+///
+/// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding, block each other if
+/// the motion would make them overlap, and do not if it takes them apart.
+///
+/// # Errors
+/// As [`cast_with`].
 pub fn clearance(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -63,6 +118,219 @@ pub fn clearance(
     direction: DVec3,
     options: &Options,
 ) -> Result<Clearance, QueryError> {
-    let _ = (moving, moving_pose, fixed, fixed_pose, options);
-    Err(QueryError::Direction { direction })
+    let run = |direction| cast_with(moving, moving_pose, fixed, fixed_pose, direction, options);
+    let Outcome::Contact(contact) = run(direction)? else { return Ok(Clearance::Free) };
+    if contact.translation >= -contact.certificate.tolerance {
+        let distance = contact.translation.max(0.0);
+        return Ok(Clearance::Blocked { distance, contact });
+    }
+    Ok(match run(-direction)? {
+        Outcome::Contact(last) if last.translation < -last.certificate.tolerance => {
+            Clearance::Overlapping { range: [contact.translation, -last.translation] }
+        }
+        _ => Clearance::Free,
+    })
+}
+
+/// Whether the bodies, as closed sets and to within rounding error, have a point in common where they are.
+///
+/// The moving body is cast along the line through both centres, which passes the deepest
+/// part of the Minkowski difference, so the answer is as well conditioned as the question.
+///
+/// # Errors
+/// As [`cast`].
+pub fn intersects(
+    moving: &ConvexPolyhedron,
+    moving_pose: &Pose,
+    fixed: &ConvexPolyhedron,
+    fixed_pose: &Pose,
+) -> Result<bool, QueryError> {
+    let center = |body: &ConvexPolyhedron, pose: &Pose| pose.matrix() * body.measure().center;
+    let between = (center(fixed, fixed_pose) - center(moving, moving_pose))
+        + (fixed_pose.translation() - moving_pose.translation());
+    let Some(direction) = between.try_normalize() else { return Ok(true) };
+    Ok(match cast(moving, moving_pose, fixed, fixed_pose, direction)? {
+        Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {
+            contact.translation <= contact.certificate.tolerance
+        }
+        Outcome::Separated(_) => false,
+    })
+}
+
+/// How far `moving`, where it overlaps `fixed`, has to go back along `-direction` until they only touch, in multiples of
+/// `direction`; 0 if they do not overlap.
+///
+/// # Errors
+/// As [`cast_with`].
+pub fn directional_depth(
+    moving: &ConvexPolyhedron,
+    moving_pose: &Pose,
+    fixed: &ConvexPolyhedron,
+    fixed_pose: &Pose,
+    direction: DVec3,
+    options: &Options,
+) -> Result<f64, QueryError> {
+    Ok(match clearance(moving, moving_pose, fixed, fixed_pose, direction, options)? {
+        Clearance::Overlapping { range } => -range[0],
+        Clearance::Free | Clearance::Blocked { .. } => 0.0,
+    })
+}
+
+/// One cast under way.
+struct Cast<'a> {
+    difference: Difference<'a>,
+    moving_pose: &'a Pose,
+    graze_tolerance: f64,
+    solver: Solver,
+    steps: Steps,
+}
+
+impl Cast<'_> {
+    fn run(mut self) -> Result<Outcome, QueryError> {
+        let start = self.start();
+        let noise = self.difference.noise;
+        match portal::enclose(&self.difference, &start, &mut self.steps) {
+            None => Err(self.not_converged()),
+            Some(Enclosure::Portal(first)) => self.contact_or_grazing(first),
+            Some(Enclosure::OneSide { normal, margin, .. }) if margin > noise => {
+                Ok(Outcome::Separated(self.separated(normal, margin)))
+            }
+            Some(Enclosure::OneSide { normal, margin, point }) => {
+                let found = (normal, margin, point);
+                let (normal, margin) =
+                    portal::widest_margin(&self.difference, found, &mut self.steps);
+                if margin > noise {
+                    return Ok(Outcome::Separated(self.separated(normal, margin)));
+                }
+                self.touching(normal, margin, &start).map(Outcome::Grazing)
+            }
+        }
+    }
+
+    fn start(&mut self) -> Start {
+        Start::from_ellipsoids(&self.difference)
+    }
+
+    fn contact_or_grazing(mut self, first: portal::Portal) -> Result<Outcome, QueryError> {
+        let Some(optimum) = portal::refine(&self.difference, first, &mut self.steps) else {
+            return Err(self.not_converged());
+        };
+        let tolerance = self.graze_tolerance.max(self.difference.noise);
+        let overlap =
+            portal::overlap(&self.difference, &optimum.portal, tolerance, &mut self.steps);
+        let contact = self.contact(&optimum)?;
+        Ok(match overlap {
+            Overlap::Ample => Outcome::Contact(contact),
+            Overlap::Slight { inward, depth } => {
+                Outcome::Grazing(answer::grazing(&self.difference, inward, depth, contact))
+            }
+        })
+    }
+
+    /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact of the bodies widened
+    /// sideways by a little more than that.
+    fn touching(
+        mut self,
+        normal: glam::DVec2,
+        margin: f64,
+        start: &Start,
+    ) -> Result<Grazing, QueryError> {
+        let noise = self.difference.noise;
+        self.difference = self.difference.widened(margin.max(0.0) + 2.0 * noise);
+        let Some(Enclosure::Portal(first)) =
+            portal::enclose(&self.difference, start, &mut self.steps)
+        else {
+            return Err(self.not_converged());
+        };
+        let Some(optimum) = portal::refine(&self.difference, first, &mut self.steps) else {
+            return Err(self.not_converged());
+        };
+        let contact = self.contact(&optimum)?;
+        Ok(answer::grazing(&self.difference, normal, -margin, contact))
+    }
+
+    fn contact(&self, optimum: &portal::Optimum) -> Result<Contact, QueryError> {
+        answer::contact(&self.difference, self.moving_pose, optimum, self.solver, self.steps)
+    }
+
+    fn separated(&self, normal: glam::DVec2, margin: f64) -> Separated {
+        answer::separated(&self.difference, normal, margin, self.solver, self.steps)
+    }
+
+    fn not_converged(&self) -> QueryError {
+        QueryError::NotConverged {
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            tolerance: self.difference.noise,
+        }
+    }
+}
+
+#[cfg(test)]
+mod timing {
+    use super::*;
+    use crate::polyhedron::testing::ring_ellipsoid;
+    use std::time::Instant;
+    struct Rng(u64);
+    impl Rng {
+        fn f(&mut self) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        }
+        fn v(&mut self) -> DVec3 {
+            DVec3::new(self.f() - 0.5, self.f() - 0.5, self.f() - 0.5)
+        }
+    }
+    #[test]
+    fn timing() {
+        for n in [8, 32, 128, 512, 2000, 10_000, 50_000, 200_000] {
+            let mut r = Rng(0x1234_5678_9abc_def1);
+            let mut bodies = vec![];
+            for _ in 0..4 {
+                let ax = DVec3::new(0.6 + 0.8 * r.f(), 0.6 + 0.8 * r.f(), 0.6 + 0.8 * r.f());
+                bodies.push(ring_ellipsoid(n, ax));
+            }
+            let mut settings = vec![];
+            for i in 0..2000 {
+                let q = |r: &mut Rng| glam::DQuat::from_xyzw(r.f() - 0.5, r.f() - 0.5, r.f() - 0.5, r.f() - 0.5).normalize();
+                let d = r.v().normalize();
+                let lat = r.v().cross(d).normalize() * r.f() * 1.2;
+                let pp = Pose::new(q(&mut r), DVec3::ZERO).unwrap();
+                let pq = Pose::new(q(&mut r), d * 5.0 + lat).unwrap();
+                settings.push((i % 4, (i / 4 + 1 + i) % 4, pp, pq, d));
+            }
+            let (mut times, mut steps, mut sep) = (vec![], Steps::default(), 0);
+            let mut worst = 0.0_f64;
+            for pass in 0..5 {
+                for (a, b, pp, pq, d) in &settings {
+                    let t = Instant::now();
+                    let out = cast(&bodies[*a], pp, &bodies[*b], pq, *d);
+                    let el = t.elapsed().as_nanos();
+                    match out.unwrap() {
+                        Outcome::Contact(c) => {
+                            times.push(el);
+                            steps.supports += c.steps.supports;
+                            steps.pivots += c.steps.pivots;
+                            worst = worst.max(c.certificate.gap() / c.certificate.tolerance);
+                            if pass == 0 {
+                                c.certificate.verify(&bodies[*a], pp, &bodies[*b], pq, *d).unwrap();
+                            }
+                        }
+                        Outcome::Grazing(_) => panic!(),
+                        Outcome::Separated(_) => sep += 1,
+                    }
+                }
+            }
+            times.sort_unstable();
+            let k = times.len();
+            println!(
+                "n {n:7} {:7} median {:6} p99 {:6} supports {:.2} pivots {:.2} sep {sep} worst {worst:.2} bytes/v {}",
+                bodies[0].vertices().len(), times[k / 2], times[k * 99 / 100],
+                f64::from(steps.supports) / k as f64, f64::from(steps.pivots) / k as f64,
+                bodies[0].memory_bytes() / bodies[0].vertices().len()
+            );
+        }
+    }
 }

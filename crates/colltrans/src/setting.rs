@@ -50,4 +50,19 @@ impl<'a> Setting<'a> {
             unit: direction.normalize(),
         })
     }
+
+    /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
+    pub(crate) fn scale(&self) -> f64 {
+        self.moving.measure().reach + self.fixed.measure().reach + self.offset.length()
+    }
+
+    /// A normal of the setting frame in the moving body's frame: `n.(R v) = (R^T n).v`.
+    pub(crate) fn moving_normal(&self, normal: DVec3) -> DVec3 {
+        self.moving_matrix.transpose() * normal
+    }
+
+    /// A normal of the setting frame in the fixed body's frame.
+    pub(crate) fn fixed_normal(&self, normal: DVec3) -> DVec3 {
+        self.fixed_matrix.transpose() * normal
+    }
 }

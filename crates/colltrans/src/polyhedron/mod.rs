@@ -4,13 +4,17 @@
 //! coordinates) -> the indices built on both (support points, sections).
 
 mod hull;
+mod measure;
 mod mesh;
+mod support;
 pub(crate) mod topology;
 
 use glam::DVec3;
 
 use crate::error::BuildError;
 use hull::Hull;
+pub(crate) use measure::Measure;
+use support::SupportIndex;
 use topology::Topology;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
@@ -24,6 +28,8 @@ pub struct ConvexPolyhedron {
     dimension: u8,
     hull_error: f64,
     topology: Topology,
+    measure: Measure,
+    support: SupportIndex,
 }
 
 impl ConvexPolyhedron {
@@ -65,12 +71,20 @@ impl ConvexPolyhedron {
             Topology::from_faces(vertices.len(), hull.face_start.clone(), &hull.face_vertices)
                 .expect("a hull is closed")
         };
+        Self::assemble(vertices, hull, topology)
+    }
+
+    fn assemble(vertices: Vec<DVec3>, hull: &Hull, topology: Topology) -> Self {
+        let measure = Measure::new(&vertices, &topology, hull.dimension);
+        let support = SupportIndex::build(&vertices, &topology, &measure);
         Self {
             vertices,
             input_index: hull.vertices.clone(),
             dimension: hull.dimension,
             hull_error: hull.violation,
             topology,
+            measure,
+            support,
         }
     }
 
@@ -120,7 +134,81 @@ impl ConvexPolyhedron {
         self.hull_error
     }
 
+    /// The volume; 0 for a body of lower dimension.
+    pub fn volume(&self) -> f64 {
+        self.measure.volume
+    }
+
+    /// The vertex farthest along `direction` (body frame, any length): a support point, in `O(log n)`.
+    pub fn support(&self, direction: DVec3) -> u32 {
+        self.support.extreme(&self.vertices, &self.topology, direction)
+    }
+
+    /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
+    pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
+        self.support.extreme_from(&self.vertices, &self.topology, direction, near)
+    }
+
+    /// Bytes of memory that the polyhedron occupies, on the heap and in itself.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.vertices.capacity() * size_of::<DVec3>()
+            + self.input_index.capacity() * size_of::<u32>()
+            + self.topology.heap_bytes()
+            + self.support.heap_bytes()
+    }
+
+    pub(crate) fn measure(&self) -> &Measure {
+        &self.measure
+    }
+
     pub(crate) fn topology(&self) -> &Topology {
         &self.topology
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use super::*;
+
+    /// A body from faces known to be right, without the hull.
+    pub(crate) fn from_faces(vertices: Vec<DVec3>, faces: &[Vec<u32>]) -> ConvexPolyhedron {
+        let mut face_start = vec![0];
+        for f in faces {
+            face_start.push(face_start.last().unwrap() + f.len() as u32);
+        }
+        let hull = Hull {
+            dimension: 3,
+            vertices: (0..vertices.len() as u32).collect(),
+            face_start,
+            face_vertices: faces.concat(),
+            violation: 0.0,
+        };
+        ConvexPolyhedron::from_hull(&vertices, &hull)
+    }
+
+    /// Vertices on an ellipsoid in rings around z.
+    pub(crate) fn ring_ellipsoid(n: usize, axes: DVec3) -> ConvexPolyhedron {
+        let m = ((n as f64 / 2.0).sqrt() * 1.0).round().max(2.0) as usize; // rings
+        let k = ((n - 2) / m).max(3);
+        let mut v = vec![DVec3::Z * axes.z];
+        for i in 0..m {
+            let th = std::f64::consts::PI * (i + 1) as f64 / (m + 1) as f64;
+            for j in 0..k {
+                let ph = std::f64::consts::TAU * j as f64 / k as f64;
+                v.push(DVec3::new(th.sin() * ph.cos(), th.sin() * ph.sin(), th.cos()) * axes);
+            }
+        }
+        v.push(-DVec3::Z * axes.z);
+        let id = |i: usize, j: usize| (1 + i * k + j % k) as u32;
+        let mut faces = vec![];
+        for j in 0..k {
+            faces.push(vec![0, id(0, j), id(0, j + 1)]);
+            for i in 0..m - 1 {
+                faces.push(vec![id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]);
+            }
+            faces.push(vec![id(m - 1, j), (v.len() - 1) as u32, id(m - 1, j + 1)]);
+        }
+        from_faces(v, &faces)
     }
 }

@@ -1,0 +1,127 @@
+//! From what a solver found to the answer: bounds, witness points and contact features, in the world.
+
+use glam::{DVec2, DVec3};
+
+use crate::certificate::{Certificate, Separation, VertexPair, distance_along};
+use crate::error::QueryError;
+use crate::minkowski::Difference;
+use crate::outcome::{Contact, Feature, Grazing, Separated, Solver, Steps};
+use crate::polyhedron::ConvexPolyhedron;
+use crate::portal::Optimum;
+use crate::pose::Pose;
+
+/// Rounding the two bounds and accepting the plane cost one noise each (see [`crate::certificate`]).
+const GAP_IN_NOISES: f64 = 3.0;
+
+/// Widened bodies touch within a square of this many half-sides, seen from its centre.
+const WIDENED_REACH: f64 = 2.0;
+
+pub(crate) fn contact(
+    difference: &Difference,
+    moving_pose: &Pose,
+    optimum: &Optimum,
+    solver: Solver,
+    steps: Steps,
+) -> Result<Contact, QueryError> {
+    let setting = difference.setting;
+    let certificate = certificate(difference, optimum);
+    if certificate.gap().is_nan() || certificate.gap() > certificate.tolerance {
+        let Certificate { lower, upper, tolerance, .. } = certificate;
+        return Err(QueryError::NotConverged { lower, upper, tolerance });
+    }
+    let normal = certificate.normal;
+    let (mut point_on_moving, mut point_on_fixed) = (DVec3::ZERO, setting.offset);
+    for (pair, weight) in certificate.pairs.iter().zip(certificate.weights) {
+        point_on_moving +=
+            setting.moving_matrix * setting.moving.vertices()[pair.moving as usize] * weight;
+        point_on_fixed +=
+            setting.fixed_matrix * setting.fixed.vertices()[pair.fixed as usize] * weight;
+    }
+    let VertexPair { moving, fixed } = optimum.lowest;
+    let noise = difference.noise;
+    Ok(Contact {
+        translation: certificate.upper,
+        normal,
+        point_on_moving: point_on_moving + moving_pose.translation(),
+        point_on_fixed: point_on_fixed + moving_pose.translation(),
+        moving_feature: feature(setting.moving, setting.moving_normal(normal), moving, noise),
+        fixed_feature: feature(setting.fixed, -setting.fixed_normal(normal), fixed, noise),
+        certificate,
+        solver,
+        steps,
+    })
+}
+
+fn certificate(difference: &Difference, optimum: &Optimum) -> Certificate {
+    let setting = difference.setting;
+    let normal = (difference.axes * optimum.normal).normalize();
+    let along = normal.dot(setting.direction);
+    let lower = distance_along(setting, normal, optimum.lowest) / along;
+    let heights = optimum.portal.map(|point| point.height());
+    let height: f64 = heights.iter().zip(optimum.weights).map(|(h, w)| h * w).sum();
+    let sideways = normal.cross(setting.unit).length() * WIDENED_REACH * difference.widening;
+    Certificate {
+        normal,
+        lower,
+        pairs: optimum.portal.map(|point| point.pair),
+        weights: optimum.weights,
+        upper: height / setting.direction.length(),
+        tolerance: (GAP_IN_NOISES * difference.noise + sideways) / along,
+    }
+}
+
+pub(crate) fn grazing(
+    difference: &Difference,
+    inward: DVec2,
+    overlap: f64,
+    contact: Contact,
+) -> Grazing {
+    let separating_direction = (difference.axes * inward.extend(0.0)).normalize();
+    Grazing { separating_direction, overlap, contact }
+}
+
+pub(crate) fn separated(
+    difference: &Difference,
+    normal: DVec2,
+    margin: f64,
+    solver: Solver,
+    steps: Steps,
+) -> Separated {
+    let normal = (difference.axes * normal.extend(0.0)).normalize();
+    Separated { certificate: Separation { normal, margin }, solver, steps }
+}
+
+/// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body frame).
+fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
+    let at = body.vertices()[vertex as usize];
+    let in_plane = |w: u32| outward.dot(at - body.vertices()[w as usize]) <= noise;
+    let topology = body.topology();
+    let neighbours = topology.neighbours(vertex);
+    let Some(k) = neighbours.iter().position(|&w| in_plane(w)) else {
+        return Feature::Vertex(vertex);
+    };
+    let outgoing = topology.outgoing(vertex);
+    for (i, &w) in neighbours.iter().enumerate().skip(k) {
+        // The face between neighbour `i` and the next one is on the left of the half-edge to the next one.
+        let next = (i + 1) % neighbours.len();
+        if !outgoing.is_empty() && next != i && in_plane(w) && in_plane(neighbours[next]) {
+            let face = topology.half_edge(outgoing[next]).face;
+            if body.dimension() == 3 || front(body, face, outward) {
+                return Feature::Face(face);
+            }
+        }
+    }
+    Feature::Edge([vertex, neighbours[k]])
+}
+
+/// Whether a face of a flat polygon is the one that looks along `outward`.
+fn front(body: &ConvexPolyhedron, face: u32, outward: DVec3) -> bool {
+    let mut corners = body.face_vertices(face).map(|v| body.vertices()[v as usize]);
+    let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { return false };
+    let mut normal = DVec3::ZERO;
+    for c in corners {
+        normal += (b - a).cross(c - a);
+        b = c;
+    }
+    normal.dot(outward) >= 0.0
+}

@@ -1,0 +1,123 @@
+//! The size of a body: how large its coordinates are, and the ellipsoid it resembles.
+//!
+//! The *inertia ellipsoid* `{c + x : x^T S^-1 x <= 1}` has the body's centroid `c` and `S = 5 cov`, where
+//! `cov` is the covariance of the body's volume; a solid ellipsoid is its own. It is only ever a guess: for
+//! the first normal of a query and for directions in which the body's normals spread evenly.
+
+use glam::{DMat3, DVec3};
+
+use super::topology::Topology;
+
+/// Size and resemblance of a body, in its own frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measure {
+    /// Largest distance of a vertex from the frame's origin.
+    pub(crate) reach: f64,
+    /// Centroid of the volume (of the vertices, for a body of lower dimension).
+    pub(crate) center: DVec3,
+    /// The matrix `S` of the inertia ellipsoid, positive definite.
+    pub(crate) shape: DMat3,
+    /// Volume.
+    pub(crate) volume: f64,
+}
+
+/// Least ratio of the ellipsoid's axes: keeps `S` positive definite for flat bodies.
+const LEAST_AXIS_RATIO: f64 = 1e-6;
+
+impl Measure {
+    pub(crate) fn new(vertices: &[DVec3], topology: &Topology, dimension: u8) -> Self {
+        let reach = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let mean = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+        let solid = if dimension == 3 { solid_moments(vertices, topology, mean) } else { None };
+        let (volume, center, covariance) = solid.unwrap_or_else(|| {
+            let spread = |v: &DVec3| outer(*v - mean, *v - mean);
+            let sum = vertices.iter().map(spread).fold(DMat3::ZERO, |a, b| a + b);
+            (0.0, mean, sum * (1.0 / vertices.len() as f64))
+        });
+        // A one-point body of size zero still needs a positive matrix.
+        let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
+        let floor = (trace * LEAST_AXIS_RATIO * LEAST_AXIS_RATIO).max(f64::MIN_POSITIVE.sqrt());
+        let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
+        Self { reach, center, shape, volume }
+    }
+
+    /// Lower triangular `L` with `S = L L^T`: the ellipsoid is `c + L (unit ball)`.
+    pub(crate) fn cholesky(&self) -> DMat3 {
+        let s = &self.shape;
+        let floor = f64::MIN_POSITIVE;
+        let l00 = s.x_axis.x.max(floor).sqrt();
+        let (l10, l20) = (s.x_axis.y / l00, s.x_axis.z / l00);
+        let l11 = (s.y_axis.y - l10 * l10).max(floor).sqrt();
+        let l21 = (s.y_axis.z - l20 * l10) / l11;
+        let l22 = (s.z_axis.z - l20 * l20 - l21 * l21).max(floor).sqrt();
+        DMat3::from_cols(
+            DVec3::new(l00, l10, l20),
+            DVec3::new(0.0, l11, l21),
+            DVec3::new(0.0, 0.0, l22),
+        )
+    }
+}
+
+/// `a b^T`.
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+/// Volume, centroid and covariance by the tetrahedra between `apex` and the triangles of a fan of each face.
+/// `None` if rounding leaves no positive volume.
+fn solid_moments(
+    vertices: &[DVec3],
+    topology: &Topology,
+    apex: DVec3,
+) -> Option<(f64, DVec3, DMat3)> {
+    let (mut volume, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+    for face in 0..topology.face_count() as u32 {
+        let mut corners = topology.face_vertices(face).map(|v| vertices[v as usize] - apex);
+        let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { continue };
+        for c in corners {
+            let six = a.dot(b.cross(c));
+            let sum = a + b + c;
+            volume += six / 6.0;
+            first += sum * (six / 24.0);
+            let squares = outer(a, a) + outer(b, b) + outer(c, c) + outer(sum, sum);
+            second += squares * (six / 120.0);
+            b = c;
+        }
+    }
+    let mean = first / volume;
+    let covariance = second * (1.0 / volume) - outer(mean, mean);
+    let sound = volume > 0.0 && (0..3).all(|i| covariance.col(i)[i] >= 0.0);
+    (sound && covariance.is_finite()).then_some((volume, apex + mean, covariance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_has_its_known_moments() {
+        let vertices: Vec<DVec3> = (0..8)
+            .map(|i| {
+                DVec3::new(
+                    f64::from(i & 1) * 2.0,
+                    f64::from(i >> 1 & 1) * 4.0,
+                    f64::from(i >> 2) * 6.0,
+                )
+            })
+            .collect();
+        let faces: [[u32; 4]; 6] =
+            [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let topology =
+            Topology::from_faces(8, (0..=6).map(|f| 4 * f).collect(), faces.as_flattened())
+                .unwrap();
+        let m = Measure::new(&vertices, &topology, 3);
+        assert!((m.volume - 48.0).abs() < 1e-12);
+        assert!((m.center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-12);
+        let expected = DVec3::new(1.0, 4.0, 9.0) / 3.0 * 5.0;
+        for i in 0..3 {
+            assert!((m.shape.col(i)[i] / expected[i] - 1.0).abs() < 1e-9);
+        }
+        let l = m.cholesky();
+        assert!(((l * l.transpose() - m.shape).col(0)).length() < 1e-12);
+    }
+}

@@ -1,0 +1,195 @@
+//! The first portal: three points of `M` whose shadows contain the line, or a proof that there are none.
+//!
+//! Invariant. The search holds one or two points; two of them, `from` and `to`, have the line on their left. The next point is
+//! sought beyond the line. A tilted normal is tried first, which finds one near the lowest face, so that the first portal is small;
+//! if that one does not pass the line, a lateral normal decides: either its support point passes
+//! the line, or the whole of `M` lies on this side of it and the normal separates. Every step widens the angle under which the
+//! line sees the points, so the search ends.
+
+use glam::{DVec2, DVec3};
+
+use super::start::steep;
+use super::{Portal, Start, Tangent, normal_of};
+use crate::minkowski::{Difference, Point};
+use crate::outcome::Steps;
+
+/// What the search for a first portal ends with.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Enclosure {
+    /// A portal.
+    Portal(Portal),
+    /// All of `M` lies on one side: `normal . s >= margin` for every shadow `s`, up to rounding. The margin may be negative
+    /// by rounding, when the shadow of `M` ends at the line.
+    OneSide {
+        /// Unit normal in the shadow plane.
+        normal: DVec2,
+        /// The margin.
+        margin: f64,
+        /// The support point that gives it.
+        point: Point,
+    },
+}
+
+/// How far beyond the line the model aims, in multiples of the distance to it, try by try.
+const OVERSHOOT: [f64; 2] = [1.6, 6.0];
+
+/// Bound on the number of points: far beyond what any body needs; reaching it is reported, never hidden.
+const MAX_POINTS: usize = 10_000;
+
+/// Finds a first portal. `None` if rounding makes the search run in a circle.
+pub(crate) fn enclose(
+    difference: &Difference,
+    start: &Start,
+    steps: &mut Steps,
+) -> Option<Enclosure> {
+    let mut search = Search { difference, start, steps };
+    let first = match search.first() {
+        Ok(tangent) => tangent,
+        Err(one_side) => return Some(one_side),
+    };
+    let second = match search.beyond(&[first], first.point.shadow(), first.slope) {
+        Ok(tangent) => tangent,
+        Err(one_side) => return Some(one_side),
+    };
+    let mut edge = if Difference::is_left(&first.point, &second.point) {
+        [first, second]
+    } else {
+        [second, first]
+    };
+    for _ in 0..MAX_POINTS {
+        let (toward_edge, slope) = nearest_on(&edge);
+        let third = match search.beyond(&edge, toward_edge, slope) {
+            Ok(tangent) => tangent,
+            Err(one_side) => return Some(one_side),
+        };
+        let [from, to] = edge;
+        if !Difference::is_left(&to.point, &third.point) {
+            edge = [third, to];
+        } else if !Difference::is_left(&third.point, &from.point) {
+            edge = [from, third];
+        } else {
+            return Some(Enclosure::Portal([from, to, third]));
+        }
+    }
+    None
+}
+
+struct Search<'a> {
+    difference: &'a Difference<'a>,
+    start: &'a Start,
+    steps: &'a mut Steps,
+}
+
+impl Search<'_> {
+    /// The support point along the guess; if the guess is lateral, it may already separate.
+    fn first(&mut self) -> Result<Tangent, Enclosure> {
+        let normal = self.start.normal;
+        self.steps.supports += 1;
+        let point = match self.start.near {
+            Some(near) => self.difference.support_from(normal, near),
+            None => self.difference.support(normal),
+        };
+        if normal.z != 0.0 {
+            return Ok(Tangent { point, slope: normal.truncate() / normal.z });
+        }
+        let lateral = normal.truncate().normalize_or_zero();
+        let margin = lateral.dot(point.shadow());
+        if margin > 0.0 {
+            return Err(Enclosure::OneSide { normal: lateral, margin, point });
+        }
+        Ok(Tangent { point, slope: steep(lateral) })
+    }
+
+    /// A point on the other side of the line than `near_side`, the point nearest to the line of what is known.
+    ///
+    /// `slope` is the slope that belongs to `near_side` by interpolation.
+    fn beyond(
+        &mut self,
+        known: &[Tangent],
+        near_side: DVec2,
+        slope: DVec2,
+    ) -> Result<Tangent, Enclosure> {
+        let outward = outward(known, near_side);
+        let near = known[known.len() - 1].point.pair;
+        for factor in OVERSHOOT {
+            let slope = slope + self.start.slope_per_shadow * near_side * factor;
+            if !slope.is_finite() || near_side == DVec2::ZERO {
+                break;
+            }
+            self.steps.supports += 1;
+            let point = self.difference.support_from(normal_of(slope), near);
+            if outward.dot(point.shadow()) < 0.0 {
+                return Ok(Tangent { point, slope });
+            }
+        }
+        self.steps.supports += 1;
+        let point = self.difference.support(outward.extend(0.0));
+        let margin = outward.dot(point.shadow());
+        if margin >= 0.0 {
+            return Err(Enclosure::OneSide { normal: outward, margin, point });
+        }
+        Ok(Tangent { point, slope })
+    }
+}
+
+/// Unit vector from the line towards what is known: the candidate for a separating normal.
+fn outward(known: &[Tangent], near_side: DVec2) -> DVec2 {
+    if let [from, to] = known {
+        // The line is on the left of the edge, so the edge is on the right of the line.
+        let along = to.point.shadow() - from.point.shadow();
+        let right = -along.perp();
+        if right != DVec2::ZERO {
+            return right.normalize();
+        }
+    }
+    near_side.try_normalize().unwrap_or(DVec2::X)
+}
+
+/// The point of the edge's shadow nearest to the line, and the slope interpolated there.
+fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
+    let [from, to] = edge;
+    let (a, b) = (from.point.shadow(), to.point.shadow());
+    let along = b - a;
+    let square = along.length_squared();
+    let share = if square > 0.0 { (-a.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (a + along * share, from.slope + (to.slope - from.slope) * share)
+}
+
+/// The lateral normal along which the shadow of `M` keeps the largest distance from the line, from any that separates it.
+///
+/// Used when the margin found is too small to tell separation from touching: it converges to the true distance of
+/// the line from the shadow (Gilbert's algorithm with segments).
+pub(crate) fn widest_margin(
+    difference: &Difference,
+    found: (DVec2, f64, Point),
+    steps: &mut Steps,
+) -> (DVec2, f64) {
+    let mut segment = [found.2; 2];
+    let mut best = (found.0, found.1);
+    for _ in 0..MAX_POINTS {
+        let nearest = nearest_point(&segment);
+        let Some(normal) = nearest.try_normalize() else { break };
+        steps.supports += 1;
+        let lateral: DVec3 = normal.extend(0.0);
+        let point = difference.support_from(lateral, segment[0].pair);
+        let margin = normal.dot(point.shadow());
+        if margin > best.1 {
+            best = (normal, margin);
+        }
+        if nearest.length() - margin <= difference.noise {
+            break;
+        }
+        let options = [[segment[0], point], [segment[1], point]];
+        let closest = options.map(|s| nearest_point(&s).length());
+        if closest[0].min(closest[1]) >= nearest.length() {
+            break;
+        }
+        segment = if closest[0] <= closest[1] { options[0] } else { options[1] };
+    }
+    best
+}
+
+fn nearest_point(segment: &[Point; 2]) -> DVec2 {
+    let tangents = segment.map(|point| Tangent { point, slope: DVec2::ZERO });
+    nearest_on(&tangents).0
+}

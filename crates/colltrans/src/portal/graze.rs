@@ -1,0 +1,75 @@
+//! How far the shadows overlap sideways: the distance from the line to the rim of the shadow of `M`.
+//!
+//! Invariant: a polygon of shadows of points of `M` contains the line, so the distance to its nearest edge is a lower
+//! bound of the overlap; the support point beyond that edge gives an upper bound, and becomes a corner.
+
+use glam::DVec2;
+
+use crate::minkowski::{Difference, Point};
+use crate::outcome::Steps;
+
+/// The sideways overlap, as far as it had to be known.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Overlap {
+    /// More than the tolerance.
+    Ample,
+    /// At most the tolerance: `inward . s >= -depth` for every shadow, with equality up to rounding.
+    Slight {
+        /// Unit vector from the rim inwards.
+        inward: DVec2,
+        /// The overlap.
+        depth: f64,
+    },
+}
+
+/// Corners the polygon can have. A tolerance of rounding size needs a few; a large one on a smooth body about 20.
+const MAX_CORNERS: usize = 64;
+
+/// Compares the overlap with `tolerance`, from a portal around the line.
+pub(crate) fn overlap(
+    difference: &Difference,
+    portal: &[Point; 3],
+    tolerance: f64,
+    steps: &mut Steps,
+) -> Overlap {
+    let mut corners = [portal[0]; MAX_CORNERS];
+    corners[..3].copy_from_slice(portal);
+    let mut count = 3;
+    loop {
+        let Some((edge, outward, reach)) = nearest_edge(&corners[..count]) else {
+            return Overlap::Slight { inward: DVec2::X, depth: 0.0 };
+        };
+        if reach > tolerance {
+            return Overlap::Ample;
+        }
+        steps.supports += 1;
+        let point = difference.support_from((-outward).extend(0.0), corners[edge].pair);
+        let depth = outward.dot(point.shadow());
+        if depth - reach <= difference.noise || count == MAX_CORNERS {
+            return if depth > tolerance {
+                Overlap::Ample
+            } else {
+                Overlap::Slight { inward: -outward, depth }
+            };
+        }
+        corners.copy_within(edge + 1..count, edge + 2);
+        corners[edge + 1] = point;
+        count += 1;
+    }
+}
+
+/// The edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal and distance.
+fn nearest_edge(corners: &[Point]) -> Option<(usize, DVec2, f64)> {
+    let mut nearest: Option<(usize, DVec2, f64)> = None;
+    for (i, corner) in corners.iter().enumerate() {
+        let a = corner.shadow();
+        let b = corners[(i + 1) % corners.len()].shadow();
+        let Some(along) = (b - a).try_normalize() else { continue };
+        let outward = -along.perp();
+        let reach = outward.dot(a);
+        if nearest.is_none_or(|(_, _, least)| reach < least) {
+            nearest = Some((i, outward, reach));
+        }
+    }
+    nearest
+}

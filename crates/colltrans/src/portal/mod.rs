@@ -1,0 +1,38 @@
+//! Portal refinement: the exact lowest face of `M` on the line, from a guess of its normal.
+//!
+//! Notation. A *tangent* is a point of `M` with the slope `a` of the normal `n = (a, 1)` (shadow frame) along which it is lowest. A
+//! *portal* is a triangle of points of `M` whose shadow contains the line. With `f(a) = min_M n.m` (concave, piecewise linear) the collision
+//! translation is `max f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
+//!
+//! The way: [`start`] guesses a slope, [`enclose`] finds a first portal or a separating direction, [`refine`] exchanges one point
+//! of the portal after another until its plane supports `M`, [`graze`] measures how far the shadows overlap.
+//! Section 1 of the paper for the bounds; the exchange is the dual of the simplex method with two variables.
+
+mod enclose;
+mod graze;
+mod refine;
+mod start;
+
+use glam::{DVec2, DVec3};
+
+pub(crate) use enclose::{Enclosure, enclose, widest_margin};
+pub(crate) use graze::{Overlap, overlap};
+pub(crate) use refine::{Optimum, refine};
+pub(crate) use start::Start;
+
+use crate::minkowski::Point;
+
+/// A point of `M` and the slope along which it was found lowest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tangent {
+    pub(crate) point: Point,
+    pub(crate) slope: DVec2,
+}
+
+/// Three tangents whose shadows, counter-clockwise, contain the line.
+pub(crate) type Portal = [Tangent; 3];
+
+/// `(a, 1)`.
+fn normal_of(slope: DVec2) -> DVec3 {
+    slope.extend(1.0)
+}

@@ -1,0 +1,136 @@
+//! From a portal to the lowest face of `M` on the line.
+//!
+//! Invariant: the three shadows, counter-clockwise, contain the line (decided exactly, with ties broken consistently). Each step asks for
+//! the support point along a normal; if it lies below the portal's plane it replaces one of the three, and the
+//! height at which the line passes the portal falls. The end: no point of `M` is below the plane by more than rounding error; then the plane
+//! proves the lower bound and the portal the upper one.
+
+use glam::DVec3;
+
+use super::{Portal, Tangent, normal_of};
+use crate::certificate::VertexPair;
+use crate::minkowski::{Difference, Point};
+use crate::outcome::Steps;
+
+/// The lowest face on the line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Optimum {
+    /// Normal of its plane (shadow frame; height component > 0, any length).
+    pub(crate) normal: DVec3,
+    /// A pair that is lowest along `normal`.
+    pub(crate) lowest: VertexPair,
+    /// Three of its points around the line.
+    pub(crate) portal: [Point; 3],
+    /// Their barycentric weights at the line.
+    pub(crate) weights: [f64; 3],
+}
+
+/// Bound on the number of portals; reaching it is reported, never hidden.
+const MAX_PORTALS: usize = 10_000;
+
+/// Follows portals down to the optimum. `None` if rounding makes them run in a circle.
+pub(crate) fn refine(
+    difference: &Difference,
+    mut portal: Portal,
+    steps: &mut Steps,
+) -> Option<Optimum> {
+    let mut interpolate = true;
+    for _ in 0..MAX_PORTALS {
+        steps.pivots += 1;
+        let weights = weights(&portal);
+        let near = portal[largest(weights)].point.pair;
+        let plane = plane_normal(difference, &portal);
+        if interpolate {
+            // The slope that belongs to the line if slope and shadow were linear in each other: close to the
+            // optimum where `M` is smooth. Its support point is used only if it is below the portal's plane.
+            let slope = portal[0].slope * weights[0]
+                + portal[1].slope * weights[1]
+                + portal[2].slope * weights[2];
+            steps.supports += 1;
+            let point = difference.support_from(normal_of(slope), near);
+            interpolate = depth_below(&portal, plane, &point) > difference.noise * plane.length();
+            if interpolate {
+                exchange(&mut portal, Tangent { point, slope });
+                continue;
+            }
+        }
+        steps.supports += 1;
+        let point = difference.support_from(plane, near);
+        if depth_below(&portal, plane, &point) <= difference.noise * plane.length() {
+            let portal = portal.map(|t| t.point);
+            return Some(Optimum { normal: plane, lowest: point.pair, portal, weights });
+        }
+        exchange(&mut portal, Tangent { point, slope: plane.truncate() / plane.z });
+    }
+    None
+}
+
+/// How far a point lies below the highest of the portal's points along `normal`, times the normal's length.
+fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
+    normal.dot(portal[0].point.at - point.at)
+}
+
+/// Replaces the one point whose exchange keeps the line inside.
+fn exchange(portal: &mut Portal, new: Tangent) {
+    let left = [0, 1, 2].map(|i| Difference::is_left(&portal[i].point, &new.point));
+    // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the sides change.
+    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+        if !left[i] && left[j] {
+            portal[k] = new;
+            return;
+        }
+    }
+    // All on one side: the shadows coincide, and the new point takes the place of the one it lies under.
+    let distance = |t: &Tangent| t.point.shadow().distance_squared(new.point.shadow());
+    if let Some(same) = portal.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+        *same = new;
+    }
+}
+
+/// The upward normal of the plane through the three points.
+///
+/// A portal lower than the noise has no plane of its own: then the normal through its longest edge that is
+/// closest to the slope of the newest tangent.
+fn plane_normal(difference: &Difference, portal: &Portal) -> DVec3 {
+    let [a, b, c] = portal.map(|t| t.point.at);
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let edges = [ab, c - b, -ac];
+    let lengths = edges.map(|e| e.truncate().length_squared());
+    let longest = if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
+        0
+    } else if lengths[1] >= lengths[2] {
+        1
+    } else {
+        2
+    };
+    if normal.z * normal.z > lengths[longest] * (8.0 * difference.noise) * (8.0 * difference.noise)
+        && normal.z > 0.0
+    {
+        return normal;
+    }
+    let edge = edges[longest];
+    let slope = (portal[0].slope + portal[1].slope + portal[2].slope) / 3.0;
+    let guess = normal_of(slope);
+    let square = edge.length_squared();
+    let upright = if square > 0.0 { guess - edge * (guess.dot(edge) / square) } else { guess };
+    if upright.z > 0.0 { upright } else { guess }
+}
+
+/// Barycentric coordinates of the line in the shadow of the portal, clamped to it.
+fn weights(portal: &Portal) -> [f64; 3] {
+    let [a, b, c] = portal.map(|t| t.point.shadow());
+    let parts = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)].map(|w| w.max(0.0));
+    let sum = parts[0] + parts[1] + parts[2];
+    if sum > 0.0 { parts.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
+}
+
+fn largest(weights: [f64; 3]) -> usize {
+    if weights[0] >= weights[1] && weights[0] >= weights[2] {
+        0
+    } else if weights[1] >= weights[2] {
+        1
+    } else {
+        2
+    }
+}

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use colltrans::glam::DVec3;
 use colltrans::{BuildError, ConvexPolyhedron};
 use colltrans_mesh::Mesh;
 
@@ -52,18 +51,4 @@ fn from_mesh(mesh: &Mesh, options: BodyArguments) -> Result<ConvexPolyhedron, Bu
         &mesh.faces,
         tolerance(mesh, options.convex_tolerance),
     )
-}
-
-/// The volume of a convex polyhedron.
-pub(crate) fn volume(body: &ConvexPolyhedron) -> f64 {
-    let origin = body.vertices().first().copied().unwrap_or(DVec3::ZERO);
-    let corner = |v: u32| body.vertices()[v as usize] - origin;
-    let mut six_volumes = 0.0;
-    for face in 0..body.face_count() as u32 {
-        let corners: Vec<DVec3> = body.face_vertices(face).map(corner).collect();
-        for edge in corners[1..].windows(2) {
-            six_volumes += corners[0].dot(edge[0].cross(edge[1]));
-        }
-    }
-    six_volumes / 6.0
 }

@@ -9,7 +9,7 @@ use colltrans_mesh::Mesh;
 use crate::args::InfoArguments;
 use crate::body;
 use crate::failure::{Code, Failure};
-use crate::report::{line, vector};
+use crate::report::{line, number, vector};
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut unreadable = Vec::new();
@@ -36,18 +36,18 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     line(&mut text, "vertices", &mesh.vertices.len().to_string());
     line(&mut text, "faces", &faces(mesh));
     if let Some([low, high]) = mesh.bounds() {
-        let [x, y, z] = (high - low).to_array();
+        let [x, y, z] = (high - low).to_array().map(number);
         line(&mut text, "extent", &format!("{x} x {y} x {z}"));
         line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
     }
     // Tolerance 0 makes the library say how deep the worst face lies, however little.
     match ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 0.0) {
         Ok(_) => {
-            line(&mut text, "volume", &mesh.signed_volume().to_string());
+            line(&mut text, "volume", &number(mesh.signed_volume()));
             line(&mut text, "convex", "yes, to rounding error");
         }
         Err(BuildError::NotConvex { face, depth, .. }) => {
-            line(&mut text, "volume", &mesh.signed_volume().to_string());
+            line(&mut text, "volume", &number(mesh.signed_volume()));
             line(&mut text, "convex", &not_quite(mesh, face, depth, asked_tolerance));
         }
         Err(error) => {
@@ -58,7 +58,7 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     match ConvexPolyhedron::from_points(&mesh.vertices) {
         Ok(hull) => {
             line(&mut text, "hull", &counts(&hull));
-            line(&mut text, "hull volume", &body::volume(&hull).to_string());
+            line(&mut text, "hull volume", &number(hull.volume()));
             let error = hull.hull_error();
             line(
                 &mut text,

@@ -77,14 +77,14 @@ impl Record {
         fixed: &ConvexPolyhedron,
     ) -> Self {
         match answer {
-            ContactRange::Contact { enter, exit } => {
-                Self { outcome: Name::Contact, ..Self::of_contact(enter, exit, moving, fixed) }
+            ContactRange::Contact { first, last } => {
+                Self { outcome: Name::Contact, ..Self::of_contact(first, last, moving, fixed) }
             }
-            ContactRange::Grazing { enter, exit } => Self {
+            ContactRange::Grazing { first, last } => Self {
                 outcome: Name::Grazing,
-                margin: Some(-enter.overlap),
-                message: Some(describe(enter)),
-                ..Self::of_contact(&enter.contact, &exit.contact, moving, fixed)
+                margin: Some(-first.overlap),
+                message: Some(describe(first)),
+                ..Self::of_contact(&first.contact, &last.contact, moving, fixed)
             },
             ContactRange::Separated(Separated { certificate, solver, steps }) => Self {
                 outcome: Name::Separated,
@@ -103,24 +103,24 @@ impl Record {
     }
 
     fn of_contact(
-        enter: &Contact,
-        exit: &Contact,
+        first: &Contact,
+        last: &Contact,
         moving: &ConvexPolyhedron,
         fixed: &ConvexPolyhedron,
     ) -> Self {
         Self {
-            translation: Some(enter.translation),
-            exit: Some(exit.translation),
-            normal: Some(enter.normal.to_array()),
-            point: Some(enter.point_on_fixed.to_array()),
-            lower: Some(enter.certificate.lower),
-            upper: Some(enter.certificate.upper),
+            translation: Some(first.translation),
+            exit: Some(exit_of(last)),
+            normal: Some(first.normal.to_array()),
+            point: Some(first.point_on_fixed.to_array()),
+            lower: Some(first.certificate.lower),
+            upper: Some(first.certificate.upper),
             features: Some(Features {
-                moving: FeatureRecord::of(enter.moving_feature, moving),
-                fixed: FeatureRecord::of(enter.fixed_feature, fixed),
+                moving: FeatureRecord::of(first.moving_feature, moving),
+                fixed: FeatureRecord::of(first.fixed_feature, fixed),
             }),
-            solver: Some(solver_name(enter.solver)),
-            steps: Some(StepCounts::of(enter.steps)),
+            solver: Some(solver_name(first.solver)),
+            steps: Some(StepCounts::of(first.steps)),
             ..Self::default()
         }
     }
@@ -139,6 +139,12 @@ impl StepCounts {
         let Steps { planar_problems, supports, pivots } = steps;
         Self { planar_problems, supports, pivots }
     }
+}
+
+/// The translation of the last contact, which its own cast counts backwards.
+pub(crate) fn exit_of(last: &Contact) -> f64 {
+    // Not -0.
+    0.0 - last.translation
 }
 
 fn describe(grazing: &Grazing) -> String {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use colltrans::glam::DVec3;
 use colltrans::{Contact, ContactRange, Steps};
 
-use crate::record::{FeatureRecord, Record, solver_name};
+use crate::record::{FeatureRecord, Record, exit_of, solver_name};
 
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;
@@ -14,20 +14,20 @@ const LISTED: usize = 12;
 pub(crate) fn text(answer: &ContactRange, record: &Record, direction: DVec3) -> String {
     let mut text = String::new();
     match answer {
-        ContactRange::Contact { enter, exit } => {
+        ContactRange::Contact { first, last } => {
             text.push_str("contact\n");
-            contact(&mut text, enter, exit, record, direction);
+            contact(&mut text, first, last, record, direction);
         }
-        ContactRange::Grazing { enter, exit } => {
+        ContactRange::Grazing { first, last } => {
             text.push_str("grazing: the bodies slide along each other\n");
-            line(&mut text, "overlap", &format!("{:e} sideways", enter.overlap));
-            line(&mut text, "along", &vector(enter.separating_direction));
+            line(&mut text, "overlap", &format!("{:e} sideways", first.overlap));
+            line(&mut text, "along", &vector(first.separating_direction));
             text.push_str("  the contact, if the overlap is taken for real:\n");
-            contact(&mut text, &enter.contact, &exit.contact, record, direction);
+            contact(&mut text, &first.contact, &last.contact, record, direction);
         }
         ContactRange::Separated(separated) => {
             text.push_str("separated: the bodies never meet along this direction\n");
-            line(&mut text, "margin", &separated.certificate.margin.to_string());
+            line(&mut text, "margin", &number(separated.certificate.margin));
             line(
                 &mut text,
                 "normal",
@@ -39,47 +39,58 @@ pub(crate) fn text(answer: &ContactRange, record: &Record, direction: DVec3) -> 
     text
 }
 
-fn contact(text: &mut String, enter: &Contact, exit: &Contact, record: &Record, direction: DVec3) {
+fn contact(text: &mut String, first: &Contact, last: &Contact, record: &Record, direction: DVec3) {
     let length = direction.length();
-    let along = |t: f64| format!("{t} times the direction, a length of {}", t * length);
-    let remark = if enter.translation > 0.0 {
+    let exit = exit_of(last);
+    let along =
+        |t: f64| format!("{} times the direction, a length of {}", number(t), number(t * length));
+    let remark = if first.translation > 0.0 {
         ""
-    } else if exit.translation < 0.0 {
+    } else if exit < 0.0 {
         " (the contact lies behind)"
-    } else if enter.translation == 0.0 {
+    } else if first.translation == 0.0 {
         " (the bodies touch)"
     } else {
         " (the bodies overlap)"
     };
-    line(text, "translation", &format!("{}{remark}", along(enter.translation)));
-    line(text, "exit", &along(exit.translation));
-    line(text, "normal", &vector(enter.normal));
-    line(text, "point", &vector(enter.point_on_fixed));
+    line(text, "translation", &format!("{}{remark}", along(first.translation)));
+    line(text, "exit", &along(exit));
+    line(text, "normal", &vector(first.normal));
+    line(text, "point", &vector(first.point_on_fixed));
     if let Some(features) = &record.features {
         line(text, "moving", &feature(&features.moving));
         line(text, "fixed", &feature(&features.fixed));
     }
-    let proof = &enter.certificate;
+    let proof = &first.certificate;
     line(
         text,
         "bounds",
         &format!(
             "{} to {}, gap {:e} (rounding alone: up to {:e})",
-            proof.lower,
-            proof.upper,
+            number(proof.lower),
+            number(proof.upper),
             proof.upper - proof.lower,
             proof.tolerance
         ),
     );
-    line(text, "solver", &work(solver_name(enter.solver), enter.steps));
+    line(text, "solver", &work(solver_name(first.solver), first.steps));
 }
 
 pub(crate) fn line(text: &mut String, name: &str, value: &str) {
     let _ = writeln!(text, "  {name:<12} {value}");
 }
 
+/// All digits, with an exponent where there would be many zeros.
+pub(crate) fn number(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
 pub(crate) fn vector(v: DVec3) -> String {
-    format!("{},{},{}", v.x, v.y, v.z)
+    v.to_array().map(number).join(",")
 }
 
 fn feature(feature: &FeatureRecord) -> String {

@@ -5,6 +5,7 @@
 
 use colltrans::glam::DVec2;
 
+use super::story::Story;
 use super::svg::Frame;
 use super::view::View;
 use super::{Cast, Solid};
@@ -12,8 +13,10 @@ use super::{Cast, Solid};
 const PAGE_WIDTH: f64 = 720.0;
 const WINDOW_HEIGHT: f64 = 520.0;
 /// Room for arrows and labels around the bodies.
-const MARGIN: f64 = 52.0;
-const CAPTION_HEIGHT: f64 = 74.0;
+const MARGIN: DVec2 = DVec2::new(84.0, 54.0);
+const CAPTION_HEIGHT: f64 = 44.0;
+/// Height of a line of details in the caption.
+pub(super) const LINE_HEIGHT: f64 = 17.0;
 /// A body is shown up to this many working sizes from where it matters.
 const REACH: f64 = 4.0;
 
@@ -43,7 +46,7 @@ pub(super) fn working_size(moving: f64, fixed: f64, way: f64) -> f64 {
 }
 
 impl Layout {
-    pub(super) fn of(cast: &Cast, view: &View) -> Self {
+    pub(super) fn of(cast: &Cast, story: &Story<'_>, view: &View) -> Self {
         let size = working_size(cast.stop.ball().1, cast.fixed.ball().1, cast.way.length());
         let reach = REACH * size;
         // The origin is the contact; the moving body is near it where it stops.
@@ -52,17 +55,23 @@ impl Layout {
         if let Some(start) = &cast.start {
             frame = union(frame, part_near(start, -view.project(cast.way), reach, view));
         }
+        if let Some(plane) = story.plane(cast) {
+            for corner in plane.map(|p| view.project(p)) {
+                frame = union(frame, Frame { low: corner, high: corner });
+            }
+        }
         let extent = (frame.high - frame.low).max(DVec2::splat(1e-3 * size));
         let room = DVec2::new(PAGE_WIDTH, WINDOW_HEIGHT) - 2.0 * MARGIN;
         let scale = (room / extent).min_element();
-        let height = (extent.y * scale).max(140.0) + 2.0 * MARGIN;
+        let height = (extent.y * scale).max(140.0) + 2.0 * MARGIN.y;
+        let caption = CAPTION_HEIGHT + LINE_HEIGHT * story.details.len() as f64;
         let window = Frame { low: DVec2::ZERO, high: DVec2::new(PAGE_WIDTH, height) };
         Self {
             scale,
             centre_in_view: 0.5 * (frame.low + frame.high),
             centre_on_page: 0.5 * window.high,
             window,
-            size: DVec2::new(PAGE_WIDTH, height + CAPTION_HEIGHT),
+            size: DVec2::new(PAGE_WIDTH, height + caption),
         }
     }
 

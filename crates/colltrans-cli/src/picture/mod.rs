@@ -75,14 +75,14 @@ pub(crate) fn draw(scene: &Scene<'_>) -> String {
     let cast = Cast::of(scene, &story);
     let unit = scene.direction.normalize();
     let view = View::choose([&cast.stop, &cast.fixed], unit, story.normal);
-    let layout = Layout::of(&cast, &view);
+    let layout = Layout::of(&cast, &story, &view);
     let on_page = |p: DVec3| layout.on_page(view.project(p));
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
     cast.draw(&mut page, &view, &story, on_page);
     if let Some(contact) = story.contact {
-        cast.fixed.mark(&mut page, &view, contact.fixed_feature, FIXED_MARK, on_page);
-        cast.stop.mark(&mut page, &view, contact.moving_feature, MOVING_MARK, on_page);
+        cast.fixed.mark_hidden(&mut page, contact.fixed_feature, FIXED_MARK, on_page);
+        cast.stop.mark_hidden(&mut page, contact.moving_feature, MOVING_MARK, on_page);
     }
     page.close_group();
     let notes = Notes { cast: &cast, story: &story, layout: &layout, view: &view };
@@ -124,8 +124,17 @@ impl Cast {
                 ghost(page);
             }
             self.stop.draw(page, view, &MOVING, on_page);
+            if let Some(contact) = story.contact {
+                self.stop.mark(page, view, contact.moving_feature, MOVING_MARK, on_page);
+            }
             if !stop_is_nearer {
                 ghost(page);
+            }
+        };
+        let draw_fixed = |page: &mut Page| {
+            self.fixed.draw(page, view, &FIXED, on_page);
+            if let Some(contact) = story.contact {
+                self.fixed.mark(page, view, contact.fixed_feature, FIXED_MARK, on_page);
             }
         };
         let draw_plane = |page: &mut Page| {
@@ -138,9 +147,9 @@ impl Cast {
         if fixed_is_nearer {
             draw_moving(page);
             draw_plane(page);
-            self.fixed.draw(page, view, &FIXED, on_page);
+            draw_fixed(page);
         } else {
-            self.fixed.draw(page, view, &FIXED, on_page);
+            draw_fixed(page);
             draw_plane(page);
             draw_moving(page);
         }

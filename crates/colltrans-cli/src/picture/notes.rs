@@ -2,7 +2,7 @@
 
 use colltrans::glam::{DVec2, DVec3};
 
-use super::layout::Layout;
+use super::layout::{LINE_HEIGHT, Layout};
 use super::solid::convex_outline;
 use super::story::{Story, short};
 use super::svg::{Frame, Page, Stroke};
@@ -38,6 +38,14 @@ impl Notes<'_> {
         self.layout.on_page(self.view.project(p))
     }
 
+    /// Text beside a line through a point, on the side that `aside` points to.
+    fn place_label(&self, page: &mut Page, at: DVec2, aside: DVec2, look: &str, text: &str) {
+        let half = half_size(text);
+        let centre = at + aside * (half.dot(aside.abs()) + 6.0);
+        let window = self.layout.window;
+        page.label(centre.clamp(window.low + half, window.high - half), look, text);
+    }
+
     /// The way beside the moving body, as a dimension line from the start to the stop.
     fn draw_way(&self, page: &mut Page, unit: DVec3) {
         let towards = self.on_page(unit) - self.on_page(DVec3::ZERO);
@@ -63,7 +71,7 @@ impl Notes<'_> {
         }
         let label = if is_short { "d" } else { &self.story.way };
         let look = LABEL.replace(INK, WAY);
-        place_label(page, middle + side * 9.0, side, &look, label);
+        self.place_label(page, middle, side, &look, label);
     }
 
     /// The side of the moving body on which the dimension line crosses less, and the body's
@@ -72,6 +80,7 @@ impl Notes<'_> {
         let other: Vec<DVec2> = self.cast.fixed.vertices.iter().map(|&v| self.on_page(v)).collect();
         let outline = convex_outline(&other);
         let window = self.layout.window;
+        let label = half_size(&self.story.way);
         let candidates = [across, -across].map(|side| {
             let corner = shape.iter().copied().fold(shape[0], |best, p| {
                 if p.dot(side) > best.dot(side) + 1e-6 { p } else { best }
@@ -79,9 +88,10 @@ impl Notes<'_> {
             let crossed = (0..=20)
                 .map(|i| corner - way * (f64::from(i) / 20.0) + side * (ASIDE + 8.0))
                 .map(|p| {
-                    let outside =
-                        p.cmplt(window.low + 4.0).any() || p.cmpgt(window.high - 4.0).any();
-                    u32::from(contains(&outline, p)) + 3 * u32::from(outside)
+                    let label_end = p + side * (2.0 * label.dot(side.abs()));
+                    let outside = [p, label_end]
+                        .map(|q| u32::from((q.cmplt(window.low) | q.cmpgt(window.high)).any()));
+                    u32::from(contains(&outline, p)) + outside[0] + outside[1]
                 })
                 .sum::<u32>();
             (crossed, side, corner)
@@ -103,7 +113,7 @@ impl Notes<'_> {
         }
         let label = format!("margin {}", short(self.story.margin.unwrap_or_default()));
         let look = LABEL.replace(INK, NORMAL);
-        place_label(page, from.midpoint(to) + across * 10.0, across, &look, &label);
+        self.place_label(page, from.midpoint(to), across, &look, &label);
     }
 
     fn draw_contact(&self, page: &mut Page) {
@@ -119,7 +129,7 @@ impl Notes<'_> {
         page.dot(at, 4.0, WAY, "#ffffff");
         let aside = (tip - at).normalize_or(DVec2::NEG_Y);
         let look = format!(r#"{} font-weight="bold""#, LABEL.replace(INK, NORMAL));
-        place_label(page, tip + aside * 5.0, aside, &look, "n");
+        self.place_label(page, tip, aside, &look, "n");
     }
 
     fn draw_caption(&self, page: &mut Page) {
@@ -129,7 +139,7 @@ impl Notes<'_> {
         page.text(DVec2::new(left, y), "start", fixed_width, &self.story.headline);
         let small = r##"font-size="12" fill="#222222""##;
         for detail in &self.story.details {
-            y += 17.0;
+            y += LINE_HEIGHT;
             page.text(DVec2::new(left, y), "start", small, detail);
         }
         self.draw_legend(page, DVec2::new(left, y + 20.0), small);
@@ -165,15 +175,9 @@ impl Notes<'_> {
     }
 }
 
-/// Text beside a point, on the side that `aside` points to.
-fn place_label(page: &mut Page, at: DVec2, aside: DVec2, look: &str, text: &str) {
-    let anchor = match aside.x {
-        x if x > 0.3 => "start",
-        x if x < -0.3 => "end",
-        _ => "middle",
-    };
-    // The base line: below the point by up to the height of a letter.
-    page.text(at + DVec2::new(0.0, 5.0 + 5.0 * aside.y), anchor, look, text);
+/// Half the width and height of a label.
+fn half_size(text: &str) -> DVec2 {
+    DVec2::new(3.7 * text.chars().count() as f64, 8.0)
 }
 
 /// Two slanted strokes: the line is longer than it is drawn.

@@ -187,7 +187,8 @@ impl Solid {
         page.close_group();
     }
 
-    /// Marks a vertex, an edge or the rim of a face; dashed where it is on the far side.
+    /// Marks the visible part of a feature: a vertex, an edge or the rim of a face. Bodies that
+    /// are drawn later cover it.
     pub(super) fn mark(
         &self,
         page: &mut Page,
@@ -196,26 +197,70 @@ impl Solid {
         colour: &'static str,
         on_page: impl Fn(DVec3) -> DVec2,
     ) {
-        let point = |v: u32| on_page(self.vertices[v as usize]);
+        if !self.is_in_front(view, feature) {
+            return;
+        }
+        match self.lines(feature, &on_page) {
+            lines if lines.is_empty() => {
+                page.dot(on_page(self.first_vertex(feature)), 3.4, colour, "#ffffff");
+            }
+            lines => page.segments(Stroke::solid(colour, 2.2), lines),
+        }
+    }
+
+    /// Marks all of a feature through whatever covers it.
+    pub(super) fn mark_hidden(
+        &self,
+        page: &mut Page,
+        feature: Feature,
+        colour: &'static str,
+        on_page: impl Fn(DVec3) -> DVec2,
+    ) {
+        match self.lines(feature, &on_page) {
+            lines if lines.is_empty() => {
+                page.dot(on_page(self.first_vertex(feature)), 3.0, "none", colour);
+            }
+            lines => page.segments(Stroke::dashed(colour, 1.1, "4 3"), lines),
+        }
+    }
+
+    fn first_vertex(&self, feature: Feature) -> DVec3 {
+        let vertex = match feature {
+            Feature::Vertex(v) | Feature::Edge([v, _]) => v,
+            Feature::Face(face) => self.faces[face as usize][0],
+        };
+        self.vertices[vertex as usize]
+    }
+
+    /// The edges of a feature; none of a vertex.
+    fn lines(&self, feature: Feature, on_page: impl Fn(DVec3) -> DVec2) -> Vec<[DVec2; 2]> {
+        let line = |a: u32, b: u32| [a, b].map(|v| on_page(self.vertices[v as usize]));
         match feature {
-            Feature::Vertex(v) => page.dot(point(v), 3.2, colour, "#ffffff"),
-            Feature::Edge([a, b]) => {
-                page.segments(Stroke::solid(colour, 2.2), [[point(a), point(b)]]);
-            }
+            Feature::Vertex(_) => Vec::new(),
+            Feature::Edge([a, b]) => vec![line(a, b)],
             Feature::Face(face) => {
-                let hidden = self.areas[face as usize].dot(view.toward) <= 0.0;
-                let stroke = if hidden {
-                    Stroke::dashed(colour, 1.5, "4 3")
-                } else {
-                    Stroke::solid(colour, 1.8)
-                };
                 let corners = &self.faces[face as usize];
-                let next = corners.iter().cycle().skip(1);
-                page.segments(
-                    stroke,
-                    corners.iter().zip(next).map(|(&a, &b)| [point(a), point(b)]),
-                );
+                corners
+                    .iter()
+                    .zip(corners.iter().cycle().skip(1))
+                    .map(|(&a, &b)| line(a, b))
+                    .collect()
             }
+        }
+    }
+
+    /// Whether a face that the feature belongs to looks towards the viewer.
+    fn is_in_front(&self, view: &View, feature: Feature) -> bool {
+        let has = |face: &Vec<u32>| match feature {
+            Feature::Vertex(v) => face.contains(&v),
+            Feature::Edge(ends) => ends.iter().all(|v| face.contains(v)),
+            Feature::Face(_) => false,
+        };
+        let looks = |area: &DVec3| area.dot(view.toward) > 0.0;
+        match feature {
+            Feature::Face(face) => looks(&self.areas[face as usize]),
+            _ if self.faces.is_empty() => true,
+            _ => self.faces.iter().zip(&self.areas).any(|(face, area)| looks(area) && has(face)),
         }
     }
 }

@@ -3,7 +3,7 @@
 use colltrans::glam::DVec3;
 use colltrans::{Certificate, Contact, ContactRange, Separated};
 
-use super::{Cast, Scene, Solid};
+use super::{Cast, Scene, Solid, layout};
 
 /// What is shown and said.
 pub(super) struct Story<'a> {
@@ -24,11 +24,11 @@ pub(super) struct Story<'a> {
 impl<'a> Story<'a> {
     pub(super) fn of(scene: &Scene<'a>) -> Self {
         match scene.answer {
-            ContactRange::Contact { enter, .. } => Self::of_contact(scene, enter, "Contact", None),
-            ContactRange::Grazing { enter, .. } => {
-                let overlap = short(enter.overlap);
+            ContactRange::Contact { first, .. } => Self::of_contact(scene, first, "Contact", None),
+            ContactRange::Grazing { first, .. } => {
+                let overlap = short(first.overlap);
                 let also = format!("the bodies slide along each other, overlapping by {overlap}");
-                Self::of_contact(scene, &enter.contact, "Grazing", Some(also))
+                Self::of_contact(scene, &first.contact, "Grazing", Some(also))
             }
             ContactRange::Separated(separated) => Self::of_separated(scene, separated),
         }
@@ -48,11 +48,15 @@ impl<'a> Story<'a> {
             contact.moving_feature.kind(),
             contact.fixed_feature.kind()
         );
-        let [x, y, z] = contact.normal.to_array().map(short);
         let mut details: Vec<String> = also.into_iter().collect();
+        details.push(features);
+        let agreement = match (upper - lower).abs() {
+            0.0 => "are equal".into(),
+            gap => format!("agree to {}", short(gap)),
+        };
         details.push(format!(
-            "{features}; normal n = ({x}, {y}, {z}); proven bounds of t differ by {}",
-            short(upper - lower)
+            "normal n = {}; proven lower and upper bound of t {agreement}",
+            components(contact.normal)
         ));
         Self {
             origin: contact.point_on_fixed,
@@ -75,7 +79,6 @@ impl<'a> Story<'a> {
         let unit = scene.direction.normalize();
         let ahead = (fixed.support(-normal) - moving.support(normal)).dot(unit);
         let margin = separated.certificate.margin;
-        let [x, y, z] = normal.to_array().map(short);
         Self {
             origin,
             stop: ahead.max(0.0),
@@ -85,8 +88,9 @@ impl<'a> Story<'a> {
             way: "d".into(),
             headline: "Separated: the bodies never meet along d".into(),
             details: vec![format!(
-                "margin {} across the separating plane, normal n = ({x}, {y}, {z})",
-                short(margin)
+                "margin {} across the separating plane, normal n = {}",
+                short(margin),
+                components(normal)
             )],
         }
     }
@@ -102,12 +106,17 @@ impl<'a> Story<'a> {
         let [from, to] = self.gap(cast)?;
         let along = cast.way.normalize_or(self.normal.any_orthonormal_vector());
         let across = self.normal.cross(along);
-        let radius = cast.stop.ball().1.max(cast.fixed.ball().1.min(3.0 * cast.stop.ball().1));
-        let half = 1.1 * radius;
+        let half = 1.1 * layout::working_size(cast.stop.ball().1, cast.fixed.ball().1, 0.0);
         let middle = 0.5 * (from + to);
         let corner = |a: f64, b: f64| middle + a * half * along + b * half * across;
         Some([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)])
     }
+}
+
+/// A unit vector, with rounding noise as 0.
+fn components(unit: DVec3) -> String {
+    let [x, y, z] = unit.to_array().map(|c| if c.abs() < 1e-12 { 0.0 } else { c }).map(short);
+    format!("({x}, {y}, {z})")
 }
 
 fn quantity(translation: f64, length: f64) -> String {

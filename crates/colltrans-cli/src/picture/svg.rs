@@ -162,17 +162,24 @@ impl Page {
         );
     }
 
-    /// Text with a white rim; `anchor` is `start`, `middle` or `end`.
+    /// Text with a white rim around a point.
+    pub(super) fn label(&mut self, centre: DVec2, look: &str, text: &str) {
+        // The base line lies a third of a letter's height below the middle.
+        let at = centre + DVec2::new(0.0, 5.0);
+        let rim = r##"stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round""##;
+        // Twice, because not every program knows `paint-order`.
+        self.text(at, "middle", &format!("{look} {rim}"), text);
+        self.text(at, "middle", look, text);
+    }
+
+    /// Text on a base line; `anchor` is `start`, `middle` or `end`.
     pub(super) fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
         let (x, y) = (number(at.x), number(at.y));
         let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        // Twice, because not every program knows `paint-order`.
-        for rim in [r##"stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round" "##, ""] {
-            let _ = writeln!(
-                self.body,
-                r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {rim}{look}>{text}</text>"#
-            );
-        }
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {look}>{text}</text>"#
+        );
     }
 
     pub(super) fn rectangle(&mut self, look: &str, frame: Frame) {

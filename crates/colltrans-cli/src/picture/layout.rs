@@ -13,12 +13,14 @@ use super::{Cast, Solid};
 const PAGE_WIDTH: f64 = 720.0;
 const WINDOW_HEIGHT: f64 = 520.0;
 /// Room for arrows and labels around the bodies.
-const MARGIN: DVec2 = DVec2::new(84.0, 54.0);
+const MARGIN: DVec2 = DVec2::new(84.0, 62.0);
 const CAPTION_HEIGHT: f64 = 44.0;
 /// Height of a line of details in the caption.
 pub(super) const LINE_HEIGHT: f64 = 17.0;
-/// A body is shown up to this many working sizes from where it matters.
-const REACH: f64 = 4.0;
+/// Bodies are shown whole unless one is larger than the other by this factor;
+const WHOLE: f64 = 8.0;
+/// then the larger one is shown up to this many working sizes from the contact.
+const REACH: f64 = 1.4;
 
 /// Scale and place of the scene on the page.
 pub(super) struct Layout {
@@ -47,8 +49,10 @@ pub(super) fn working_size(moving: f64, fixed: f64, way: f64) -> f64 {
 
 impl Layout {
     pub(super) fn of(cast: &Cast, story: &Story<'_>, view: &View) -> Self {
-        let size = working_size(cast.stop.ball().1, cast.fixed.ball().1, cast.way.length());
-        let reach = REACH * size;
+        let radii = [cast.stop.ball().1, cast.fixed.ball().1];
+        let size = working_size(radii[0], radii[1], cast.way.length());
+        let is_whole = radii[0].max(radii[1]) <= WHOLE * size / 3.0;
+        let reach = if is_whole { f64::INFINITY } else { REACH * size };
         // The origin is the contact; the moving body is near it where it stops.
         let mut frame = part_near(&cast.stop, DVec2::ZERO, reach, view);
         frame = union(frame, part_near(&cast.fixed, DVec2::ZERO, reach, view));

@@ -19,6 +19,13 @@ const ASIDE: f64 = 20.0;
 /// Shorter ways are shown by a direction arrow alone.
 const SHORT_WAY: f64 = 26.0;
 
+/// Half the length of the arrow that shows no more than the direction.
+const DIRECTION_ARROW: f64 = 22.0;
+/// Points of a dimension line that are looked at.
+const SAMPLES: u32 = 21;
+/// So many of them, or of the label's far ends, outside the window: the line cannot be seen.
+const MOSTLY_OUTSIDE: u32 = 34;
+
 pub(super) struct Notes<'a> {
     pub(super) cast: &'a Cast,
     pub(super) story: &'a Story<'a>,
@@ -48,58 +55,63 @@ impl Notes<'_> {
 
     /// The way beside the moving body, as a dimension line from the start to the stop.
     fn draw_way(&self, page: &mut Page, unit: DVec3) {
-        let towards = self.on_page(unit) - self.on_page(DVec3::ZERO);
-        let along = towards.normalize_or(DVec2::X);
-        let way = self.on_page(self.cast.way) - self.on_page(DVec3::ZERO);
+        let seen = |v: DVec3| self.on_page(v) - self.on_page(DVec3::ZERO);
+        let along = seen(unit).normalize_or(DVec2::X);
+        let way = seen(self.cast.way);
         let is_short = way.length() < SHORT_WAY || self.cast.start.is_none();
-        let way = if is_short { along * 44.0 } else { way };
+        let label = if is_short { "d" } else { &self.story.way };
         let shape: Vec<DVec2> = self.cast.stop.vertices.iter().map(|&v| self.on_page(v)).collect();
-        let (side, corner) = self.better_side(&shape, along.perp(), way);
-        let stop = if is_short { corner + way * 0.5 } else { corner };
-        let start = stop - way;
-        let line = [start + side * ASIDE, stop + side * ASIDE];
-        if !is_short {
-            let thin = Stroke::solid("#777777", 0.6);
-            for end in [start, stop] {
-                page.segments(thin, [[end + side * 4.0, end + side * (ASIDE + 5.0)]]);
+        let other: Vec<DVec2> = self.cast.fixed.vertices.iter().map(|&v| self.on_page(v)).collect();
+        let other = convex_outline(&other);
+        let mut best: Option<(u32, DimensionLine)> = None;
+        // Among equals the first, which is above or to the left.
+        let across = if along.x < 0.0 { along.perp() } else { -along.perp() };
+        for side in [across, -across] {
+            let corner = outermost(&shape, side);
+            let feet = if is_short {
+                [corner - along * DIRECTION_ARROW, corner + along * DIRECTION_ARROW]
+            } else {
+                [corner - way, corner]
+            };
+            let line = DimensionLine { feet, side };
+            let crossed = self.crossed(&line, &other, label);
+            if best.as_ref().is_none_or(|(least, _)| crossed < *least) {
+                best = Some((crossed, line));
             }
         }
-        page.arrow(WAY, 2.0, line);
-        let middle = line[0].midpoint(line[1]);
-        if self.cast.is_broken {
+        let Some((crossed, mut line)) = best else { return };
+        let is_lost = crossed >= MOSTLY_OUTSIDE;
+        if is_lost {
+            // The body is larger than the window: beside the contact, then.
+            let at = self.on_page(DVec3::ZERO) - 2.0 * DIRECTION_ARROW * along;
+            line.feet = [at - DIRECTION_ARROW * along, at + DIRECTION_ARROW * along];
+        }
+        if !is_short && !is_lost {
+            let thin = Stroke::solid("#777777", 0.6);
+            page.segments(thin, line.feet.map(|f| [f + line.side * 4.0, f + line.side * 25.0]));
+        }
+        let ends = line.ends();
+        page.arrow(WAY, 2.0, ends);
+        let middle = ends[0].midpoint(ends[1]);
+        if self.cast.is_broken && !is_lost {
             break_line(page, middle, along);
         }
-        let label = if is_short { "d" } else { &self.story.way };
-        let look = LABEL.replace(INK, WAY);
-        self.place_label(page, middle, side, &look, label);
+        self.place_label(page, middle, line.side, &LABEL.replace(INK, WAY), label);
     }
 
-    /// The side of the moving body on which the dimension line crosses less, and the body's
-    /// outermost corner there.
-    fn better_side(&self, shape: &[DVec2], across: DVec2, way: DVec2) -> (DVec2, DVec2) {
-        let other: Vec<DVec2> = self.cast.fixed.vertices.iter().map(|&v| self.on_page(v)).collect();
-        let outline = convex_outline(&other);
+    /// How much of a dimension line and its label lies over the other body or outside the window.
+    fn crossed(&self, line: &DimensionLine, other: &[DVec2], label: &str) -> u32 {
         let window = self.layout.window;
-        let label = half_size(&self.story.way);
-        let candidates = [across, -across].map(|side| {
-            let corner = shape.iter().copied().fold(shape[0], |best, p| {
-                if p.dot(side) > best.dot(side) + 1e-6 { p } else { best }
-            });
-            let crossed = (0..=20)
-                .map(|i| corner - way * (f64::from(i) / 20.0) + side * (ASIDE + 8.0))
-                .map(|p| {
-                    let label_end = p + side * (2.0 * label.dot(side.abs()));
-                    let outside = [p, label_end]
-                        .map(|q| u32::from((q.cmplt(window.low) | q.cmpgt(window.high)).any()));
-                    u32::from(contains(&outline, p)) + outside[0] + outside[1]
-                })
-                .sum::<u32>();
-            (crossed, side, corner)
-        });
-        let [a, b] = candidates;
-        // Among equals, above or to the left.
-        let prefers_b = b.0 < a.0 || (b.0 == a.0 && b.1.y + 0.1 * b.1.x < a.1.y + 0.1 * a.1.x);
-        if prefers_b { (b.1, b.2) } else { (a.1, a.2) }
+        let [from, to] = line.ends();
+        let reach = 2.0 * half_size(label).dot(line.side.abs());
+        (0..SAMPLES)
+            .map(|i| {
+                let p = from.lerp(to, f64::from(i) / f64::from(SAMPLES - 1)) + line.side * 8.0;
+                let outside = [p, p + line.side * reach]
+                    .map(|q| u32::from((q.cmplt(window.low) | q.cmpgt(window.high)).any()));
+                u32::from(contains(other, p)) + outside[0] + outside[1]
+            })
+            .sum()
     }
 
     /// Between separated bodies, how far apart they stay.
@@ -124,7 +136,7 @@ impl Notes<'_> {
         let at = self.on_page(DVec3::ZERO);
         let seen = self.view.project(self.story.normal);
         let seen = DVec2::new(seen.x, -seen.y);
-        let tip = at + seen.normalize_or(DVec2::NEG_Y) * (64.0 * seen.length()).max(24.0);
+        let tip = at + seen.normalize_or(DVec2::NEG_Y) * (56.0 * seen.length()).max(24.0);
         page.arrow(NORMAL, 2.2, [at, tip]);
         page.dot(at, 4.0, WAY, "#ffffff");
         let aside = (tip - at).normalize_or(DVec2::NEG_Y);
@@ -173,6 +185,24 @@ impl Notes<'_> {
             x += 36.0 + 6.1 * text.len() as f64;
         }
     }
+}
+
+/// A line beside a body, parallel to one between two points of it.
+struct DimensionLine {
+    feet: [DVec2; 2],
+    side: DVec2,
+}
+
+impl DimensionLine {
+    fn ends(&self) -> [DVec2; 2] {
+        self.feet.map(|foot| foot + self.side * ASIDE)
+    }
+}
+
+fn outermost(points: &[DVec2], side: DVec2) -> DVec2 {
+    let further =
+        |best: DVec2, p: DVec2| if p.dot(side) > best.dot(side) + 1e-6 { p } else { best };
+    points.iter().copied().reduce(further).unwrap_or_default()
 }
 
 /// Half the width and height of a label.

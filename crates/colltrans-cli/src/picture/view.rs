@@ -67,8 +67,11 @@ impl View {
     /// How evenly the visible area is spread over the faces: the entropy of their projected
     /// areas, 1 if all of one half are seen alike.
     fn shape_seen(&self, body: &Solid) -> f64 {
-        if body.faces.len() > MANY_FACES || body.faces.len() < 3 {
-            return 0.0;
+        match body.areas.as_slice() {
+            // A flat body: how little it is foreshortened.
+            [front, _] => return front.normalize_or_zero().dot(self.toward).abs(),
+            areas if areas.len() < 4 || areas.len() > MANY_FACES => return 0.0,
+            _ => {}
         }
         let areas: Vec<f64> =
             body.areas.iter().map(|a| a.dot(self.toward)).filter(|&a| a > 0.0).collect();

@@ -97,21 +97,24 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
     let in_plane = |w: u32| outward.dot(at - body.vertices()[w as usize]) <= noise;
     let topology = body.topology();
     let neighbours = topology.neighbours(vertex);
-    let Some(k) = neighbours.iter().position(|&w| in_plane(w)) else {
-        return Feature::Vertex(vertex);
-    };
     let outgoing = topology.outgoing(vertex);
-    for (i, &w) in neighbours.iter().enumerate().skip(k) {
+    let (first, count) = body.plane_candidates(vertex, outward);
+    let mut edge = None;
+    for i in (first..first + count).map(|i| i % neighbours.len()) {
+        if !in_plane(neighbours[i]) {
+            continue;
+        }
+        edge = edge.or(Some(neighbours[i]));
         // The face between neighbour `i` and the next one is on the left of the half-edge to the next one.
         let next = (i + 1) % neighbours.len();
-        if !outgoing.is_empty() && next != i && in_plane(w) && in_plane(neighbours[next]) {
+        if !outgoing.is_empty() && next != i && in_plane(neighbours[next]) {
             let face = topology.half_edge(outgoing[next]).face;
             if body.dimension() == 3 || front(body, face, outward) {
                 return Feature::Face(face);
             }
         }
     }
-    Feature::Edge([vertex, neighbours[k]])
+    edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
 }
 
 /// Whether a face of a flat polygon is the one that looks along `outward`.

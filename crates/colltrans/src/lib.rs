@@ -2,13 +2,16 @@
 
 mod answer;
 mod certificate;
+mod cta;
 mod error;
+mod exact;
 mod minkowski;
 mod outcome;
 mod polyhedron;
 mod portal;
 mod pose;
 mod query;
+mod section;
 mod setting;
 
 pub use certificate::{Certificate, CertificateError, Separation, VertexPair};

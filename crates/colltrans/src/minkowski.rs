@@ -9,9 +9,12 @@
 //! three parts `2 u`, the axis itself `2 u`: together less than `10 u S sqrt(3) < 18 u S`. [`Difference::noise`] is `32 u S`, which also covers comparing
 //! two such coordinates along a unit normal of the frame.
 
+use std::cmp::Ordering;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::certificate::VertexPair;
+use crate::exact;
 use crate::setting::Setting;
 
 /// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
@@ -52,7 +55,8 @@ pub(crate) struct Difference<'a> {
 
 impl<'a> Difference<'a> {
     pub(crate) fn new(setting: &'a Setting<'a>) -> Self {
-        let (e1, e2) = setting.unit.any_orthonormal_pair();
+        let e1 = setting.unit.any_orthonormal_vector();
+        let e2 = setting.unit.cross(e1);
         let axes = DMat3::from_cols(e1, e2, setting.unit);
         Self {
             setting,
@@ -76,6 +80,7 @@ impl<'a> Difference<'a> {
     }
 
     /// The point of `M` that is lowest along `normal` (shadow frame, any length).
+    #[inline]
     pub(crate) fn support(&self, normal: DVec3) -> Point {
         let moving = self.setting.moving.support(self.moving_axes * normal);
         let fixed = self.setting.fixed.support(-(self.fixed_axes * normal));
@@ -83,12 +88,14 @@ impl<'a> Difference<'a> {
     }
 
     /// The same, climbing from a pair believed to be near.
+    #[inline]
     pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
         let moving = self.setting.moving.support_from(self.moving_axes * normal, near.moving);
         let fixed = self.setting.fixed.support_from(-(self.fixed_axes * normal), near.fixed);
         self.point(VertexPair { moving, fixed }, normal)
     }
 
+    #[inline]
     fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
         let p = self.setting.moving.vertices()[pair.moving as usize];
         let q = self.setting.fixed.vertices()[pair.fixed as usize];
@@ -101,30 +108,42 @@ impl<'a> Difference<'a> {
         Point { at, pair }
     }
 
-    /// The ellipsoid that `M` resembles: its centre and matrix in the shadow frame.
-    ///
-    /// The Minkowski sum of two ellipsoids with matrices `A, B` lies in the ellipsoid with matrix
-    /// `K = (1 + r) A + (1 + 1/r) B`, for any `r > 0`; `r^2 = tr B / tr A` makes the sum of its squared axes least.
-    pub(crate) fn ellipsoid(&self) -> (DVec3, DMat3) {
+    /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and their matrices.
+    pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.measure(), self.setting.fixed.measure());
         let center = (transposed(&self.fixed_axes, fixed.center)
             - transposed(&self.moving_axes, moving.center))
             + self.offset;
-        let a = self.moving_axes.transpose() * (moving.shape * self.moving_axes);
-        let b = self.fixed_axes.transpose() * (fixed.shape * self.fixed_axes);
-        let r = (trace(&fixed.shape) / trace(&moving.shape)).sqrt();
-        (center, a * (1.0 + r) + b * (1.0 + 1.0 / r))
+        let a = Symmetric::gram(&moving.axes_by_factor(&self.moving_axes));
+        let b = Symmetric::gram(&fixed.axes_by_factor(&self.fixed_axes));
+        (center, [a, b])
     }
 
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between two shadows.
     ///
-    /// The sign is exact for the coordinates of the points. Where the line meets the segment's
-    /// carrier, it is moved, in thought, by `(eps, eps^2)`: so it is never *on* a segment, and three
-    /// consistent answers always mean a triangle that contains it.
-    pub(crate) fn is_left(from: &Point, to: &Point) -> bool {
+    /// Exact: a rounded determinant decides where its error allows, whole numbers otherwise. Where the line meets the
+    /// segment's carrier it is moved, in thought, by `(eps, eps^2)`: so it is never *on* a segment, and
+    /// three consistent answers always mean a triangle that contains it.
+    pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
+        let (a, b) = (from.shadow(), to.shadow());
+        let det = a.perp_dot(b);
+        let size = a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs();
+        if det.abs() > 2.0 * self.noise * (size + self.noise) {
+            return det > 0.0;
+        }
+        self.is_left_exactly(from, to)
+    }
+
+    #[cold]
+    fn is_left_exactly(&self, from: &Point, to: &Point) -> bool {
+        if self.widening == 0.0 {
+            let setting = self.setting;
+            let (a, b) = (setting.exact_difference(from.pair), setting.exact_difference(to.pair));
+            return exact::orientation(&a, &b, setting.direction) == Ordering::Greater;
+        }
+        // Widened bodies exist only in rounded coordinates; their determinant is exact for those.
         let (a, b) = (from.shadow(), to.shadow());
         let coord = |v: DVec2| robust::Coord { x: v.x, y: v.y };
-        // The expansion of orient(a, b, (eps, eps^2)) in powers of eps.
         let det = robust::orient2d(coord(a), coord(b), coord(DVec2::ZERO));
         if det != 0.0 {
             return det > 0.0;
@@ -138,6 +157,56 @@ fn transposed(m: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))
 }
 
-fn trace(m: &DMat3) -> f64 {
-    m.x_axis.x + m.y_axis.y + m.z_axis.z
+/// A symmetric 3 x 3 matrix.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Symmetric {
+    pub(crate) xx: f64,
+    pub(crate) xy: f64,
+    pub(crate) xz: f64,
+    pub(crate) yy: f64,
+    pub(crate) yz: f64,
+    pub(crate) zz: f64,
+}
+
+impl Symmetric {
+    /// `w^T w`.
+    fn gram(w: &DMat3) -> Self {
+        let (x, y, z) = (w.x_axis, w.y_axis, w.z_axis);
+        Self { xx: x.dot(x), xy: x.dot(y), xz: x.dot(z), yy: y.dot(y), yz: y.dot(z), zz: z.dot(z) }
+    }
+
+    /// `f self + g other`.
+    pub(crate) fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
+        Self {
+            xx: f * self.xx + g * other.xx,
+            xy: f * self.xy + g * other.xy,
+            xz: f * self.xz + g * other.xz,
+            yy: f * self.yy + g * other.yy,
+            yz: f * self.yz + g * other.yz,
+            zz: f * self.zz + g * other.zz,
+        }
+    }
+
+    pub(crate) fn apply(&self, v: DVec3) -> DVec3 {
+        DVec3::new(
+            self.xx * v.x + self.xy * v.y + self.xz * v.z,
+            self.xy * v.x + self.yy * v.y + self.yz * v.z,
+            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+        )
+    }
+
+    pub(crate) fn inverse(&self) -> Self {
+        let xx = self.yy * self.zz - self.yz * self.yz;
+        let xy = self.xz * self.yz - self.xy * self.zz;
+        let xz = self.xy * self.yz - self.xz * self.yy;
+        let f = 1.0 / (self.xx * xx + self.xy * xy + self.xz * xz);
+        Self {
+            xx: xx * f,
+            xy: xy * f,
+            xz: xz * f,
+            yy: (self.xx * self.zz - self.xz * self.xz) * f,
+            yz: (self.xy * self.xz - self.xx * self.yz) * f,
+            zz: (self.xx * self.yy - self.xy * self.xy) * f,
+        }
+    }
 }

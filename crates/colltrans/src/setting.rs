@@ -6,7 +6,9 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::certificate::VertexPair;
 use crate::error::{QueryError, in_exact_range};
+use crate::exact::{self, ExactVector};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
 
@@ -21,8 +23,10 @@ pub(crate) struct Setting<'a> {
     pub(crate) fixed: &'a ConvexPolyhedron,
     /// Its rotation `R_Q`.
     pub(crate) fixed_matrix: DMat3,
-    /// `t_Q - t_P`.
+    /// `t_Q - t_P`, rounded.
     pub(crate) offset: DVec3,
+    /// What rounding took from `offset`, exactly.
+    offset_error: DVec3,
     /// The direction as given.
     pub(crate) direction: DVec3,
     /// `direction` at length 1.
@@ -40,12 +44,18 @@ impl<'a> Setting<'a> {
         if direction == DVec3::ZERO || !in_exact_range(direction) {
             return Err(QueryError::Direction { direction });
         }
+        let (t_p, t_q) = (moving_pose.translation(), fixed_pose.translation());
         Ok(Self {
             moving,
             moving_matrix: moving_pose.matrix(),
             fixed,
             fixed_matrix: fixed_pose.matrix(),
-            offset: fixed_pose.translation() - moving_pose.translation(),
+            offset: t_q - t_p,
+            offset_error: DVec3::new(
+                exact::difference_error(t_q.x, t_p.x),
+                exact::difference_error(t_q.y, t_p.y),
+                exact::difference_error(t_q.z, t_p.z),
+            ),
             direction,
             unit: direction.normalize(),
         })
@@ -64,5 +74,13 @@ impl<'a> Setting<'a> {
     /// A normal of the setting frame in the fixed body's frame.
     pub(crate) fn fixed_normal(&self, normal: DVec3) -> DVec3 {
         self.fixed_matrix.transpose() * normal
+    }
+
+    /// `q - p` for a pair of vertices, exactly.
+    pub(crate) fn exact_difference(&self, pair: VertexPair) -> ExactVector {
+        let q = self.fixed.vertices()[pair.fixed as usize];
+        let p = self.moving.vertices()[pair.moving as usize];
+        let offset = [self.offset, self.offset_error];
+        exact::difference((&self.fixed_matrix, q), (&self.moving_matrix, p), offset)
     }
 }

@@ -15,8 +15,10 @@ pub(crate) struct Measure {
     pub(crate) reach: f64,
     /// Centroid of the volume (of the vertices, for a body of lower dimension).
     pub(crate) center: DVec3,
-    /// The matrix `S` of the inertia ellipsoid, positive definite.
-    pub(crate) shape: DMat3,
+    /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is `c + L (unit ball)`.
+    pub(crate) factor: DMat3,
+    /// Root of the trace of `S`: the ellipsoid's mean size.
+    pub(crate) radius: f64,
     /// Volume.
     pub(crate) volume: f64,
 }
@@ -38,24 +40,33 @@ impl Measure {
         let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
         let floor = (trace * LEAST_AXIS_RATIO * LEAST_AXIS_RATIO).max(f64::MIN_POSITIVE.sqrt());
         let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
-        Self { reach, center, shape, volume }
+        let radius = (0..3).map(|i| shape.col(i)[i]).sum::<f64>().sqrt();
+        Self { reach, center, factor: cholesky(&shape), radius, volume }
     }
 
-    /// Lower triangular `L` with `S = L L^T`: the ellipsoid is `c + L (unit ball)`.
-    pub(crate) fn cholesky(&self) -> DMat3 {
-        let s = &self.shape;
-        let floor = f64::MIN_POSITIVE;
-        let l00 = s.x_axis.x.max(floor).sqrt();
-        let (l10, l20) = (s.x_axis.y / l00, s.x_axis.z / l00);
-        let l11 = (s.y_axis.y - l10 * l10).max(floor).sqrt();
-        let l21 = (s.y_axis.z - l20 * l10) / l11;
-        let l22 = (s.z_axis.z - l20 * l20 - l21 * l21).max(floor).sqrt();
-        DMat3::from_cols(
-            DVec3::new(l00, l10, l20),
-            DVec3::new(0.0, l11, l21),
-            DVec3::new(0.0, 0.0, l22),
-        )
+    /// `L^T m`.
+    pub(crate) fn axes_by_factor(&self, m: &DMat3) -> DMat3 {
+        let l = &self.factor;
+        let column = |c: DVec3| {
+            DVec3::new(l.x_axis.dot(c), l.y_axis.y * c.y + l.y_axis.z * c.z, l.z_axis.z * c.z)
+        };
+        DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis))
     }
+}
+
+/// Lower triangular `L` with `s = L L^T`.
+fn cholesky(s: &DMat3) -> DMat3 {
+    let floor = f64::MIN_POSITIVE;
+    let l00 = s.x_axis.x.max(floor).sqrt();
+    let (l10, l20) = (s.x_axis.y / l00, s.x_axis.z / l00);
+    let l11 = (s.y_axis.y - l10 * l10).max(floor).sqrt();
+    let l21 = (s.y_axis.z - l20 * l10) / l11;
+    let l22 = (s.z_axis.z - l20 * l20 - l21 * l21).max(floor).sqrt();
+    DMat3::from_cols(
+        DVec3::new(l00, l10, l20),
+        DVec3::new(0.0, l11, l21),
+        DVec3::new(0.0, 0.0, l22),
+    )
 }
 
 /// `a b^T`.
@@ -115,9 +126,9 @@ mod tests {
         assert!((m.center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-12);
         let expected = DVec3::new(1.0, 4.0, 9.0) / 3.0 * 5.0;
         for i in 0..3 {
-            assert!((m.shape.col(i)[i] / expected[i] - 1.0).abs() < 1e-9);
+            let s = m.factor * m.factor.transpose();
+            assert!((s.col(i)[i] / expected[i] - 1.0).abs() < 1e-9);
+            assert!((s.col(i)[(i + 1) % 3]).abs() < 1e-9);
         }
-        let l = m.cholesky();
-        assert!(((l * l.transpose() - m.shape).col(0)).length() < 1e-12);
     }
 }

@@ -12,6 +12,7 @@ pub(crate) mod topology;
 use glam::DVec3;
 
 use crate::error::BuildError;
+use crate::section::SectionIndex;
 use hull::Hull;
 pub(crate) use measure::Measure;
 use support::SupportIndex;
@@ -30,6 +31,7 @@ pub struct ConvexPolyhedron {
     topology: Topology,
     measure: Measure,
     support: SupportIndex,
+    sections: SectionIndex,
 }
 
 impl ConvexPolyhedron {
@@ -71,12 +73,13 @@ impl ConvexPolyhedron {
             Topology::from_faces(vertices.len(), hull.face_start.clone(), &hull.face_vertices)
                 .expect("a hull is closed")
         };
-        Self::assemble(vertices, hull, topology)
-    }
-
-    fn assemble(vertices: Vec<DVec3>, hull: &Hull, topology: Topology) -> Self {
         let measure = Measure::new(&vertices, &topology, hull.dimension);
         let support = SupportIndex::build(&vertices, &topology, &measure);
+        let sections = if hull.dimension == 3 {
+            SectionIndex::build(&vertices, &topology)
+        } else {
+            SectionIndex::default()
+        };
         Self {
             vertices,
             input_index: hull.vertices.clone(),
@@ -85,6 +88,7 @@ impl ConvexPolyhedron {
             topology,
             measure,
             support,
+            sections,
         }
     }
 
@@ -140,13 +144,20 @@ impl ConvexPolyhedron {
     }
 
     /// The vertex farthest along `direction` (body frame, any length): a support point, in `O(log n)`.
+    #[inline]
     pub fn support(&self, direction: DVec3) -> u32 {
         self.support.extreme(&self.vertices, &self.topology, direction)
     }
 
     /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
+    #[inline]
     pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
         self.support.extreme_from(&self.vertices, &self.topology, direction, near)
+    }
+
+    /// Positions among the neighbours of `vertex` that may lie in its supporting plane along `direction`: the first and how many.
+    pub(crate) fn plane_candidates(&self, vertex: u32, direction: DVec3) -> (usize, usize) {
+        self.support.plane_candidates(&self.vertices, &self.topology, vertex, direction)
     }
 
     /// Bytes of memory that the polyhedron occupies, on the heap and in itself.
@@ -156,6 +167,7 @@ impl ConvexPolyhedron {
             + self.input_index.capacity() * size_of::<u32>()
             + self.topology.heap_bytes()
             + self.support.heap_bytes()
+            + self.sections.heap_bytes()
     }
 
     pub(crate) fn measure(&self) -> &Measure {
@@ -165,27 +177,34 @@ impl ConvexPolyhedron {
     pub(crate) fn topology(&self) -> &Topology {
         &self.topology
     }
-}
 
-#[cfg(test)]
-pub(crate) mod testing {
-    use super::*;
+    pub(crate) fn sections(&self) -> &SectionIndex {
+        &self.sections
+    }
 
-    /// A body from faces known to be right, without the hull.
-    pub(crate) fn from_faces(vertices: Vec<DVec3>, faces: &[Vec<u32>]) -> ConvexPolyhedron {
+    /// A body of dimension 3 from its faces, which the caller knows to be convex.
+    #[cfg(test)]
+    pub(crate) fn from_convex_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Self {
         let mut face_start = vec![0];
-        for f in faces {
-            face_start.push(face_start.last().unwrap() + f.len() as u32);
+        let mut face_vertices = Vec::new();
+        for face in faces {
+            face_vertices.extend_from_slice(face);
+            face_start.push(face_vertices.len() as u32);
         }
         let hull = Hull {
             dimension: 3,
             vertices: (0..vertices.len() as u32).collect(),
             face_start,
-            face_vertices: faces.concat(),
+            face_vertices,
             violation: 0.0,
         };
-        ConvexPolyhedron::from_hull(&vertices, &hull)
+        Self::from_hull(vertices, &hull)
     }
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use super::*;
 
     /// Vertices on an ellipsoid in rings around z.
     pub(crate) fn ring_ellipsoid(n: usize, axes: DVec3) -> ConvexPolyhedron {
@@ -209,6 +228,6 @@ pub(crate) mod testing {
             }
             faces.push(vec![id(m - 1, j), (v.len() - 1) as u32, id(m - 1, j + 1)]);
         }
-        from_faces(v, &faces)
+        ConvexPolyhedron::from_convex_faces(&v, &faces)
     }
 }

@@ -9,6 +9,10 @@
 //! direction `L^T n`, so needles and plates spread over the table as evenly as balls. Where vertices still
 //! crowd (the rim of a prism with many sides, a rounded corner), a cell is divided in four, and again, until its
 //! centre and its corners are a few edges apart. The number of cells is at most proportional to the number of vertices.
+//!
+//! A vertex with many neighbours (the apex of a cone) would make one step linear. Cut by a plane, the edges of a vertex are the
+//! corners of a convex polygon, over which a linear function has one maximum and one minimum: the steepest edge is found among
+//! widely spaced ones first, then among ever closer ones.
 
 use glam::{DMat3, DVec3};
 
@@ -24,8 +28,14 @@ const DIVIDED: u32 = 1 << 31;
 /// A cell whose corners are farther than this many climbing steps from its centre is divided.
 const NEAR_STEPS: usize = 3;
 
+/// After this many steps a climb from a guess asks the table.
+const PATIENCE: usize = 4;
+
 /// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that single-precision models have.
 const MAX_DEPTH: u32 = 20;
+
+/// A vertex with more neighbours than this is searched, not scanned.
+const FAN: usize = 32;
 
 /// Relative rounding error of a dot product of a direction with an edge: a gain below this share of the terms'
 /// magnitudes may not be real. Demanding more makes every climb strictly ascending, so it ends.
@@ -40,13 +50,24 @@ pub(crate) struct SupportIndex {
     resolution: u32,
     /// Entries of the base cells, then groups of four.
     cells: Vec<u32>,
+    /// The vertices of a body small enough to scan.
+    groups: Vec<Group>,
+    /// Vertices with many neighbours, ascending, each with a vector that has a positive product with all its edges.
+    fans: Vec<(u32, DVec3)>,
 }
 
 impl SupportIndex {
     pub(crate) fn build(vertices: &[DVec3], topology: &Topology, measure: &Measure) -> Self {
-        let mut index =
-            Self { normalise: measure.cholesky().transpose(), resolution: 0, cells: Vec::new() };
-        if vertices.len() > SCAN_LIMIT {
+        let mut index = Self {
+            normalise: measure.factor.transpose(),
+            resolution: 0,
+            cells: Vec::new(),
+            groups: Vec::new(),
+            fans: fans(vertices, topology),
+        };
+        if vertices.len() <= SCAN_LIMIT {
+            index.groups = groups(vertices);
+        } else {
             index.resolution = ((vertices.len() as f64 / 18.0).sqrt() as u32).max(2);
             index.fill(vertices, topology);
         }
@@ -54,14 +75,16 @@ impl SupportIndex {
     }
 
     /// The vertex farthest along `direction` (body frame, any length).
+    #[inline]
     pub(crate) fn extreme(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3) -> u32 {
         if self.resolution == 0 {
-            return scan(vertices, direction);
+            return scan(&self.groups, direction);
         }
-        climb(vertices, topology, direction, self.look_up(direction)).0
+        self.climb(vertices, topology, direction, self.look_up(direction), usize::MAX).0
     }
 
-    /// The same, starting from a vertex believed to be near.
+    /// The same, starting from a vertex believed to be near; if it is not, the table helps out.
+    #[inline]
     pub(crate) fn extreme_from(
         &self,
         vertices: &[DVec3],
@@ -70,14 +93,91 @@ impl SupportIndex {
         start: u32,
     ) -> u32 {
         if self.resolution == 0 {
-            return scan(vertices, direction);
+            return scan(&self.groups, direction);
         }
-        climb(vertices, topology, direction, start).0
+        let (reached, steps) = self.climb(vertices, topology, direction, start, PATIENCE);
+        if steps < PATIENCE {
+            return reached;
+        }
+        let other = self.look_up(direction);
+        let ahead = direction.dot(vertices[other as usize] - vertices[reached as usize]) > 0.0;
+        let start = if ahead { other } else { reached };
+        self.climb(vertices, topology, direction, start, usize::MAX).0
+    }
+
+    /// Steepest ascent along edges, at most `limit` steps, and the number of steps it took.
+    ///
+    /// Gains are taken from edge vectors, not from differences of dot products, so their rounding error is relative to
+    /// the edge and not to the body.
+    fn climb(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        direction: DVec3,
+        start: u32,
+        limit: usize,
+    ) -> (u32, usize) {
+        let mut at = start;
+        for steps in 0..limit {
+            let here = vertices[at as usize];
+            let neighbours = topology.neighbours(at);
+            let best = if neighbours.len() <= FAN {
+                steepest(vertices, neighbours, here, direction)
+            } else {
+                neighbours[self.steepest_in_fan(vertices, topology, at, direction)]
+            };
+            let edge = vertices[best as usize] - here;
+            if direction.dot(edge) <= GAIN_NOISE * direction.abs().dot(edge.abs()) {
+                return (at, steps);
+            }
+            at = best;
+        }
+        (at, limit)
+    }
+
+    /// Position among its neighbours of the steepest edge of a vertex with many.
+    fn steepest_in_fan(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        vertex: u32,
+        direction: DVec3,
+    ) -> usize {
+        let here = vertices[vertex as usize];
+        let neighbours = topology.neighbours(vertex);
+        let inward = self
+            .fans
+            .binary_search_by_key(&vertex, |fan| fan.0)
+            .map_or(DVec3::ZERO, |k| self.fans[k].1);
+        let slope = |i: usize| {
+            let edge = vertices[neighbours[i] as usize] - here;
+            direction.dot(edge) / inward.dot(edge)
+        };
+        greatest_on_cycle(neighbours.len(), slope)
+    }
+
+    /// Candidates for neighbours in the supporting plane at `vertex`: positions of consecutive neighbours, as
+    /// first position and count, that contain all of them if the vertex has few, and the three steepest if it has many.
+    pub(crate) fn plane_candidates(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        vertex: u32,
+        direction: DVec3,
+    ) -> (usize, usize) {
+        let count = topology.neighbours(vertex).len();
+        if count <= FAN {
+            return (0, count);
+        }
+        let best = self.steepest_in_fan(vertices, topology, vertex, direction);
+        ((best + count - 1) % count, 3)
     }
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.cells.capacity() * size_of::<u32>()
+            + self.groups.capacity() * size_of::<Group>()
+            + self.fans.capacity() * size_of::<(u32, DVec3)>()
     }
 
     /// The entry of the cell that a direction falls into.
@@ -110,8 +210,9 @@ impl SupportIndex {
     fn fill(&mut self, vertices: &[DVec3], topology: &Topology) {
         let r = self.resolution;
         let base = 6 * r * r;
-        self.cells = vec![0; base as usize];
+        let mut cells = vec![0; base as usize];
         let builder = Builder {
+            index: self,
             vertices,
             topology,
             // Directions of the table to directions of the body: the inverse of `normalise`.
@@ -124,12 +225,13 @@ impl SupportIndex {
                 for i in 0..r {
                     let cell = Cell { face, side: 2.0 / f64::from(r), i, j, depth: 0 };
                     near = builder.support(cell.direction(0.5, 0.5), near).0;
-                    let entry = builder.entry(cell, near, &mut self.cells);
-                    self.cells[((face * r + j) * r + i) as usize] = entry;
+                    let entry = builder.entry(cell, near, &mut cells);
+                    cells[((face * r + j) * r + i) as usize] = entry;
                 }
             }
         }
-        self.cells.shrink_to_fit();
+        cells.shrink_to_fit();
+        self.cells = cells;
     }
 }
 
@@ -180,6 +282,7 @@ fn cube_face(w: DVec3) -> (u32, f64, f64, f64) {
 }
 
 struct Builder<'a> {
+    index: &'a SupportIndex,
     vertices: &'a [DVec3],
     topology: &'a Topology,
     to_body: DMat3,
@@ -189,7 +292,8 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     fn support(&self, normalised: DVec3, start: u32) -> (u32, usize) {
-        climb(self.vertices, self.topology, self.to_body * normalised, start)
+        let direction = self.to_body * normalised;
+        self.index.climb(self.vertices, self.topology, direction, start, usize::MAX)
     }
 
     /// The entry of a cell whose centre has the support point `center`: divided while its corners are far.
@@ -211,40 +315,106 @@ impl Builder<'_> {
     }
 }
 
-/// Looks at every vertex.
-fn scan(vertices: &[DVec3], direction: DVec3) -> u32 {
-    let mut best = 0;
-    let mut reach = f64::NEG_INFINITY;
-    for (v, vertex) in vertices.iter().enumerate() {
-        let along = direction.dot(*vertex);
-        if along > reach {
-            (best, reach) = (v, along);
-        }
-    }
-    best as u32
+/// The coordinates of a small body, in groups of four for a scan without branches.
+#[derive(Debug, Clone, Copy)]
+struct Group {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    z: [f64; LANES],
 }
 
-/// Steepest ascent along edges, and the number of steps it took.
-///
-/// Gains are taken from edge vectors, not from differences of dot products, so their rounding error is relative to
-/// the edge and not to the body.
-fn climb(vertices: &[DVec3], topology: &Topology, direction: DVec3, start: u32) -> (u32, usize) {
-    let mut at = start;
-    let mut steps = 0;
-    loop {
-        let here = vertices[at as usize];
-        let (mut best, mut gain) = (at, 0.0);
-        for &w in topology.neighbours(at) {
-            let along = direction.dot(vertices[w as usize] - here);
-            if along > gain {
-                (best, gain) = (w, along);
-            }
+const LANES: usize = 4;
+
+/// Groups of a body's vertices; the last one is filled up with copies of vertex 0.
+fn groups(vertices: &[DVec3]) -> Vec<Group> {
+    let padded = |chunk: &[DVec3], k: usize| *chunk.get(k).unwrap_or(&vertices[0]);
+    let group = |chunk: &[DVec3]| Group {
+        x: std::array::from_fn(|k| padded(chunk, k).x),
+        y: std::array::from_fn(|k| padded(chunk, k).y),
+        z: std::array::from_fn(|k| padded(chunk, k).z),
+    };
+    vertices.chunks(LANES).map(group).collect()
+}
+
+/// Looks at every vertex. Of equals, one is chosen by position alone, so the answer does not depend on where
+/// a search starts.
+#[inline]
+fn scan(groups: &[Group], direction: DVec3) -> u32 {
+    let mut reach = [f64::NEG_INFINITY; LANES];
+    // Group numbers as f64, so that number and reach are selected by the same mask.
+    let mut best = [0.0; LANES];
+    let mut number = 0.0;
+    for group in groups {
+        for k in 0..LANES {
+            let along =
+                direction.x * group.x[k] + direction.y * group.y[k] + direction.z * group.z[k];
+            let farther = along > reach[k];
+            best[k] = if farther { number } else { best[k] };
+            reach[k] = if farther { along } else { reach[k] };
         }
-        let edge = vertices[best as usize] - here;
-        if gain <= GAIN_NOISE * direction.abs().dot(edge.abs()) {
-            return (at, steps);
-        }
-        at = best;
-        steps += 1;
+        number += 1.0;
     }
+    let index = |k: usize| best[k] * LANES as f64 + k as f64;
+    let pick = |a: (f64, f64), b: (f64, f64)| {
+        let second = b.0 > a.0;
+        (if second { b.0 } else { a.0 }, if second { b.1 } else { a.1 })
+    };
+    let low = pick((reach[0], index(0)), (reach[1], index(1)));
+    let high = pick((reach[2], index(2)), (reach[3], index(3)));
+    pick(low, high).1 as u32
+}
+
+/// The steepest neighbour.
+#[inline]
+fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec3) -> u32 {
+    let (mut best, mut gain) = (u32::MAX, f64::NEG_INFINITY);
+    for &w in neighbours {
+        let along = direction.dot(vertices[w as usize] - here);
+        if along > gain {
+            (best, gain) = (w, along);
+        }
+    }
+    best
+}
+
+/// Where a function on a cycle with one maximum and one minimum is greatest.
+///
+/// Between samples with a common distance, the maximum is at most that distance from the greatest sample.
+fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
+    let mut stride = (count / 8).max(1).next_power_of_two();
+    let (mut best, mut greatest) = (0, f64::NEG_INFINITY);
+    let mut look = |i: usize, best: &mut usize| {
+        let v = value(i);
+        if v > greatest {
+            (*best, greatest) = (i, v);
+        }
+    };
+    for i in (0..count).step_by(stride) {
+        look(i, &mut best);
+    }
+    while stride > 1 {
+        stride /= 2;
+        let center = best;
+        look((center + stride) % count, &mut best);
+        look((center + count - stride) % count, &mut best);
+    }
+    best
+}
+
+/// The vertices with more than [`FAN`] neighbours, with the mean of the inward unit normals of their faces.
+fn fans(vertices: &[DVec3], topology: &Topology) -> Vec<(u32, DVec3)> {
+    let inward = |v: u32| {
+        let here = vertices[v as usize];
+        let neighbours = topology.neighbours(v);
+        let next = neighbours.iter().cycle().skip(1);
+        // Neighbours are clockwise from outside, so the product of two consecutive edges points inwards.
+        let normal = |(&a, &b): (&u32, &u32)| {
+            (vertices[a as usize] - here).cross(vertices[b as usize] - here).normalize_or_zero()
+        };
+        neighbours.iter().zip(next).map(normal).sum::<DVec3>()
+    };
+    (0..topology.vertex_count() as u32)
+        .filter(|&v| topology.neighbours(v).len() > FAN)
+        .map(|v| (v, inward(v)))
+        .collect()
 }

@@ -51,7 +51,7 @@ pub(crate) fn enclose(
         Ok(tangent) => tangent,
         Err(one_side) => return Some(one_side),
     };
-    let mut edge = if Difference::is_left(&first.point, &second.point) {
+    let mut edge = if difference.is_left(&first.point, &second.point) {
         [first, second]
     } else {
         [second, first]
@@ -63,9 +63,9 @@ pub(crate) fn enclose(
             Err(one_side) => return Some(one_side),
         };
         let [from, to] = edge;
-        if !Difference::is_left(&to.point, &third.point) {
+        if !difference.is_left(&to.point, &third.point) {
             edge = [third, to];
-        } else if !Difference::is_left(&third.point, &from.point) {
+        } else if !difference.is_left(&third.point, &from.point) {
             edge = [from, third];
         } else {
             return Some(Enclosure::Portal([from, to, third]));
@@ -122,6 +122,7 @@ impl Search<'_> {
                 return Ok(Tangent { point, slope });
             }
         }
+        let outward = outward.normalize();
         self.steps.supports += 1;
         let point = self.difference.support(outward.extend(0.0));
         let margin = outward.dot(point.shadow());
@@ -132,17 +133,20 @@ impl Search<'_> {
     }
 }
 
-/// Unit vector from the line towards what is known: the candidate for a separating normal.
+/// From the line towards what is known: the candidate for a separating normal, of a length fit to be normalised.
 fn outward(known: &[Tangent], near_side: DVec2) -> DVec2 {
     if let [from, to] = known {
         // The line is on the left of the edge, so the edge is on the right of the line.
-        let along = to.point.shadow() - from.point.shadow();
-        let right = -along.perp();
-        if right != DVec2::ZERO {
-            return right.normalize();
+        let right = -(to.point.shadow() - from.point.shadow()).perp();
+        if can_normalize(right) {
+            return right;
         }
     }
-    near_side.try_normalize().unwrap_or(DVec2::X)
+    if can_normalize(near_side) { near_side } else { DVec2::X }
+}
+
+fn can_normalize(v: DVec2) -> bool {
+    v.length_squared() > f64::MIN_POSITIVE
 }
 
 /// The point of the edge's shadow nearest to the line, and the slope interpolated there.

@@ -32,6 +32,9 @@ pub(crate) fn overlap(
     tolerance: f64,
     steps: &mut Steps,
 ) -> Overlap {
+    if is_ample(portal, tolerance) {
+        return Overlap::Ample;
+    }
     let mut corners = [portal[0]; MAX_CORNERS];
     corners[..3].copy_from_slice(portal);
     let mut count = 3;
@@ -56,6 +59,15 @@ pub(crate) fn overlap(
         corners[edge + 1] = point;
         count += 1;
     }
+}
+
+/// Whether all edges of the portal are farther from the line than `tolerance`.
+fn is_ample(portal: &[Point; 3], tolerance: f64) -> bool {
+    [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
+        let (a, b) = (portal[i].shadow(), portal[j].shadow());
+        let area = a.perp_dot(b);
+        area > 0.0 && area * area > tolerance * tolerance * (b - a).length_squared()
+    })
 }
 
 /// The edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal and distance.

@@ -34,79 +34,58 @@ pub(crate) fn refine(
     mut portal: Portal,
     steps: &mut Steps,
 ) -> Option<Optimum> {
-    let mut interpolate = true;
+    let mut newest = 2;
     for _ in 0..MAX_PORTALS {
         steps.pivots += 1;
-        let weights = weights(&portal);
-        let near = portal[largest(weights)].point.pair;
         let plane = plane_normal(difference, &portal);
-        if interpolate {
-            // The slope that belongs to the line if slope and shadow were linear in each other: close to the
-            // optimum where `M` is smooth. Its support point is used only if it is below the portal's plane.
-            let slope = portal[0].slope * weights[0]
-                + portal[1].slope * weights[1]
-                + portal[2].slope * weights[2];
-            steps.supports += 1;
-            let point = difference.support_from(normal_of(slope), near);
-            interpolate = depth_below(&portal, plane, &point) > difference.noise * plane.length();
-            if interpolate {
-                exchange(&mut portal, Tangent { point, slope });
-                continue;
-            }
-        }
         steps.supports += 1;
-        let point = difference.support_from(plane, near);
+        let point = difference.support_from(plane, portal[newest].point.pair);
         if depth_below(&portal, plane, &point) <= difference.noise * plane.length() {
+            let weights = weights(&portal);
             let portal = portal.map(|t| t.point);
             return Some(Optimum { normal: plane, lowest: point.pair, portal, weights });
         }
-        exchange(&mut portal, Tangent { point, slope: plane.truncate() / plane.z });
+        newest =
+            exchange(difference, &mut portal, Tangent { point, slope: plane.truncate() / plane.z });
     }
     None
 }
 
-/// How far a point lies below the highest of the portal's points along `normal`, times the normal's length.
+/// How far a point lies below all three of the portal's along `normal`, times the normal's length.
 fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
-    normal.dot(portal[0].point.at - point.at)
+    let depth = |t: &Tangent| normal.dot(t.point.at - point.at);
+    depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
 }
 
-/// Replaces the one point whose exchange keeps the line inside.
-fn exchange(portal: &mut Portal, new: Tangent) {
-    let left = [0, 1, 2].map(|i| Difference::is_left(&portal[i].point, &new.point));
+/// Replaces the one point whose exchange keeps the line inside, and says which.
+fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize {
+    let left = [0, 1, 2].map(|i| difference.is_left(&portal[i].point, &new.point));
     // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the sides change.
     for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         if !left[i] && left[j] {
             portal[k] = new;
-            return;
+            return k;
         }
     }
     // All on one side: the shadows coincide, and the new point takes the place of the one it lies under.
-    let distance = |t: &Tangent| t.point.shadow().distance_squared(new.point.shadow());
-    if let Some(same) = portal.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-        *same = new;
-    }
+    let distances = portal.map(|t| -t.point.shadow().distance_squared(new.point.shadow()));
+    let same = largest(distances);
+    portal[same] = new;
+    same
 }
 
-/// The upward normal of the plane through the three points.
+/// The upward normal of the plane through the three points, from the two shorter edges, which determine it best.
 ///
 /// A portal lower than the noise has no plane of its own: then the normal through its longest edge that is
-/// closest to the slope of the newest tangent.
+/// closest to the slopes of the tangents.
 fn plane_normal(difference: &Difference, portal: &Portal) -> DVec3 {
     let [a, b, c] = portal.map(|t| t.point.at);
-    let (ab, ac) = (b - a, c - a);
-    let normal = ab.cross(ac);
-    let edges = [ab, c - b, -ac];
+    let edges = [b - a, c - b, a - c];
     let lengths = edges.map(|e| e.truncate().length_squared());
-    let longest = if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
-        0
-    } else if lengths[1] >= lengths[2] {
-        1
-    } else {
-        2
-    };
-    if normal.z * normal.z > lengths[longest] * (8.0 * difference.noise) * (8.0 * difference.noise)
-        && normal.z > 0.0
-    {
+    let longest = largest(lengths);
+    let normal = edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3]);
+    let least_height = 8.0 * difference.noise;
+    if normal.z > 0.0 && normal.z * normal.z > least_height * least_height * lengths[longest] {
         return normal;
     }
     let edge = edges[longest];

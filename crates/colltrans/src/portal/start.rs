@@ -1,11 +1,14 @@
 //! A first guess of the contact normal: what it would be if both bodies were ellipsoids.
 //!
-//! The line enters the ellipsoid that `M` resembles where a quadratic equation says.
+//! Notation. `A`, `B` are the matrices of the bodies' inertia ellipsoids and `c` the difference of their centres, all in the
+//! shadow frame; `n = (a, 1)`. The difference of the ellipsoids has `f(a) = c.n - sqrt(n^T A n) - sqrt(n^T B n)`, whose maximum is sought:
+//! first with both replaced by the one ellipsoid `K = (1 + r) A + (1 + 1/r) B` that contains their sum (for any
+//! `r > 0`; `r^2 = tr B / tr A` makes its mean size least), which the line enters where a quadratic equation says; then by one Newton step on `f`.
 
-use glam::{DMat2, DMat3, DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 
 use crate::certificate::VertexPair;
-use crate::minkowski::Difference;
+use crate::minkowski::{Difference, Symmetric};
 
 /// Where to begin, and how the shadow of the support point answers to a change of slope.
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +18,7 @@ pub(crate) struct Start {
     /// A pair near the contact, if one is known.
     pub(crate) near: Option<VertexPair>,
     /// The change of slope that moves the shadow of the support point by minus a given vector: the inverse Hessian of the
-    /// ellipsoid's support function.
+    /// ellipsoids' support functions.
     pub(crate) slope_per_shadow: DMat2,
 }
 
@@ -23,30 +26,44 @@ pub(crate) struct Start {
 /// would say nothing about where the walls of the body are.
 const LEAST_INCLINATION: f64 = 0.05;
 
+/// Newton's step is taken if it is shorter than this share of the normal; a longer one leaves the region it knows.
+const LONGEST_STEP: f64 = 0.5;
+
 impl Start {
     /// The guess from the inertia ellipsoids.
     pub(crate) fn from_ellipsoids(difference: &Difference) -> Self {
-        let (center, k) = difference.ellipsoid();
-        let normal = entry_normal(&k.inverse(), center);
-        Self { normal, near: None, slope_per_shadow: inverse_hessian(&k, normal) }
+        let (center, [a, b]) = difference.ellipsoids();
+        let r =
+            difference.setting.fixed.measure().radius / difference.setting.moving.measure().radius;
+        let k = a.combine(1.0 + r, &b, 1.0 + 1.0 / r);
+        let mut normal = entry_normal(&k.inverse(), center);
+        let (shadow, slope_per_shadow) = response([&a, &b], normal);
+        if normal.z > 0.0 {
+            let step = slope_per_shadow * (center.truncate() - shadow);
+            if step.length_squared() < LONGEST_STEP * LONGEST_STEP * normal.length_squared() {
+                normal += step.extend(0.0);
+            }
+        }
+        Self { normal, near: None, slope_per_shadow }
     }
 
     /// From a normal (shadow frame) and a pair that another solver found.
     pub(crate) fn from_guess(difference: &Difference, normal: DVec3, near: VertexPair) -> Self {
-        let (_, k) = difference.ellipsoid();
+        let (_, [a, b]) = difference.ellipsoids();
         let normal = tempered(normal);
-        Self { normal, near: Some(near), slope_per_shadow: inverse_hessian(&k, normal) }
+        let (_, slope_per_shadow) = response([&a, &b], normal);
+        Self { normal, near: Some(near), slope_per_shadow }
     }
 }
 
 /// The normal where the axis enters the ellipsoid around `center` with inverse matrix `j`, or, if it misses it,
 /// where it passes closest in the ellipsoid's metric.
-fn entry_normal(j: &DMat3, center: DVec3) -> DVec3 {
-    let jc = *j * center;
-    let middle = jc.z / j.z_axis.z;
-    let discriminant = middle * middle - (center.dot(jc) - 1.0) / j.z_axis.z;
+fn entry_normal(j: &Symmetric, center: DVec3) -> DVec3 {
+    let jc = j.apply(center);
+    let middle = jc.z / j.zz;
+    let discriminant = middle * middle - (center.dot(jc) - 1.0) / j.zz;
     let entry = if discriminant > 0.0 { middle - discriminant.sqrt() } else { middle };
-    let mut normal = jc - j.z_axis * entry;
+    let mut normal = jc - DVec3::new(j.xz, j.yz, j.zz) * entry;
     if discriminant <= 0.0 {
         normal.z = 0.0;
         return normal;
@@ -68,14 +85,17 @@ pub(super) fn steep(lateral: DVec2) -> DVec2 {
     lateral.normalize_or_zero() / LEAST_INCLINATION
 }
 
-/// Inverse of the Hessian of `sqrt(n^T K n)` in the lateral components of `n`.
-fn inverse_hessian(k: &DMat3, normal: DVec3) -> DMat2 {
+/// Gradient of the ellipsoids' support functions in the lateral components of `normal`, and the inverse of their Hessian.
+fn response(ellipsoids: [&Symmetric; 2], normal: DVec3) -> (DVec2, DMat2) {
     let n = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
-    let kn = *k * n;
-    let square = n.dot(kn);
-    let length = square.sqrt();
-    let s: DVec2 = kn.truncate();
-    let lateral = DMat2::from_cols(k.x_axis.truncate(), k.y_axis.truncate());
-    let hessian = (lateral - DMat2::from_cols(s * s.x, s * s.y) * (1.0 / square)) * (1.0 / length);
-    hessian.inverse()
+    let (mut gradient, mut hessian) = (DVec2::ZERO, DMat2::ZERO);
+    for k in ellipsoids {
+        let kn = k.apply(n);
+        let inverse_length = 1.0 / n.dot(kn).sqrt();
+        let g = kn.truncate() * inverse_length;
+        let lateral = DMat2::from_cols(DVec2::new(k.xx, k.xy), DVec2::new(k.xy, k.yy));
+        gradient += g;
+        hessian += (lateral - DMat2::from_cols(g * g.x, g * g.y)) * inverse_length;
+    }
+    (gradient, hessian.inverse())
 }

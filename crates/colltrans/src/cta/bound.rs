@@ -1,0 +1,150 @@
+//! The lower bound: the linear programme over all pieces found so far.
+//!
+//! Notation. Minimise `t` over `(X, Y, t)` subject to `weight_i t >= value_i + gradient_i . (X, Y)`. The dual multipliers
+//! `lambda_i >= 0` satisfy `sum lambda_i (weight_i, gradient_i) = (1, 0, 0)`. Three pieces are the *basis*: their
+//! planes meet in the optimum, and `sum lambda_i normal_i` is the normal of a supporting plane of the bodies that proves the bound
+//! `t`, whatever the section levels are. A new piece that cuts off the optimum enters the basis in a pivot of the dual
+//! simplex method; if none can leave, the pieces contradict each other: the bodies are separated.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::cell::{Affine, Piece};
+
+/// The sides of the rectangle of levels, the artificial bound, and one piece per step.
+const CAPACITY: usize = super::MAX_STEPS as usize + 5;
+
+#[derive(Debug, Clone)]
+pub(super) struct LowerBound {
+    pieces: [Piece; CAPACITY],
+    count: usize,
+    basis: [usize; 3],
+    /// Inverse of the matrix with the columns `(weight_i, gradient_i)` of the basis.
+    inverse: DMat3,
+    /// The optimum.
+    pub(super) at: DVec2,
+    pub(super) t: f64,
+}
+
+/// What adding a piece showed.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Progress {
+    Bounded,
+    /// A combination of pieces of weight 0 is positive everywhere: its normal separates the bodies.
+    Contradiction(DVec3),
+}
+
+impl LowerBound {
+    /// Over the rectangle from `low` to `high`, and with `floor` below every contact.
+    pub(super) fn new(low: DVec2, high: DVec2, floor: f64) -> Self {
+        let side = |value, gradient| Piece {
+            bound: Affine { value, gradient },
+            weight: 0.0,
+            normal: DVec3::ZERO,
+        };
+        let mut pieces = [Piece::default(); CAPACITY];
+        pieces[0] = Piece { weight: 1.0, ..side(floor, DVec2::ZERO) };
+        pieces[1] = side(low.x, DVec2::NEG_X);
+        pieces[2] = side(low.y, DVec2::NEG_Y);
+        pieces[3] = side(-high.x, DVec2::X);
+        pieces[4] = side(-high.y, DVec2::Y);
+        let mut bound = Self {
+            pieces,
+            count: 5,
+            basis: [0, 1, 2],
+            inverse: DMat3::IDENTITY,
+            at: low,
+            t: floor,
+        };
+        bound.inverse = bound.basis_matrix().inverse();
+        bound
+    }
+
+    /// Adds a piece, relative to the same origin as the rectangle.
+    pub(super) fn add(&mut self, piece: Piece) -> Progress {
+        self.pieces[self.count] = piece;
+        self.count += 1;
+        // Each pivot raises `t` or, in a tie, leaves it: the limit ends a cycle of ties.
+        for _ in 0..2 * self.count {
+            let Some(entering) = self.most_violated() else { break };
+            if let Err(normal) = self.pivot(entering) {
+                return match normal {
+                    Some(normal) => Progress::Contradiction(normal),
+                    None => Progress::Bounded,
+                };
+            }
+        }
+        Progress::Bounded
+    }
+
+    /// The normal that proves the bound; of no use while the floor is in the basis.
+    pub(super) fn normal(&self) -> DVec3 {
+        let multipliers = self.inverse * DVec3::X;
+        self.combine(multipliers)
+    }
+
+    fn combine(&self, multipliers: DVec3) -> DVec3 {
+        let terms = self.basis.iter().zip(multipliers.to_array());
+        terms.map(|(&i, m)| self.pieces[i].normal * m).sum()
+    }
+
+    fn basis_matrix(&self) -> DMat3 {
+        let [i, j, k] = self.basis.map(|i| column(&self.pieces[i]));
+        DMat3::from_cols(i, j, k)
+    }
+
+    fn violation(&self, piece: &Piece) -> f64 {
+        piece.bound.value + piece.bound.gradient.dot(self.at) - piece.weight * self.t
+    }
+
+    /// The piece that cuts off the optimum by most, if any does by more than rounding.
+    fn most_violated(&self) -> Option<usize> {
+        let mut worst = None;
+        let mut most = 0.0;
+        for (index, piece) in self.pieces[..self.count].iter().enumerate() {
+            let violation = self.violation(piece);
+            if violation > most && !self.basis.contains(&index) {
+                let size = piece.bound.value.abs().max((piece.weight * self.t).abs());
+                if violation > 8.0 * f64::EPSILON * size {
+                    (worst, most) = (Some(index), violation);
+                }
+            }
+        }
+        worst
+    }
+
+    /// Exchanges a piece of the basis for `entering`. An error if none can leave, with the normal of the contradiction,
+    /// or if rounding makes the new basis singular.
+    fn pivot(&mut self, entering: usize) -> Result<(), Option<DVec3>> {
+        let multipliers = self.inverse * DVec3::X;
+        let rates = self.inverse * column(&self.pieces[entering]);
+        let mut leaving = None;
+        let mut least = f64::INFINITY;
+        for slot in 0..3 {
+            if rates[slot] > 0.0 {
+                let ratio = multipliers[slot].max(0.0) / rates[slot];
+                if ratio < least {
+                    (leaving, least) = (Some(slot), ratio);
+                }
+            }
+        }
+        let Some(slot) = leaving else {
+            return Err(Some(self.pieces[entering].normal - self.combine(rates)));
+        };
+        let left = std::mem::replace(&mut self.basis[slot], entering);
+        let inverse = self.basis_matrix().inverse();
+        let values = DVec3::from_array(self.basis.map(|i| self.pieces[i].bound.value));
+        let optimum = inverse.transpose() * values;
+        if !optimum.is_finite() {
+            self.basis[slot] = left;
+            return Err(None);
+        }
+        self.inverse = inverse;
+        self.t = optimum.x;
+        self.at = -DVec2::new(optimum.y, optimum.z);
+        Ok(())
+    }
+}
+
+fn column(piece: &Piece) -> DVec3 {
+    DVec3::new(piece.weight, piece.bound.gradient.x, piece.bound.gradient.y)
+}

@@ -1,0 +1,228 @@
+//! The minimisation: solve the planar problem at the centroid, shift to the cell's best point, cut, repeat.
+
+use glam::{DVec2, DVec3};
+
+use super::MAX_STEPS;
+use super::bound::{LowerBound, Progress};
+use super::cell::{Affine, Frame, Piece};
+use super::planar::{self, Planar};
+use super::region::Region;
+use super::side::{Crossing, Side};
+use crate::polyhedron::ConvexPolyhedron;
+use crate::section::AxisPair;
+use crate::setting::Setting;
+
+/// Choices of a minimisation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CtaOptions {
+    /// Where to start: a point of each body, in its own frame, near the expected contact. Without it, the centre of the levels.
+    pub(crate) start: Option<[DVec3; 2]>,
+    /// Planar problems at most (never more than [`MAX_STEPS`]).
+    pub(crate) max_steps: u32,
+    /// Stops when upper minus lower bound is at most this part of the extent of both bodies along the direction.
+    pub(crate) gap: f64,
+}
+
+impl Default for CtaOptions {
+    fn default() -> Self {
+        Self { start: None, max_steps: MAX_STEPS, gap: 2e-3 }
+    }
+}
+
+/// Where the search was narrowed to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Guess {
+    /// The bodies seem to meet: the contact normal `n`, not of unit length, with `n . d = 1`, in the setting frame.
+    Contact { normal: DVec3 },
+    /// The bodies seem never to meet: a direction from P to Q with `u . d = 0` up to rounding.
+    Separation { direction: DVec3 },
+    /// Nothing was learnt: rounding hides the sections of a nearly flat body.
+    Nothing,
+}
+
+/// The result of a minimisation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Narrowed {
+    pub(crate) guess: Guess,
+    /// The two mesh edges of each body nearest to the contact or the separating plane, as two pairs of vertices.
+    pub(crate) vertices: [[u32; 4]; 2],
+    /// Planar problems solved.
+    pub(crate) planar_problems: u32,
+    /// Least `phi` found, an upper bound of the collision translation in units of length; infinite without a contact.
+    pub(crate) upper: f64,
+    /// Lower bound, in units of length.
+    pub(crate) lower: f64,
+}
+
+/// Narrows the search for the contact of two bodies of dimension 3.
+pub(crate) fn minimise(setting: &Setting, options: &CtaOptions) -> Narrowed {
+    let query = Query::new(setting);
+    query.minimise(options)
+}
+
+/// A setting in section coordinates.
+pub(super) struct Query<'a> {
+    pub(super) sides: [Side<'a>; 2],
+    frame: Frame,
+    axes_in_body: [DVec3; 2],
+    /// `t` at the origin of both levels and `h = 0`.
+    constant: f64,
+}
+
+impl<'a> Query<'a> {
+    pub(super) fn new(setting: &Setting<'a>) -> Self {
+        let d = setting.unit;
+        let pair = AxisPair::choose(&setting.moving_matrix, &setting.fixed_matrix, d);
+        let along = [pair.moving.1.dot(d), pair.fixed.1.dot(d)];
+        let axes = [pair.moving.1 / along[0], pair.fixed.1 / along[1]];
+        let c = axes[0] - axes[1];
+        let frame = Frame { axes, along, shadow: [c, d.cross(c)] };
+        let side = |body: &'a ConvexPolyhedron,
+                    matrix: glam::DMat3,
+                    axis: usize,
+                    body_index: usize,
+                    offset: DVec3| {
+            let to_body = matrix.transpose();
+            let shadow = frame.shadow.map(|covector| to_body * covector);
+            let constant = DVec2::new(frame.shadow[0].dot(offset), frame.shadow[1].dot(offset));
+            Side::new(
+                (body.vertices(), body.topology(), body.sections().axis(axis)),
+                along[body_index],
+                shadow,
+                constant,
+            )
+        };
+        Self {
+            sides: [
+                side(setting.moving, setting.moving_matrix, pair.moving.0, 0, DVec3::ZERO),
+                side(setting.fixed, setting.fixed_matrix, pair.fixed.0, 1, setting.offset),
+            ],
+            frame,
+            axes_in_body: [crate::section::AXES[pair.moving.0], crate::section::AXES[pair.fixed.0]],
+            // Q's levels are measured in its own frame.
+            constant: axes[1].dot(setting.offset),
+        }
+    }
+
+    fn minimise(&self, options: &CtaOptions) -> Narrowed {
+        let ranges = [self.sides[0].range(), self.sides[1].range()];
+        let origin = DVec2::from_array(ranges.map(|r| f64::midpoint(r[0], r[1])));
+        let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
+        let extent =
+            2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
+        let floor = origin.y / self.frame.along[1] - origin.x / self.frame.along[0]
+            + self.sides[0].least_height()
+            - extent;
+        let mut search = Search {
+            query: self,
+            origin,
+            half,
+            region: Region::rectangle(-half, half),
+            bound: LowerBound::new(-half, half, floor),
+            upper: f64::INFINITY,
+            best: None,
+            last_separation: None,
+            contradiction: None,
+            planar_problems: 0,
+        };
+        let start = options.start.map(|points| {
+            let levels = [0, 1].map(|i| self.axes_in_body[i].dot(points[i]));
+            DVec2::from_array(levels) - origin
+        });
+        search.run(start, options.max_steps.min(MAX_STEPS), options.gap * extent);
+        search.result()
+    }
+}
+
+/// The state of a minimisation; levels are relative to `origin`.
+struct Search<'q, 'a> {
+    query: &'q Query<'a>,
+    origin: DVec2,
+    half: DVec2,
+    region: Region,
+    bound: LowerBound,
+    upper: f64,
+    best: Option<Planar>,
+    last_separation: Option<(Planar, DVec3)>,
+    contradiction: Option<DVec3>,
+    planar_problems: u32,
+}
+
+impl Search<'_, '_> {
+    fn run(&mut self, start: Option<DVec2>, max_steps: u32, gap: f64) {
+        let mut at = start.map_or(DVec2::ZERO, |s| s.clamp(-0.999 * self.half, 0.999 * self.half));
+        for _ in 0..max_steps {
+            if !self.step(at) || self.upper - self.bound.t <= gap {
+                break;
+            }
+            match self.region.centroid() {
+                Some(centroid) => at = centroid,
+                None => break,
+            }
+        }
+    }
+
+    /// One planar problem; `false` if there is nothing more to learn.
+    fn step(&mut self, at: DVec2) -> bool {
+        let levels = (self.origin + at).to_array();
+        self.planar_problems += 1;
+        let Some(answer) = planar::solve(&self.query.sides, levels) else { return false };
+        let local = answer.piece(&self.query.frame, levels);
+        let bound = Affine {
+            value: local.bound.value - local.bound.gradient.dot(at),
+            gradient: local.bound.gradient,
+        };
+        let mut limit = 0.0;
+        if let Some(cell) = answer.cell(levels) {
+            let least = local.bound.value + cell.least(bound.gradient);
+            if least < self.upper {
+                self.upper = least;
+                self.best = Some(answer);
+            }
+            limit = self.upper;
+        } else {
+            self.last_separation = Some((answer, local.normal));
+        }
+        self.region.cut(bound.gradient, limit - bound.value);
+        if let Progress::Contradiction(normal) = self.bound.add(Piece { bound, ..local }) {
+            self.contradiction = Some(normal);
+            return false;
+        }
+        true
+    }
+
+    fn result(&self) -> Narrowed {
+        let (guess, answer) = match (self.best, self.last_separation) {
+            (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, Some(best)),
+            (None, Some((answer, normal))) => {
+                let direction = self.contradiction.unwrap_or(normal);
+                (Guess::Separation { direction }, Some(answer))
+            }
+            (None, None) => (Guess::Nothing, None),
+        };
+        Narrowed {
+            guess,
+            vertices: answer.map_or([[0; 4]; 2], |answer| answer.features()),
+            planar_problems: self.planar_problems,
+            upper: self.upper + self.query.constant,
+            lower: self.bound.t + self.query.constant,
+        }
+    }
+}
+
+impl Planar {
+    /// The two mesh edges of each body that the answer rests on.
+    fn features(&self) -> [[u32; 4]; 2] {
+        let pair = |p: &Crossing, q: &Crossing| {
+            [p.vertices[0], p.vertices[1], q.vertices[0], q.vertices[1]]
+        };
+        match self {
+            Self::Vertex { upper, vertex, left, .. } => {
+                let (own, other) = (pair(vertex, vertex), pair(&left.low, &left.high));
+                if *upper == 0 { [own, other] } else { [other, own] }
+            }
+            Self::Edges { edges, .. } => edges.each_ref().map(|edge| pair(&edge.low, &edge.high)),
+            Self::Separated { supports, .. } => supports.each_ref().map(|s| pair(s, s)),
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The search region: a convex polygon in the plane of the two levels, cut down step by step (the paper, section III-A).
+
+use glam::DVec2;
+
+/// A cut adds at most one side, and there is one cut per step.
+const CAPACITY: usize = super::MAX_STEPS as usize + 5;
+
+/// A convex polygon, counter-clockwise; empty once a cut leaves nothing.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Region {
+    corners: [DVec2; CAPACITY],
+    count: usize,
+}
+
+impl Region {
+    pub(super) fn rectangle(low: DVec2, high: DVec2) -> Self {
+        let mut corners = [DVec2::ZERO; CAPACITY];
+        corners[..4].copy_from_slice(&[
+            low,
+            DVec2::new(high.x, low.y),
+            high,
+            DVec2::new(low.x, high.y),
+        ]);
+        Self { corners, count: 4 }
+    }
+
+    /// Keeps the part where `gradient . v <= limit`.
+    pub(super) fn cut(&mut self, gradient: DVec2, limit: f64) {
+        let old = *self;
+        self.count = 0;
+        for i in 0..old.count {
+            let (from, to) =
+                (old.corners[i], old.corners[if i + 1 < old.count { i + 1 } else { 0 }]);
+            let (excess, next_excess) = (gradient.dot(from) - limit, gradient.dot(to) - limit);
+            if excess <= 0.0 {
+                self.push(from);
+            }
+            if (excess < 0.0 && next_excess > 0.0) || (excess > 0.0 && next_excess < 0.0) {
+                self.push(from + (to - from) * (excess / (excess - next_excess)));
+            }
+        }
+    }
+
+    fn push(&mut self, corner: DVec2) {
+        self.corners[self.count] = corner;
+        self.count += 1;
+    }
+
+    /// The centroid; `None` if no area is left.
+    pub(super) fn centroid(&self) -> Option<DVec2> {
+        let corners = &self.corners[..self.count];
+        let (&first, rest) = corners.split_first()?;
+        let mut area = 0.0;
+        let mut moment = DVec2::ZERO;
+        for pair in rest.windows(2) {
+            let (p, q) = (pair[0] - first, pair[1] - first);
+            let doubled = p.perp_dot(q);
+            area += doubled;
+            moment += (p + q) * doubled;
+        }
+        let centroid = first + moment / (3.0 * area);
+        (area > 0.0 && centroid.is_finite()).then_some(centroid)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cuts_halve_and_empty_a_square() {
+        let mut region = Region::rectangle(DVec2::ZERO, DVec2::splat(2.0));
+        assert_eq!(region.centroid(), Some(DVec2::ONE));
+        region.cut(DVec2::X, 1.0);
+        assert_eq!(region.centroid(), Some(DVec2::new(0.5, 1.0)));
+        region.cut(DVec2::ONE, 1.0);
+        let third = 1.0 / 3.0;
+        assert!((region.centroid().unwrap() - DVec2::splat(third)).length() < 1e-15);
+        region.cut(-DVec2::X, -1.0);
+        assert_eq!(region.centroid(), None);
+        region.cut(-DVec2::X, -2.0);
+        assert_eq!(region.centroid(), None);
+    }
+
+    #[test]
+    fn as_many_cuts_as_steps_fit() {
+        let mut region = Region::rectangle(DVec2::splat(-1.0), DVec2::ONE);
+        for i in 0..super::super::MAX_STEPS {
+            region.cut(DVec2::from_angle(f64::from(i)), 1.0);
+        }
+        assert!(region.centroid().unwrap().length() < 0.1);
+    }
+}

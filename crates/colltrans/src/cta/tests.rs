@@ -1,0 +1,342 @@
+//! The minimisation against brute force.
+
+use glam::{DQuat, DVec3};
+
+use super::{CtaOptions, Guess, Narrowed, minimise};
+use crate::polyhedron::ConvexPolyhedron;
+use crate::pose::Pose;
+use crate::section::test_bodies::{Random, cone, cuboid, ellipsoid, prism};
+use crate::setting::Setting;
+
+/// The collision translation, or by how much the bodies stay apart.
+#[derive(Debug)]
+enum Truth {
+    Contact(f64),
+    Separated(f64),
+}
+
+struct Placed {
+    vertices: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    edges: Vec<DVec3>,
+}
+
+impl Placed {
+    fn new(body: &ConvexPolyhedron, pose: &Pose) -> Self {
+        let vertices: Vec<DVec3> =
+            body.vertices().iter().map(|&v| pose.transform_point(v)).collect();
+        let normals = (0..body.face_count() as u32)
+            .map(|face| {
+                let corners: Vec<DVec3> =
+                    body.face_vertices(face).map(|v| vertices[v as usize]).collect();
+                let pairs =
+                    corners.windows(2).map(|w| (w[0] - corners[0]).cross(w[1] - corners[0]));
+                pairs.sum::<DVec3>().normalize()
+            })
+            .collect();
+        let edges = (0..vertices.len() as u32)
+            .flat_map(|v| body.neighbours(v).iter().map(move |&w| (v, w)))
+            .filter(|(v, w)| v < w)
+            .map(|(v, w)| (vertices[w as usize] - vertices[v as usize]).normalize())
+            .collect();
+        Self { vertices, normals, edges }
+    }
+}
+
+/// The greatest lower bound over all normals that can be optimal: of faces and of pairs of edges.
+fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
+    let margin = |n: DVec3| {
+        let of_p = p.vertices.iter().map(|v| n.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+        q.vertices.iter().map(|v| n.dot(*v)).fold(f64::INFINITY, f64::min) - of_p
+    };
+    let mut apart = f64::NEG_INFINITY;
+    for e in p.edges.iter().chain(&q.edges) {
+        let n = e.cross(d);
+        if n.length() > 1e-9 {
+            let n = n.normalize();
+            apart = apart.max(margin(n)).max(margin(-n));
+        }
+    }
+    if apart > 0.0 {
+        return Truth::Separated(apart);
+    }
+    let mut candidates: Vec<DVec3> = p.normals.clone();
+    candidates.extend(&q.normals);
+    for e in &p.edges {
+        candidates.extend(q.edges.iter().map(|f| e.cross(*f)));
+    }
+    let bounds = candidates.into_iter().filter_map(|n| {
+        let n = n.try_normalize()?;
+        let n = if n.dot(d) < 0.0 { -n } else { n };
+        (n.dot(d) > 1e-9).then(|| margin(n) / n.dot(d))
+    });
+    Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
+}
+
+const EXACT: CtaOptions = CtaOptions { start: None, max_steps: super::MAX_STEPS, gap: 1e-10 };
+
+/// Compares with brute force to `tolerance`; returns the result.
+fn check(
+    (p, p_pose): (&ConvexPolyhedron, &Pose),
+    (q, q_pose): (&ConvexPolyhedron, &Pose),
+    d: DVec3,
+    tolerance: f64,
+    name: &str,
+) -> Narrowed {
+    let setting = Setting::new(p, p_pose, q, q_pose, d).unwrap();
+    let narrowed = minimise(&setting, &EXACT);
+    let truth = brute_force(&Placed::new(p, p_pose), &Placed::new(q, q_pose), setting.unit);
+    match (&truth, narrowed.guess) {
+        (Truth::Contact(t), Guess::Contact { normal }) => {
+            assert!((narrowed.upper - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
+            assert!((narrowed.lower - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
+            assert!((normal.dot(setting.unit) - 1.0).abs() < 1e-6, "{name}: {narrowed:?}");
+            // The normal proves the lower bound.
+            let world = Placed::new(p, p_pose);
+            let fixed = Placed::new(q, q_pose);
+            let of_p =
+                world.vertices.iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+            let of_q = fixed.vertices.iter().map(|v| normal.dot(*v)).fold(f64::INFINITY, f64::min);
+            assert!(
+                (of_q - of_p - t).abs() <= tolerance,
+                "{name}: {truth:?} {narrowed:?} {}",
+                of_q - of_p
+            );
+        }
+        (Truth::Separated(_), Guess::Separation { .. }) => {}
+        // Bodies that graze each other may be taken for either.
+        (Truth::Separated(apart), _) if *apart < 1e-12 => {}
+        _ => panic!("{name}: {truth:?} {narrowed:?}"),
+    }
+    narrowed
+}
+
+fn random_pose(random: &mut Random, spread: f64) -> Pose {
+    let translation = DVec3::new(random.signed(), random.signed(), random.signed()) * spread;
+    Pose::new(random.rotation(), translation).unwrap()
+}
+
+#[test]
+fn random_bodies_agree_with_brute_force() {
+    let mut random = Random(7);
+    for round in 0..2000 {
+        let mut body = || {
+            let axes = DVec3::new(
+                random.within(0.6, 1.4),
+                random.within(0.6, 1.4),
+                random.within(0.6, 1.4),
+            );
+            match random.index(4) {
+                0 => ellipsoid(8 + random.index(30), axes),
+                1 => prism(3 + random.index(6), axes),
+                2 => cone(3 + random.index(6), axes),
+                _ => cuboid(axes, axes),
+            }
+        };
+        let (p, q) = (body(), body());
+        let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
+        let d = random.unit();
+        check((&p, &p_pose), (&q, &q_pose), d, 1e-8, &format!("round {round}"));
+    }
+}
+
+#[test]
+fn tied_bodies_agree_with_brute_force() {
+    let bodies = [
+        cuboid(DVec3::ZERO, DVec3::ONE),
+        cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)),
+        cuboid(DVec3::ONE, DVec3::ONE),
+        prism(4, DVec3::ONE),
+        prism(6, DVec3::ONE),
+        cone(4, DVec3::ONE),
+        ellipsoid(8, DVec3::ONE),
+        ellipsoid(32, DVec3::ONE),
+    ];
+    let directions =
+        [DVec3::Z, DVec3::NEG_X, DVec3::new(1.0, 1.0, 0.0), DVec3::ONE, DVec3::new(1.0, 2.0, 0.0)];
+    let rotations = [
+        DQuat::IDENTITY,
+        DQuat::from_rotation_z(std::f64::consts::FRAC_PI_4),
+        DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
+    ];
+    for (i, p) in bodies.iter().enumerate() {
+        for (j, q) in bodies.iter().enumerate() {
+            for d in directions {
+                for rotation in rotations {
+                    for shift in [
+                        DVec3::ZERO,
+                        DVec3::X,
+                        DVec3::new(0.5, 0.0, 3.0),
+                        DVec3::new(1.0, 1.0, 0.25),
+                        DVec3::new(2.0, 0.0, 5.0),
+                    ] {
+                        let pose = Pose::new(rotation, shift).unwrap();
+                        let name = format!("bodies {i} {j} {d} {rotation} {shift}");
+                        check((p, &Pose::IDENTITY), (q, &pose), d, 1e-8, &name);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A colliding setting of two ellipsoids of `count` vertices.
+struct Example {
+    poses: [Pose; 2],
+    d: DVec3,
+}
+
+fn colliding(random: &mut Random) -> Example {
+    let d = random.unit();
+    let across = random.unit().cross(d).normalize() * random.within(0.0, 1.0);
+    let poses = [DVec3::ZERO, d * 5.0 + across]
+        .map(|translation| Pose::new(random.rotation(), translation).unwrap());
+    Example { poses, d }
+}
+
+#[test]
+#[ignore = "prints step counts and times; run in release"]
+fn figures() {
+    println!(
+        "      n   steps(1e-2) steps(1e-9) steps(default) ns/minimise ns/problem  bytes/vertex  build ms"
+    );
+    for count in [8, 32, 128, 512, 2000, 10_000, 50_000, 200_000] {
+        let mut random = Random(11);
+        let pairs: Vec<[ConvexPolyhedron; 2]> = (0..if count > 20_000 { 1 } else { 8 })
+            .map(|_| {
+                [0, 1].map(|_| {
+                    let axes = [0, 1, 2].map(|_| random.within(0.6, 1.4));
+                    ellipsoid(count, DVec3::from_array(axes))
+                })
+            })
+            .collect();
+        let examples: Vec<Example> = (0..1000).map(|_| colliding(&mut random)).collect();
+        let settings: Vec<Setting> = examples
+            .iter()
+            .enumerate()
+            .map(|(i, e)| {
+                let [p, q] = &pairs[i % pairs.len()];
+                Setting::new(p, &e.poses[0], q, &e.poses[1], e.d).unwrap()
+            })
+            .collect();
+        let steps = |options: &CtaOptions| {
+            let mut total = 0;
+            let mut contacts = 0;
+            for setting in &settings {
+                let narrowed = minimise(setting, options);
+                if matches!(narrowed.guess, Guess::Contact { .. }) {
+                    contacts += 1;
+                    total += narrowed.planar_problems;
+                }
+            }
+            f64::from(total) / f64::from(contacts)
+        };
+        let options = |gap: f64| CtaOptions { gap, ..EXACT };
+        let (coarse, fine) = (steps(&options(1e-2 / 4.0)), steps(&options(1e-9 / 4.0)));
+        let default = steps(&CtaOptions::default());
+        let mut times: Vec<(f64, u32)> = settings
+            .iter()
+            .map(|setting| {
+                let begin = std::time::Instant::now();
+                let narrowed = std::hint::black_box(minimise(setting, &CtaOptions::default()));
+                (begin.elapsed().as_nanos() as f64, narrowed.planar_problems)
+            })
+            .collect();
+        let problems: u32 = times.iter().map(|t| t.1).sum();
+        times.sort_by(|s, t| s.0.total_cmp(&t.0));
+        let median = times[times.len() / 2].0;
+        let body = &pairs[0][0];
+        let begin = std::time::Instant::now();
+        let index = crate::section::SectionIndex::build(body.vertices(), body.topology());
+        let build = begin.elapsed().as_secs_f64() * 1e3;
+        println!(
+            "{count:>7} {coarse:>10.2} {fine:>10.2} {default:>10.2} {median:>12.0} {:>12.0} {:>12.1} {build:>12.2}",
+            median * times.len() as f64 / f64::from(problems),
+            index.heap_bytes() as f64 / body.vertices().len() as f64,
+        );
+    }
+}
+
+/// All vertices of a section in order, by brute force on the walk.
+fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
+    let ends = side.ends(x).unwrap();
+    let first = side.bottom(ends, x).unwrap().vertex;
+    let mut all = vec![first];
+    loop {
+        let next = side.up(super::side::Chain::Left, &all[all.len() - 1], x);
+        if next.up == first.up {
+            return all;
+        }
+        all.push(next);
+    }
+}
+
+#[test]
+fn planar_problems_agree_with_brute_force() {
+    use super::planar::{Planar, solve};
+    let mut random = Random(5);
+    for round in 0..3000 {
+        let mut body = || match random.index(4) {
+            0 => ellipsoid(8 + random.index(60), DVec3::ONE),
+            1 => prism(3 + random.index(6), DVec3::ONE),
+            2 => cone(3 + random.index(6), DVec3::ONE),
+            _ => cuboid(DVec3::ZERO, DVec3::ONE),
+        };
+        let (p, q) = (body(), body());
+        let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
+        let setting = Setting::new(&p, &p_pose, &q, &q_pose, random.unit()).unwrap();
+        let query = super::minimise::Query::new(&setting);
+        let levels = [0, 1].map(|i| {
+            let [low, high] = query.sides[i].range();
+            random.within(low, high)
+        });
+        let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
+        for (i, polygon) in polygons.iter().enumerate() {
+            let least = polygon.iter().map(|c| c.h()).fold(f64::INFINITY, f64::min);
+            assert_eq!(polygon[0].h(), least, "round {round}, side {i}");
+        }
+        let edges = |i: usize| {
+            let of: &Vec<super::side::Crossing> = &polygons[i];
+            (0..of.len()).map(move |k| (of[k].w, of[(k + 1) % of.len()].w))
+        };
+        // Clockwise with g to the right and h upwards.
+        let inside =
+            |i: usize, w: glam::DVec2| edges(i).all(|(s, t)| (t - s).perp_dot(w - s) >= 0.0);
+        let mut least = f64::INFINITY;
+        for i in 0..2 {
+            for c in &polygons[i] {
+                if inside(1 - i, c.w) {
+                    least = least.min(c.h());
+                }
+            }
+        }
+        for (a, b) in edges(0) {
+            for (c, e) in edges(1) {
+                let (r, s) = (b - a, e - c);
+                let cross = r.perp_dot(s);
+                let (u, v) = ((c - a).perp_dot(s) / cross, (c - a).perp_dot(r) / cross);
+                if (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v) {
+                    least = least.min((a + r * u).x);
+                }
+            }
+        }
+        match solve(&query.sides, levels).unwrap() {
+            Planar::Vertex { vertex, .. } => {
+                assert!((vertex.h() - least).abs() < 1e-9, "round {round}: {least} {}", vertex.h());
+            }
+            Planar::Edges { h, .. } => {
+                assert!((h - least).abs() < 1e-9, "round {round}: {least} {h}");
+            }
+            Planar::Separated { u, supports } => {
+                assert_eq!(least, f64::INFINITY, "round {round}");
+                for c in &polygons[0] {
+                    assert!(u.dot(c.w - supports[0].w) < 1e-9, "round {round}");
+                }
+                for c in &polygons[1] {
+                    assert!(u.dot(c.w - supports[1].w) > -1e-9, "round {round}");
+                }
+                assert!(u.dot(supports[1].w - supports[0].w) > 0.0, "round {round}");
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The four section axes of a body, and the choice of one for each of two bodies.
+//!
+//! Two axes `a`, `b` and the direction `d` are in general configuration if `a . d != 0`, `b . d != 0` and `a x b != 0`.
+//! No three of the four tetrahedral axes are coplanar, so `d` is orthogonal to at most two of them: at least two of
+//! each body have a component along `d`, and of these pairs at least one is not parallel. Over all rotations and
+//! directions the best pair has `min(|a.d|, |b.d|, |a x b|) >= 1/3` for unit vectors (found by numerical minimisation; it is
+//! met when the frames agree and `d` is a coordinate axis).
+
+use glam::{DMat3, DVec3};
+
+/// The section axes in the body frame, of length `sqrt 3` so that a level is a sum of coordinates.
+pub(crate) const AXES: [DVec3; 4] = [
+    DVec3::new(1.0, 1.0, 1.0),
+    DVec3::new(1.0, -1.0, -1.0),
+    DVec3::new(-1.0, 1.0, -1.0),
+    DVec3::new(-1.0, -1.0, 1.0),
+];
+
+/// One section axis of each body, by index into [`AXES`] and in the setting frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AxisPair {
+    /// Of the moving body.
+    pub(crate) moving: (usize, DVec3),
+    /// Of the fixed body.
+    pub(crate) fixed: (usize, DVec3),
+}
+
+impl AxisPair {
+    /// The pair in the most general configuration with the unit direction `unit`.
+    pub(crate) fn choose(moving: &DMat3, fixed: &DMat3, unit: DVec3) -> Self {
+        let a = AXES.map(|axis| *moving * axis);
+        let b = AXES.map(|axis| *fixed * axis);
+        let along = |axes: &[DVec3; 4]| axes.map(|axis| 3.0 * axis.dot(unit).powi(2));
+        let (a_along, b_along) = (along(&a), along(&b));
+        let (mut best, mut quality) = ((0, 0), -1.0);
+        for i in 0..4 {
+            for j in 0..4 {
+                // Squares of the three quantities for vectors of length sqrt 3, times 9.
+                let cosine = a[i].dot(b[j]);
+                let q = a_along[i].min(b_along[j]).min(9.0 - cosine * cosine);
+                if q > quality {
+                    (best, quality) = ((i, j), q);
+                }
+            }
+        }
+        Self { moving: (best.0, a[best.0]), fixed: (best.1, b[best.1]) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    #[test]
+    fn some_pair_is_always_in_general_configuration() {
+        let mut worst = f64::INFINITY;
+        let mut check = |moving: DMat3, fixed: DMat3, d: DVec3| {
+            let pair = AxisPair::choose(&moving, &fixed, d);
+            let (a, b) = (pair.moving.1.normalize(), pair.fixed.1.normalize());
+            worst = worst.min(a.dot(d).abs().min(b.dot(d).abs()).min(a.cross(b).length()));
+        };
+        check(DMat3::IDENTITY, DMat3::IDENTITY, DVec3::Z);
+        check(DMat3::IDENTITY, DMat3::from_quat(DQuat::from_rotation_x(1.0)), DVec3::X);
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for _ in 0..20_000 {
+            let m = DMat3::from_quat(DQuat::from_xyzw(next(), next(), next(), next()).normalize());
+            let f = DMat3::from_quat(DQuat::from_xyzw(next(), next(), next(), next()).normalize());
+            check(m, f, DVec3::new(next(), next(), next()).normalize());
+        }
+        assert!(worst > 1.0 / 3.0 - 1e-12, "{worst}");
+    }
+}

@@ -11,12 +11,12 @@ use colltrans_mesh::{Error, Mesh, write};
 use glam::{DVec2, DVec3};
 
 /// Writes to the folder that is named, or to `data/`.
-pub fn main() -> Result<(), Error> {
+pub(crate) fn main() -> Result<(), Error> {
     write_parts(&std::env::args_os().nth(1).map_or_else(|| PathBuf::from("data"), PathBuf::from))
 }
 
 /// Writes all parts to a folder.
-pub fn write_parts(folder: &Path) -> Result<(), Error> {
+pub(crate) fn write_parts(folder: &Path) -> Result<(), Error> {
     write(&bracket(), folder.join("bracket.obj"))?;
     write(&dodecahedron(), folder.join("dodecahedron.off"))?;
     write(&triangulated(&gear_hull()), folder.join("gear_hull.stl"))?;
@@ -39,7 +39,7 @@ fn bracket() -> Mesh {
 
 /// The regular dodecahedron whose cube of vertices has sides of 2.
 fn dodecahedron() -> Mesh {
-    let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
+    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut points = Vec::new();
     for a in [-1.0, 1.0] {
         for b in [-1.0, 1.0] {
@@ -111,7 +111,7 @@ fn circle(count: usize) -> Vec<DVec2> {
     let mut step = DVec2::new(3.0_f64.sqrt() / 2.0, 0.5);
     let mut corners_per_turn = 12;
     while corners_per_turn < count {
-        let cosine = ((1.0 + step.x) / 2.0).sqrt();
+        let cosine = (0.5 * (1.0 + step.x)).sqrt();
         step = DVec2::new(cosine, step.y / (2.0 * cosine));
         corners_per_turn *= 2;
     }
@@ -120,7 +120,7 @@ fn circle(count: usize) -> Vec<DVec2> {
     let mut quarter = vec![DVec2::X];
     for i in 1..count / 4 {
         let previous: DVec2 = quarter[i - 1];
-        quarter.push(if count % 8 == 0 && i == eighth {
+        quarter.push(if count.is_multiple_of(8) && i == eighth {
             DVec2::splat(FRAC_1_SQRT_2)
         } else if i <= eighth {
             previous.rotate(step)

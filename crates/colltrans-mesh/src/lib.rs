@@ -1,6 +1,6 @@
 //! Mesh files in double precision: STL, OBJ, PLY and OFF.
 //!
-//! The data's way: a file's bytes -> one reader per format ([`stl`], [`obj`], [`ply`], [`off`]) ->
+//! The data's way: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`) ->
 //! [`Mesh`]. A reader either returns every vertex and face of the file, in the file's order, or an
 //! [`Error`] that says what is wrong and where; it never allocates more than a small multiple of
 //! the file's size, whatever the file's header promises.
@@ -72,6 +72,20 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 }
 
 /// Reads a mesh from the bytes of a file; `path` is only named in errors.
+///
+/// ```
+/// use std::path::Path;
+/// use colltrans_mesh::{Format, parse};
+///
+/// let square = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+/// let mesh = parse(Format::Off, square.into(), Path::new("square.off"))?;
+/// assert_eq!(mesh.faces, [[0, 1, 2, 3]]);
+///
+/// let cut = square[..30].into();
+/// let error = parse(Format::Off, cut, Path::new("square.off")).unwrap_err();
+/// assert_eq!(error.to_string(), "square.off: end of file: vertex 3 of 4 is missing");
+/// # Ok::<(), colltrans_mesh::Error>(())
+/// ```
 ///
 /// # Errors
 /// The contents are not what the format prescribes.

@@ -1,24 +1,18 @@
 //! `colltrans cast` and `colltrans info`, run as a user runs them.
 
-mod support;
+use std::process::Output;
 
-use predicates_free::assert_error;
-use support::{CAST, colltrans, folder, json, stderr, stdout};
+use crate::support::{CAST, colltrans, folder, json, stderr, stdout};
 
-mod predicates_free {
-    use super::support::{stderr, stdout};
-    use std::process::Output;
-
-    /// One line on standard error that says all of `words`, nothing on standard output.
-    pub(crate) fn assert_error(output: &Output, code: i32, words: &[&str]) {
-        let message = stderr(output);
-        assert_eq!(output.status.code(), Some(code), "{message}");
-        assert_eq!(stdout(output), "");
-        assert!(message.starts_with("error: "), "{message}");
-        assert!(!message.contains("panicked") && !message.contains("RUST_BACKTRACE"), "{message}");
-        for word in words {
-            assert!(message.contains(word), "{word:?} is not in {message}");
-        }
+/// One line on standard error that says all of `words`, nothing on standard output.
+fn assert_error(output: &Output, code: i32, words: &[&str]) {
+    let message = stderr(output);
+    assert_eq!(output.status.code(), Some(code), "{message}");
+    assert_eq!(stdout(output), "");
+    assert!(message.starts_with("error: "), "{message}");
+    assert!(!message.contains("panicked") && !message.contains("RUST_BACKTRACE"), "{message}");
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in {message}");
     }
 }
 
@@ -205,7 +199,13 @@ fn info_says_what_is_there_and_what_is_wrong() {
     );
     contains(
         "dent.off",
-        &["vertices     9", "no; --hull", "e-1 below the", "volume       0.9166", "hull volume  1\n"],
+        &[
+            "vertices     9",
+            "no; --hull",
+            "e-1 below the",
+            "volume       0.9166",
+            "hull volume  1\n",
+        ],
     );
     contains("open.off", &["convex       no: the surface is open", "hull volume  1\n"]);
     contains("points.ply", &["faces        0 (a cloud of points)", "no faces", "hull volume  1\n"]);

@@ -1,10 +1,8 @@
 //! `--picture`: well-formed, finite, and with what belongs in it, for any pair of bodies.
 
-mod support;
-
 use std::path::Path;
 
-use support::{CAST, colltrans, data, folder, stderr};
+use crate::support::{CAST, colltrans, data, folder, stderr};
 
 /// The elements of a well-formed XML document, in order of their start; panics on any other.
 fn elements(svg: &str) -> Vec<String> {

@@ -1,9 +1,9 @@
 //! The committed example parts are what the program writes.
 
-#[path = "../examples/make_parts.rs"]
+#[path = "../../examples/make_parts.rs"]
 mod make_parts;
 
-mod support;
+use crate::support::data;
 
 #[test]
 fn the_program_writes_the_committed_files() {
@@ -15,7 +15,7 @@ fn the_program_writes_the_committed_files() {
     assert_eq!(names.len(), 5);
     for name in names {
         let written = std::fs::read(folder.path().join(&name)).unwrap();
-        let committed = std::fs::read(support::data().join(&name)).unwrap_or_default();
+        let committed = std::fs::read(data().join(&name)).unwrap_or_default();
         assert!(written == committed, "{} differs; run the example make_parts", name.display());
     }
     // The program's own entry point.

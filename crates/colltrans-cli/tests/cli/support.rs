@@ -8,7 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// The binary, with the current folder where the test's files are.
-pub fn colltrans(folder: &Path) -> Command {
+pub(crate) fn colltrans(folder: &Path) -> Command {
     let mut command = Command::cargo_bin("colltrans").unwrap();
     command.current_dir(folder);
     command
@@ -16,7 +16,7 @@ pub fn colltrans(folder: &Path) -> Command {
 
 /// A folder with a unit cube (`cube.off`), a body that is not convex (`dent.off`), an open one
 /// (`open.off`), a broken file (`broken.off`) and a point cloud (`points.ply`).
-pub fn folder() -> TempDir {
+pub(crate) fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let cube = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
     let sides = "4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
@@ -33,23 +33,22 @@ pub fn folder() -> TempDir {
 }
 
 /// Two unit cubes, the moving one 3 to the left and a little aside: contact after 2.
-pub const CAST: [&str; 7] =
+pub(crate) const CAST: [&str; 7] =
     ["cast", "cube.off", "cube.off", "--direction", "1,0,0", "--moving-pose", "-3,0.25,-0.5"];
 
-pub fn stdout(output: &Output) -> String {
+pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-pub fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-pub fn json(text: &str) -> Value {
+pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
 }
 
 /// The folder of the example parts.
-#[allow(dead_code, reason = "not every test uses it")]
-pub fn data() -> PathBuf {
+pub(crate) fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
 }

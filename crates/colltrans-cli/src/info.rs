@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use colltrans::{BuildError, ConvexPolyhedron};
+use colltrans::{BuildError, ConvexPolyhedron, TopologyError};
 use colltrans_mesh::Mesh;
 
 use crate::args::InfoArguments;
@@ -51,7 +51,18 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
             line(&mut text, "convex", &not_quite(mesh, face, depth, asked_tolerance));
         }
         Err(error) => {
-            line(&mut text, "volume", "none: the faces do not enclose one body");
+            // Such a surface is closed and oriented all the same.
+            let is_closed = matches!(
+                error,
+                BuildError::InsideOut { .. }
+                    | BuildError::Topology(TopologyError::NotASphere { .. })
+            );
+            let volume = if is_closed {
+                number(mesh.signed_volume())
+            } else {
+                "none: the faces do not enclose a body".into()
+            };
+            line(&mut text, "volume", &volume);
             line(&mut text, "convex", &format!("no: {error}"));
         }
     }

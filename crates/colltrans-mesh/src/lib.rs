@@ -81,7 +81,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 /// let mesh = parse(Format::Off, square.into(), Path::new("square.off"))?;
 /// assert_eq!(mesh.faces, [[0, 1, 2, 3]]);
 ///
-/// let cut = square[..30].into();
+/// let cut = square[..28].into();
 /// let error = parse(Format::Off, cut, Path::new("square.off")).unwrap_err();
 /// assert_eq!(error.to_string(), "square.off: end of file: vertex 3 of 4 is missing");
 /// # Ok::<(), colltrans_mesh::Error>(())

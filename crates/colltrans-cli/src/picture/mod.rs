@@ -8,6 +8,8 @@
 //! a contact ahead, the contact plane separates `Q` from `P` not only at the contact but all along
 //! its way (`n.d > 0`); for separated bodies, the separating plane does (`n.d = 0`). So
 //! drawing from back to front is exact, which for three bodies without such a plane it need not be.
+//! Where the contact lies behind, the start may overlap `Q`; it is drawn last, as an outline that
+//! hides nothing.
 //!
 //! The data's way: [`story`] (what is to be shown) -> [`view`] (from where) -> [`layout`] (how large)
 //! -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
@@ -114,21 +116,22 @@ impl Cast {
     ) {
         let fixed_is_nearer = story.normal.dot(view.toward) > 0.0;
         let stop_is_nearer = self.way.dot(view.toward) > 0.0;
+        let is_behind = story.stop < 0.0;
+        let draw_start = |page: &mut Page| {
+            if let Some(start) = &self.start {
+                start.draw_ghost(page, view, &MOVING, on_page);
+            }
+        };
         let draw_moving = |page: &mut Page| {
-            let ghost = |page: &mut Page| {
-                if let Some(start) = &self.start {
-                    start.draw_ghost(page, view, &MOVING, on_page);
-                }
-            };
-            if stop_is_nearer {
-                ghost(page);
+            if stop_is_nearer && !is_behind {
+                draw_start(page);
             }
             self.stop.draw(page, view, &MOVING, on_page);
             if let Some(contact) = story.contact {
                 self.stop.mark(page, view, contact.moving_feature, MOVING_MARK, on_page);
             }
-            if !stop_is_nearer {
-                ghost(page);
+            if !stop_is_nearer && !is_behind {
+                draw_start(page);
             }
         };
         let draw_fixed = |page: &mut Page| {
@@ -152,6 +155,9 @@ impl Cast {
             draw_fixed(page);
             draw_plane(page);
             draw_moving(page);
+        }
+        if is_behind {
+            draw_start(page);
         }
     }
 }

@@ -83,6 +83,8 @@ impl Desk {
     }
 
     fn answer_text(&self, number: u64, text: &[u8]) -> (Option<Box<RawValue>>, Record) {
+        // Some editors begin a file with a byte order mark.
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let query: Query = match serde_json::from_slice(text) {
             Ok(query) => query,
             Err(error) => {

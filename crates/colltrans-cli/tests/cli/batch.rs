@@ -107,9 +107,10 @@ fn a_bad_line_costs_one_result() {
 #[test]
 fn any_id_comes_back_as_it_was_written() {
     let ids = [r#""a \u0062""#, "12345678901234567890123", "1.50", "null", "[1, {\"x\": 2}]"];
-    let mut text = String::new();
+    let mut text = String::from("\u{feff}");
     for id in ids {
-        let _ = writeln!(text, r#"{{"id":{id},"moving":{BOX},"fixed":{BOX},"direction":[1,0,0]}}"#);
+        let _ = write!(text, r#"{{"id":{id},"moving":{BOX},"fixed":{BOX},"direction":[1,0,0]}}"#);
+        text.push_str("\r\n");
     }
     let (output, _) = run(&text, &[]);
     for (line, id) in stdout(&output).lines().zip(ids) {

@@ -102,6 +102,8 @@ fn other_outcomes() {
     let tolerant = outcome("0.75,0,9", &["--graze-tolerance", "0.25"]);
     assert_eq!(tolerant["outcome"], "grazing");
     assert_eq!(tolerant["margin"], -0.25);
+    let opposite = outcome("0.75,0,9", &["--fixed-pose", "-1,-2,-3"]);
+    assert_eq!(opposite["outcome"], "separated", "poses may begin with a minus sign");
     // A quarter turn about z takes the cube to x from -1 to 0.
     let turned = outcome("0.25,0,9,0,0,0.7071067811865476,0.7071067811865476", &[]);
     assert_eq!(turned["outcome"], "contact");

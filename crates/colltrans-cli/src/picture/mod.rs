@@ -92,6 +92,11 @@ pub(crate) fn draw(scene: &Scene<'_>) -> String {
     page.finish(layout.size, layout.window, &story.headline)
 }
 
+/// Which of the bodies may hide the other; the plane between them decides.
+fn fixed_is_nearer(story: &Story<'_>, view: &View) -> bool {
+    story.normal.dot(view.toward) > 0.0
+}
+
 impl Cast {
     fn of(scene: &Scene<'_>, story: &Story<'_>) -> Self {
         let unit = scene.direction.normalize();
@@ -114,7 +119,7 @@ impl Cast {
         story: &Story<'_>,
         on_page: impl Fn(DVec3) -> DVec2 + Copy,
     ) {
-        let fixed_is_nearer = story.normal.dot(view.toward) > 0.0;
+        let fixed_is_nearer = fixed_is_nearer(story, view);
         let stop_is_nearer = self.way.dot(view.toward) > 0.0;
         let is_behind = story.stop < 0.0;
         let draw_start = |page: &mut Page| {
@@ -159,5 +164,100 @@ impl Cast {
         if is_behind {
             draw_start(page);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use colltrans::glam::DQuat;
+    use colltrans::{Options, contact_range};
+
+    /// Numbers from -1 to 1.
+    fn random(state: &mut u64) -> f64 {
+        *state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn random_vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    fn random_pose(state: &mut u64, distance: f64) -> Pose {
+        let rotation = DQuat::from_axis_angle(
+            random_vector(state).normalize_or(DVec3::X),
+            3.0 * random(state),
+        );
+        Pose::new(rotation, distance * random_vector(state)).unwrap()
+    }
+
+    /// How near a solid comes to the viewer on the line of sight through a point.
+    fn nearest(solid: &Solid, view: &View, point: DVec3) -> Option<f64> {
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (face, area) in solid.faces.iter().zip(&solid.areas) {
+            let height = area.dot(point - solid.vertices[face[0] as usize]);
+            let slope = area.dot(view.toward);
+            match slope {
+                s if s > 0.0 => high = high.min(-height / s),
+                s if s < 0.0 => low = low.max(-height / s),
+                _ if height > 0.0 => return None,
+                _ => {}
+            }
+        }
+        (low < high).then_some(high)
+    }
+
+    /// Against the slow way, ray by ray: what is drawn later is nearer wherever both are seen.
+    #[test]
+    fn what_is_drawn_later_is_nearer() {
+        let state = &mut 1;
+        let mut compared = [0, 0];
+        for _ in 0..300 {
+            let body = |state: &mut u64| {
+                let points: Vec<DVec3> = (0..9).map(|_| random_vector(state)).collect();
+                ConvexPolyhedron::from_points(&points).unwrap()
+            };
+            let (moving, fixed) = (body(state), body(state));
+            let moving_pose = random_pose(state, 3.0);
+            let fixed_pose = random_pose(state, 1.0);
+            let towards = fixed_pose.translation() - moving_pose.translation();
+            let direction = towards + 0.7 * random_vector(state);
+            let answer = contact_range(
+                &moving,
+                &moving_pose,
+                &fixed,
+                &fixed_pose,
+                direction,
+                &Options::default(),
+            )
+            .unwrap();
+            let scene = Scene {
+                moving: &moving,
+                moving_pose,
+                fixed: &fixed,
+                fixed_pose,
+                direction,
+                answer: &answer,
+            };
+            let story = Story::of(&scene);
+            if story.stop < 0.0 {
+                continue;
+            }
+            let cast = Cast::of(&scene, &story);
+            let view = View::choose([&cast.stop, &cast.fixed], direction.normalize(), story.normal);
+            let fixed_is_nearer = fixed_is_nearer(&story, &view);
+            for solid in [Some(&cast.stop), cast.start.as_ref()].into_iter().flatten() {
+                for _ in 0..400 {
+                    let point = 0.8 * random_vector(state);
+                    let depths = [solid, &cast.fixed].map(|s| nearest(s, &view, point));
+                    let [Some(p), Some(q)] = depths else { continue };
+                    compared[usize::from(fixed_is_nearer)] += 1;
+                    let ahead = if fixed_is_nearer { q - p } else { p - q };
+                    assert!(ahead > -1e-9, "{ahead} in {:?}", story.headline);
+                }
+            }
+        }
+        assert!(compared.iter().all(|&count| count > 1000), "{compared:?}");
     }
 }

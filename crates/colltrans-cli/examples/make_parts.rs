@@ -139,13 +139,22 @@ fn circle(count: usize) -> Vec<DVec2> {
     corners.into_iter().map(|c| c + DVec2::ZERO).collect()
 }
 
-/// The convex hull as a mesh.
+/// The convex hull as a mesh, in an order that does not depend on how it was found: vertices in the
+/// order of the points, each face from its first vertex on, faces in the order of their vertices.
 fn hull(points: &[DVec3]) -> Mesh {
     let body = ConvexPolyhedron::from_points(points).expect("the points are finite");
-    Mesh {
-        vertices: body.vertices().to_vec(),
-        faces: (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect(),
+    let inputs = body.input_indices();
+    let mut kept = inputs.to_vec();
+    kept.sort_unstable();
+    let place = |v: u32| kept.partition_point(|&k| k < inputs[v as usize]) as u32;
+    let mut faces: Vec<Vec<u32>> =
+        (0..body.face_count() as u32).map(|f| body.face_vertices(f).map(place).collect()).collect();
+    for face in &mut faces {
+        let first = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
+        face.rotate_left(first);
     }
+    faces.sort_unstable();
+    Mesh { vertices: kept.iter().map(|&k| points[k as usize]).collect(), faces }
 }
 
 /// The same surface, each polygon cut into a fan of triangles.

@@ -76,7 +76,7 @@ pub(crate) fn draw(scene: &Scene<'_>) -> String {
     let story = Story::of(scene);
     let cast = Cast::of(scene, &story);
     let unit = scene.direction.normalize();
-    let view = View::choose([&cast.stop, &cast.fixed], unit, story.normal);
+    let view = View::choose([&cast.stop, &cast.fixed], unit, story.looked_along());
     let layout = Layout::of(&cast, &story, &view);
     let on_page = |p: DVec3| layout.on_page(view.project(p));
     let mut page = Page::new(layout.window);
@@ -213,7 +213,7 @@ mod tests {
     fn what_is_drawn_later_is_nearer() {
         let state = &mut 1;
         let mut compared = [0, 0];
-        for _ in 0..300 {
+        for round in 0..300 {
             let body = |state: &mut u64| {
                 let points: Vec<DVec3> = (0..9).map(|_| random_vector(state)).collect();
                 ConvexPolyhedron::from_points(&points).unwrap()
@@ -245,7 +245,11 @@ mod tests {
                 continue;
             }
             let cast = Cast::of(&scene, &story);
-            let view = View::choose([&cast.stop, &cast.fixed], direction.normalize(), story.normal);
+            let view = View::choose(
+                [&cast.stop, &cast.fixed],
+                direction.normalize(),
+                [story.normal, -story.normal][round % 2],
+            );
             let fixed_is_nearer = fixed_is_nearer(&story, &view);
             for solid in [Some(&cast.stop), cast.start.as_ref()].into_iter().flatten() {
                 for _ in 0..400 {

@@ -1,7 +1,7 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Certificate, Contact, ContactRange, Separated};
+use colltrans::{Certificate, Contact, ContactRange, Feature, Separated};
 
 use super::{Cast, Scene, Solid, layout};
 
@@ -92,6 +92,16 @@ impl<'a> Story<'a> {
                 short(margin),
                 components(normal)
             )],
+        }
+    }
+
+    /// The normal, or its opposite where that shows the contact face of the moving body: a face is
+    /// seen from its own side, and the body that has only a vertex or an edge there hides less.
+    pub(super) fn looked_along(&self) -> DVec3 {
+        let is_face = |feature| matches!(feature, Feature::Face(_));
+        match self.contact {
+            Some(c) if is_face(c.moving_feature) && !is_face(c.fixed_feature) => -self.normal,
+            _ => self.normal,
         }
     }
 

@@ -38,7 +38,8 @@ impl View {
         DVec2::new(self.right.dot(p), self.up.dot(p))
     }
 
-    /// The view that shows `d` and `n` at length and much of the shapes of both bodies.
+    /// The view that shows `d` and `n` at length and much of the shapes of both bodies, if
+    /// possible from the side that `n` comes from.
     pub(super) fn choose(bodies: [&Solid; 2], d: DVec3, n: DVec3) -> Self {
         let mut best = (f64::NEG_INFINITY, Self::new(0.0, 0.0));
         for elevation in ELEVATIONS {
@@ -61,7 +62,8 @@ impl View {
         // Nearly sideways is as good as sideways.
         let seen = |u: DVec3| self.project(u).length().min(0.96);
         let shapes: f64 = bodies.into_iter().map(|body| self.shape_seen(body)).sum();
-        2.0 * seen(d) + 1.5 * seen(n) + 0.6 * shapes
+        let against = (-n.dot(self.toward)).clamp(-0.28, 0.28);
+        2.0 * seen(d) + 1.5 * seen(n) + 0.6 * shapes + 1.2 * against
     }
 
     /// How evenly the visible area is spread over the faces: the entropy of their projected

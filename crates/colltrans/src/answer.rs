@@ -109,22 +109,11 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
         let next = (i + 1) % neighbours.len();
         if !outgoing.is_empty() && next != i && in_plane(neighbours[next]) {
             let face = topology.half_edge(outgoing[next]).face;
-            if body.dimension() == 3 || front(body, face, outward) {
+            // Of the two faces of a flat polygon, the one that looks there.
+            if body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0 {
                 return Feature::Face(face);
             }
         }
     }
     edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
-}
-
-/// Whether a face of a flat polygon is the one that looks along `outward`.
-fn front(body: &ConvexPolyhedron, face: u32, outward: DVec3) -> bool {
-    let mut corners = body.face_vertices(face).map(|v| body.vertices()[v as usize]);
-    let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { return false };
-    let mut normal = DVec3::ZERO;
-    for c in corners {
-        normal += (b - a).cross(c - a);
-        b = c;
-    }
-    normal.dot(outward) >= 0.0
 }

@@ -20,7 +20,7 @@ pub use glam;
 pub use outcome::{
     Clearance, Contact, ContactRange, Feature, Grazing, Outcome, Separated, Solver, Steps,
 };
-pub use polyhedron::ConvexPolyhedron;
+pub use polyhedron::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
 pub use pose::Pose;
 pub use query::{
     Options, cast, cast_with, clearance, contact_range, directional_depth, intersects,

@@ -44,6 +44,23 @@ impl Measure {
         Self { reach, center, factor: cholesky(&shape), radius, volume }
     }
 
+    /// The volume that a closed surface encloses: positive if its faces are counter-clockwise from outside.
+    pub(crate) fn signed_volume(vertices: &[DVec3], topology: &Topology) -> f64 {
+        let apex = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+        (0..topology.face_count() as u32)
+            .map(|face| {
+                let mut corners = topology.face_vertices(face).map(|v| vertices[v as usize] - apex);
+                let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { return 0.0 };
+                let mut volume = 0.0;
+                for c in corners {
+                    volume += a.dot(b.cross(c)) / 6.0;
+                    b = c;
+                }
+                volume
+            })
+            .sum()
+    }
+
     /// `L^T m`.
     pub(crate) fn axes_by_factor(&self, m: &DMat3) -> DMat3 {
         let l = &self.factor;

@@ -6,6 +6,7 @@
 mod hull;
 mod measure;
 mod mesh;
+mod plane;
 mod support;
 pub(crate) mod topology;
 
@@ -15,6 +16,7 @@ use crate::error::BuildError;
 use crate::section::SectionIndex;
 use hull::Hull;
 pub(crate) use measure::Measure;
+pub use mesh::{ConvexityDefect, convexity_defect};
 use support::SupportIndex;
 use topology::Topology;
 
@@ -44,8 +46,8 @@ impl ConvexPolyhedron {
     /// # Errors
     /// No points, a point that is not finite, a coordinate out of the exact range.
     pub fn from_points(points: &[DVec3]) -> Result<Self, BuildError> {
-        let hull = hull::convex_hull(points)?;
-        Ok(Self::from_hull(points, &hull))
+        hull::check_points(points)?;
+        Ok(Self::from_hull(points, hull::convex_hull(points)))
     }
 
     /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of vertex indices,
@@ -65,26 +67,21 @@ impl ConvexPolyhedron {
         mesh::from_mesh(vertices, faces, tolerance)
     }
 
-    fn from_hull(points: &[DVec3], hull: &Hull) -> Self {
-        let vertices: Vec<DVec3> = hull.vertices.iter().map(|&i| points[i as usize]).collect();
-        let topology = if hull.dimension < 2 {
-            Topology::without_faces(vertices.len())
-        } else {
-            Topology::from_faces(vertices.len(), hull.face_start.clone(), &hull.face_vertices)
-                .expect("a hull is closed")
-        };
-        let measure = Measure::new(&vertices, &topology, hull.dimension);
+    fn from_hull(points: &[DVec3], hull: Hull) -> Self {
+        let Hull { dimension, vertices: input_index, topology, violation } = hull;
+        let vertices: Vec<DVec3> = input_index.iter().map(|&i| points[i as usize]).collect();
+        let measure = Measure::new(&vertices, &topology, dimension);
         let support = SupportIndex::build(&vertices, &topology, &measure);
-        let sections = if hull.dimension == 3 {
+        let sections = if dimension == 3 {
             SectionIndex::build(&vertices, &topology)
         } else {
             SectionIndex::default()
         };
         Self {
             vertices,
-            input_index: hull.vertices.clone(),
-            dimension: hull.dimension,
-            hull_error: hull.violation,
+            input_index,
+            dimension,
+            hull_error: violation,
             topology,
             measure,
             support,
@@ -123,6 +120,14 @@ impl ConvexPolyhedron {
     /// If there is no such face.
     pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
         self.topology.face_vertices(face)
+    }
+
+    /// Unit normal of a face, outwards, in the body frame.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn face_normal(&self, face: u32) -> DVec3 {
+        plane::polygon_normal(self.face_vertices(face).map(|v| self.vertices[v as usize]))
     }
 
     /// The vertices joined to `vertex` by an edge, clockwise as seen from outside.
@@ -191,14 +196,10 @@ impl ConvexPolyhedron {
             face_vertices.extend_from_slice(face);
             face_start.push(face_vertices.len() as u32);
         }
-        let hull = Hull {
-            dimension: 3,
-            vertices: (0..vertices.len() as u32).collect(),
-            face_start,
-            face_vertices,
-            violation: 0.0,
-        };
-        Self::from_hull(vertices, &hull)
+        let topology = Topology::from_faces(vertices.len(), face_start, &face_vertices).unwrap();
+        let vertices_in_order = (0..vertices.len() as u32).collect();
+        let hull = Hull { dimension: 3, vertices: vertices_in_order, topology, violation: 0.0 };
+        Self::from_hull(vertices, hull)
     }
 }
 

@@ -1,0 +1,376 @@
+//! Checks an answer of the library in exact arithmetic: what its certificate proves, and whether that is what it says.
+//!
+//! Notation as in [`scene`](crate::scene). Every number of a certificate is taken as exact.
+//!
+//! - *Lower bound.* `L = (min_Q n.q - max_P n.p) / n.d` over all vertices.
+//! - *Upper bound.* If the line passes through the triangle of the three differences `q - p`, exactly, it
+//!   does so at `U`, and the bodies provably meet. Then `L <= coll <= U`, and `U - L` is the gap that is proven. Rounding can make
+//!   the line miss a triangle that ends at it (a contact at a vertex, an edge or the rim); the answer is then *near*: its witness
+//!   points miss each other by a residual, which must be rounding error, and the outcome has to be decided by the oracle.
+//! - *Separation.* `n' = n (d.d) - d (n.d)` is exactly orthogonal to `d`; `min_Q n'.q > max_P n'.p` proves that the bodies never
+//!   meet. Nothing depends on how well `n` itself is orthogonal.
+//! - *Grazing.* `n'` from the separating direction bounds the overlap from above, the residual of the
+//!   witness points from below: two bodies whose witness points come within `r` overlap by at least `-r`.
+
+use std::cmp::Ordering;
+use std::fmt;
+
+use colltrans::{
+    Certificate, Contact, ConvexPolyhedron, Feature, Grazing, Outcome, Separated, VertexPair,
+};
+use glam::DVec3;
+
+use crate::exact::{Dyadic, Ratio, Vector};
+use crate::scene::Scene;
+use crate::shadow::sideways_overlap;
+use crate::simplex::collision_translation;
+
+/// How many units of rounding error ([`Scene::noise`]) two different computations of the same sideways distance may differ by:
+/// each is allowed one.
+const TWO_ROUNDINGS: f64 = 2.0;
+
+/// How many units of rounding error the witness points of a contact may miss each other by: the bodies
+/// are widened by up to three for a grazing contact, in two directions, and each of the two points is rounded.
+const RESIDUAL_ROUNDINGS: f64 = 8.0;
+
+/// Relative error that computing a unit vector may leave.
+const UNIT_ERROR: f64 = 16.0 * f64::EPSILON;
+
+/// What an answer was found to prove.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Proof {
+    /// Whether outcome and value are proven by the certificate alone, without a rounding error.
+    pub exact: bool,
+    /// `U - L`, in world units, divided by the size of the configuration.
+    pub gap_over_size: f64,
+    /// `U - L` divided by the tolerance that the certificate states.
+    pub gap_over_tolerance: f64,
+    /// How far the witness points miss each other, in units of rounding error.
+    pub residual_in_noises: f64,
+}
+
+/// Why an answer is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Objection(pub String);
+
+impl fmt::Display for Objection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Objection {}
+
+/// `Err` with a formatted [`Objection`] unless the condition holds.
+macro_rules! require {
+    ($condition:expr, $($text:tt)+) => {
+        if !$condition {
+            return Err(Objection(format!($($text)+)));
+        }
+    };
+}
+
+/// The two bodies and what is needed to judge an answer about them.
+#[derive(Debug)]
+pub struct Judge<'a> {
+    /// The setting in exact coordinates.
+    pub scene: Scene,
+    /// The moving body.
+    pub moving: &'a ConvexPolyhedron,
+    /// The fixed body.
+    pub fixed: &'a ConvexPolyhedron,
+    /// The graze tolerance that the query was given.
+    pub graze_tolerance: f64,
+}
+
+impl Judge<'_> {
+    /// Re-verifies everything an answer carries.
+    ///
+    /// # Errors
+    /// The first statement of the answer that is not true.
+    pub fn check(&self, outcome: &Outcome) -> Result<Proof, Objection> {
+        match outcome {
+            Outcome::Contact(contact) => self.check_contact(contact),
+            Outcome::Grazing(grazing) => self.check_grazing(grazing),
+            Outcome::Separated(separated) => self.check_separated(separated),
+        }
+    }
+
+    /// Compares an answer with the linear programme and the exact sideways overlap: outcome exactly, value within
+    /// the stated bound.
+    ///
+    /// # Errors
+    /// How they disagree.
+    pub fn compare_with_oracle(&self, outcome: &Outcome) -> Result<(), Objection> {
+        let overlap = sideways_overlap(&self.scene);
+        let truth = collision_translation(&self.scene);
+        let meets = overlap.sign != Ordering::Less;
+        require!(truth.is_some() == meets, "the oracle contradicts itself");
+        let slack = TWO_ROUNDINGS * self.scene.noise;
+        let graze = self.graze_tolerance.max(self.scene.noise) + slack;
+        let is = overlap.to_f64();
+        match outcome {
+            Outcome::Contact(contact) => {
+                let Some(truth) = truth else {
+                    return Err(Objection(format!("contact, but the shadows are {is:e} apart")));
+                };
+                require!(
+                    overlap.exceeds(self.graze_tolerance - slack),
+                    "contact, but the shadows overlap by {is:e} only"
+                );
+                self.agrees(contact, &truth)
+            }
+            Outcome::Separated(_) => {
+                require!(!meets, "separated, but the shadows overlap by {is:e}");
+                Ok(())
+            }
+            Outcome::Grazing(grazing) => {
+                require!(
+                    !overlap.exceeds(graze) && overlap.exceeds(-slack - slack),
+                    "grazing, but the shadows overlap by {is:e} (tolerated: {graze:e})"
+                );
+                match truth {
+                    Some(truth) if is > slack => self.agrees(&grazing.contact, &truth),
+                    _ => Ok(()),
+                }
+            }
+        }
+    }
+
+    /// The value agrees with the true one within the tolerance that the certificate states.
+    #[expect(clippy::unused_self, reason = "reads like its siblings")]
+    fn agrees(&self, contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
+        let tolerance = contact.certificate.tolerance;
+        let error = Ratio::from_f64(contact.translation).minus(truth);
+        require!(
+            error.is_within(tolerance),
+            "translation {:e}, true value {:e}, off by {:e} (tolerated: {tolerance:e})",
+            contact.translation,
+            truth.to_f64(),
+            error.to_f64()
+        );
+        Ok(())
+    }
+
+    fn check_contact(&self, contact: &Contact) -> Result<Proof, Objection> {
+        let certificate = &contact.certificate;
+        require!(contact.normal == certificate.normal, "two different normals");
+        require!(
+            (certificate.lower..=certificate.upper + certificate.tolerance)
+                .contains(&contact.translation)
+                || (contact.translation - certificate.lower).abs() <= certificate.tolerance,
+            "translation {:e} outside its bounds",
+            contact.translation
+        );
+        let proof = self.check_certificate(certificate)?;
+        self.check_points(contact)?;
+        self.check_feature(contact, contact.moving_feature, true)?;
+        self.check_feature(contact, contact.fixed_feature, false)?;
+        Ok(proof)
+    }
+
+    fn check_certificate(&self, certificate: &Certificate) -> Result<Proof, Objection> {
+        let Certificate { normal, lower, upper, tolerance, .. } = *certificate;
+        require!(is_unit(normal), "the normal {normal} is no unit vector");
+        let normal = Vector::new(normal);
+        let along = normal.dot(&self.scene.direction);
+        require!(along.is_positive(), "the normal does not point along the direction");
+        let exact_lower = Ratio::new(self.distance_along(&normal), along);
+        let off = exact_lower.minus(&Ratio::from_f64(lower));
+        require!(
+            off.is_within(tolerance),
+            "lower bound {lower:e} is off by {:e} (tolerated: {tolerance:e})",
+            off.to_f64()
+        );
+
+        let residual = self.residual(certificate)? / self.scene.noise;
+        require!(
+            residual <= RESIDUAL_ROUNDINGS,
+            "the witness points miss each other by {residual} roundings"
+        );
+        let crossing = self.crossing(&certificate.pairs);
+        let exact = crossing.is_some();
+        let exact_upper = crossing.unwrap_or_else(|| Ratio::from_f64(upper));
+        let off = exact_upper.minus(&Ratio::from_f64(upper));
+        require!(
+            off.is_within(tolerance),
+            "upper bound {upper:e} is off by {:e} (tolerated: {tolerance:e})",
+            off.to_f64()
+        );
+        let gap = exact_upper.minus(&exact_lower);
+        require!(!exact || !gap.is_negative(), "the bounds contradict each other");
+        require!(
+            gap.is_within(tolerance),
+            "the proven gap is {:e} (tolerated: {tolerance:e})",
+            gap.to_f64()
+        );
+        let gap = gap.to_f64().abs();
+        let unit = self.scene.direction.to_f64().length();
+        Ok(Proof {
+            exact,
+            gap_over_size: gap * unit / self.scene.size,
+            gap_over_tolerance: gap / tolerance,
+            residual_in_noises: residual,
+        })
+    }
+
+    /// `min_Q n.q - max_P n.p`.
+    fn distance_along(&self, normal: &Vector) -> Dyadic {
+        let nearest = self.scene.fixed.iter().map(|q| normal.dot(q)).min();
+        let farthest = self.scene.moving.iter().map(|p| normal.dot(p)).max();
+        &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
+    }
+
+    /// The three differences `q - p` of a certificate.
+    fn differences(&self, pairs: &[VertexPair; 3]) -> Result<[Vector; 3], Objection> {
+        for pair in pairs {
+            require!(
+                (pair.moving as usize) < self.scene.moving.len()
+                    && (pair.fixed as usize) < self.scene.fixed.len(),
+                "{pair:?} names a vertex that does not exist"
+            );
+        }
+        Ok(pairs.map(|pair| {
+            self.scene.fixed[pair.fixed as usize].minus(&self.scene.moving[pair.moving as usize])
+        }))
+    }
+
+    /// Where the line passes through the triangle of the three differences, if it does so exactly.
+    fn crossing(&self, pairs: &[VertexPair; 3]) -> Option<Ratio> {
+        let corners = self.differences(pairs).ok()?;
+        let [a, b, c] = corners.each_ref().map(|m| self.scene.shadow(m));
+        let cross = |u: &[Dyadic; 2], v: &[Dyadic; 2]| &(&u[0] * &v[1]) - &(&u[1] * &v[0]);
+        let mut weights = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+        let mut sum = &(&weights[0] + &weights[1]) + &weights[2];
+        if sum.is_negative() {
+            weights = weights.map(|w| -w);
+            sum = -sum;
+        }
+        if sum.is_zero() || weights.iter().any(Dyadic::is_negative) {
+            return None;
+        }
+        let height = corners
+            .iter()
+            .zip(&weights)
+            .map(|(m, w)| &self.scene.height(m) * w)
+            .fold(Dyadic::ZERO, |s, x| &s + &x);
+        Some(Ratio::new(height, &sum * &self.scene.height_unit()))
+    }
+
+    /// `|sum w_i (q_i - p_i) - upper d|`, in world units.
+    fn residual(&self, certificate: &Certificate) -> Result<f64, Objection> {
+        let Certificate { pairs, weights, upper, .. } = certificate;
+        let sum: f64 = weights.iter().sum();
+        require!(
+            weights.iter().all(|w| *w >= 0.0) && (sum - 1.0).abs() <= UNIT_ERROR,
+            "{weights:?} are no barycentric coordinates"
+        );
+        let miss = self
+            .differences(pairs)?
+            .iter()
+            .zip(weights)
+            .map(|(m, w)| m.times(&Dyadic::new(*w)))
+            .fold(self.scene.direction.times(&Dyadic::new(-upper)), |sum, m| sum.plus(&m));
+        Ok(miss.to_f64().length())
+    }
+
+    /// The witness points come together after the translation, and lie in the contact plane of their bodies.
+    fn check_points(&self, contact: &Contact) -> Result<(), Objection> {
+        let Contact { point_on_moving, point_on_fixed, translation, normal, .. } = *contact;
+        // In the world, at whatever distance from its origin.
+        let away = point_on_moving.length().max(point_on_fixed.length());
+        let tolerance = RESIDUAL_ROUNDINGS * self.scene.noise + 8.0 * f64::EPSILON * away;
+        let [p, q] = [point_on_moving, point_on_fixed].map(Vector::new);
+        let moved = p.plus(&self.scene.direction.times(&Dyadic::new(translation)));
+        let miss = q.minus(&moved).to_f64().length();
+        require!(miss <= tolerance, "the witness points miss each other by {miss:e}");
+        let normal = Vector::new(normal);
+        let below = |points: &[Vector], sign: f64, at: &Vector| {
+            let n = normal.times(&Dyadic::new(sign));
+            let top = points.iter().map(|v| n.dot(v)).max().expect("a body has a point");
+            (&top - &n.dot(at)).to_f64()
+        };
+        for (body, points, sign, at) in
+            [("moving", &self.scene.moving, 1.0, &p), ("fixed", &self.scene.fixed, -1.0, &q)]
+        {
+            let depth = below(points, sign, at).abs();
+            require!(
+                depth <= tolerance,
+                "the witness point on the {body} body is {depth:e} off its contact plane"
+            );
+        }
+        Ok(())
+    }
+
+    /// The vertices of a contact feature lie in the contact plane.
+    fn check_feature(
+        &self,
+        contact: &Contact,
+        feature: Feature,
+        moving: bool,
+    ) -> Result<(), Objection> {
+        let (body, points, sign) = if moving {
+            (self.moving, &self.scene.moving, 1.0)
+        } else {
+            (self.fixed, &self.scene.fixed, -1.0)
+        };
+        let normal = Vector::new(contact.normal * sign);
+        let top = points.iter().map(|v| normal.dot(v)).max().expect("a body has a point");
+        // A body's own faces are flat up to what its hull states.
+        let tolerance = (TWO_ROUNDINGS + 1.0) * self.scene.noise + 2.0 * body.hull_error();
+        for vertex in feature.vertices(body) {
+            let depth = (&top - &normal.dot(&points[vertex as usize])).to_f64();
+            require!(
+                depth <= tolerance,
+                "vertex {vertex} of {feature:?} is {depth:e} below the contact plane"
+            );
+        }
+        Ok(())
+    }
+
+    /// A unit vector orthogonal to `d`, made exactly orthogonal: `(min_Q n'.q - max_P n'.p) / |n'|`, whose sign is exact.
+    fn margin(&self, normal: DVec3) -> Result<f64, Objection> {
+        require!(is_unit(normal), "the normal {normal} is no unit vector");
+        let (n, d) = (Vector::new(normal), &self.scene.direction);
+        let skew = n.dot(d).to_f64() / d.to_f64().length();
+        require!(
+            skew.abs() <= UNIT_ERROR,
+            "the normal {normal} is not orthogonal to the direction by {skew:e}"
+        );
+        let orthogonal = n.times(&d.dot(d)).minus(&d.times(&n.dot(d)));
+        let margin = self.distance_along(&orthogonal);
+        let square = Ratio::new(&margin * &margin, orthogonal.dot(&orthogonal));
+        let length = square.to_f64().sqrt();
+        Ok(if margin.is_negative() { -length } else { length })
+    }
+
+    fn check_separated(&self, separated: &Separated) -> Result<Proof, Objection> {
+        let claimed = separated.certificate.margin;
+        let margin = self.margin(separated.certificate.normal)?;
+        require!(margin > 0.0, "the plane does not separate the bodies: margin {margin:e}");
+        require!(
+            claimed > 0.0 && (margin - claimed).abs() <= TWO_ROUNDINGS * self.scene.noise,
+            "margin {claimed:e} claimed, {margin:e} proven"
+        );
+        Ok(Proof { exact: true, ..Proof::default() })
+    }
+
+    fn check_grazing(&self, grazing: &Grazing) -> Result<Proof, Objection> {
+        let claimed = grazing.overlap;
+        let overlap = -self.margin(grazing.separating_direction)?;
+        let noise = self.scene.noise;
+        require!(
+            (overlap - claimed).abs() <= TWO_ROUNDINGS * noise,
+            "overlap {claimed:e} claimed, {overlap:e} along the separating direction"
+        );
+        let tolerated = self.graze_tolerance.max(noise);
+        require!(claimed <= tolerated, "overlap {claimed:e} tolerated as {tolerated:e}");
+        let proof = self.check_contact(&grazing.contact)?;
+        // The residual has just bounded the overlap from below.
+        Ok(Proof { exact: true, ..proof })
+    }
+}
+
+fn is_unit(v: DVec3) -> bool {
+    (v.length() - 1.0).abs() <= UNIT_ERROR
+}

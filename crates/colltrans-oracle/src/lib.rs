@@ -1,0 +1,14 @@
+//! What the tests of `colltrans` are judged by: an oracle in exact rational arithmetic, an exact checker of certificates, and
+//! settings that are hard on purpose.
+//!
+//! The data's way: [`settings`] -> the library -> [`check`], which reads the answer against the
+//! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme ([`simplex`]) and the exact
+//! sideways overlap ([`shadow`]).
+
+pub mod check;
+pub mod exact;
+pub mod fuzz;
+pub mod scene;
+pub mod settings;
+pub mod shadow;
+pub mod simplex;

@@ -1,0 +1,196 @@
+//! Coplanar triangles become polygons.
+//!
+//! A *region* is a connected set of triangles whose corners all lie within the tolerance of one plane, the plane of its largest
+//! triangle: slivers among them are taken in whatever their own normals say, for those mean nothing. A point
+//! with fewer than three regions around it lies inside a face or inside an edge: it is *redundant*.
+
+use glam::DVec3;
+
+use super::quickhull::{Simplicial, simplicial_hull};
+
+const NONE: u32 = u32::MAX;
+
+/// For each triangle, the number of its region.
+#[derive(Debug)]
+pub(super) struct Regions {
+    of: Vec<u32>,
+    count: u32,
+}
+
+impl Regions {
+    /// Every triangle by itself.
+    pub(super) fn triangles(simplicial: &Simplicial) -> Self {
+        let count = simplicial.triangles.len() as u32;
+        Self { of: (0..count).collect(), count }
+    }
+}
+
+/// Grows regions from the largest triangles.
+pub(super) fn regions(points: &[DVec3], simplicial: &Simplicial, tolerance: f64) -> Regions {
+    let triangles = &simplicial.triangles;
+    let area = |t: u32| {
+        let [a, b, c] = triangles[t as usize].corners.map(|i| points[i as usize]);
+        (b - a).cross(c - a).length_squared()
+    };
+    let mut seeds: Vec<(f64, u32)> = (0..triangles.len() as u32).map(|t| (area(t), t)).collect();
+    seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut regions = Regions { of: vec![NONE; triangles.len()], count: 0 };
+    let mut members = Vec::new();
+    for (_, seed) in seeds {
+        if regions.of[seed as usize] == NONE {
+            members.clear();
+            grow(points, simplicial, tolerance, seed, &mut regions, &mut members);
+            if members.len() > 1 && !is_disk(simplicial, &regions, &members) {
+                split(&mut regions, &members);
+            }
+        }
+    }
+    regions
+}
+
+fn grow(
+    points: &[DVec3],
+    simplicial: &Simplicial,
+    tolerance: f64,
+    seed: u32,
+    regions: &mut Regions,
+    members: &mut Vec<u32>,
+) {
+    let triangles = &simplicial.triangles;
+    let plane = &triangles[seed as usize];
+    let origin = points[plane.corners[0] as usize];
+    let on_plane = |i: u32| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance;
+    regions.of[seed as usize] = regions.count;
+    members.push(seed);
+    let mut k = 0;
+    while k < members.len() {
+        for n in triangles[members[k] as usize].neighbours {
+            let free = regions.of[n as usize] == NONE;
+            if free && triangles[n as usize].corners.into_iter().all(on_plane) {
+                regions.of[n as usize] = regions.count;
+                members.push(n);
+            }
+        }
+        k += 1;
+    }
+    regions.count += 1;
+}
+
+/// Whether triangles form one disk: their Euler characteristic is 1 and their rim is one loop.
+fn is_disk(simplicial: &Simplicial, regions: &Regions, members: &[u32]) -> bool {
+    let rim = rim_edges(simplicial, regions, members);
+    let starts = rim.len();
+    starts >= 3 && trace(simplicial, regions, rim[0]).is_some_and(|corners| corners.len() == starts)
+}
+
+/// The edges `(triangle, side)` of a region across which another region lies.
+fn rim_edges(simplicial: &Simplicial, regions: &Regions, members: &[u32]) -> Vec<(u32, usize)> {
+    let region = regions.of[members[0] as usize];
+    members
+        .iter()
+        .flat_map(|&t| (0..3).map(move |side| (t, side)))
+        .filter(|&(t, side)| {
+            let other = simplicial.triangles[t as usize].neighbours[side];
+            regions.of[other as usize] != region
+        })
+        .collect()
+}
+
+/// The corners along a region's rim from one of its edges; `None` if they pass through a corner twice.
+fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Option<Vec<u32>> {
+    let triangles = &simplicial.triangles;
+    let region = regions.of[start.0 as usize];
+    let (mut t, mut side) = start;
+    let mut corners = Vec::new();
+    loop {
+        corners.push(triangles[t as usize].corners[side]);
+        // Around the edge's end, triangle by triangle, to the next edge of the rim.
+        side = (side + 1) % 3;
+        loop {
+            let other = triangles[t as usize].neighbours[side];
+            if regions.of[other as usize] != region {
+                break;
+            }
+            let pivot = triangles[t as usize].corners[side];
+            let at = triangles[other as usize].corners.iter().position(|&c| c == pivot)?;
+            (t, side) = (other, at);
+        }
+        if (t, side) == start {
+            break;
+        }
+        if corners.len() > 3 * triangles.len() {
+            return None;
+        }
+    }
+    let mut sorted = corners.clone();
+    sorted.sort_unstable();
+    sorted.windows(2).all(|w| w[0] != w[1]).then_some(corners)
+}
+
+/// Makes every triangle of a region a region by itself.
+fn split(regions: &mut Regions, members: &[u32]) {
+    for &t in &members[1..] {
+        regions.of[t as usize] = regions.count;
+        regions.count += 1;
+    }
+}
+
+/// The corners with fewer than three regions around them, ascending, without those in `forced`.
+pub(super) fn redundant(simplicial: &Simplicial, regions: &Regions, forced: &[u32]) -> Vec<u32> {
+    // The first two regions seen at each corner, and whether there is a third.
+    let size = simplicial.triangles.iter().flat_map(|t| t.corners).max().unwrap_or(0) as usize + 1;
+    let mut first = vec![NONE; size];
+    let mut second = vec![NONE; size];
+    let mut more = vec![false; size];
+    for (triangle, &region) in simplicial.triangles.iter().zip(&regions.of) {
+        for v in triangle.corners.map(|c| c as usize) {
+            if first[v] == NONE || first[v] == region {
+                first[v] = region;
+            } else if second[v] == NONE || second[v] == region {
+                second[v] = region;
+            } else {
+                more[v] = true;
+            }
+        }
+    }
+    (0..size as u32)
+        .filter(|&v| first[v as usize] != NONE && !more[v as usize])
+        .filter(|v| forced.binary_search(v).is_err())
+        .collect()
+}
+
+/// Which of the `dropped` points lie outside the hull of the `kept` ones by more than the tolerance.
+pub(super) fn lost(points: &[DVec3], kept: &[u32], dropped: &[u32], tolerance: f64) -> Vec<u32> {
+    if kept.len() < 4 {
+        return dropped.to_vec();
+    }
+    let Ok(hull) = simplicial_hull(points, kept, tolerance) else { return dropped.to_vec() };
+    let locator = super::violation::Locator::new(points, &hull);
+    let mut near = 0;
+    dropped
+        .iter()
+        .copied()
+        .filter(|&v| locator.outside(points[v as usize], &mut near) > 2.0 * tolerance)
+        .collect()
+}
+
+/// The regions' rims: first corner of each, and the corners (point numbers).
+pub(super) fn polygons(simplicial: &Simplicial, regions: &Regions) -> (Vec<u32>, Vec<u32>) {
+    let mut start = vec![0];
+    let mut corners = Vec::new();
+    let mut done = vec![false; regions.count as usize];
+    for (t, triangle) in simplicial.triangles.iter().enumerate() {
+        let region = regions.of[t];
+        if done[region as usize] {
+            continue;
+        }
+        let rim = (0..3).find(|&k| regions.of[triangle.neighbours[k] as usize] != region);
+        let Some(side) = rim else { continue };
+        done[region as usize] = true;
+        if let Some(loop_) = trace(simplicial, regions, (t as u32, side)) {
+            corners.extend(loop_);
+            start.push(corners.len() as u32);
+        }
+    }
+    (start, corners)
+}

@@ -1,0 +1,156 @@
+//! Bodies of lower dimension, and bodies that are almost so.
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::{ConvexPolyhedron, Feature, Outcome, Pose, Solver};
+use colltrans_oracle::check::Judge;
+use colltrans_oracle::scene::Scene;
+use colltrans_oracle::settings::{Rng, cuboid};
+
+fn body(points: &[DVec3]) -> ConvexPolyhedron {
+    ConvexPolyhedron::from_points(points).expect("a body")
+}
+
+/// The outcome, the same from all solvers and approved by the oracle.
+fn cast(moving: &[DVec3], fixed: &[DVec3], offset: DVec3, direction: DVec3) -> Outcome {
+    let (moving, fixed) = (body(moving), body(fixed));
+    let pose = Pose::from_translation(offset).expect("a pose");
+    let world = Pose::IDENTITY;
+    let scene = Scene::of_bodies((&moving, &world), (&fixed, &pose), direction);
+    let judge = Judge { scene, moving: &moving, fixed: &fixed, graze_tolerance: 0.0 };
+    let outcomes = [Solver::Cta, Solver::Portal, Solver::Auto].map(|solver| {
+        let options = colltrans::Options { solver, ..Default::default() };
+        let outcome = colltrans::cast_with(&moving, &world, &fixed, &pose, direction, &options)
+            .unwrap_or_else(|e| panic!("{solver:?}: {e}"));
+        judge.check(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
+        judge.compare_with_oracle(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
+        outcome
+    });
+    outcomes[0]
+}
+
+fn translation(outcome: &Outcome) -> f64 {
+    match outcome {
+        Outcome::Contact(contact) => contact.translation,
+        Outcome::Grazing(grazing) => grazing.contact.translation,
+        Outcome::Separated(_) => panic!("separated"),
+    }
+}
+
+const POINT: [DVec3; 1] = [DVec3::ZERO];
+const SEGMENT: [DVec3; 2] = [DVec3::NEG_X, DVec3::X];
+const CROSSING: [DVec3; 2] = [DVec3::NEG_Y, DVec3::Y];
+const TRIANGLE: [DVec3; 3] = [DVec3::NEG_X, DVec3::X, DVec3::Y];
+
+#[test]
+fn dimensions_are_recognised() {
+    let line = [DVec3::ZERO, DVec3::ONE, DVec3::ONE * 3.0, DVec3::ONE * 2.0];
+    let square = cuboid(DVec3::new(1.0, 2.0, 0.0));
+    let expected: [(&[DVec3], u8, usize, usize); 6] = [
+        (&POINT, 0, 1, 0),
+        (&[DVec3::ONE; 5], 0, 1, 0),
+        (&line, 1, 2, 0),
+        (&TRIANGLE, 2, 3, 2),
+        (&square, 2, 4, 2),
+        (&cuboid(DVec3::ONE), 3, 8, 6),
+    ];
+    for (points, dimension, vertices, faces) in expected {
+        let body = body(points);
+        let found = (body.dimension(), body.vertices().len(), body.face_count());
+        assert_eq!(found, (dimension, vertices, faces), "{points:?}");
+    }
+}
+
+#[test]
+fn point_onto_point() {
+    let hit = cast(&POINT, &POINT, DVec3::Z * 3.0, DVec3::Z);
+    assert!(matches!(hit, Outcome::Grazing(_)), "{hit:?}");
+    assert!((translation(&hit) - 3.0).abs() < 1e-13);
+    let miss = cast(&POINT, &POINT, DVec3::new(1e-9, 0.0, 3.0), DVec3::Z);
+    assert!(matches!(miss, Outcome::Separated(_)), "{miss:?}");
+}
+
+#[test]
+fn point_onto_solid() {
+    let cube = cuboid(DVec3::ONE);
+    let hit = cast(&POINT, &cube, DVec3::new(0.25, 0.5, 4.0), DVec3::Z);
+    let Outcome::Contact(contact) = hit else { panic!("{hit:?}") };
+    assert!((contact.translation - 3.0).abs() <= contact.certificate.tolerance);
+    assert_eq!(contact.moving_feature, Feature::Vertex(0));
+    assert!(matches!(contact.fixed_feature, Feature::Face(_)));
+}
+
+#[test]
+fn crossing_segments() {
+    let hit = cast(&SEGMENT, &CROSSING, DVec3::new(0.25, 0.5, 2.0), DVec3::Z);
+    let Outcome::Contact(contact) = hit else { panic!("{hit:?}") };
+    assert!((contact.translation - 2.0).abs() <= contact.certificate.tolerance);
+    assert!(matches!(contact.moving_feature, Feature::Edge(_)));
+    assert!(matches!(contact.fixed_feature, Feature::Edge(_)));
+    let miss = cast(&SEGMENT, &CROSSING, DVec3::new(1.25, 0.5, 2.0), DVec3::Z);
+    assert!(matches!(miss, Outcome::Separated(_)), "{miss:?}");
+}
+
+#[test]
+fn parallel_and_collinear_segments() {
+    let above = cast(&SEGMENT, &SEGMENT, DVec3::Z, DVec3::Z);
+    assert!(matches!(above, Outcome::Grazing(_)), "{above:?}");
+    assert!((translation(&above) - 1.0).abs() < 1e-13);
+    // Along themselves: the shadow is a point.
+    let behind = cast(&SEGMENT, &SEGMENT, DVec3::X * 5.0, DVec3::X);
+    assert!((translation(&behind) - 3.0).abs() < 1e-13);
+    let beside = cast(&SEGMENT, &SEGMENT, DVec3::new(5.0, 1e-3, 0.0), DVec3::X);
+    assert!(matches!(beside, Outcome::Separated(_)), "{beside:?}");
+}
+
+#[test]
+fn triangles_edge_on_and_face_on() {
+    let face_on = cast(&TRIANGLE, &TRIANGLE, DVec3::new(0.1, 0.1, 2.0), DVec3::Z);
+    let Outcome::Contact(contact) = face_on else { panic!("{face_on:?}") };
+    assert!((contact.translation - 2.0).abs() <= contact.certificate.tolerance);
+    let edge_on = cast(&TRIANGLE, &TRIANGLE, DVec3::new(0.0, 4.0, 0.0), DVec3::Y);
+    assert!(matches!(edge_on, Outcome::Grazing(_)), "{edge_on:?}");
+    let knife = cast(&TRIANGLE, &cuboid(DVec3::ONE), DVec3::new(0.0, 4.0, 0.0), DVec3::Y);
+    let Outcome::Contact(contact) = knife else { panic!("{knife:?}") };
+    assert!((contact.translation - 2.0).abs() <= contact.certificate.tolerance);
+}
+
+/// Slabs that become thinner and thinner until they are flat.
+#[test]
+fn thin_slabs() {
+    let mut rng = Rng::new(5);
+    for thickness in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-18, 1e-30, 0.0] {
+        for _ in 0..20 {
+            let rotation = rng.rotation();
+            let slab: Vec<DVec3> =
+                cuboid(DVec3::new(1.0, 1.0, thickness)).into_iter().map(|v| rotation * v).collect();
+            let offset = rng.vector() * 0.2 + DVec3::Z * 5.0;
+            let outcome = cast(&slab, &cuboid(DVec3::ONE), offset, DVec3::Z);
+            assert!(matches!(outcome, Outcome::Contact(_)), "{thickness:e}: {outcome:?}");
+        }
+    }
+}
+
+/// The contact of a body with itself, moved by nothing.
+#[test]
+fn a_body_and_itself() {
+    let mut rng = Rng::new(6);
+    for _ in 0..20 {
+        let points: Vec<DVec3> = (0..10).map(|_| rng.vector()).collect();
+        let direction = rng.direction();
+        let outcome = cast(&points, &points, DVec3::ZERO, direction);
+        assert!(translation(&outcome) < 0.0);
+    }
+}
+
+/// Very small and very large bodies.
+#[test]
+fn magnitudes_at_the_limits() {
+    let turn = DQuat::from_xyzw(0.5, 0.5, 0.5, 0.5);
+    for exponent in [-190, -100, 0, 100, 190] {
+        let size = 2.0_f64.powi(exponent);
+        let cube: Vec<DVec3> = cuboid(DVec3::splat(size)).into_iter().map(|v| turn * v).collect();
+        let outcome = cast(&cube, &cube, DVec3::new(0.25, 0.5, 5.0) * size, DVec3::Z * size);
+        let error = (translation(&outcome) - 3.0).abs();
+        assert!(error < 1e-13, "2^{exponent}: {error:e}");
+    }
+}

@@ -1,0 +1,363 @@
+//! The hull against brute force, on what other hulls get wrong.
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::{BuildError, ConvexPolyhedron, TopologyError, convexity_defect};
+use proptest::prelude::*;
+
+/// A small generator of numbers in `[0, 1)` with a fixed seed.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5)
+    }
+
+    fn rotation(&mut self) -> DQuat {
+        let v = self.vector();
+        DQuat::from_xyzw(v.x, v.y, v.z, self.unit() - 0.5).normalize()
+    }
+}
+
+fn grid(counts: [usize; 3], spacing: DVec3) -> Vec<DVec3> {
+    let mut points = Vec::new();
+    for i in 0..counts[0] {
+        for j in 0..counts[1] {
+            for k in 0..counts[2] {
+                points.push(DVec3::new(i as f64, j as f64, k as f64) * spacing);
+            }
+        }
+    }
+    points
+}
+
+fn face_sizes(body: &ConvexPolyhedron) -> Vec<usize> {
+    let mut sizes: Vec<usize> =
+        (0..body.face_count() as u32).map(|f| body.face_vertices(f).len()).collect();
+    sizes.sort_unstable();
+    sizes
+}
+
+fn assert_box(points: &[DVec3], what: &str) {
+    let body = ConvexPolyhedron::from_points(points).unwrap();
+    assert_eq!(body.dimension(), 3, "{what}");
+    assert_eq!(face_sizes(&body), [4; 6], "{what}");
+    assert_eq!(body.vertices().len(), 8, "{what}");
+    check(&body, points);
+}
+
+/// Euler's formula, and every input point within the reported error of every face.
+fn check(body: &ConvexPolyhedron, points: &[DVec3]) {
+    let size = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    assert!(body.hull_error() <= 1e-13 * size, "hull error {:e} of {size}", body.hull_error());
+    for (k, &i) in body.input_indices().iter().enumerate() {
+        assert_eq!(body.vertices()[k], points[i as usize]);
+    }
+    if body.dimension() < 3 {
+        return;
+    }
+    let euler = body.vertices().len() as i64 - body.edge_count() as i64 + body.face_count() as i64;
+    assert_eq!(euler, 2);
+    for face in 0..body.face_count() as u32 {
+        let corners: Vec<DVec3> =
+            body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let normal = body.face_normal(face);
+        for p in points {
+            let outside = normal.dot(*p - middle);
+            assert!(outside <= body.hull_error() + 1e-14 * size, "{outside:e} outside face {face}");
+        }
+    }
+}
+
+#[test]
+fn rotated_grids_are_boxes() {
+    let mut random = Random(1);
+    for round in 0..200 {
+        let rotation = random.rotation();
+        let points: Vec<DVec3> =
+            grid([6, 6, 6], DVec3::ONE).iter().map(|p| rotation * *p).collect();
+        assert_box(&points, &format!("rotation {round}"));
+        let moved: Vec<DVec3> = points.iter().map(|p| *p + DVec3::splat(100.0)).collect();
+        assert_box(&moved, &format!("rotation {round}, offset 100"));
+    }
+}
+
+#[test]
+fn slabs_needles_and_offsets_stay_solid() {
+    let mut random = Random(2);
+    for spacing in [
+        DVec3::new(1.0, 1.0, 1e-3),
+        DVec3::new(1.0, 1.0, 1e-6),
+        DVec3::new(3000.0, 1.0, 1.0),
+        DVec3::new(1e6, 1.0, 1.0),
+        DVec3::new(1.0, 1e-3, 1e-5),
+    ] {
+        for counts in [[2, 2, 2], [5, 4, 3]] {
+            for round in 0..20 {
+                let rotation = random.rotation();
+                let points: Vec<DVec3> =
+                    grid(counts, spacing).iter().map(|p| rotation * *p).collect();
+                assert_box(&points, &format!("{spacing} {counts:?} rotation {round}"));
+            }
+            assert_box(&grid(counts, spacing), "not rotated");
+        }
+    }
+    let far: Vec<DVec3> =
+        grid([3, 3, 3], DVec3::ONE).iter().map(|p| *p + DVec3::new(1e6, -2e6, 3e6)).collect();
+    assert_box(&far, "far away");
+}
+
+#[test]
+fn lower_dimensions_are_bodies_too() {
+    let mut random = Random(3);
+    for _ in 0..50 {
+        let rotation = random.rotation();
+        let place = |p: DVec3| rotation * p + DVec3::new(1.0, 2.0, 3.0);
+        let point = vec![place(DVec3::ONE); 5];
+        let body = ConvexPolyhedron::from_points(&point).unwrap();
+        assert_eq!((body.dimension(), body.vertices().len(), body.face_count()), (0, 1, 0));
+        let line: Vec<DVec3> = (0..9).map(|k| place(DVec3::new(f64::from(k), 0.0, 0.0))).collect();
+        let body = ConvexPolyhedron::from_points(&line).unwrap();
+        assert_eq!((body.dimension(), body.vertices().len(), body.face_count()), (1, 2, 0));
+        assert_eq!(body.neighbours(0), [1]);
+        let sheet: Vec<DVec3> = grid([5, 4, 1], DVec3::ONE).iter().map(|p| place(*p)).collect();
+        let body = ConvexPolyhedron::from_points(&sheet).unwrap();
+        assert_eq!((body.dimension(), body.vertices().len(), body.face_count()), (2, 4, 2));
+        check(&body, &sheet);
+    }
+    let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    assert_eq!(ConvexPolyhedron::from_points(&triangle).unwrap().dimension(), 2);
+}
+
+#[test]
+fn caps_with_many_corners_are_one_face() {
+    let mut random = Random(4);
+    for sides in [3, 7, 64, 1000] {
+        let rotation = random.rotation();
+        let ring = |z: f64| {
+            (0..sides).map(move |k| {
+                let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+                DVec3::new(angle.cos(), angle.sin(), z)
+            })
+        };
+        let prism: Vec<DVec3> = ring(0.0).chain(ring(0.7)).map(|p| rotation * p).collect();
+        let body = ConvexPolyhedron::from_points(&prism).unwrap();
+        assert_eq!(body.face_count(), sides as usize + 2);
+        assert_eq!(face_sizes(&body)[sides as usize + 1], (sides as usize).max(4));
+        check(&body, &prism);
+        let cone: Vec<DVec3> = ring(0.0).chain([DVec3::Z]).map(|p| rotation * p).collect();
+        let body = ConvexPolyhedron::from_points(&cone).unwrap();
+        assert_eq!(body.face_count(), sides as usize + 1);
+        check(&body, &cone);
+    }
+}
+
+/// Vertices on an ellipsoid in rings: all faces but those at the poles are trapezoids.
+fn rings(count: usize, per_ring: usize, axes: DVec3) -> Vec<DVec3> {
+    let mut points = vec![DVec3::Z * axes.z, DVec3::NEG_Z * axes.z];
+    for i in 1..=count {
+        let polar = std::f64::consts::PI * i as f64 / (count + 1) as f64;
+        for j in 0..per_ring {
+            let angle = std::f64::consts::TAU * j as f64 / per_ring as f64;
+            let around = DVec3::new(angle.cos(), angle.sin(), 0.0) * polar.sin();
+            points.push((around + DVec3::Z * polar.cos()) * axes);
+        }
+    }
+    points
+}
+
+#[test]
+fn ring_ellipsoids_have_trapezoids() {
+    let mut random = Random(5);
+    for (count, per_ring) in [(5, 8), (20, 30), (60, 61)] {
+        let rotation = random.rotation();
+        let axes = DVec3::new(0.7, 1.3, 1.0);
+        let points: Vec<DVec3> =
+            rings(count, per_ring, axes).iter().map(|p| rotation * *p).collect();
+        let body = ConvexPolyhedron::from_points(&points).unwrap();
+        assert_eq!(body.vertices().len(), points.len());
+        let sizes = face_sizes(&body);
+        let triangles = sizes.iter().filter(|&&s| s == 3).count();
+        assert_eq!((triangles, sizes.len()), (2 * per_ring, per_ring * (count + 1)));
+        check(&body, &points);
+    }
+}
+
+#[test]
+fn duplicates_and_interior_points_change_nothing() {
+    let mut random = Random(6);
+    let mut points: Vec<DVec3> = (0..300).map(|_| random.vector()).collect();
+    let alone = ConvexPolyhedron::from_points(&points).unwrap();
+    check(&alone, &points);
+    points.extend(points.clone());
+    let doubled = ConvexPolyhedron::from_points(&points).unwrap();
+    assert_eq!(alone.vertices(), doubled.vertices());
+    assert_eq!(alone.face_count(), doubled.face_count());
+}
+
+#[test]
+fn bad_points_are_named() {
+    let nan = [DVec3::ZERO, DVec3::new(0.0, f64::NAN, 0.0)];
+    assert!(matches!(
+        ConvexPolyhedron::from_points(&nan),
+        Err(BuildError::NotFinite { index: 1, .. })
+    ));
+    let huge = [DVec3::ZERO, DVec3::X, DVec3::new(0.0, 1e70, 0.0)];
+    assert!(matches!(
+        ConvexPolyhedron::from_points(&huge),
+        Err(BuildError::OutOfRange { index: 2, .. })
+    ));
+    let tiny = [DVec3::new(1e-70, 0.0, 0.0)];
+    assert!(matches!(
+        ConvexPolyhedron::from_points(&tiny),
+        Err(BuildError::OutOfRange { index: 0, .. })
+    ));
+    assert_eq!(ConvexPolyhedron::from_points(&[]).unwrap_err(), BuildError::NoPoints);
+}
+
+const CUBE_FACES: [[u32; 4]; 6] =
+    [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+
+fn cube() -> Vec<DVec3> {
+    grid([2, 2, 2], DVec3::ONE)
+}
+
+#[test]
+fn meshes_are_checked() {
+    let body = ConvexPolyhedron::from_mesh(&cube(), &CUBE_FACES, 0.0).unwrap();
+    assert_eq!((body.vertices().len(), body.face_count()), (8, 6));
+    assert!((body.volume() - 1.0).abs() < 1e-15);
+    let open = &CUBE_FACES[..5];
+    assert!(matches!(
+        ConvexPolyhedron::from_mesh(&cube(), open, 0.0),
+        Err(BuildError::Topology(TopologyError::OpenEdge { .. }))
+    ));
+    let inverted = CUBE_FACES.map(|mut f| {
+        f.reverse();
+        f
+    });
+    assert!(matches!(
+        ConvexPolyhedron::from_mesh(&cube(), &inverted, 0.0),
+        Err(BuildError::InsideOut { signed_volume }) if (signed_volume + 1.0).abs() < 1e-12
+    ));
+    let mut far = CUBE_FACES;
+    far[0][0] = 99;
+    assert!(matches!(
+        ConvexPolyhedron::from_mesh(&cube(), &far, 0.0),
+        Err(BuildError::Topology(TopologyError::UnknownVertex {
+            face: 0,
+            vertex: 99,
+            vertices: 8
+        }))
+    ));
+}
+
+#[test]
+fn a_dent_is_measured() {
+    // The lid is a fan around its centre, pushed in by 0.1.
+    let mut points = cube();
+    points.push(DVec3::new(0.5, 0.5, 0.9));
+    let mut faces: Vec<Vec<u32>> =
+        CUBE_FACES.iter().filter(|f| **f != CUBE_FACES[5]).map(|f| f.to_vec()).collect();
+    let lid = CUBE_FACES[5];
+    for k in 0..4 {
+        faces.push(vec![lid[k], lid[(k + 1) % 4], 8]);
+    }
+    match ConvexPolyhedron::from_mesh(&points, &faces, 0.01) {
+        Err(BuildError::NotConvex { face, depth, tolerance }) => {
+            assert!(face >= 5 && (depth - 0.1).abs() < 1e-12 && tolerance == 0.01);
+        }
+        other => panic!("{other:?}"),
+    }
+    let body = ConvexPolyhedron::from_mesh(&points, &faces, 0.11).unwrap();
+    assert_eq!((body.vertices().len(), body.face_count()), (8, 6));
+    let defect = convexity_defect(&points, &faces).unwrap();
+    assert!((defect.depth - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn unused_vertices_are_ignored_and_indices_kept() {
+    let mut points = vec![DVec3::splat(9.0)];
+    points.extend(cube());
+    let faces = CUBE_FACES.map(|f| f.map(|v| v + 1));
+    let body = ConvexPolyhedron::from_mesh(&points, &faces, 0.0).unwrap();
+    assert_eq!(body.input_indices(), [1, 2, 3, 4, 5, 6, 7, 8]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn clouds_of_small_integers_are_enclosed(
+        cloud in prop::collection::vec((-3_i32..=3, -3_i32..=3, -3_i32..=3), 1..40),
+        seed in any::<u64>(),
+    ) {
+        let rotation = Random(seed).rotation();
+        let exact: Vec<DVec3> =
+            cloud.iter().map(|&(x, y, z)| DVec3::new(x.into(), y.into(), z.into())).collect();
+        let rotated: Vec<DVec3> = exact.iter().map(|p| rotation * *p).collect();
+        let (a, b) = (
+            ConvexPolyhedron::from_points(&exact).unwrap(),
+            ConvexPolyhedron::from_points(&rotated).unwrap(),
+        );
+        check(&a, &exact);
+        check(&b, &rotated);
+        prop_assert_eq!(a.dimension(), b.dimension());
+        prop_assert_eq!(a.vertices().len(), b.vertices().len());
+        prop_assert_eq!(face_sizes(&a), face_sizes(&b));
+        let mut turned = exact.clone();
+        turned.reverse();
+        let c = ConvexPolyhedron::from_points(&turned).unwrap();
+        prop_assert_eq!(face_sizes(&a), face_sizes(&c));
+    }
+}
+
+#[test]
+fn a_large_sphere_is_built_quickly() {
+    let mut random = Random(7);
+    let count = if cfg!(debug_assertions) { 5_000 } else { 200_000 };
+    let points: Vec<DVec3> = (0..count)
+        .map(|_| {
+            loop {
+                let v = random.vector();
+                if (0.01..0.25).contains(&v.length_squared()) {
+                    break v.normalize();
+                }
+            }
+        })
+        .collect();
+    let start = std::time::Instant::now();
+    let body = ConvexPolyhedron::from_points(&points).unwrap();
+    println!(
+        "{count} points on a sphere: {:?}, hull error {:e}",
+        start.elapsed(),
+        body.hull_error()
+    );
+    assert!(body.vertices().len() > count * 999 / 1000);
+    assert!(start.elapsed().as_secs_f64() < 10.0);
+    let faces: Vec<Vec<u32>> =
+        (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
+    let start = std::time::Instant::now();
+    ConvexPolyhedron::from_mesh(body.vertices(), &faces, 0.0).unwrap();
+    println!("the same from its mesh: {:?}", start.elapsed());
+    let points = rings(count.isqrt() * 7 / 10, count.isqrt() * 14 / 10, DVec3::new(0.7, 1.0, 1.3));
+    let start = std::time::Instant::now();
+    let body = ConvexPolyhedron::from_points(&points).unwrap();
+    println!(
+        "{} points in rings: {:?}, bytes {}",
+        points.len(),
+        start.elapsed(),
+        body.memory_bytes() / points.len()
+    );
+    let faces: Vec<Vec<u32>> =
+        (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
+    let start = std::time::Instant::now();
+    ConvexPolyhedron::from_mesh(body.vertices(), &faces, 0.0).unwrap();
+    println!("the same from its mesh: {:?}", start.elapsed());
+}

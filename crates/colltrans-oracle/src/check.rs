@@ -31,7 +31,7 @@ const TWO_ROUNDINGS: f64 = 2.0;
 
 /// How many units of rounding error the witness points of a contact may miss each other by: the bodies
 /// are widened by up to three for a grazing contact, in two directions, and each of the two points is rounded.
-const RESIDUAL_ROUNDINGS: f64 = 8.0;
+const RESIDUAL_ROUNDINGS: f64 = 12.0;
 
 /// Relative error that computing a unit vector may leave.
 const UNIT_ERROR: f64 = 16.0 * f64::EPSILON;

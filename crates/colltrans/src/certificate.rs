@@ -175,8 +175,8 @@ impl Certificate {
         }
         let upper = difference.dot(setting.unit) / setting.direction.length();
         let residual = (difference - setting.direction * upper).length();
-        // Grazing contacts may miss by the widening, which is a few times the noise.
-        let tolerance = 8.0 * Difference::noise_of(setting);
+        // Grazing contacts may miss by the widening, which is at most 7 noises along either axis.
+        let tolerance = 12.0 * Difference::noise_of(setting);
         if residual > tolerance {
             return Err(CertificateError::Residual { residual, tolerance });
         }

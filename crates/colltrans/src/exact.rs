@@ -11,7 +11,7 @@
 
 use std::cmp::Ordering;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 const LIMBS: usize = 37;
 
@@ -217,6 +217,26 @@ pub(crate) fn difference_error(a: f64, b: f64) -> f64 {
     (a - a_virtual) + (b_virtual - b)
 }
 
+/// `a.x b.y - a.y b.x` with an error relative to the result, not to its terms.
+pub(crate) fn accurate_det(a: DVec2, b: DVec2) -> f64 {
+    let (p, q) = (a.x * b.y, a.y * b.x);
+    (p - q) + (product_error(a.x, b.y, p) - product_error(a.y, b.x, q))
+}
+
+/// The rounding error of the product `p = fl(a b)`, exactly (Dekker).
+fn product_error(a: f64, b: f64, p: f64) -> f64 {
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
+}
+
+/// `a` as a sum of two numbers with at most 26 significant bits (Veltkamp).
+fn split(a: f64) -> (f64, f64) {
+    const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
+    let c = SPLITTER * a;
+    let high = c - (c - a);
+    (high, a - high)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -271,6 +291,16 @@ mod tests {
                 prop_assert_eq!(found, sign);
             }
             prop_assert_eq!(orientation(&b, &a, d), found.reverse());
+        }
+
+        #[test]
+        fn accurate_determinants_are(a in 0.5..1.0_f64, b in 0.5..1.0_f64, k in 1..1_000_i32) {
+            // Nearly parallel: the terms agree to 10 digits or more.
+            let tiny = f64::from(k) * 1e-13;
+            let (v, w) = (DVec2::new(a, b), DVec2::new(a + tiny, b));
+            let exact = rational(v.x) * rational(w.y) - rational(v.y) * rational(w.x);
+            let off = (rational(accurate_det(v, w)) - exact.clone()).to_f64().value();
+            prop_assert!(off.abs() <= 4.0 * f64::EPSILON * exact.to_f64().value().abs());
         }
 
         #[test]

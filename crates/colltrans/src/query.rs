@@ -178,6 +178,9 @@ pub fn directional_depth(
     })
 }
 
+/// Touching bodies are widened by this many times the rounding error: more than what counts as beyond the line.
+const WIDENING_IN_NOISES: f64 = 6.0;
+
 /// One cast under way.
 struct Cast<'a> {
     difference: Difference<'a>,
@@ -259,7 +262,7 @@ impl Cast<'_> {
         start: &Start,
     ) -> Result<Grazing, QueryError> {
         let noise = self.difference.noise;
-        self.difference = self.difference.widened(margin.max(0.0) + 2.0 * noise);
+        self.difference = self.difference.widened(margin.max(0.0) + WIDENING_IN_NOISES * noise);
         let Some(Enclosure::Portal(first)) =
             portal::enclose(&self.difference, start, &mut self.steps)
         else {

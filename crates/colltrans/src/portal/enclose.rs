@@ -19,7 +19,7 @@ pub(crate) enum Enclosure {
     /// A portal.
     Portal(Portal),
     /// All of `M` lies on one side: `normal . s >= margin` for every shadow `s`, up to rounding. The margin may be negative
-    /// by rounding, when the shadow of `M` ends at the line.
+    /// by a few roundings, when the shadow of `M` ends at the line.
     OneSide {
         /// Unit normal in the shadow plane.
         normal: DVec2,
@@ -32,6 +32,9 @@ pub(crate) enum Enclosure {
 
 /// How far beyond the line the model aims, in multiples of the distance to it, try by try.
 const OVERSHOOT: [f64; 2] = [1.6, 6.0];
+
+/// A point counts as beyond the line if it is so by this many times the rounding error; less is touching.
+const BEYOND_IN_NOISES: f64 = 4.0;
 
 /// Bound on the number of points: far beyond what any body needs; reaching it is reported, never hidden.
 const MAX_POINTS: usize = 10_000;
@@ -110,6 +113,9 @@ impl Search<'_> {
         slope: DVec2,
     ) -> Result<Tangent, Enclosure> {
         let outward = outward(known, near_side);
+        // Points closer to the line than this may be on either side of it.
+        let clearly = -BEYOND_IN_NOISES * self.difference.noise;
+        let clearly_scaled = clearly * outward.length();
         let near = known[known.len() - 1].point.pair;
         for factor in OVERSHOOT {
             let slope = slope + self.start.slope_per_shadow * near_side * factor;
@@ -118,7 +124,7 @@ impl Search<'_> {
             }
             self.steps.supports += 1;
             let point = self.difference.support_from(normal_of(slope), near);
-            if outward.dot(point.shadow()) < 0.0 {
+            if outward.dot(point.shadow()) < clearly_scaled {
                 return Ok(Tangent { point, slope });
             }
         }
@@ -126,7 +132,7 @@ impl Search<'_> {
         self.steps.supports += 1;
         let point = self.difference.support(outward.extend(0.0));
         let margin = outward.dot(point.shadow());
-        if margin >= 0.0 {
+        if margin >= clearly {
             return Err(Enclosure::OneSide { normal: outward, margin, point });
         }
         Ok(Tangent { point, slope })

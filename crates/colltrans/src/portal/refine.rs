@@ -5,10 +5,11 @@
 //! height at which the line passes the portal falls. The end: no point of `M` is below the plane by more than rounding error; then the plane
 //! proves the lower bound and the portal the upper one.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{Portal, Tangent, normal_of};
 use crate::certificate::VertexPair;
+use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 
@@ -96,12 +97,32 @@ fn plane_normal(difference: &Difference, portal: &Portal) -> DVec3 {
     if upright.z > 0.0 { upright } else { guess }
 }
 
-/// Barycentric coordinates of the line in the shadow of the portal, clamped to it.
+/// Barycentric coordinates of the line in the shadow of the portal.
+///
+/// From determinants without cancellation, so that narrow portals have accurate ones; if the line is outside in the rounded
+/// coordinates, those of the nearest point of the rim.
 fn weights(portal: &Portal) -> [f64; 3] {
-    let [a, b, c] = portal.map(|t| t.point.shadow());
-    let parts = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)].map(|w| w.max(0.0));
+    let shadows = portal.map(|t| t.point.shadow());
+    let [a, b, c] = shadows;
+    let parts = [accurate_det(b, c), accurate_det(c, a), accurate_det(a, b)];
     let sum = parts[0] + parts[1] + parts[2];
-    if sum > 0.0 { parts.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
+    if sum > 0.0 && parts.iter().all(|&part| part >= 0.0) {
+        return parts.map(|part| part / sum);
+    }
+    let mut nearest = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+        let along = shadows[j] - shadows[i];
+        let square = along.length_squared();
+        let share =
+            if square > 0.0 { (-shadows[i].dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let distance = (shadows[i] + along * share).length_squared();
+        if distance < nearest.0 {
+            let mut weights = [0.0; 3];
+            (weights[i], weights[j]) = (1.0 - share, share);
+            nearest = (distance, weights);
+        }
+    }
+    nearest.1
 }
 
 fn largest(weights: [f64; 3]) -> usize {

@@ -67,7 +67,8 @@ impl std::error::Error for Objection {}
 /// `Err` with a formatted [`Objection`] unless the condition holds.
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
-        if !$condition {
+        let holds: bool = $condition;
+        if !holds {
             return Err(Objection(format!($($text)+)));
         }
     };

@@ -7,6 +7,7 @@ mod error;
 mod exact;
 mod minkowski;
 mod outcome;
+mod plane;
 mod polyhedron;
 mod portal;
 mod pose;

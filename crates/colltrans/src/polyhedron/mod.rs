@@ -6,13 +6,13 @@
 mod hull;
 mod measure;
 mod mesh;
-mod plane;
 mod support;
 pub(crate) mod topology;
 
 use glam::DVec3;
 
 use crate::error::BuildError;
+use crate::plane::polygon_normal;
 use crate::section::SectionIndex;
 use hull::Hull;
 pub(crate) use measure::Measure;
@@ -127,7 +127,7 @@ impl ConvexPolyhedron {
     /// # Panics
     /// If there is no such face.
     pub fn face_normal(&self, face: u32) -> DVec3 {
-        plane::polygon_normal(self.face_vertices(face).map(|v| self.vertices[v as usize]))
+        polygon_normal(self.face_vertices(face).map(|v| self.vertices[v as usize]))
     }
 
     /// The vertices joined to `vertex` by an edge, clockwise as seen from outside.

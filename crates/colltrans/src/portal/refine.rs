@@ -10,9 +10,10 @@ use glam::{DVec2, DVec3};
 use super::enclose::{Enclosure, Guide, OneSide, complete};
 use super::{Portal, Tangent};
 use crate::certificate::VertexPair;
-use crate::exact::{accurate_cross, accurate_det};
+use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
+use crate::plane::triangle_normal;
 
 /// The lowest face on the line.
 #[derive(Debug, Clone, Copy)]
@@ -30,9 +31,6 @@ pub(crate) struct Optimum {
 /// More portals than any body needs: then ties within rounding error keep following each other, and points below the
 /// plane by less than what counts as touching are taken to lie on it.
 const LONG: usize = 200;
-
-/// Sine of the angle below which the product of two edges loses so many digits that it is formed without cancellation.
-const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Bound on the number of portals; reaching it is reported, never hidden.
 const MAX_PORTALS: usize = 10_000;
@@ -156,21 +154,14 @@ fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize
     same
 }
 
-/// The upward normal of the plane through the three points, from the two shorter edges, which determine it best; `None` if
-/// the portal is too narrow to have one.
+/// The upward normal of the plane through the three points; `None` if the portal is too narrow to have one.
 fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
-    let [a, b, c] = portal.map(|t| t.point.at);
-    let edges = [b - a, c - b, a - c];
-    let lengths = edges.map(|e| e.truncate().length_squared());
-    let longest = largest(lengths);
-    let (first, second) = (edges[(longest + 1) % 3], edges[(longest + 2) % 3]);
-    let mut normal = first.cross(second);
-    let size = first.length_squared() * second.length_squared();
-    if normal.length_squared() < NEARLY_PARALLEL * NEARLY_PARALLEL * size {
-        normal = accurate_cross(first, second);
-    }
+    let [a, b, c] = portal.map(|t| t.point.shadow());
+    let longest = (b - a).length_squared().max((c - b).length_squared());
+    let longest = longest.max((a - c).length_squared());
+    let normal = triangle_normal(portal.map(|t| t.point.at));
     let least = difference.touching();
-    let wide = normal.z > 0.0 && normal.z * normal.z > least * least * lengths[longest];
+    let wide = normal.z > 0.0 && normal.z * normal.z > least * least * longest;
     wide.then_some(normal)
 }
 
@@ -200,10 +191,10 @@ fn weights(portal: &Portal) -> [f64; 3] {
     nearest.1
 }
 
-fn largest(weights: [f64; 3]) -> usize {
-    if weights[0] >= weights[1] && weights[0] >= weights[2] {
+fn largest(values: [f64; 3]) -> usize {
+    if values[0] >= values[1] && values[0] >= values[2] {
         0
-    } else if weights[1] >= weights[2] {
+    } else if values[1] >= values[2] {
         1
     } else {
         2

@@ -2,11 +2,11 @@
 //!
 //! A *region* is a connected set of triangles whose corners all lie within the tolerance of one plane, the plane of its largest
 //! triangle: slivers among them are taken in whatever their own normals say, for those mean nothing. A point
-//! with fewer than three regions around it lies inside a face or inside an edge: it is *redundant*.
+//! at which fewer than three planes of regions meet lies inside a face or inside an edge: it is *redundant*.
 
 use glam::DVec3;
 
-use super::quickhull::{Simplicial, simplicial_hull};
+use super::quickhull::{Simplicial, Triangle, simplicial_hull};
 
 const NONE: u32 = u32::MAX;
 
@@ -15,13 +15,15 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Regions {
     of: Vec<u32>,
     count: u32,
+    /// For each region, the triangle whose plane it lies in.
+    seed: Vec<u32>,
 }
 
 impl Regions {
     /// Every triangle by itself.
     pub(super) fn triangles(simplicial: &Simplicial) -> Self {
         let count = simplicial.triangles.len() as u32;
-        Self { of: (0..count).collect(), count }
+        Self { of: (0..count).collect(), count, seed: (0..count).collect() }
     }
 }
 
@@ -34,7 +36,7 @@ pub(super) fn regions(points: &[DVec3], simplicial: &Simplicial, tolerance: f64)
     };
     let mut seeds: Vec<(f64, u32)> = (0..triangles.len() as u32).map(|t| (area(t), t)).collect();
     seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut regions = Regions { of: vec![NONE; triangles.len()], count: 0 };
+    let mut regions = Regions { of: vec![NONE; triangles.len()], count: 0, seed: Vec::new() };
     let mut members = Vec::new();
     for (_, seed) in seeds {
         if regions.of[seed as usize] == NONE {
@@ -61,6 +63,7 @@ fn grow(
     let origin = points[plane.corners[0] as usize];
     let on_plane = |i: u32| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance;
     regions.of[seed as usize] = regions.count;
+    regions.seed.push(seed);
     members.push(seed);
     let mut k = 0;
     while k < members.len() {
@@ -131,32 +134,59 @@ fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Opt
 fn split(regions: &mut Regions, members: &[u32]) {
     for &t in &members[1..] {
         regions.of[t as usize] = regions.count;
+        regions.seed.push(t);
         regions.count += 1;
     }
 }
 
-/// The corners with fewer than three regions around them, ascending, without those in `forced`.
-pub(super) fn redundant(simplicial: &Simplicial, regions: &Regions, forced: &[u32]) -> Vec<u32> {
-    // The first two regions seen at each corner, and whether there is a third.
+/// The corners around which fewer than three planes meet, ascending, without those in `forced`.
+///
+/// Two regions in one plane count once: slivers along an edge can keep the parts of a face apart.
+pub(super) fn redundant(
+    points: &[DVec3],
+    simplicial: &Simplicial,
+    regions: &Regions,
+    tolerance: f64,
+    forced: &[u32],
+) -> Vec<u32> {
     let size = simplicial.triangles.iter().flat_map(|t| t.corners).max().unwrap_or(0) as usize + 1;
-    let mut first = vec![NONE; size];
-    let mut second = vec![NONE; size];
-    let mut more = vec![false; size];
+    // Up to three regions in different planes seen at each corner.
+    let mut planes = vec![[NONE; 3]; size];
     for (triangle, &region) in simplicial.triangles.iter().zip(&regions.of) {
-        for v in triangle.corners.map(|c| c as usize) {
-            if first[v] == NONE || first[v] == region {
-                first[v] = region;
-            } else if second[v] == NONE || second[v] == region {
-                second[v] = region;
-            } else {
-                more[v] = true;
+        for v in triangle.corners {
+            let seen = &mut planes[v as usize];
+            let is_same = |&r: &u32| {
+                r == region
+                    || coplanar(
+                        points,
+                        simplicial,
+                        [r, region].map(|r| regions.seed[r as usize]),
+                        tolerance,
+                    )
+            };
+            let count = seen.iter().take_while(|&&r| r != NONE).count();
+            if count < 3 && !seen[..count].iter().any(is_same) {
+                seen[count] = region;
             }
         }
     }
     (0..size as u32)
-        .filter(|&v| first[v as usize] != NONE && !more[v as usize])
+        .filter(|&v| planes[v as usize][0] != NONE && planes[v as usize][2] == NONE)
         .filter(|v| forced.binary_search(v).is_err())
         .collect()
+}
+
+/// Whether each of two triangles lies in the other's plane.
+fn coplanar(points: &[DVec3], simplicial: &Simplicial, [a, b]: [u32; 2], tolerance: f64) -> bool {
+    let [a, b] = [a, b].map(|t| &simplicial.triangles[t as usize]);
+    let lies_in = |inner: &Triangle, plane: &Triangle| {
+        let origin = points[plane.corners[0] as usize];
+        inner
+            .corners
+            .iter()
+            .all(|&i| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance)
+    };
+    a.normal.dot(b.normal) > 0.0 && lies_in(a, b) && lies_in(b, a)
 }
 
 /// Which of the `dropped` points lie outside the hull of the `kept` ones by more than the tolerance.

@@ -80,7 +80,7 @@ pub(super) fn convex_hull(points: &[DVec3]) -> Hull {
         };
         near.extend(&simplicial.near);
         let regions = merge::regions(points, &simplicial, tolerance);
-        let redundant = merge::redundant(&simplicial, &regions, &forced);
+        let redundant = merge::redundant(points, &simplicial, &regions, tolerance, &forced);
         if redundant.is_empty() {
             return finish(points, &simplicial, &regions, &near);
         }

@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use crate::polyhedron::plane::triangle_normal;
+use crate::plane::triangle_normal;
 
 const NONE: u32 = u32::MAX;
 

@@ -2,19 +2,33 @@
 
 use glam::DVec3;
 
+use crate::exact::accurate_cross;
+
+/// Sine of the angle below which the product of two edges is formed without cancellation: above, it loses two bits at most.
+const NEARLY_PARALLEL: f64 = 0.25;
+
 /// Twice the area times the unit normal of the counter-clockwise triangle `a b c`.
 ///
-/// From its two shorter edges: the product of two long, nearly parallel edges would lose the normal to rounding.
+/// From its two shorter edges, which determine it best: the product of two long, nearly parallel ones would lose the normal to
+/// rounding.
+#[inline]
 pub(crate) fn triangle_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [b - a, c - b, a - c];
     let lengths = edges.map(DVec3::length_squared);
-    if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
-        edges[1].cross(edges[2])
+    let longest = if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
+        0
     } else if lengths[1] >= lengths[2] {
-        edges[2].cross(edges[0])
+        1
     } else {
-        edges[0].cross(edges[1])
+        2
+    };
+    let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
+    let normal = edges[i].cross(edges[j]);
+    let size = lengths[i] * lengths[j];
+    if normal.length_squared() < NEARLY_PARALLEL * NEARLY_PARALLEL * size {
+        return accurate_cross(edges[i], edges[j]);
     }
+    normal
 }
 
 /// Unit normal of a convex polygon, from a triangle of its corners that spans it widely; zero if it has no area.

@@ -82,7 +82,7 @@ pub(crate) fn refine(
 /// The edge of a narrow portal which the line passes lowest; if it is too short to have a direction, from its lower point to
 /// one far away.
 fn passed_edge(difference: &Difference, portal: &Portal, steps: &mut Steps) -> [Tangent; 2] {
-    let edge = lowest_edge(portal);
+    let edge = lowest_edge(difference, portal);
     let [from, to] = edge.map(|t| t.point);
     if from.shadow().distance(to.shadow()) > difference.touching() {
         return edge;
@@ -98,29 +98,19 @@ fn passed_edge(difference: &Difference, portal: &Portal, steps: &mut Steps) -> [
 }
 
 /// Of the edges of a narrow portal near which the line passes, the one it passes lowest.
-fn lowest_edge(portal: &Portal) -> [Tangent; 2] {
+fn lowest_edge(difference: &Difference, portal: &Portal) -> [Tangent; 2] {
     let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]]);
     let passing = edges.map(|edge| {
         let shadows = edge.map(|t| t.point.shadow());
         let share = nearest_share(shadows);
         let [from, to] = edge.map(|t| t.point.height());
         let near = shadows[0] + (shadows[1] - shadows[0]) * share;
-        (near.length_squared(), from + (to - from) * share)
+        (near.length(), from + (to - from) * share)
     });
-    // Of a narrow triangle around the line, the longest edge passes it within the triangle's height, so at least one edge does.
     let nearest = passing.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
-    let longest = edges.map(|[a, b]| a.point.shadow().distance_squared(b.point.shadow()));
-    let height = portal_height_squared(portal, longest[largest(longest)]);
-    let close = |k: &usize| passing[*k].0 <= nearest.max(height);
+    let close = |k: &usize| passing[*k].0 <= nearest.max(difference.touching());
     let lowest = (0..3).filter(close).min_by(|&i, &j| passing[i].1.total_cmp(&passing[j].1));
     edges[lowest.unwrap_or(0)]
-}
-
-/// Square of the height of the portal's shadow over its longest edge, given that edge's squared length.
-fn portal_height_squared(portal: &Portal, longest_squared: f64) -> f64 {
-    let [a, b, c] = portal.map(|t| t.point.shadow());
-    let area = accurate_det(b - a, c - a);
-    if longest_squared > 0.0 { area * area / longest_squared } else { 0.0 }
 }
 
 /// Where on a segment the line passes nearest, from 0 at its start to 1 at its end.

@@ -64,10 +64,11 @@ impl fmt::Display for Objection {
 
 impl std::error::Error for Objection {}
 
-/// `Err` with a formatted [`Objection`] unless the condition holds.
+/// `Err` with a formatted [`Objection`] unless the condition holds; a comparison with NaN does not.
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
-        if !$condition {
+        if $condition {
+        } else {
             return Err(Objection(format!($($text)+)));
         }
     };

@@ -37,6 +37,9 @@ impl SignedDistance {
 
 /// The distance of the line from the boundary of the shadow of `M`, in world units: positive if the shadows of the two
 /// bodies overlap by that much, negative if they are that far apart.
+///
+/// # Panics
+/// If a body has no points, which no polyhedron lacks.
 pub fn sideways_overlap(scene: &Scene) -> SignedDistance {
     let points = scene.differences();
     let coordinates: Vec<Dyadic> = points.iter().flat_map(|m| scene.shadow(m)).collect();

@@ -94,7 +94,8 @@ pub(crate) fn separated(
 /// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body frame).
 fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
     let at = body.vertices()[vertex as usize];
-    let in_plane = |w: u32| outward.dot(at - body.vertices()[w as usize]) <= noise;
+    let in_plane =
+        |w: u32| outward.dot(at - body.vertices()[w as usize]) <= noise + body.hull_error();
     let topology = body.topology();
     let neighbours = topology.neighbours(vertex);
     let outgoing = topology.outgoing(vertex);
@@ -110,10 +111,20 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
         if !outgoing.is_empty() && next != i && in_plane(neighbours[next]) {
             let face = topology.half_edge(outgoing[next]).face;
             // Of the two faces of a flat polygon, the one that looks there.
-            if body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0 {
+            let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
+            if looks && spread(topology.face_vertices(face)).all(in_plane) {
                 return Feature::Face(face);
             }
         }
     }
     edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
 }
+
+/// Up to [`SAMPLES`] vertices, spread over a face: those near a vertex may lie in a plane that the others do not.
+fn spread(vertices: impl ExactSizeIterator<Item = u32>) -> impl Iterator<Item = u32> {
+    let stride = vertices.len().div_ceil(SAMPLES);
+    vertices.step_by(stride)
+}
+
+/// How many vertices of a face must lie in the contact plane for the face to do.
+const SAMPLES: usize = 16;

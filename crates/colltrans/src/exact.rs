@@ -11,7 +11,7 @@
 
 use std::cmp::Ordering;
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 const LIMBS: usize = 37;
 
@@ -221,6 +221,15 @@ pub(crate) fn difference_error(a: f64, b: f64) -> f64 {
 pub(crate) fn accurate_det(a: DVec2, b: DVec2) -> f64 {
     let (p, q) = (a.x * b.y, a.y * b.x);
     (p - q) + (product_error(a.x, b.y, p) - product_error(a.y, b.x, q))
+}
+
+/// `a x b` with an error relative to each component.
+pub(crate) fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
+    DVec3::new(
+        accurate_det(a.yz(), b.yz()),
+        accurate_det(a.zx(), b.zx()),
+        accurate_det(a.xy(), b.xy()),
+    )
 }
 
 /// The rounding error of the product `p = fl(a b)`, exactly (Dekker).

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use super::enclose::{Enclosure, close_widely};
 use super::{Portal, Tangent};
 use crate::certificate::VertexPair;
-use crate::exact::accurate_det;
+use crate::exact::{accurate_cross, accurate_det};
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 
@@ -26,6 +26,9 @@ pub(crate) struct Optimum {
     /// Their barycentric weights at the line.
     pub(crate) weights: [f64; 3],
 }
+
+/// Sine of the angle below which the product of two edges loses so many digits that it is formed without cancellation.
+const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Bound on the number of portals; reaching it is reported, never hidden.
 const MAX_PORTALS: usize = 10_000;
@@ -55,9 +58,7 @@ pub(crate) fn refine(
     for _ in 0..MAX_PORTALS {
         steps.pivots += 1;
         let Some(plane) = plane_normal(difference, &portal) else {
-            // Too narrow to have a plane: a wide portal over what is lowest of it.
-            let edge = passed_edge(difference, &portal, steps);
-            match close_widely(difference, edge, steps)? {
+            match widen(difference, &portal, steps)? {
                 Enclosure::Portal(wide) => portal = wide,
                 Enclosure::OneSide { normal, margin, .. } => {
                     return Some(Refined::Rim { normal, margin });
@@ -79,22 +80,37 @@ pub(crate) fn refine(
     None
 }
 
-/// The edge of a narrow portal which the line passes lowest; if it is too short to have a direction, from its lower point to
-/// one far away.
-fn passed_edge(difference: &Difference, portal: &Portal, steps: &mut Steps) -> [Tangent; 2] {
+/// A portal with a plane in place of one too narrow to have one: over the edge that the line passes lowest or, if that is too
+/// short to give the new portal a width, around its lower point. `None` if there is none.
+fn widen(difference: &Difference, portal: &Portal, steps: &mut Steps) -> Option<Enclosure> {
     let edge = lowest_edge(difference, portal);
     let [from, to] = edge.map(|t| t.point);
     if from.shadow().distance(to.shadow()) > difference.touching() {
-        return edge;
+        let wide = close_widely(difference, edge, steps)?;
+        match wide {
+            Enclosure::Portal(portal) if plane_normal(difference, &portal).is_none() => {}
+            _ => return Some(wide),
+        }
     }
     let low = if from.height() <= to.height() { edge[0] } else { edge[1] };
-    let far = [DVec2::X, DVec2::NEG_X].map(|lateral| {
+    let wide = close_widely(difference, [low, farthest(difference, low, steps)], steps)?;
+    match wide {
+        Enclosure::Portal(portal) if plane_normal(difference, &portal).is_none() => None,
+        _ => Some(wide),
+    }
+}
+
+/// A point of `M` whose shadow is far from that of another.
+fn farthest(difference: &Difference, from: Tangent, steps: &mut Steps) -> Tangent {
+    let candidates = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(|lateral| {
         steps.supports += 1;
         difference.support(lateral.extend(0.0))
     });
-    let distance = |p: &Point| p.shadow().distance_squared(low.point.shadow());
-    let point = if distance(&far[0]) >= distance(&far[1]) { far[0] } else { far[1] };
-    [low, Tangent { point, slope: low.slope }]
+    let distance = |p: &Point| p.shadow().distance_squared(from.point.shadow());
+    let point = candidates
+        .into_iter()
+        .fold(from.point, |far, p| if distance(&p) > distance(&far) { p } else { far });
+    Tangent { point, slope: from.slope }
 }
 
 /// Of the edges of a narrow portal near which the line passes, the one it passes lowest.
@@ -150,7 +166,12 @@ fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
     let edges = [b - a, c - b, a - c];
     let lengths = edges.map(|e| e.truncate().length_squared());
     let longest = largest(lengths);
-    let normal = edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3]);
+    let (first, second) = (edges[(longest + 1) % 3], edges[(longest + 2) % 3]);
+    let mut normal = first.cross(second);
+    let size = first.length_squared() * second.length_squared();
+    if normal.length_squared() < NEARLY_PARALLEL * NEARLY_PARALLEL * size {
+        normal = accurate_cross(first, second);
+    }
     let least = difference.touching();
     let wide = normal.z > 0.0 && normal.z * normal.z > least * least * lengths[longest];
     wide.then_some(normal)

@@ -10,8 +10,9 @@ use crate::polyhedron::ConvexPolyhedron;
 use crate::portal::Optimum;
 use crate::pose::Pose;
 
-/// Rounding the two bounds and accepting the plane cost one noise each (see [`crate::certificate`]).
-const GAP_IN_NOISES: f64 = 3.0;
+/// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see
+/// [`crate::certificate`]).
+const GAP_IN_NOISES: f64 = 10.0;
 
 /// Widened bodies touch within a square of this many half-sides, seen from its centre.
 const WIDENED_REACH: f64 = 2.0;

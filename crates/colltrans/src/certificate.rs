@@ -11,8 +11,8 @@
 //!
 //! Rounding. A bound on `n.q - n.p` for a unit `n` has an error of at most [`Difference::noise`](crate::minkowski::Difference::noise)
 //! `= 32 u S` (`u = 2^-53`, `S` the size of the configuration); dividing by `n.d` turns it into an error of `t`. The plane is
-//! accepted when no point of `M` is below it by more than the noise, the lower and the upper bound each add at most one more:
-//! `upper - lower <= 3 noise / (n.d)`, which is [`Certificate::tolerance`].
+//! accepted when no point of `M` is below it by more than the noise (eight times the noise after many ties), the lower and the upper
+//! bound each add at most one more: `upper - lower <= 10 noise / (n.d)`, which is [`Certificate::tolerance`].
 
 use glam::DVec3;
 use thiserror::Error;

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::answer;
 use crate::certificate::VertexPair;
-use crate::cta::{self, CtaOptions, Guess};
+use crate::cta::{self, CtaOptions, CtaStart, Guess};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::outcome::{
@@ -216,7 +216,14 @@ impl Cast<'_> {
         if self.solver != Solver::Cta || !solid {
             return Start::from_ellipsoids(&self.difference);
         }
-        let narrowed = cta::minimise(setting, &CtaOptions::default());
+        let ellipsoids = Start::from_ellipsoids(&self.difference);
+        let start = (ellipsoids.normal.z > 0.0).then(|| {
+            self.steps.supports += 1;
+            let VertexPair { moving, fixed } = self.difference.support(ellipsoids.normal).pair;
+            let normal = self.difference.axes * ellipsoids.normal;
+            CtaStart { normal, supports: [moving, fixed] }
+        });
+        let narrowed = cta::minimise(setting, &CtaOptions { start, ..CtaOptions::default() });
         self.steps.planar_problems += narrowed.planar_problems;
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair { moving: moving[0], fixed: fixed[0] };

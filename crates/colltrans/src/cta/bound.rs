@@ -8,6 +8,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::ROUNDING;
 use super::cell::{Affine, Piece};
 
 /// The sides of the rectangle of levels, the artificial bound, and one piece per step.
@@ -34,15 +35,15 @@ pub(super) enum Progress {
 }
 
 impl LowerBound {
-    /// Over the rectangle from `low` to `high`, and with `floor` below every contact.
-    pub(super) fn new(low: DVec2, high: DVec2, floor: f64) -> Self {
+    /// Over the rectangle from `low` to `high`, with a constant piece to begin with.
+    pub(super) fn new(low: DVec2, high: DVec2, floor: Piece) -> Self {
         let side = |value, gradient| Piece {
             bound: Affine { value, gradient },
             weight: 0.0,
             normal: DVec3::ZERO,
         };
         let mut pieces = [Piece::default(); CAPACITY];
-        pieces[0] = Piece { weight: 1.0, ..side(floor, DVec2::ZERO) };
+        pieces[0] = floor;
         pieces[1] = side(low.x, DVec2::NEG_X);
         pieces[2] = side(low.y, DVec2::NEG_Y);
         pieces[3] = side(-high.x, DVec2::X);
@@ -53,7 +54,7 @@ impl LowerBound {
             basis: [0, 1, 2],
             inverse: DMat3::IDENTITY,
             at: low,
-            t: floor,
+            t: floor.bound.value,
         };
         bound.inverse = bound.basis_matrix().inverse();
         bound
@@ -67,13 +68,18 @@ impl LowerBound {
         for _ in 0..2 * self.count {
             let Some(entering) = self.most_violated() else { break };
             if let Err(normal) = self.pivot(entering) {
-                return match normal {
-                    Some(normal) => Progress::Contradiction(normal),
-                    None => Progress::Bounded,
-                };
+                return Progress::Contradiction(normal);
             }
         }
         Progress::Bounded
+    }
+
+    /// The greatest lower bound of `phi` at a point that a piece gives.
+    pub(super) fn below(&self, at: DVec2) -> f64 {
+        let pieces = self.pieces[..self.count].iter().filter(|piece| piece.weight > 0.0);
+        pieces
+            .map(|piece| piece.bound.value + piece.bound.gradient.dot(at))
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The normal that proves the bound; of no use while the floor is in the basis.
@@ -103,8 +109,10 @@ impl LowerBound {
         for (index, piece) in self.pieces[..self.count].iter().enumerate() {
             let violation = self.violation(piece);
             if violation > most && !self.basis.contains(&index) {
-                let size = piece.bound.value.abs().max((piece.weight * self.t).abs());
-                if violation > 8.0 * f64::EPSILON * size {
+                let size = piece.bound.value.abs()
+                    + piece.bound.gradient.length() * self.at.length()
+                    + (piece.weight * self.t).abs();
+                if violation > ROUNDING * size {
                     (worst, most) = (Some(index), violation);
                 }
             }
@@ -112,15 +120,16 @@ impl LowerBound {
         worst
     }
 
-    /// Exchanges a piece of the basis for `entering`. An error if none can leave, with the normal of the contradiction,
-    /// or if rounding makes the new basis singular.
-    fn pivot(&mut self, entering: usize) -> Result<(), Option<DVec3>> {
+    /// Exchanges a piece of the basis for `entering`. An error if none can leave: the normal of the contradiction.
+    fn pivot(&mut self, entering: usize) -> Result<(), DVec3> {
         let multipliers = self.inverse * DVec3::X;
-        let rates = self.inverse * column(&self.pieces[entering]);
+        let entering_column = column(&self.pieces[entering]);
+        let rates = self.inverse * entering_column;
+        let noise = ROUNDING * entering_column.length();
         let mut leaving = None;
         let mut least = f64::INFINITY;
         for slot in 0..3 {
-            if rates[slot] > 0.0 {
+            if rates[slot] > noise * self.inverse.row(slot).length() {
                 let ratio = multipliers[slot].max(0.0) / rates[slot];
                 if ratio < least {
                     (leaving, least) = (Some(slot), ratio);
@@ -128,20 +137,29 @@ impl LowerBound {
             }
         }
         let Some(slot) = leaving else {
-            return Err(Some(self.pieces[entering].normal - self.combine(rates)));
+            return Err(self.pieces[entering].normal - self.combine(rates));
         };
-        let left = std::mem::replace(&mut self.basis[slot], entering);
-        let inverse = self.basis_matrix().inverse();
+        self.basis[slot] = entering;
+        self.exchange(slot, rates);
         let values = DVec3::from_array(self.basis.map(|i| self.pieces[i].bound.value));
-        let optimum = inverse.transpose() * values;
-        if !optimum.is_finite() {
-            self.basis[slot] = left;
-            return Err(None);
-        }
-        self.inverse = inverse;
+        let optimum = self.inverse.transpose() * values;
         self.t = optimum.x;
         self.at = -DVec2::new(optimum.y, optimum.z);
         Ok(())
+    }
+
+    /// Gauss-Jordan: the inverse after the column with the coordinates `rates` has replaced that of `slot`.
+    fn exchange(&mut self, slot: usize, rates: DVec3) {
+        let pivot_row = self.inverse.row(slot) / rates[slot];
+        let mut others = rates;
+        others[slot] = 0.0;
+        let mut kept = DVec3::ONE;
+        kept[slot] = 0.0;
+        let mut unit = DVec3::ZERO;
+        unit[slot] = 1.0;
+        let column =
+            |c: usize| (self.inverse.col(c) * kept) - others * pivot_row[c] + unit * pivot_row[c];
+        self.inverse = DMat3::from_cols(column(0), column(1), column(2));
     }
 }
 

@@ -28,12 +28,26 @@ pub(super) struct Frame {
     pub(super) shadow: [DVec3; 2],
 }
 
+impl Frame {
+    /// What the levels add to the height of the contact in `phi`.
+    pub(super) fn base(&self, levels: [f64; 2]) -> f64 {
+        levels[1] / self.along[1] - levels[0] / self.along[0]
+    }
+}
+
 /// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and `normal . d = weight`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Piece {
     pub(super) bound: Affine,
     pub(super) weight: f64,
     pub(super) normal: DVec3,
+}
+
+impl Piece {
+    /// A supporting plane of the bodies: a bound that holds for all levels.
+    pub(super) fn constant(t: f64, normal: DVec3) -> Self {
+        Self { bound: Affine { value: t, gradient: DVec2::ZERO }, weight: 1.0, normal }
+    }
 }
 
 /// At most so many half-planes bound a cell: those of a vertex contact.
@@ -88,26 +102,28 @@ impl Cell {
 
     /// The side that a ray hits first, and after which multiple of `way`.
     fn ray(&self, at: DVec2, way: DVec2, on: Option<usize>) -> Option<(usize, f64)> {
-        let mut hit = None;
-        let mut least = f64::INFINITY;
-        for (index, side) in self.sides[..self.count].iter().enumerate() {
-            let rate = side.gradient.dot(way);
-            if Some(index) == on || rate >= 0.0 {
-                continue;
-            }
-            let step = (side.value + side.gradient.dot(at)).max(0.0) / -rate;
-            if step < least {
-                (hit, least) = (Some((index, step)), step);
-            }
+        // Without branches in the first pass: they would be unpredictable.
+        let mut steps = [f64::INFINITY; CELL_SIDES];
+        for (step, side) in steps.iter_mut().zip(&self.sides) {
+            let rate = -side.gradient.dot(way);
+            let slack = (side.value + side.gradient.dot(at)).max(0.0);
+            *step = if rate > 0.0 { slack / rate } else { f64::INFINITY };
         }
-        hit
+        if let Some(side) = on {
+            steps[side] = f64::INFINITY;
+        }
+        let least = steps
+            .iter()
+            .fold(f64::INFINITY, |least, &step| if step < least { step } else { least });
+        let side = steps.iter().position(|&step| step == least)?;
+        (least < f64::INFINITY).then_some((side, least))
     }
 }
 
 impl Planar {
     /// The piece that the answer at `levels` gives, up to the constant of `t`.
     pub(super) fn piece(&self, frame: &Frame, levels: [f64; 2]) -> Piece {
-        let base = levels[1] / frame.along[1] - levels[0] / frame.along[0];
+        let base = frame.base(levels);
         let slope = DVec2::new(-1.0 / frame.along[0], 1.0 / frame.along[1]);
         match self {
             Self::Vertex { upper, vertex, .. } => Piece {
@@ -118,13 +134,13 @@ impl Planar {
                 weight: 1.0,
                 normal: frame.axes[1 - upper],
             },
-            Self::Edges { edges, h } => {
+            Self::Edges { edges, contact } => {
                 let motion = contact_motion(edges);
                 let [r, s] = edges.each_ref().map(|edge| edge.direction);
                 let [c, g] = frame.shadow;
                 Piece {
                     bound: Affine {
-                        value: base + h,
+                        value: base + contact.x,
                         gradient: slope + DVec2::new(motion[0].x, motion[1].x),
                     },
                     weight: 1.0,
@@ -166,9 +182,8 @@ impl Planar {
                     }
                 }
             }
-            Self::Edges { edges, h } => {
+            Self::Edges { edges, contact } => {
                 let motion = contact_motion(edges);
-                let contact = contact_point(edges, *h);
                 for (body, edge) in edges.iter().enumerate() {
                     let ranges = [edge.low.levels, edge.high.levels];
                     cell.keep_levels(unit(body), levels[body], &ranges);
@@ -176,7 +191,7 @@ impl Planar {
                         let along = edge.direction * sign;
                         let moved = DVec2::new(along.dot(motion[0]), along.dot(motion[1]));
                         cell.keep(
-                            along.dot(contact - end.w),
+                            along.dot(*contact - end.w),
                             moved - unit(body) * along.dot(end.drift),
                         );
                     }
@@ -202,11 +217,4 @@ fn contact_motion(edges: &[Bracket; 2]) -> [DVec2; 2] {
         s * (r.perp_dot(edges[0].low.drift) / cross),
         r * (s.perp_dot(edges[1].low.drift) / cross) * -1.0,
     ]
-}
-
-/// The point at height `h` on the less horizontal of the two edges.
-fn contact_point(edges: &[Bracket; 2], h: f64) -> DVec2 {
-    let steepness = |edge: &Bracket| edge.direction.x / edge.direction.length();
-    let edge = &edges[usize::from(steepness(&edges[1]) > steepness(&edges[0]))];
-    DVec2::new(h, edge.g_at(h))
 }

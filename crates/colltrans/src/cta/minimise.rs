@@ -12,11 +12,20 @@ use crate::polyhedron::ConvexPolyhedron;
 use crate::section::AxisPair;
 use crate::setting::Setting;
 
+/// A guess of the contact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CtaStart {
+    /// Guess of the contact normal, in the setting frame, of any length; `normal . d > 0`.
+    pub(crate) normal: DVec3,
+    /// The support points of P along it and of Q against it, as vertices.
+    pub(crate) supports: [u32; 2],
+}
+
 /// Choices of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CtaOptions {
-    /// Where to start: a point of each body, in its own frame, near the expected contact. Without it, the centre of the levels.
-    pub(crate) start: Option<[DVec3; 2]>,
+    /// Where to start; without it, at the centre of the levels.
+    pub(crate) start: Option<CtaStart>,
     /// Planar problems at most (never more than [`MAX_STEPS`]).
     pub(crate) max_steps: u32,
     /// Stops when upper minus lower bound is at most this part of the extent of both bodies along the direction.
@@ -25,7 +34,7 @@ pub(crate) struct CtaOptions {
 
 impl Default for CtaOptions {
     fn default() -> Self {
-        Self { start: None, max_steps: MAX_STEPS, gap: 2e-3 }
+        Self { start: None, max_steps: MAX_STEPS, gap: 5e-3 }
     }
 }
 
@@ -40,31 +49,38 @@ pub(crate) enum Guess {
     Nothing,
 }
 
+/// Two mesh edges of each body, as two pairs of vertices.
+type Features = [[u32; 4]; 2];
+
 /// The result of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Narrowed {
     pub(crate) guess: Guess,
     /// The two mesh edges of each body nearest to the contact or the separating plane, as two pairs of vertices.
-    pub(crate) vertices: [[u32; 4]; 2],
+    pub(crate) vertices: Features,
     /// Planar problems solved.
     pub(crate) planar_problems: u32,
     /// Least `phi` found, an upper bound of the collision translation in units of length; infinite without a contact.
+    #[cfg_attr(
+        not(test),
+        expect(dead_code, reason = "the finish proves its own bounds; the tests compare")
+    )]
     pub(crate) upper: f64,
     /// Lower bound, in units of length.
+    #[cfg_attr(not(test), expect(dead_code, reason = "as `upper`"))]
     pub(crate) lower: f64,
 }
 
 /// Narrows the search for the contact of two bodies of dimension 3.
 pub(crate) fn minimise(setting: &Setting, options: &CtaOptions) -> Narrowed {
     let query = Query::new(setting);
-    query.minimise(options)
+    query.minimise(setting, options)
 }
 
 /// A setting in section coordinates.
 pub(super) struct Query<'a> {
     pub(super) sides: [Side<'a>; 2],
     frame: Frame,
-    axes_in_body: [DVec3; 2],
     /// `t` at the origin of both levels and `h = 0`.
     constant: f64,
 }
@@ -98,21 +114,24 @@ impl<'a> Query<'a> {
                 side(setting.fixed, setting.fixed_matrix, pair.fixed.0, 1, setting.offset),
             ],
             frame,
-            axes_in_body: [crate::section::AXES[pair.moving.0], crate::section::AXES[pair.fixed.0]],
             // Q's levels are measured in its own frame.
             constant: axes[1].dot(setting.offset),
         }
     }
 
-    fn minimise(&self, options: &CtaOptions) -> Narrowed {
+    fn minimise(&self, setting: &Setting, options: &CtaOptions) -> Narrowed {
         let ranges = [self.sides[0].range(), self.sides[1].range()];
         let origin = DVec2::from_array(ranges.map(|r| f64::midpoint(r[0], r[1])));
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
         let extent =
             2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
-        let floor = origin.y / self.frame.along[1] - origin.x / self.frame.along[0]
-            + self.sides[0].least_height()
-            - extent;
+        let start = options.start.map(|start| self.plane_at(setting, &start));
+        let (floor, at) = start.unwrap_or_else(|| {
+            let least = origin.y / self.frame.along[1] - origin.x / self.frame.along[0]
+                + self.sides[0].least_height()
+                - extent;
+            (Piece::constant(least, DVec3::ZERO), origin)
+        });
         let mut search = Search {
             query: self,
             origin,
@@ -125,14 +144,23 @@ impl<'a> Query<'a> {
             contradiction: None,
             planar_problems: 0,
         };
-        let start = options.start.map(|points| {
-            let levels = [0, 1].map(|i| self.axes_in_body[i].dot(points[i]));
-            DVec2::from_array(levels) - origin
-        });
-        search.run(start, options.max_steps.min(MAX_STEPS), options.gap * extent);
+        search.run(at - origin, options.max_steps.min(MAX_STEPS), options.gap * extent);
         search.result()
     }
+
+    /// The supporting plane of a start as a piece, and the levels of its support points.
+    fn plane_at(&self, setting: &Setting, start: &CtaStart) -> (Piece, DVec2) {
+        let normal = start.normal / start.normal.dot(setting.unit);
+        let p = setting.moving_matrix * setting.moving.vertices()[start.supports[0] as usize];
+        let q = setting.fixed_matrix * setting.fixed.vertices()[start.supports[1] as usize];
+        let t = normal.dot(q + setting.offset - p) - self.constant;
+        let levels = [0, 1].map(|body| self.sides[body].level(start.supports[body]));
+        (Piece::constant(t, normal), DVec2::from_array(levels))
+    }
 }
+
+/// How near to the ends of the levels a search may start, in half ranges from their middle.
+const LARGEST_START: f64 = 0.99;
 
 /// The state of a minimisation; levels are relative to `origin`.
 struct Search<'q, 'a> {
@@ -142,15 +170,17 @@ struct Search<'q, 'a> {
     region: Region,
     bound: LowerBound,
     upper: f64,
-    best: Option<Planar>,
-    last_separation: Option<(Planar, DVec3)>,
+    /// Features of the best contact.
+    best: Option<Features>,
+    last_separation: Option<(Features, DVec3)>,
     contradiction: Option<DVec3>,
     planar_problems: u32,
 }
 
 impl Search<'_, '_> {
-    fn run(&mut self, start: Option<DVec2>, max_steps: u32, gap: f64) {
-        let mut at = start.map_or(DVec2::ZERO, |s| s.clamp(-0.999 * self.half, 0.999 * self.half));
+    fn run(&mut self, start: DVec2, max_steps: u32, gap: f64) {
+        // Within the body's levels: a section has to have an area.
+        let mut at = start.clamp(-LARGEST_START * self.half, LARGEST_START * self.half);
         for _ in 0..max_steps {
             if !self.step(at) || self.upper - self.bound.t <= gap {
                 break;
@@ -166,7 +196,8 @@ impl Search<'_, '_> {
     fn step(&mut self, at: DVec2) -> bool {
         let levels = (self.origin + at).to_array();
         self.planar_problems += 1;
-        let Some(answer) = planar::solve(&self.query.sides, levels) else { return false };
+        let known = self.bound.below(at) - self.query.frame.base(levels);
+        let Some(answer) = planar::solve(&self.query.sides, levels, known) else { return false };
         let local = answer.piece(&self.query.frame, levels);
         let bound = Affine {
             value: local.bound.value - local.bound.gradient.dot(at),
@@ -177,11 +208,11 @@ impl Search<'_, '_> {
             let least = local.bound.value + cell.least(bound.gradient);
             if least < self.upper {
                 self.upper = least;
-                self.best = Some(answer);
+                self.best = Some(answer.features());
             }
             limit = self.upper;
         } else {
-            self.last_separation = Some((answer, local.normal));
+            self.last_separation = Some((answer.features(), local.normal));
         }
         self.region.cut(bound.gradient, limit - bound.value);
         if let Progress::Contradiction(normal) = self.bound.add(Piece { bound, ..local }) {
@@ -192,17 +223,17 @@ impl Search<'_, '_> {
     }
 
     fn result(&self) -> Narrowed {
-        let (guess, answer) = match (self.best, self.last_separation) {
-            (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, Some(best)),
-            (None, Some((answer, normal))) => {
+        let (guess, vertices) = match (self.best, self.last_separation) {
+            (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, best),
+            (None, Some((features, normal))) => {
                 let direction = self.contradiction.unwrap_or(normal);
-                (Guess::Separation { direction }, Some(answer))
+                (Guess::Separation { direction }, features)
             }
-            (None, None) => (Guess::Nothing, None),
+            (None, None) => (Guess::Nothing, Features::default()),
         };
         Narrowed {
             guess,
-            vertices: answer.map_or([[0; 4]; 2], |answer| answer.features()),
+            vertices,
             planar_problems: self.planar_problems,
             upper: self.upper + self.query.constant,
             lower: self.bound.t + self.query.constant,
@@ -212,7 +243,7 @@ impl Search<'_, '_> {
 
 impl Planar {
     /// The two mesh edges of each body that the answer rests on.
-    fn features(&self) -> [[u32; 4]; 2] {
+    fn features(&self) -> Features {
         let pair = |p: &Crossing, q: &Crossing| {
             [p.vertices[0], p.vertices[1], q.vertices[0], q.vertices[1]]
         };

@@ -8,7 +8,7 @@
 //! `phi(x, y) = y/(b.d) - x/(a.d) + psi(x, y)`, `psi` the least `h` common to both sections' shadows.
 //!
 //! The data's way: [`side`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) -> [`cell`] (its linear piece and where it
-//! holds) -> [`region`] (what is left of the levels) and [`bound`] (what the pieces prove together) -> [`minimise`].
+//! holds) -> [`region`] (what is left of the levels) and [`bound`] (what the pieces prove together) -> [`mod@minimise`].
 //! The result is a guess of the contact normal and features, in floating point: portal refinement makes it exact.
 
 mod bound;
@@ -20,7 +20,10 @@ mod side;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use minimise::{CtaOptions, Guess, Narrowed, minimise};
+pub(crate) use minimise::{CtaOptions, CtaStart, Guess, minimise};
 
-/// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^64 < 1e-12` of the region by then.
-pub(crate) const MAX_STEPS: u32 = 64;
+/// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^40 < 2e-8` of the region by then.
+pub(crate) const MAX_STEPS: u32 = 40;
+
+/// Relative rounding error of a sum of a few products, with a margin for the errors of their factors. Only guesses hang on it.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;

@@ -4,11 +4,13 @@
 //! *upper* section is the one with the higher bottom, at height `h0`. If that bottom lies in the other section it is
 //! the answer. Otherwise one section is to the left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the right chain `r` of the
 //! one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive at `h0`: Newton's method from there never
-//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls.
+//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls. Pieces found earlier bound the answer
+//! from below: then Newton's method starts at that height.
 
 use glam::DVec2;
 
-use super::side::{Bottom, Bracket, Chain, Crossing, Ends, Located, Side};
+use super::ROUNDING;
+use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
 
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
@@ -16,70 +18,81 @@ pub(super) enum Planar {
     /// The bottom of one section lies in the other, between two edges of it.
     Vertex { upper: usize, vertex: Crossing, left: Bracket, right: Bracket },
     /// Two edges cross at the lowest common point.
-    Edges { edges: [Bracket; 2], h: f64 },
+    Edges { edges: [Bracket; 2], contact: DVec2 },
     /// Nothing in common: along `u` every point of section 1 is beyond every point of section 0;
     /// `supports` are the closest.
     Separated { u: DVec2, supports: [Crossing; 2] },
 }
 
-struct Problem<'a, 'b> {
-    sides: &'a [Side<'b>; 2],
-    levels: [f64; 2],
-    ends: [Ends; 2],
+struct Problem<'a> {
+    sections: [Section<'a>; 2],
     upper: usize,
     h0: f64,
 }
 
-/// Solves the planar problem for the sections at `levels`, each in its body's range. `None` if rounding errors of the mesh hide a
-/// section.
-pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2]) -> Option<Planar> {
-    let ends = [sides[0].ends(levels[0])?, sides[1].ends(levels[1])?];
-    let bottoms = [sides[0].bottom(ends[0], levels[0])?, sides[1].bottom(ends[1], levels[1])?];
+/// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is known not to lie below height `known`.
+/// `None` if rounding errors of the mesh hide a section.
+pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
+    let sections = [sides[0].section(levels[0])?, sides[1].section(levels[1])?];
+    let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
     let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
-    let h0 = bottoms[upper].vertex.h();
-    Problem { sides, levels, ends, upper, h0 }.solve(&bottoms)
+    let problem = Problem { sections, upper, h0: bottoms[upper].vertex.h() };
+    let shortcut = if known > problem.h0 { problem.slide_from(known, &bottoms) } else { None };
+    shortcut.or_else(|| problem.solve(&bottoms))
 }
 
-impl Problem<'_, '_> {
+impl Problem<'_> {
     fn solve(&self, bottoms: &[Bottom; 2]) -> Option<Planar> {
         let lower = 1 - self.upper;
         let bottom = &bottoms[self.upper];
-        let left_end = flat_end(&bottom.vertex, &bottom.left);
-        let right_end = flat_end(&bottom.vertex, &bottom.right);
+        let left_end = self.sections[self.upper].bottom_end(bottom, Chain::Left);
+        let right_end = self.sections[self.upper].bottom_end(bottom, Chain::Right);
         let nearer =
             if right_end.g() < bottoms[lower].vertex.g() { Chain::Left } else { Chain::Right };
         let mut found = [None; 2];
         for chain in [nearer, nearer.opposite()] {
-            let edge = match self.sides[lower].locate(
-                chain,
-                self.ends[lower],
-                self.h0,
-                self.levels[lower],
-            )? {
+            let edge = match self.sections[lower].locate(chain, self.h0)? {
                 Located::Edge(edge) => edge,
                 Located::Beyond(topmost) => {
                     return Some(self.separated_by_height(&bottom.vertex, &topmost.high));
                 }
+                Located::Short => return None,
             };
-            let outside = match chain {
-                Chain::Left => right_end.g() < edge.g_at(self.h0),
-                Chain::Right => left_end.g() > edge.g_at(self.h0),
-            };
-            if outside {
-                return self.slide(bottom, chain, edge);
+            let g = edge.g_at(self.h0);
+            if chain == Chain::Left && right_end.g() < g {
+                return self.slide(right_end, chain, edge);
+            }
+            if chain == Chain::Right && left_end.g() > g {
+                return self.slide(left_end, chain, edge);
             }
             found[usize::from(chain == Chain::Right)] = Some(edge);
         }
         let (left, right) = (found[0]?, found[1]?);
         let inside =
             |end: &Crossing| left.g_at(self.h0) <= end.g() && end.g() <= right.g_at(self.h0);
-        let ends = [left_end, right_end];
-        if let Some(vertex) = ends.into_iter().find(inside) {
+        if let Some(vertex) = [left_end, right_end].into_iter().find(inside) {
             return Some(Planar::Vertex { upper: self.upper, vertex, left, right });
         }
         // The lower section is narrower than the flat bottom of the upper one.
         let flat = Bracket::new(left_end, right_end);
-        Some(Planar::Edges { edges: self.by_body(flat, left), h: self.h0 })
+        Some(crossing_edges(&self.by_body(flat, left)))
+    }
+
+    /// Newton's method from height `known` if the sections are apart there and approach each other.
+    fn slide_from(&self, known: f64, bottoms: &[Bottom; 2]) -> Option<Planar> {
+        let likely = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
+        for right in [likely, 1 - likely] {
+            let mut chains = [Chain::Right; 2];
+            chains[right] = Chain::Left;
+            let Located::Edge(first) = self.sections[0].locate(chains[0], known)? else { break };
+            let Located::Edge(second) = self.sections[1].locate(chains[1], known)? else { break };
+            let edges = [first, second];
+            let slide = Slide { problem: self, chains, right };
+            if slide.gap(&edges, known) > 0.0 {
+                return slide.closes(&edges).then(|| slide.solve(&edges, known)).flatten();
+            }
+        }
+        None
     }
 
     /// What belongs to the upper and to the lower section, by body.
@@ -92,73 +105,71 @@ impl Problem<'_, '_> {
         Planar::Separated { u: DVec2::new(sign, 0.0), supports: self.by_body(*bottom, *top) }
     }
 
-    /// The upper section's bottom is beyond `chain` of the lower one, whose edge at `h0` is `edge`.
-    fn slide(&self, bottom: &Bottom, chain: Chain, edge: Bracket) -> Option<Planar> {
+    /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose edge at `h0` is `edge`.
+    fn slide(&self, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
         let facing = chain.opposite();
-        let mut first = Side::first(bottom, facing);
-        if first.direction.x == 0.0 {
-            let next = self.sides[self.upper].up(facing, &first.high, self.levels[self.upper]);
-            first = Bracket::new(first.high, next);
-        }
+        let first = Bracket::new(end, self.sections[self.upper].up(facing, &end));
         Slide {
             problem: self,
             chains: self.by_body(facing, chain),
             // The body that shows its left chain is the one on the right.
             right: if chain == Chain::Left { 1 - self.upper } else { self.upper },
         }
-        .solve(self.by_body(first, edge))
+        .solve(&self.by_body(first, edge), self.h0)
     }
 }
 
-/// The other end of the edge from `vertex` to `next` if it is horizontal, else `vertex`.
-fn flat_end(vertex: &Crossing, next: &Crossing) -> Crossing {
-    if vertex.towards(next).x == 0.0 { *next } else { *vertex }
+/// Two edges that cross, and where.
+fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
+    let [r, s] = edges;
+    let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
+    Planar::Edges { edges: *edges, contact: r.low.w + r.direction * step }
 }
 
 /// Newton's method up two chains that face each other.
-struct Slide<'a, 'b, 'c> {
-    problem: &'a Problem<'b, 'c>,
+struct Slide<'a, 'b> {
+    problem: &'a Problem<'b>,
     /// The chain that each body shows to the other.
     chains: [Chain; 2],
     /// The body on the right.
     right: usize,
 }
 
-impl Slide<'_, '_, '_> {
-    fn solve(&self, start: [Bracket; 2]) -> Option<Planar> {
-        let mut edges = start;
-        let mut h = self.problem.h0;
-        for _ in 0..self.problem.sides[0].step_limit() + self.problem.sides[1].step_limit() {
-            let slope = self.slope(&edges);
-            if slope >= 0.0 {
-                return self.separated_at_least_gap(edges);
+impl Slide<'_, '_> {
+    /// From the edges at height `start`, where the gap is positive.
+    fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
+        let mut edges = *edges;
+        let mut h = start;
+        for _ in 0..self.step_limit() {
+            if !self.closes(&edges) {
+                return self.separated_at_least_gap(&edges);
             }
-            let meet = h - self.gap(&edges, h) / slope;
-            if meet <= edges[0].high.h().min(edges[1].high.h()) {
-                return Some(Planar::Edges { edges, h: meet });
+            // The edge that ends first decides whether they have met, without a quotient.
+            let ending = usize::from(edges[1].high.h() < edges[0].high.h());
+            let end = &edges[ending].high;
+            let beyond = edges[1 - ending].side_of(end.w);
+            if if ending == self.right { beyond <= 0.0 } else { beyond >= 0.0 } {
+                return Some(crossing_edges(&edges));
             }
-            let advanced = [self.advance(0, edges[0], meet), self.advance(1, edges[1], meet)];
-            let mut topped = None;
-            for (body, located) in advanced.into_iter().enumerate() {
-                edges[body] = match located {
+            let meet = (h - self.gap(&edges, h) / self.slope(&edges)).max(end.h());
+            let Some(next) = self.proceed(ending, &edges[ending]) else {
+                return Some(self.separated_at_top(ending, &edges));
+            };
+            edges[ending] = next;
+            h = meet;
+            for (body, edge) in edges.iter_mut().enumerate() {
+                let section = &self.problem.sections[body];
+                *edge = match section.advance(self.chains[body], edge, meet)? {
                     Located::Edge(edge) => edge,
                     Located::Beyond(edge) => {
-                        let lower_top =
-                            topped.is_none_or(|other: usize| edge.high.h() < edges[other].high.h());
-                        if lower_top {
-                            topped = Some(body);
-                        }
+                        h = h.min(edge.high.h());
                         edge
                     }
+                    Located::Short => return None,
                 };
             }
-            h = meet;
-            if let Some(body) = topped {
-                h = edges[body].high.h();
-                edges[1 - body] = self.down_to(1 - body, edges[1 - body], h);
-                if self.gap(&edges, h) > 0.0 && self.slope(&edges) < 0.0 {
-                    return self.separated_at_top(body, &edges);
-                }
+            if h < meet {
+                edges = [0, 1].map(|body| self.down_to(body, edges[body], h));
             }
             // NaN: an edge too flat for its slope to be a number.
             if h.is_nan() {
@@ -166,6 +177,17 @@ impl Slide<'_, '_, '_> {
             }
         }
         None
+    }
+
+    /// Whether the gap falls along these edges.
+    fn closes(&self, edges: &[Bracket; 2]) -> bool {
+        let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
+        let sine = r.perp_dot(*s);
+        sine < 0.0 && sine * sine > ROUNDING * ROUNDING * r.length_squared() * s.length_squared()
+    }
+
+    fn step_limit(&self) -> usize {
+        self.problem.sections[0].step_limit() + self.problem.sections[1].step_limit()
     }
 
     fn slope(&self, edges: &[Bracket; 2]) -> f64 {
@@ -176,12 +198,12 @@ impl Slide<'_, '_, '_> {
         edges[self.right].g_at(h) - edges[1 - self.right].g_at(h)
     }
 
-    fn advance(&self, body: usize, edge: Bracket, h: f64) -> Located {
-        self.problem.sides[body].advance(self.chains[body], edge, h, self.problem.levels[body])
+    fn proceed(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
+        self.problem.sections[body].proceed(self.chains[body], edge)
     }
 
     fn retreat(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
-        self.problem.sides[body].retreat(self.chains[body], edge, self.problem.levels[body])
+        self.problem.sections[body].retreat(self.chains[body], edge)
     }
 
     fn down_to(&self, body: usize, edge: Bracket, h: f64) -> Bracket {
@@ -197,9 +219,9 @@ impl Slide<'_, '_, '_> {
 
     /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one chain, where a line along the
     /// other's edge separates best.
-    fn separated_at_least_gap(&self, edges: [Bracket; 2]) -> Option<Planar> {
-        let mut edges = edges;
-        for _ in 0..self.problem.sides[0].step_limit() + self.problem.sides[1].step_limit() {
+    fn separated_at_least_gap(&self, edges: &[Bracket; 2]) -> Option<Planar> {
+        let mut edges = *edges;
+        for _ in 0..self.step_limit() {
             let body = usize::from(edges[1].low.h() > edges[0].low.h());
             if edges[body].low.h() <= self.problem.h0 {
                 let upper = self.problem.upper;
@@ -210,7 +232,7 @@ impl Slide<'_, '_, '_> {
             if let Some(below) = below {
                 candidate[body] = below;
             }
-            if below.is_none() || self.slope(&candidate) < 0.0 {
+            if below.is_none() || self.closes(&candidate) {
                 return Some(self.separated(&edges[1 - body], edges.map(|edge| edge.low)));
             }
             edges = candidate;
@@ -219,10 +241,10 @@ impl Slide<'_, '_, '_> {
     }
 
     /// `body`'s chain ends, at the top of its section, before the gap closes.
-    fn separated_at_top(&self, body: usize, edges: &[Bracket; 2]) -> Option<Planar> {
+    fn separated_at_top(&self, body: usize, edges: &[Bracket; 2]) -> Planar {
         let mut supports = edges.map(|edge| edge.low);
         supports[body] = edges[body].high;
-        Some(self.separated(&edges[1 - body], supports))
+        self.separated(&edges[1 - body], supports)
     }
 
     fn separated(&self, along: &Bracket, supports: [Crossing; 2]) -> Planar {

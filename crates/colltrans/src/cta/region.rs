@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-/// A cut adds at most one side, and there is one cut per step.
-const CAPACITY: usize = super::MAX_STEPS as usize + 5;
+/// A cut adds at most one side, there is one cut per step, and while it is made old and new corners are held.
+const CAPACITY: usize = 2 * (super::MAX_STEPS as usize + 5);
 
 /// A convex polygon, counter-clockwise; empty once a cut leaves nothing.
 #[derive(Debug, Clone, Copy)]
@@ -26,19 +26,24 @@ impl Region {
 
     /// Keeps the part where `gradient . v <= limit`.
     pub(super) fn cut(&mut self, gradient: DVec2, limit: f64) {
-        let old = *self;
-        self.count = 0;
-        for i in 0..old.count {
-            let (from, to) =
-                (old.corners[i], old.corners[if i + 1 < old.count { i + 1 } else { 0 }]);
-            let (excess, next_excess) = (gradient.dot(from) - limit, gradient.dot(to) - limit);
-            if excess <= 0.0 {
-                self.push(from);
-            }
+        let Some(&last) = self.corners[..self.count].last() else { return };
+        let old = self.count;
+        let mut from = last;
+        let mut excess = gradient.dot(from) - limit;
+        // The new corners go behind the old ones, then down to the front.
+        for i in 0..old {
+            let to = self.corners[i];
+            let next_excess = gradient.dot(to) - limit;
             if (excess < 0.0 && next_excess > 0.0) || (excess > 0.0 && next_excess < 0.0) {
                 self.push(from + (to - from) * (excess / (excess - next_excess)));
             }
+            if next_excess <= 0.0 {
+                self.push(to);
+            }
+            (from, excess) = (to, next_excess);
         }
+        self.corners.copy_within(old..self.count, 0);
+        self.count -= old;
     }
 
     fn push(&mut self, corner: DVec2) {

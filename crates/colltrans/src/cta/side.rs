@@ -5,10 +5,18 @@
 //! to its highest one where `g` is smaller, the *right* chain where `g` is greater. The *drift* of a crossing
 //! edge is how its section vertex moves per unit of level.
 
+use std::cell::Cell;
+
 use glam::{DVec2, DVec3};
 
+use super::ROUNDING;
 use crate::polyhedron::topology::Topology;
-use crate::section::{AxisSections, SectionForm, Turn, next_clockwise, next_counter_clockwise};
+use crate::section::{
+    AxisSections, SectionForm, Snapshot, Turn, next_clockwise, next_counter_clockwise,
+};
+
+/// Newton's method walks so far up a chain before it searches the snapshot.
+const STEPS_BEFORE_SEARCH: usize = 2;
 
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]
@@ -79,8 +87,13 @@ impl Chain {
     /// Whether `direction` leads up this chain; the horizontal edge at the bottom belongs to the chain that starts
     /// along it, the one at the top to none.
     pub(super) fn ascends(self, direction: DVec2) -> bool {
-        direction.x > 0.0 || (direction.x == 0.0 && self.sign() * direction.y > 0.0)
+        if is_horizontal(direction) { self.sign() * direction.y > 0.0 } else { direction.x > 0.0 }
     }
+}
+
+/// Whether an edge is horizontal up to rounding.
+pub(super) fn is_horizontal(direction: DVec2) -> bool {
+    direction.x.abs() <= ROUNDING * direction.y.abs()
 }
 
 /// An edge of a section on one of its chains.
@@ -101,10 +114,16 @@ impl Bracket {
         self.direction.y / self.direction.x
     }
 
-    /// `g` at height `h` on the line of the edge.
+    /// `g` at height `h` on the edge; its ends bound it, since on a nearly horizontal edge the quotient has no digits.
     pub(super) fn g_at(&self, h: f64) -> f64 {
-        let rise = h - self.low.h();
-        if rise == 0.0 { self.low.g() } else { self.low.g() + rise * self.slope() }
+        let (low, high) = (self.low.g(), self.high.g());
+        let g = low + (h - self.low.h()) * self.slope();
+        if low < high { g.clamp(low, high) } else { g.clamp(high, low) }
+    }
+
+    /// Positive where a point lies to the side of greater `g`.
+    pub(super) fn side_of(&self, w: DVec2) -> f64 {
+        self.direction.perp_dot(w - self.low.w)
     }
 }
 
@@ -115,14 +134,15 @@ pub(super) enum Located {
     Edge(Bracket),
     /// The chain ends below: its topmost edge.
     Beyond(Bracket),
+    /// Further up than the walk went.
+    Short,
 }
 
-/// The lowest vertex of a section and its neighbours up both chains.
+/// The lowest vertex of a section and the directions of its polygon edges up both chains.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bottom {
     pub(super) vertex: Crossing,
-    pub(super) left: Crossing,
-    pub(super) right: Crossing,
+    pub(super) directions: [DVec2; 2],
 }
 
 /// A body with its section axis and shadow coordinates.
@@ -137,13 +157,6 @@ pub(super) struct Side<'a> {
     height: SectionForm,
     /// The turn that leads up the left chain.
     left_turn: Turn,
-}
-
-/// Positions in the snapshot of one planar problem: bottom and top.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ends {
-    bottom: usize,
-    top: usize,
 }
 
 impl<'a> Side<'a> {
@@ -180,33 +193,26 @@ impl<'a> Side<'a> {
         any - self.shadow[0].length() * self.sections.diameter
     }
 
-    /// More steps along one section than this are a walk in circles.
-    pub(super) fn step_limit(&self) -> usize {
-        self.topology.edge_count()
+    /// The section at level `x` of the range; `None` if rounding leaves the body no sections.
+    pub(super) fn section(&self, x: f64) -> Option<Section<'_>> {
+        let snapshot = self.sections.snapshot(x);
+        if snapshot.is_empty() {
+            return None;
+        }
+        let lowest = snapshot.extreme(&self.height, 1.0);
+        Some(Section { side: self, snapshot, lowest, highest: Cell::new(None), x })
     }
 
-    fn level(&self, vertex: u32) -> f64 {
+    pub(super) fn level(&self, vertex: u32) -> f64 {
         self.axis.dot(self.vertices[vertex as usize])
     }
 
+    #[inline]
     fn point(&self, vertex: u32) -> Point {
         let v = self.vertices[vertex as usize];
         Point {
             level: self.axis.dot(v),
             shadow: DVec2::new(self.shadow[0].dot(v), self.shadow[1].dot(v)) + self.constant,
-        }
-    }
-
-    fn crossing(&self, up: u32, x: f64) -> Crossing {
-        let vertices = [self.topology.half_edge(up).origin, self.topology.target(up)];
-        let [low, high] = vertices.map(|v| self.point(v));
-        let drift = (high.shadow - low.shadow) / (high.level - low.level);
-        Crossing {
-            up,
-            vertices,
-            levels: [low.level, high.level],
-            w: low.shadow + drift * (x - low.level),
-            drift,
         }
     }
 
@@ -216,156 +222,201 @@ impl<'a> Side<'a> {
             Chain::Right => self.left_turn.reversed(),
         }
     }
+}
 
-    fn step(&self, from: &Crossing, turn: Turn, x: f64) -> Crossing {
-        let above = |v: u32| self.level(v) > x;
-        let up = match turn {
-            Turn::CounterClockwise => next_counter_clockwise(self.topology, from.up, above),
-            Turn::Clockwise => next_clockwise(self.topology, from.up, above),
-        };
-        self.crossing(up, x)
+/// The section of a body at one level.
+#[derive(Debug)]
+pub(super) struct Section<'a> {
+    side: &'a Side<'a>,
+    snapshot: Snapshot<'a>,
+    /// Where the snapshot is lowest and, once asked for, where it is highest.
+    lowest: usize,
+    highest: Cell<Option<usize>>,
+    x: f64,
+}
+
+impl Section<'_> {
+    /// More steps along one section than this are a walk in circles.
+    pub(super) fn step_limit(&self) -> usize {
+        self.side.topology.edge_count()
+    }
+
+    fn crossing(&self, up: u32) -> Crossing {
+        let topology = self.side.topology;
+        let vertices = [topology.half_edge(up).origin, topology.target(up)];
+        let (low, high) = (self.side.point(vertices[0]), self.side.point(vertices[1]));
+        let drift = (high.shadow - low.shadow) * (1.0 / (high.level - low.level));
+        Crossing {
+            up,
+            vertices,
+            levels: [low.level, high.level],
+            w: low.shadow + drift * (self.x - low.level),
+            drift,
+        }
     }
 
     /// The neighbour up (or, past the top, down) the section in the direction of `chain`.
-    pub(super) fn up(&self, chain: Chain, from: &Crossing, x: f64) -> Crossing {
-        self.step(from, self.turn_up(chain), x)
+    pub(super) fn up(&self, chain: Chain, from: &Crossing) -> Crossing {
+        let topology = self.side.topology;
+        let above = |v: u32| self.side.level(v) > self.x;
+        self.crossing(match self.side.turn_up(chain) {
+            Turn::CounterClockwise => next_counter_clockwise(topology, from.up, above),
+            Turn::Clockwise => next_clockwise(topology, from.up, above),
+        })
     }
 
     /// The neighbour against the direction of `chain`.
-    pub(super) fn down(&self, chain: Chain, from: &Crossing, x: f64) -> Crossing {
-        self.step(from, self.turn_up(chain.opposite()), x)
+    pub(super) fn down(&self, chain: Chain, from: &Crossing) -> Crossing {
+        self.up(chain.opposite(), from)
     }
 
-    /// From an edge that crosses at or below `x`, up the mesh to one that crosses at `x`, at each vertex by the edge
-    /// whose line has the least `score` at `x`. `None` if rounding hides the way up.
-    fn climb(&self, from: u32, x: f64, score: impl Fn(f64) -> f64) -> Option<u32> {
+    /// The direction of the polygon edge from `from` to its neighbour in the direction of `chain`, from one more vertex of the face.
+    fn direction(&self, chain: Chain, from: &Crossing) -> DVec2 {
+        let topology = self.side.topology;
+        let along = match self.side.turn_up(chain) {
+            Turn::CounterClockwise => topology.half_edge(from.up).twin,
+            Turn::Clockwise => from.up,
+        };
+        let third = topology.target(topology.next(along));
+        let third = self.side.point(third);
+        // The part of the way to the third vertex that keeps the level.
+        let base = from.w - from.drift * (self.x - from.levels[0]);
+        (third.shadow - base) - from.drift * (third.level - from.levels[0])
+    }
+
+    /// From an edge that crosses at or below the level, up the mesh to one that crosses, at each vertex by the edge
+    /// whose line has the least `score` at the level. `None` if rounding hides the way up.
+    fn climb(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
+        let topology = self.side.topology;
         let mut up = from;
         loop {
-            let vertex = self.topology.target(up);
-            let start = self.point(vertex);
-            if start.level > x {
+            let vertex = topology.target(up);
+            if self.side.level(vertex) > self.x {
                 return Some(up);
             }
+            let start = self.side.point(vertex);
             let mut best = f64::INFINITY;
             let mut next = None;
-            for &h in self.topology.outgoing(vertex) {
-                let end = self.point(self.topology.target(h));
-                if end.level > start.level {
-                    let drift = (end.shadow.x - start.shadow.x) / (end.level - start.level);
-                    let candidate = score(start.shadow.x + drift * (x - start.level));
-                    if candidate < best || next.is_none() {
-                        (best, next) = (candidate, Some(h));
-                    }
-                }
+            for (&h, &neighbour) in
+                topology.outgoing(vertex).iter().zip(topology.neighbours(vertex))
+            {
+                let end = self.side.point(neighbour);
+                let drift = (end.shadow.x - start.shadow.x) / (end.level - start.level);
+                let candidate = score(start.shadow.x + drift * (self.x - start.level));
+                let better = end.level > start.level && (next.is_none() || candidate < best);
+                (best, next) = if better { (candidate, Some(h)) } else { (best, next) };
             }
             up = next?;
         }
     }
 
-    /// Where the snapshot below `x` has its bottom and its top.
-    pub(super) fn ends(&self, x: f64) -> Option<Ends> {
-        let snapshot = self.sections.snapshot(x);
-        if snapshot.is_empty() {
-            return None;
-        }
-        let bottom = snapshot.extreme(&self.height, 1.0);
-        let top = snapshot.extreme(&self.height, -1.0);
-        Some(Ends { bottom, top })
-    }
-
-    /// The lowest vertex of the section at `x`.
-    pub(super) fn bottom(&self, ends: Ends, x: f64) -> Option<Bottom> {
-        let seed = self.sections.snapshot(x).up(ends.bottom);
-        let mut vertex = self.crossing(self.climb(seed, x, |h| h)?, x);
-        let mut left = self.up(Chain::Left, &vertex, x);
-        // The bottom is where both neighbours are up: go down whichever chain descends.
-        if Chain::Left.ascends(vertex.towards(&left)) {
-            let mut right = self.up(Chain::Right, &vertex, x);
-            for _ in 0..self.step_limit() {
-                if Chain::Right.ascends(vertex.towards(&right)) {
-                    break;
-                }
-                (left, vertex) = (vertex, right);
-                right = self.up(Chain::Right, &vertex, x);
-            }
-            return Some(Bottom { vertex, left, right });
-        }
-        let mut right = vertex;
+    /// The lowest vertex.
+    pub(super) fn bottom(&self) -> Option<Bottom> {
+        let up = self.climb(self.snapshot.up(self.lowest), |h| h)?;
+        let mut vertex = self.crossing(up);
+        let mut left = self.direction(Chain::Left, &vertex);
+        let mut right = self.direction(Chain::Right, &vertex);
         for _ in 0..self.step_limit() {
-            (right, vertex) = (vertex, left);
-            left = self.up(Chain::Left, &vertex, x);
-            if Chain::Left.ascends(vertex.towards(&left)) {
+            if !Chain::Left.ascends(left) {
+                vertex = self.up(Chain::Left, &vertex);
+                (right, left) = (-left, self.direction(Chain::Left, &vertex));
+            } else if !Chain::Right.ascends(right) {
+                vertex = self.up(Chain::Right, &vertex);
+                (left, right) = (-right, self.direction(Chain::Right, &vertex));
+            } else {
                 break;
             }
         }
-        Some(Bottom { vertex, left, right })
+        Some(Bottom { vertex, directions: [left, right] })
+    }
+
+    /// The end towards `chain` of the lowest edge if that is horizontal, else the lowest vertex.
+    pub(super) fn bottom_end(&self, bottom: &Bottom, chain: Chain) -> Crossing {
+        if is_horizontal(bottom.directions[usize::from(chain == Chain::Right)]) {
+            self.up(chain, &bottom.vertex)
+        } else {
+            bottom.vertex
+        }
     }
 
     /// The edge of a chain at height `h`, which is not below the bottom.
-    pub(super) fn locate(&self, chain: Chain, ends: Ends, h: f64, x: f64) -> Option<Located> {
-        let snapshot = self.sections.snapshot(x);
-        let turn = self.turn_up(chain);
-        let index = snapshot.locate(&self.height, (ends.bottom, ends.top), turn, (h, x));
-        let up = self.climb(snapshot.up(index), x, |height| (height - h).abs())?;
-        let mut start = self.crossing(up, x);
-        let mut next = self.up(chain, &start, x);
-        if !chain.ascends(start.towards(&next)) {
-            let before = self.down(chain, &start, x);
-            if chain.ascends(before.towards(&start)) {
-                (next, start) = (start, before);
-            } else {
-                // On the opposite chain: around the bottom.
-                for _ in 0..self.step_limit() {
-                    (start, next) = (next, self.up(chain, &next, x));
-                    if chain.ascends(start.towards(&next)) {
-                        break;
-                    }
-                }
-            }
+    pub(super) fn locate(&self, chain: Chain, h: f64) -> Option<Located> {
+        let height = &self.side.height;
+        let highest = self.highest.get().unwrap_or_else(|| self.snapshot.extreme(height, -1.0));
+        self.highest.set(Some(highest));
+        let turn = self.side.turn_up(chain);
+        let index = self.snapshot.locate(height, (self.lowest, highest), turn, (h, self.x));
+        let up = self.climb(self.snapshot.up(index), |height| (height - h).abs())?;
+        let start = self.crossing(up);
+        let mut bracket = if start.h() <= h {
+            Bracket::new(start, self.up(chain, &start))
+        } else {
+            Bracket::new(self.down(chain, &start), start)
+        };
+        if !chain.ascends(bracket.direction) {
+            bracket = self.any_edge(chain, start);
         }
-        let mut bracket = Bracket::new(start, next);
         for _ in 0..self.step_limit() {
             if bracket.low.h() <= h {
                 break;
             }
-            let before = self.down(chain, &bracket.low, x);
-            if !chain.ascends(before.towards(&bracket.low)) {
-                break;
+            match self.retreat(chain, &bracket) {
+                Some(below) => bracket = below,
+                None => break,
             }
-            bracket = Bracket::new(before, bracket.low);
         }
-        Some(self.advance(chain, bracket, h, x))
+        Some(self.walk(chain, bracket, h, self.step_limit()))
     }
 
-    /// From `bracket` up the chain to height `h`.
-    pub(super) fn advance(&self, chain: Chain, bracket: Bracket, h: f64, x: f64) -> Located {
-        let mut bracket = bracket;
+    /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite chain.
+    fn any_edge(&self, chain: Chain, start: Crossing) -> Bracket {
+        let mut bracket = Bracket::new(self.down(chain, &start), start);
+        if chain.ascends(bracket.direction) {
+            return bracket;
+        }
+        // Down the opposite chain and around the bottom.
         for _ in 0..self.step_limit() {
-            if bracket.high.h() >= h && bracket.direction.x > 0.0 {
-                return Located::Edge(bracket);
-            }
-            let next = self.up(chain, &bracket.high, x);
-            let direction = bracket.high.towards(&next);
-            if !chain.ascends(direction) {
+            let next = self.up(chain, &bracket.high);
+            bracket = Bracket::new(bracket.high, next);
+            if chain.ascends(bracket.direction) {
                 break;
             }
-            bracket = Bracket { low: bracket.high, high: next, direction };
         }
-        Located::Beyond(bracket)
+        bracket
+    }
+
+    /// From `bracket` up the chain to height `h`: a few steps along the mesh, or a search from scratch.
+    pub(super) fn advance(&self, chain: Chain, bracket: &Bracket, h: f64) -> Option<Located> {
+        match self.walk(chain, *bracket, h, STEPS_BEFORE_SEARCH) {
+            Located::Short => self.locate(chain, h),
+            found => Some(found),
+        }
+    }
+
+    fn walk(&self, chain: Chain, bracket: Bracket, h: f64, limit: usize) -> Located {
+        let mut bracket = bracket;
+        for _ in 0..limit {
+            if bracket.high.h() > h && !is_horizontal(bracket.direction) {
+                return Located::Edge(bracket);
+            }
+            match self.proceed(chain, &bracket) {
+                Some(above) => bracket = above,
+                None if bracket.high.h() >= h => return Located::Edge(bracket),
+                None => return Located::Beyond(bracket),
+            }
+        }
+        Located::Short
+    }
+
+    /// The edge above `bracket` on its chain, if there is one.
+    pub(super) fn proceed(&self, chain: Chain, bracket: &Bracket) -> Option<Bracket> {
+        let above = Bracket::new(bracket.high, self.up(chain, &bracket.high));
+        chain.ascends(above.direction).then_some(above)
     }
 
     /// The edge below `bracket` on its chain, if there is one.
-    pub(super) fn retreat(&self, chain: Chain, bracket: &Bracket, x: f64) -> Option<Bracket> {
-        let before = self.down(chain, &bracket.low, x);
-        let below = Bracket::new(before, bracket.low);
+    pub(super) fn retreat(&self, chain: Chain, bracket: &Bracket) -> Option<Bracket> {
+        let below = Bracket::new(self.down(chain, &bracket.low), bracket.low);
         chain.ascends(below.direction).then_some(below)
-    }
-
-    /// The first edge of a chain.
-    pub(super) fn first(bottom: &Bottom, chain: Chain) -> Bracket {
-        match chain {
-            Chain::Left => Bracket::new(bottom.vertex, bottom.left),
-            Chain::Right => Bracket::new(bottom.vertex, bottom.right),
-        }
     }
 }

@@ -2,17 +2,20 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{CtaOptions, Guess, Narrowed, minimise};
+use super::minimise::Narrowed;
+use super::{CtaOptions, Guess, minimise};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
 use crate::section::test_bodies::{Random, cone, cuboid, ellipsoid, prism};
 use crate::setting::Setting;
 
-/// The collision translation, or by how much the bodies stay apart.
+/// What is to be found.
 #[derive(Debug)]
 enum Truth {
     Contact(f64),
-    Separated(f64),
+    Separated,
+    /// The shadows only touch: rounding decides.
+    Grazing,
 }
 
 struct Placed {
@@ -57,8 +60,11 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
             apart = apart.max(margin(n)).max(margin(-n));
         }
     }
+    if apart.abs() < 1e-12 {
+        return Truth::Grazing;
+    }
     if apart > 0.0 {
-        return Truth::Separated(apart);
+        return Truth::Separated;
     }
     let mut candidates: Vec<DVec3> = p.normals.clone();
     candidates.extend(&q.normals);
@@ -103,9 +109,7 @@ fn check(
                 of_q - of_p
             );
         }
-        (Truth::Separated(_), Guess::Separation { .. }) => {}
-        // Bodies that graze each other may be taken for either.
-        (Truth::Separated(apart), _) if *apart < 1e-12 => {}
+        (Truth::Separated, Guess::Separation { .. }) | (Truth::Grazing, _) => {}
         _ => panic!("{name}: {truth:?} {narrowed:?}"),
     }
     narrowed
@@ -142,6 +146,7 @@ fn random_bodies_agree_with_brute_force() {
 
 #[test]
 fn tied_bodies_agree_with_brute_force() {
+    let mut random = Random(13);
     let bodies = [
         cuboid(DVec3::ZERO, DVec3::ONE),
         cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)),
@@ -172,11 +177,75 @@ fn tied_bodies_agree_with_brute_force() {
                     ] {
                         let pose = Pose::new(rotation, shift).unwrap();
                         let name = format!("bodies {i} {j} {d} {rotation} {shift}");
+                        let setting = Setting::new(p, &Pose::IDENTITY, q, &pose, d).unwrap();
+                        check_planar(&setting, &mut random, &name);
                         check((p, &Pose::IDENTITY), (q, &pose), d, 1e-8, &name);
                     }
                 }
             }
         }
+    }
+}
+
+/// Lower bound of the collision translation that a normal proves, by a scan of all vertices.
+fn bound_by(normal: DVec3, p: &Placed, q: &Placed, d: DVec3) -> f64 {
+    let of_p = p.vertices.iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+    let of_q = q.vertices.iter().map(|v| normal.dot(*v)).fold(f64::INFINITY, f64::min);
+    (of_q - of_p) / normal.dot(d)
+}
+
+#[test]
+fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
+    let mut random = Random(17);
+    let bodies = [
+        ellipsoid(3000, DVec3::ONE),
+        ellipsoid(3000, DVec3::new(1000.0, 1.0, 1.0)),
+        ellipsoid(3000, DVec3::new(1000.0, 1000.0, 1.0)),
+        prism(1000, DVec3::ONE),
+        prism(1000, DVec3::new(1.0, 1.0, 1e-3)),
+        cone(1000, DVec3::new(1.0, 1.0, 3.0)),
+    ];
+    for round in 0..400 {
+        let p = &bodies[random.index(bodies.len())];
+        let q = &bodies[random.index(bodies.len())];
+        let d = random.unit();
+        let poses = [0.0, 3.0].map(|t| Pose::new(random.rotation(), d * t).unwrap());
+        let setting = Setting::new(p, &poses[0], q, &poses[1], d).unwrap();
+        let narrowed = minimise(&setting, &EXACT);
+        let (p, q) = (Placed::new(p, &poses[0]), Placed::new(q, &poses[1]));
+        let size = p.vertices.iter().chain(&q.vertices).map(|v| v.length()).fold(0.0, f64::max);
+        // Both centres lie on the line: they meet.
+        let Guess::Contact { normal } = narrowed.guess else {
+            panic!("round {round}: {narrowed:?}")
+        };
+        let proven = bound_by(normal, &p, &q, setting.unit);
+        let (lower, upper) = (narrowed.lower, narrowed.upper);
+        assert!((proven - lower).abs() < 1e-9 * size, "round {round}: {narrowed:?} {proven}");
+        assert!(upper - lower < 1e-6 * size, "round {round}: {narrowed:?}");
+        assert!(upper - lower > -1e-9 * size, "round {round}: {narrowed:?}");
+    }
+}
+
+#[test]
+fn steps_do_not_grow_with_the_bodies() {
+    for count in [8, 128, 2000, 20_000] {
+        let mut random = Random(19);
+        let [p, q] = [0, 1].map(|_| {
+            let axes = [0, 1, 2].map(|_| random.within(0.6, 1.4));
+            ellipsoid(count, DVec3::from_array(axes))
+        });
+        let mut steps = 0;
+        let options = CtaOptions { gap: 2.5e-3, ..EXACT };
+        for _ in 0..300 {
+            let e = colliding(&mut random);
+            let setting = Setting::new(&p, &e.poses[0], &q, &e.poses[1], e.d).unwrap();
+            steps += minimise(&setting, &options).planar_problems;
+        }
+        assert!(
+            steps <= 300 * 10,
+            "{count} vertices: {} steps on average",
+            f64::from(steps) / 300.0
+        );
     }
 }
 
@@ -257,13 +326,13 @@ fn figures() {
     }
 }
 
-/// All vertices of a section in order, by brute force on the walk.
+/// All vertices of a section in order, from the bottom up the left chain.
 fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
-    let ends = side.ends(x).unwrap();
-    let first = side.bottom(ends, x).unwrap().vertex;
+    let section = side.section(x).unwrap();
+    let first = section.bottom().unwrap().vertex;
     let mut all = vec![first];
     loop {
-        let next = side.up(super::side::Chain::Left, &all[all.len() - 1], x);
+        let next = section.up(super::side::Chain::Left, &all[all.len() - 1]);
         if next.up == first.up {
             return all;
         }
@@ -273,7 +342,6 @@ fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
 
 #[test]
 fn planar_problems_agree_with_brute_force() {
-    use super::planar::{Planar, solve};
     let mut random = Random(5);
     for round in 0..3000 {
         let mut body = || match random.index(4) {
@@ -285,58 +353,133 @@ fn planar_problems_agree_with_brute_force() {
         let (p, q) = (body(), body());
         let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
         let setting = Setting::new(&p, &p_pose, &q, &q_pose, random.unit()).unwrap();
-        let query = super::minimise::Query::new(&setting);
-        let levels = [0, 1].map(|i| {
-            let [low, high] = query.sides[i].range();
-            random.within(low, high)
-        });
-        let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
-        for (i, polygon) in polygons.iter().enumerate() {
-            let least = polygon.iter().map(|c| c.h()).fold(f64::INFINITY, f64::min);
-            assert_eq!(polygon[0].h(), least, "round {round}, side {i}");
-        }
-        let edges = |i: usize| {
-            let of: &Vec<super::side::Crossing> = &polygons[i];
-            (0..of.len()).map(move |k| (of[k].w, of[(k + 1) % of.len()].w))
-        };
-        // Clockwise with g to the right and h upwards.
-        let inside =
-            |i: usize, w: glam::DVec2| edges(i).all(|(s, t)| (t - s).perp_dot(w - s) >= 0.0);
-        let mut least = f64::INFINITY;
-        for i in 0..2 {
-            for c in &polygons[i] {
-                if inside(1 - i, c.w) {
-                    least = least.min(c.h());
-                }
+        check_planar(&setting, &mut random, &format!("round {round}"));
+    }
+}
+
+fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
+    use super::planar::{Planar, solve};
+    let query = super::minimise::Query::new(setting);
+    let levels = [0, 1].map(|i| {
+        let [low, high] = query.sides[i].range();
+        random.within(low, high)
+    });
+    let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
+    for (i, polygon) in polygons.iter().enumerate() {
+        let least = polygon.iter().map(|c| c.h()).fold(f64::INFINITY, f64::min);
+        assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
+    }
+    let edges = |i: usize| {
+        let of: &Vec<super::side::Crossing> = &polygons[i];
+        (0..of.len()).map(move |k| (of[k].w, of[(k + 1) % of.len()].w))
+    };
+    // Clockwise with g to the right and h upwards.
+    let inside =
+        |i: usize, w: glam::DVec2| edges(i).all(|(s, t)| (t - s).perp_dot(w - s) >= -1e-12);
+    let mut least = f64::INFINITY;
+    for i in 0..2 {
+        for c in &polygons[i] {
+            if inside(1 - i, c.w) {
+                least = least.min(c.h());
             }
         }
-        for (a, b) in edges(0) {
-            for (c, e) in edges(1) {
-                let (r, s) = (b - a, e - c);
-                let cross = r.perp_dot(s);
-                let (u, v) = ((c - a).perp_dot(s) / cross, (c - a).perp_dot(r) / cross);
-                if (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v) {
-                    least = least.min((a + r * u).x);
-                }
+    }
+    for (a, b) in edges(0) {
+        for (c, e) in edges(1) {
+            let (r, s) = (b - a, e - c);
+            let cross = r.perp_dot(s);
+            if cross.abs() < 1e-9 * r.length() * s.length() {
+                continue;
+            }
+            let (u, v) = ((c - a).perp_dot(s) / cross, (c - a).perp_dot(r) / cross);
+            if (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v) {
+                least = least.min((a + r * u).x);
             }
         }
-        match solve(&query.sides, levels).unwrap() {
-            Planar::Vertex { vertex, .. } => {
-                assert!((vertex.h() - least).abs() < 1e-9, "round {round}: {least} {}", vertex.h());
+    }
+    let height = |known: f64| match solve(&query.sides, levels, known).unwrap() {
+        Planar::Vertex { vertex, .. } => vertex.h(),
+        Planar::Edges { contact, .. } => contact.x,
+        Planar::Separated { .. } => f64::INFINITY,
+    };
+    // A bound from below changes the way, not the answer.
+    let unguided = height(f64::NEG_INFINITY);
+    for known in [1e-6, 1e-2, 1.0] {
+        let found = height(least.min(10.0) - known);
+        assert!(found == unguided || (found - unguided).abs() < 1e-9, "{name}: {found} {unguided}");
+    }
+    let answer = solve(&query.sides, levels, f64::NEG_INFINITY).unwrap();
+    match answer {
+        Planar::Vertex { vertex, .. } => {
+            assert!((vertex.h() - least).abs() < 1e-9, "{name}: {least} {}", vertex.h());
+        }
+        Planar::Edges { contact, .. } => {
+            assert!((contact.x - least).abs() < 1e-9, "{name}: {least} {contact}");
+        }
+        Planar::Separated { u, supports } => {
+            // Sections that touch each other may be taken for either.
+            let apart = u.dot(supports[1].w - supports[0].w);
+            assert!(apart >= -1e-12 && (least == f64::INFINITY || apart < 1e-12), "{name}");
+            for c in &polygons[0] {
+                assert!(u.dot(c.w - supports[0].w) < 1e-9, "{name}");
             }
-            Planar::Edges { h, .. } => {
-                assert!((h - least).abs() < 1e-9, "round {round}: {least} {h}");
-            }
-            Planar::Separated { u, supports } => {
-                assert_eq!(least, f64::INFINITY, "round {round}");
-                for c in &polygons[0] {
-                    assert!(u.dot(c.w - supports[0].w) < 1e-9, "round {round}");
-                }
-                for c in &polygons[1] {
-                    assert!(u.dot(c.w - supports[1].w) > -1e-9, "round {round}");
-                }
-                assert!(u.dot(supports[1].w - supports[0].w) > 0.0, "round {round}");
+            for c in &polygons[1] {
+                assert!(u.dot(c.w - supports[1].w) > -1e-9, "{name}");
             }
         }
+    }
+}
+
+#[test]
+#[ignore = "for a profiler"]
+fn profile() {
+    let count = std::env::var("COUNT").map_or(8, |c| c.parse().unwrap());
+    let mut random = Random(11);
+    let [p, q] = [0, 1].map(|_| {
+        let axes = DVec3::from_array([0, 1, 2].map(|_| random.within(0.6, 1.4)));
+        let stretch: f64 = std::env::var("STRETCH").map_or(1.0, |s| s.parse().unwrap());
+        ellipsoid(count, axes * DVec3::new(stretch, 1.0, 1.0))
+    });
+    let examples: Vec<Example> = (0..1000).map(|_| colliding(&mut random)).collect();
+    let rounds = std::env::var("ROUNDS").map_or(10_u32, |c| c.parse().unwrap());
+    for solver in [crate::Solver::Portal, crate::Solver::Cta] {
+        let options = crate::Options { solver, ..crate::Options::default() };
+        let mut steps = [0; 3];
+        let mut best = f64::INFINITY;
+        for _ in 0..rounds {
+            let begin = std::time::Instant::now();
+            for e in &examples {
+                let answer =
+                    crate::cast_with(&p, &e.poses[0], &q, &e.poses[1], e.d, &options).unwrap();
+                if let crate::Outcome::Contact(c) = answer {
+                    steps[0] += c.steps.planar_problems;
+                    steps[1] += c.steps.supports;
+                    steps[2] += 1;
+                }
+            }
+            best = best.min(begin.elapsed().as_nanos() as f64 / 1e3);
+        }
+        println!(
+            "{count} {solver:?}: {best:.0} ns, {:.2} problems {:.2} supports",
+            f64::from(steps[0]) / f64::from(steps[2]),
+            f64::from(steps[1]) / f64::from(steps[2])
+        );
+    }
+    for max_steps in [0, 1, 2, 4, 64] {
+        let options = CtaOptions { max_steps, ..CtaOptions::default() };
+        let mut problems = 0;
+        let mut best = f64::INFINITY;
+        for _ in 0..rounds {
+            let begin = std::time::Instant::now();
+            for e in &examples {
+                let setting = Setting::new(&p, &e.poses[0], &q, &e.poses[1], e.d).unwrap();
+                problems += minimise(&setting, &options).planar_problems;
+            }
+            best = best.min(begin.elapsed().as_nanos() as f64 / 1e3);
+        }
+        println!(
+            "{count} {max_steps}: {best:.0} ns, {}",
+            f64::from(problems) / (f64::from(rounds) * 1e3)
+        );
     }
 }

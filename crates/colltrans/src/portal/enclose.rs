@@ -42,7 +42,7 @@ pub(crate) fn enclose(
     start: &Start,
     steps: &mut Steps,
 ) -> Option<Enclosure> {
-    let mut search = Search { difference, start: Some(start), steps };
+    let mut search = Search { difference, guide: Guide::Start(start), steps };
     let first = match search.first(start) {
         Ok(tangent) => tangent,
         Err(one_side) => return Some(one_side),
@@ -54,20 +54,31 @@ pub(crate) fn enclose(
     search.close([first, second])
 }
 
-/// A portal that begins with an edge which the line passes, completed by the widest points: for edges that a narrow portal
-/// left behind. `None` if rounding makes the search run in a circle.
-pub(super) fn close_widely(
+/// A portal that begins with an edge which the line passes, completed by wide points: for edges that a narrow portal left
+/// behind. `None` if rounding makes the search run in a circle.
+pub(super) fn complete(
     difference: &Difference,
     edge: [Tangent; 2],
+    guide: Guide,
     steps: &mut Steps,
 ) -> Option<Enclosure> {
-    Search { difference, start: None, steps }.close(edge)
+    Search { difference, guide, steps }.close(edge)
+}
+
+/// Which normals are tried before the lateral one.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Guide<'a> {
+    /// Those that should move the shadow of the support point beyond the line.
+    Start(&'a Start),
+    /// The normal through the edge, tilted outwards by half a right angle.
+    Tilt,
+    /// None.
+    Lateral,
 }
 
 struct Search<'a> {
     difference: &'a Difference<'a>,
-    /// What guides the first try of a normal; without it all normals are lateral.
-    start: Option<&'a Start>,
+    guide: Guide<'a>,
     steps: &'a mut Steps,
 }
 
@@ -131,11 +142,15 @@ impl Search<'_> {
         let clearly = -self.difference.touching();
         let clearly_scaled = clearly * outward.length();
         let near = known[known.len() - 1].point.pair;
-        let tries = self.start.into_iter().flat_map(|start| {
-            OVERSHOOT.map(|factor| slope + start.slope_per_shadow * near_side * factor)
-        });
-        for slope in tries {
-            if !slope.is_finite() || near_side == DVec2::ZERO {
+        let tries = match self.guide {
+            Guide::Start(start) => {
+                OVERSHOOT.map(|factor| Some(slope + start.slope_per_shadow * near_side * factor))
+            }
+            Guide::Tilt => [tilted(known, outward), None],
+            Guide::Lateral => [None; 2],
+        };
+        for slope in tries.into_iter().flatten() {
+            if !slope.is_finite() {
                 break;
             }
             self.steps.supports += 1;
@@ -165,6 +180,14 @@ fn outward(known: &[Tangent], near_side: DVec2) -> DVec2 {
         }
     }
     if can_normalize(near_side) { near_side } else { DVec2::X }
+}
+
+/// The slope of a normal through an edge that rises by 1 outwards.
+fn tilted(known: &[Tangent], outward: DVec2) -> Option<DVec2> {
+    let [from, to] = known else { return None };
+    let along = to.point.shadow() - from.point.shadow();
+    let rise = to.point.height() - from.point.height();
+    Some(outward.try_normalize()? - along * (rise / along.length_squared()))
 }
 
 fn can_normalize(v: DVec2) -> bool {

@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::enclose::{Enclosure, close_widely};
+use super::enclose::{Enclosure, Guide, complete};
 use super::{Portal, Tangent};
 use crate::certificate::VertexPair;
 use crate::exact::{accurate_cross, accurate_det};
@@ -26,6 +26,10 @@ pub(crate) struct Optimum {
     /// Their barycentric weights at the line.
     pub(crate) weights: [f64; 3],
 }
+
+/// More portals than any body needs: then ties within rounding error keep following each other, and points below the
+/// plane by less than what counts as touching are taken to lie on it.
+const LONG: usize = 200;
 
 /// Sine of the angle below which the product of two edges loses so many digits that it is formed without cancellation.
 const NEARLY_PARALLEL: f64 = 1e-3;
@@ -55,7 +59,7 @@ pub(crate) fn refine(
     steps: &mut Steps,
 ) -> Option<Refined> {
     let mut newest = 2;
-    for _ in 0..MAX_PORTALS {
+    for round in 0..MAX_PORTALS {
         steps.pivots += 1;
         let Some(plane) = plane_normal(difference, &portal) else {
             match widen(difference, &portal, steps)? {
@@ -68,7 +72,8 @@ pub(crate) fn refine(
         };
         steps.supports += 1;
         let point = difference.support_from(plane, portal[newest].point.pair);
-        if depth_below(&portal, plane, &point) <= difference.noise * plane.length() {
+        let rounding = if round < LONG { difference.noise } else { difference.touching() };
+        if depth_below(&portal, plane, &point) <= rounding * plane.length() {
             let weights = weights(&portal);
             let portal = portal.map(|t| t.point);
             let optimum = Optimum { normal: plane, lowest: point.pair, portal, weights };
@@ -80,24 +85,24 @@ pub(crate) fn refine(
     None
 }
 
-/// A portal with a plane in place of one too narrow to have one: over the edge that the line passes lowest or, if that is too
-/// short to give the new portal a width, around its lower point. `None` if there is none.
+/// A portal with a plane in place of one too narrow to have one: over the edge that the line passes lowest or, if that gives the new
+/// portal no width, around its lower point. `None` if there is none.
 fn widen(difference: &Difference, portal: &Portal, steps: &mut Steps) -> Option<Enclosure> {
     let edge = lowest_edge(difference, portal);
     let [from, to] = edge.map(|t| t.point);
-    if from.shadow().distance(to.shadow()) > difference.touching() {
-        let wide = close_widely(difference, edge, steps)?;
-        match wide {
-            Enclosure::Portal(portal) if plane_normal(difference, &portal).is_none() => {}
-            _ => return Some(wide),
+    let low = if from.height() <= to.height() { edge[0] } else { edge[1] };
+    let star = [low, farthest(difference, low, steps)];
+    let long = from.shadow().distance(to.shadow()) > difference.touching();
+    let edges = if long { [edge, star] } else { [star, star] };
+    for edge in edges {
+        for guide in [Guide::Tilt, Guide::Lateral] {
+            match complete(difference, edge, guide, steps)? {
+                Enclosure::Portal(wide) if plane_normal(difference, &wide).is_none() => {}
+                found => return Some(found),
+            }
         }
     }
-    let low = if from.height() <= to.height() { edge[0] } else { edge[1] };
-    let wide = close_widely(difference, [low, farthest(difference, low, steps)], steps)?;
-    match wide {
-        Enclosure::Portal(portal) if plane_normal(difference, &portal).is_none() => None,
-        _ => Some(wide),
-    }
+    None
 }
 
 /// A point of `M` whose shadow is far from that of another.

@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use crate::polyhedron::topology::Topology;
 pub(crate) use axes::{AXES, AxisPair};
-pub(crate) use snapshots::{AxisSections, SectionForm, Turn};
+pub(crate) use snapshots::{AxisSections, SectionForm, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};
 
 /// The sections of one body across its four section axes; empty for a body of dimension below 3.
@@ -32,11 +32,6 @@ impl SectionIndex {
     /// For the vertices of a body of dimension 3 and its topology.
     pub(crate) fn build(vertices: &[DVec3], topology: &Topology) -> Self {
         Self { axes: AXES.iter().map(|&a| AxisSections::build(vertices, topology, a)).collect() }
-    }
-
-    /// Whether there are no sections: the body is flat.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.axes.is_empty()
     }
 
     /// The sections across axis `index` of [`AXES`].

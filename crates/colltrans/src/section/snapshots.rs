@@ -14,6 +14,9 @@ use crate::polyhedron::topology::Topology;
 /// Edges of vertices passed per entry of a snapshot: about two vertices' worth of upward and downward edges.
 const EDGES_PER_ENTRY: usize = 4;
 
+/// Candidates of one round of the search for an extreme entry.
+const CANDIDATES: usize = 16;
+
 /// A crossing edge of a snapshot.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
@@ -235,31 +238,44 @@ impl Snapshot<'_> {
         form.at(self.entries[index].position)
     }
 
-    /// The entry where `sign * form` is least, `sign` being 1 or -1: bisection on a cyclic sequence with one minimum and one maximum.
+    /// The entry where `sign * form` is least, `sign` being 1 or -1.
+    ///
+    /// On a convex polygon the minimum lies within one stride of the best of every `stride`-th entry. All candidates of a
+    /// round are compared, without branches that hardware could not predict.
     pub(crate) fn extreme(&self, form: &SectionForm, sign: f32) -> usize {
         let count = self.entries.len();
-        let value = |i: usize| sign * self.value(form, if i < count { i } else { i - count });
-        let falls = |i: usize| value(i + 1) < value(i);
-        // Invariant: the minimum is among `first..=last`; `first_falls` belongs to `first`.
-        let (mut first, mut last) = (0, count);
-        let mut first_falls = falls(0);
-        while last - first > 1 {
-            let middle = usize::midpoint(first, last);
-            let middle_falls = falls(middle);
-            let beyond = match (first_falls, middle_falls) {
-                (true, true) => value(middle) < value(first),
-                (true, false) => false,
-                (false, true) => true,
-                (false, false) => value(middle) >= value(first),
-            };
-            if beyond {
-                (first, first_falls) = (middle, middle_falls);
-            } else {
-                last = middle;
-            }
+        let slope = form.slope.map(|s| sign * s);
+        let value = |i: usize| {
+            let [u, v] = self.entries[i].position;
+            slope[0] * u + slope[1] * v
+        };
+        let mut stride = 1;
+        while stride * CANDIDATES < count {
+            stride *= CANDIDATES / 2;
         }
-        let best = if value(last) < value(first) { last } else { first };
-        if best < count { best } else { 0 }
+        let (mut best, mut least) = (0, value(0));
+        let mut consider = |from: usize, to: usize, stride: usize| {
+            for i in (from..to).step_by(stride) {
+                let candidate = value(i);
+                best = if candidate < least { i } else { best };
+                least = least.min(candidate);
+            }
+            best
+        };
+        let mut centre = consider(0, count, stride);
+        while stride > 1 {
+            let reach = stride;
+            stride = (stride / (CANDIDATES / 2)).max(1);
+            let (from, to) = (centre as isize - reach as isize, centre + reach);
+            if from < 0 {
+                consider((from + count as isize).max(0) as usize, count, stride);
+            }
+            if to > count {
+                consider(0, to - count, stride);
+            }
+            centre = consider(from.max(0) as usize, to.min(count), stride);
+        }
+        centre
     }
 
     /// The last entry on the way from `bottom` to `top`, which `form` ascends, where it is at most `value` on the section at level `x`.
@@ -283,14 +299,13 @@ impl Snapshot<'_> {
             Turn::Clockwise if offset > bottom => bottom + count - offset,
             Turn::Clockwise => bottom - offset,
         };
-        let (mut low, mut high) = (0, steps + 1);
-        while high - low > 1 {
-            let middle = usize::midpoint(low, high);
-            if self.value(form, entry(middle)) <= target {
-                low = middle;
-            } else {
-                high = middle;
-            }
+        // Halves the number of candidates without branches on the values.
+        let (mut low, mut candidates) = (0, steps + 1);
+        while candidates > 1 {
+            let half = candidates / 2;
+            let passed = self.value(form, entry(low + half)) <= target;
+            low += if passed { half } else { 0 };
+            candidates -= half;
         }
         entry(low)
     }

@@ -116,6 +116,12 @@ impl<'a> Difference<'a> {
         Point { at, pair }
     }
 
+    /// The corners that widening makes of a vertex, each lowest along one diagonal; four times the vertex itself without widening.
+    pub(crate) fn corners(&self, vertex: &Point) -> [Point; 4] {
+        [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
+            .map(|(x, y)| self.point(vertex.pair, DVec3::new(x, y, 0.0)))
+    }
+
     /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and their matrices.
     pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.measure(), self.setting.fixed.measure());

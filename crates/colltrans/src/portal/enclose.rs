@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 
 use super::start::steep;
 use super::{Portal, Start, Tangent, normal_of};
+use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 
@@ -216,8 +217,7 @@ pub(crate) fn widest_margin(
     let mut segment = [found.2; 2];
     let mut best = (found.0, found.1);
     for _ in 0..MAX_POINTS {
-        let nearest = nearest_point(&segment);
-        let Some(normal) = nearest.try_normalize() else { break };
+        let Some((normal, distance)) = from_segment(&segment) else { break };
         steps.supports += 1;
         let lateral: DVec3 = normal.extend(0.0);
         let point = difference.support_from(lateral, segment[0].pair);
@@ -225,20 +225,28 @@ pub(crate) fn widest_margin(
         if margin > best.1 {
             best = (normal, margin);
         }
-        if nearest.length() - margin <= difference.noise {
-            break;
-        }
         let options = [[segment[0], point], [segment[1], point]];
-        let closest = options.map(|s| nearest_point(&s).length());
-        if closest[0].min(closest[1]) >= nearest.length() {
+        let away = options.map(|s| from_segment(&s).map_or(0.0, |(_, distance)| distance));
+        let nearer = usize::from(away[1] < away[0]);
+        if distance - margin <= difference.noise || away[nearer] >= distance {
             break;
         }
-        segment = if closest[0] <= closest[1] { options[0] } else { options[1] };
+        segment = options[nearer];
     }
     best
 }
 
-fn nearest_point(segment: &[Point; 2]) -> DVec2 {
-    let tangents = segment.map(|point| Tangent { point, slope: DVec2::ZERO });
-    nearest_on(&tangents).0
+/// Unit normal from the line towards a segment of shadows, and the distance; without cancellation, also where a long segment
+/// passes the line closely. `None` if it touches it.
+fn from_segment(segment: &[Point; 2]) -> Option<(DVec2, f64)> {
+    let [a, b] = segment.map(|p| p.shadow());
+    let along = b - a;
+    if a.dot(along) < 0.0 && b.dot(along) > 0.0 {
+        let length = along.length();
+        let distance = accurate_det(a, b) / length;
+        let right = -along.perp() / length;
+        return (distance != 0.0).then(|| (right * distance.signum(), distance.abs()));
+    }
+    let end = if a.dot(along) >= 0.0 { a } else { b };
+    Some((end.try_normalize()?, end.length()))
 }

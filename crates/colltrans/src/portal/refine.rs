@@ -91,10 +91,10 @@ fn widen(difference: &Difference, portal: &Portal, steps: &mut Steps) -> Option<
     let edge = lowest_edge(difference, portal);
     let [from, to] = edge.map(|t| t.point);
     let low = if from.height() <= to.height() { edge[0] } else { edge[1] };
-    let star = [low, farthest(difference, low, steps)];
+    let far = farthest(difference, low, steps);
     let long = from.shadow().distance(to.shadow()) > difference.touching();
-    let edges = if long { [edge, star] } else { [star, star] };
-    for edge in edges {
+    let stars = difference.corners(&low.point).map(|point| [Tangent { point, ..low }, far]);
+    for edge in long.then_some(edge).into_iter().chain(stars) {
         for guide in [Guide::Tilt, Guide::Lateral] {
             match complete(difference, edge, guide, steps)? {
                 Enclosure::Portal(wide) if plane_normal(difference, &wide).is_none() => {}

@@ -1,0 +1,105 @@
+//! `colltrans batch`: a query per line in, a result per line out, in the same order.
+//!
+//! The data's way: [`pipeline`] hands chunks of lines to threads and puts their results back in
+//! order, holding only a bounded number of chunks; [`query`] reads and answers one line;
+//! [`cache`] builds bodies that occur again once.
+
+mod cache;
+mod pipeline;
+mod query;
+
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, IsTerminal, Read, Write};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::args::BatchArguments;
+use crate::failure::{Code, Failure};
+use cache::Cache;
+use pipeline::Pipeline;
+use query::Desk;
+
+/// Input vertices of all bodies that are kept for when they occur again.
+const CACHED_VERTICES: usize = 500_000;
+
+pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
+    let (queries, size, folder) = open_queries(&arguments.queries)?;
+    let (results, results_name) = open_results(arguments.output.as_deref())?;
+    let threads = arguments
+        .threads
+        .or_else(|| std::thread::available_parallelism().ok())
+        .map_or(1, NonZeroUsize::get);
+    let desk = Desk { folder, body: arguments.body, cache: Cache::new(CACHED_VERTICES) };
+    let bar = progress_bar(size);
+    let pipeline = Pipeline::new(queries, results, threads);
+    let work = || pipeline.work(|number, line| desk.answer(number, line), &bar);
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(work);
+        }
+        work();
+    });
+    bar.finish_and_clear();
+    let end = pipeline.finish();
+    if let Some(error) = end.write_error {
+        return Err(Failure::output(results_name, &error));
+    }
+    if let Some(error) = end.read_error {
+        let name = arguments.queries.display();
+        return Err(Failure::new(Code::Input, format!("{name}: cannot be read: {error}")));
+    }
+    if end.failed > 0 {
+        let message = format!("{} of {} queries have no answer", end.failed, end.answered);
+        return Err(Failure::new(Code::Lines, message));
+    }
+    Ok(())
+}
+
+type Queries = BufReader<Box<dyn Read + Send>>;
+
+/// The query lines, their size if it is known, and the folder that paths in them are relative to.
+fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure> {
+    if path == Path::new("-") {
+        return Ok((BufReader::new(Box::new(io::stdin())), None, PathBuf::new()));
+    }
+    let unreadable = |e: io::Error| {
+        Failure::new(Code::Input, format!("{}: cannot be read: {e}", path.display()))
+    };
+    let file = File::open(path).map_err(unreadable)?;
+    let metadata = file.metadata().map_err(unreadable)?;
+    if metadata.is_dir() {
+        return Err(Failure::new(Code::Input, format!("{}: is a folder", path.display())));
+    }
+    let size = metadata.is_file().then_some(metadata.len());
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    Ok((BufReader::with_capacity(1 << 16, Box::new(file)), size, folder))
+}
+
+type Results = BufWriter<Box<dyn Write + Send>>;
+
+fn open_results(path: Option<&Path>) -> Result<(Results, String), Failure> {
+    match path {
+        Some(path) if path != Path::new("-") => {
+            let file = File::create(path).map_err(|e| Failure::output(path.display(), &e))?;
+            Ok((BufWriter::new(Box::new(file)), path.display().to_string()))
+        }
+        _ => Ok((BufWriter::new(Box::new(io::stdout())), "standard output".into())),
+    }
+}
+
+/// Bytes of the query file that were read; nothing where nobody looks at it.
+fn progress_bar(size: Option<u64>) -> ProgressBar {
+    if !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let (bar, template) = match size {
+        Some(size) => {
+            (ProgressBar::new(size), "{wide_bar} {bytes}/{total_bytes} {eta} left, {msg} queries")
+        }
+        None => (ProgressBar::no_length(), "{spinner} {bytes} {elapsed}, {msg} queries"),
+    };
+    bar.set_style(ProgressStyle::with_template(template).unwrap_or(ProgressStyle::default_bar()));
+    bar
+}

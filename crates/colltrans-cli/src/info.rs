@@ -1,0 +1,122 @@
+//! `colltrans info`: what a mesh file holds.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use colltrans::{BuildError, ConvexPolyhedron, TopologyError};
+use colltrans_mesh::Mesh;
+
+use crate::args::InfoArguments;
+use crate::body;
+use crate::failure::{Code, Failure};
+use crate::report::{line, number, vector};
+
+pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
+    let mut unreadable = Vec::new();
+    for path in &arguments.meshes {
+        match colltrans_mesh::read(path) {
+            Ok(mesh) => {
+                let text = describe(path, &mesh, arguments.convex_tolerance);
+                io::stdout()
+                    .write_all(text.as_bytes())
+                    .map_err(|error| Failure::output("standard output", &error))?;
+            }
+            Err(error) => unreadable.push(error.to_string()),
+        }
+    }
+    if unreadable.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::new(Code::Input, unreadable.join("\nerror: ")))
+    }
+}
+
+fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
+    let mut text = format!("{}\n", path.display());
+    line(&mut text, "vertices", &mesh.vertices.len().to_string());
+    line(&mut text, "faces", &faces(mesh));
+    if let Some([low, high]) = mesh.bounds() {
+        let [x, y, z] = (high - low).to_array().map(number);
+        line(&mut text, "extent", &format!("{x} x {y} x {z}"));
+        line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
+    }
+    // Tolerance 0 makes the library say how deep the worst face lies, however little.
+    match ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 0.0) {
+        Ok(_) => {
+            line(&mut text, "volume", &number(mesh.signed_volume()));
+            line(&mut text, "convex", "yes, to rounding error");
+        }
+        Err(BuildError::NotConvex { face, depth, .. }) => {
+            line(&mut text, "volume", &number(mesh.signed_volume()));
+            line(&mut text, "convex", &not_quite(mesh, face, depth, asked_tolerance));
+        }
+        Err(error) => {
+            // Such a surface is closed and oriented all the same.
+            let is_closed = matches!(
+                error,
+                BuildError::InsideOut { .. }
+                    | BuildError::Topology(TopologyError::NotASphere { .. })
+            );
+            let volume = if is_closed {
+                number(mesh.signed_volume())
+            } else {
+                "none: the faces do not enclose a body".into()
+            };
+            line(&mut text, "volume", &volume);
+            line(&mut text, "convex", &format!("no: {error}"));
+        }
+    }
+    match ConvexPolyhedron::from_points(&mesh.vertices) {
+        Ok(hull) => {
+            line(&mut text, "hull", &counts(&hull));
+            line(&mut text, "hull volume", &number(hull.volume()));
+            let error = hull.hull_error();
+            line(
+                &mut text,
+                "hull error",
+                &format!("{error:e} (largest distance of a vertex outside a face of the hull)"),
+            );
+        }
+        Err(error) => line(&mut text, "hull", &format!("none: {error}")),
+    }
+    text
+}
+
+fn faces(mesh: &Mesh) -> String {
+    let count = mesh.faces.len();
+    let triangles = mesh.faces.iter().filter(|f| f.len() == 3).count();
+    let largest = mesh.faces.iter().map(Vec::len).max().unwrap_or(0);
+    if count == 0 {
+        "0 (a cloud of points)".into()
+    } else if triangles == count {
+        format!("{count}, all triangles")
+    } else {
+        format!("{count}, {triangles} of them triangles, up to {largest} corners")
+    }
+}
+
+fn not_quite(mesh: &Mesh, face: usize, depth: f64, asked_tolerance: Option<f64>) -> String {
+    let tolerance = body::tolerance(mesh, asked_tolerance);
+    let relative = depth / mesh.extent();
+    let verdict =
+        if depth <= tolerance { "yes, within tolerance" } else { "no; --hull takes its hull" };
+    format!(
+        "{verdict}: face {face} lies {depth:e} below the hull, {relative:e} of the extent \
+         (tolerated: {tolerance:e})"
+    )
+}
+
+fn counts(hull: &ConvexPolyhedron) -> String {
+    let shape = match hull.dimension() {
+        0 => "a point: ",
+        1 => "a segment: ",
+        2 => "flat: ",
+        _ => "",
+    };
+    format!(
+        "{shape}{} vertices, {} edges, {} faces",
+        hull.vertices().len(),
+        hull.edge_count(),
+        hull.face_count()
+    )
+}

@@ -1,0 +1,267 @@
+//! A picture of an answer, as one would put it in a paper: both bodies, the moving one at its start
+//! (light) and where it stops, the way it goes, the contact.
+//!
+//! Notation as in [`view`]; `P` is the moving body, `Q` the fixed one, `n` the unit normal from `P` to `Q`.
+//!
+//! Hidden surfaces. A convex body hides its own parts where they look away ([`solid`]). Between
+//! bodies, a plane that separates them tells which is nearer: `Q` if `n.v > 0`. For
+//! a contact ahead, the contact plane separates `Q` from `P` not only at the contact but all along
+//! its way (`n.d > 0`); for separated bodies, the separating plane does (`n.d = 0`). So
+//! drawing from back to front is exact, which for three bodies without such a plane it need not be.
+//! Where the contact lies behind, the start may overlap `Q`; it is drawn last, as an outline that
+//! hides nothing.
+//!
+//! The data's way: [`story`] (what is to be shown) -> [`view`] (from where) -> [`layout`] (how large)
+//! -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
+
+mod layout;
+mod notes;
+mod solid;
+mod story;
+mod svg;
+mod view;
+
+use colltrans::glam::{DVec2, DVec3};
+use colltrans::{ContactRange, ConvexPolyhedron, Pose};
+
+use layout::Layout;
+use notes::Notes;
+use solid::{Paint, Solid};
+use story::Story;
+use svg::Page;
+use view::View;
+
+/// A query and its answer.
+pub(crate) struct Scene<'a> {
+    pub(crate) moving: &'a ConvexPolyhedron,
+    pub(crate) moving_pose: Pose,
+    pub(crate) fixed: &'a ConvexPolyhedron,
+    pub(crate) fixed_pose: Pose,
+    pub(crate) direction: DVec3,
+    pub(crate) answer: &'a ContactRange,
+}
+
+const MOVING: Paint = Paint {
+    dark: [70.0, 108.0, 168.0],
+    light: [214.0, 228.0, 246.0],
+    line: "#1f3a68",
+    fine: "#5676a8",
+};
+const FIXED: Paint = Paint {
+    dark: [148.0, 134.0, 112.0],
+    light: [248.0, 243.0, 232.0],
+    line: "#4a4033",
+    fine: "#8d8069",
+};
+/// Features of the moving and the fixed body in the contact plane.
+const MOVING_MARK: &str = "#0b57d0";
+const FIXED_MARK: &str = "#c2600f";
+
+/// The bodies as they are drawn.
+struct Cast {
+    /// P at its start, unless that is where it stops.
+    start: Option<Solid>,
+    /// P where it stops.
+    stop: Solid,
+    /// Q.
+    fixed: Solid,
+    /// From `start` to `stop`, as drawn.
+    way: DVec3,
+    /// The way is drawn shorter than it is.
+    is_broken: bool,
+}
+
+/// The SVG file.
+pub(crate) fn draw(scene: &Scene<'_>) -> String {
+    let story = Story::of(scene);
+    let cast = Cast::of(scene, &story);
+    let unit = scene.direction.normalize();
+    let view = View::choose([&cast.stop, &cast.fixed], unit, story.looked_along());
+    let layout = Layout::of(&cast, &story, &view);
+    let on_page = |p: DVec3| layout.on_page(view.project(p));
+    let mut page = Page::new(layout.window);
+    page.open_group(r#"clip-path="url(#window)""#);
+    cast.draw(&mut page, &view, &story, on_page);
+    if let Some(contact) = story.contact {
+        cast.fixed.mark_hidden(&mut page, contact.fixed_feature, FIXED_MARK, on_page);
+        cast.stop.mark_hidden(&mut page, contact.moving_feature, MOVING_MARK, on_page);
+    }
+    page.close_group();
+    let notes = Notes { cast: &cast, story: &story, layout: &layout, view: &view };
+    notes.draw(&mut page, unit);
+    page.finish(layout.size, layout.window, &story.headline)
+}
+
+/// Which of the bodies may hide the other; the plane between them decides.
+fn fixed_is_nearer(story: &Story<'_>, view: &View) -> bool {
+    story.normal.dot(view.toward) > 0.0
+}
+
+impl Cast {
+    fn of(scene: &Scene<'_>, story: &Story<'_>) -> Self {
+        let unit = scene.direction.normalize();
+        let fixed = Solid::new(scene.fixed, &scene.fixed_pose, story.origin);
+        let stop =
+            Solid::new(scene.moving, &scene.moving_pose, story.origin).moved(unit * story.stop);
+        let size = layout::working_size(stop.ball().1, fixed.ball().1, story.stop.abs());
+        let longest = 5.0 * size;
+        let shown = story.stop.clamp(-longest, longest);
+        let way = unit * shown;
+        let start = (shown.abs() > 0.01 * size).then(|| stop.moved(-way));
+        Self { start, stop, fixed, way, is_broken: shown != story.stop }
+    }
+
+    /// From back to front.
+    fn draw(
+        &self,
+        page: &mut Page,
+        view: &View,
+        story: &Story<'_>,
+        on_page: impl Fn(DVec3) -> DVec2 + Copy,
+    ) {
+        let fixed_is_nearer = fixed_is_nearer(story, view);
+        let stop_is_nearer = self.way.dot(view.toward) > 0.0;
+        let is_behind = story.stop < 0.0;
+        let draw_start = |page: &mut Page| {
+            if let Some(start) = &self.start {
+                start.draw_ghost(page, view, &MOVING, on_page);
+            }
+        };
+        let draw_moving = |page: &mut Page| {
+            if stop_is_nearer && !is_behind {
+                draw_start(page);
+            }
+            self.stop.draw(page, view, &MOVING, on_page);
+            if let Some(contact) = story.contact {
+                self.stop.mark(page, view, contact.moving_feature, MOVING_MARK, on_page);
+            }
+            if !stop_is_nearer && !is_behind {
+                draw_start(page);
+            }
+        };
+        let draw_fixed = |page: &mut Page| {
+            self.fixed.draw(page, view, &FIXED, on_page);
+            if let Some(contact) = story.contact {
+                self.fixed.mark(page, view, contact.fixed_feature, FIXED_MARK, on_page);
+            }
+        };
+        let draw_plane = |page: &mut Page| {
+            if let Some(plane) = story.plane(self) {
+                let look =
+                    r##"fill="#f0b429" fill-opacity="0.28" stroke="#a87600" stroke-width="0.8""##;
+                page.polygons(look, [plane.map(on_page).to_vec()]);
+            }
+        };
+        if fixed_is_nearer {
+            draw_moving(page);
+            draw_plane(page);
+            draw_fixed(page);
+        } else {
+            draw_fixed(page);
+            draw_plane(page);
+            draw_moving(page);
+        }
+        if is_behind {
+            draw_start(page);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use colltrans::glam::DQuat;
+    use colltrans::{Options, contact_range};
+
+    /// Numbers from -1 to 1.
+    fn random(state: &mut u64) -> f64 {
+        *state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn random_vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    fn random_pose(state: &mut u64, distance: f64) -> Pose {
+        let rotation = DQuat::from_axis_angle(
+            random_vector(state).normalize_or(DVec3::X),
+            3.0 * random(state),
+        );
+        Pose::new(rotation, distance * random_vector(state)).unwrap()
+    }
+
+    /// How near a solid comes to the viewer on the line of sight through a point.
+    fn nearest(solid: &Solid, view: &View, point: DVec3) -> Option<f64> {
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (face, area) in solid.faces.iter().zip(&solid.areas) {
+            let height = area.dot(point - solid.vertices[face[0] as usize]);
+            let slope = area.dot(view.toward);
+            match slope {
+                s if s > 0.0 => high = high.min(-height / s),
+                s if s < 0.0 => low = low.max(-height / s),
+                _ if height > 0.0 => return None,
+                _ => {}
+            }
+        }
+        (low < high).then_some(high)
+    }
+
+    /// Against the slow way, ray by ray: what is drawn later is nearer wherever both are seen.
+    #[test]
+    fn what_is_drawn_later_is_nearer() {
+        let state = &mut 1;
+        let mut compared = [0, 0];
+        for round in 0..300 {
+            let body = |state: &mut u64| {
+                let points: Vec<DVec3> = (0..9).map(|_| random_vector(state)).collect();
+                ConvexPolyhedron::from_points(&points).unwrap()
+            };
+            let (moving, fixed) = (body(state), body(state));
+            let moving_pose = random_pose(state, 3.0);
+            let fixed_pose = random_pose(state, 1.0);
+            let towards = fixed_pose.translation() - moving_pose.translation();
+            let direction = towards + 0.7 * random_vector(state);
+            let answer = contact_range(
+                &moving,
+                &moving_pose,
+                &fixed,
+                &fixed_pose,
+                direction,
+                &Options::default(),
+            )
+            .unwrap();
+            let scene = Scene {
+                moving: &moving,
+                moving_pose,
+                fixed: &fixed,
+                fixed_pose,
+                direction,
+                answer: &answer,
+            };
+            let story = Story::of(&scene);
+            if story.stop < 0.0 {
+                continue;
+            }
+            let cast = Cast::of(&scene, &story);
+            let view = View::choose(
+                [&cast.stop, &cast.fixed],
+                direction.normalize(),
+                [story.normal, -story.normal][round % 2],
+            );
+            let fixed_is_nearer = fixed_is_nearer(&story, &view);
+            for solid in [Some(&cast.stop), cast.start.as_ref()].into_iter().flatten() {
+                for _ in 0..400 {
+                    let point = 0.8 * random_vector(state);
+                    let depths = [solid, &cast.fixed].map(|s| nearest(s, &view, point));
+                    let [Some(p), Some(q)] = depths else { continue };
+                    compared[usize::from(fixed_is_nearer)] += 1;
+                    let ahead = if fixed_is_nearer { q - p } else { p - q };
+                    assert!(ahead > -1e-9, "{ahead} in {:?}", story.headline);
+                }
+            }
+        }
+        assert!(compared.iter().all(|&count| count > 1000), "{compared:?}");
+    }
+}

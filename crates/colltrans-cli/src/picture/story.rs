@@ -1,0 +1,167 @@
+//! What a picture has to tell, taken from the answer.
+
+use colltrans::glam::DVec3;
+use colltrans::{Certificate, Contact, ContactRange, Feature, Separated};
+
+use super::{Cast, Scene, Solid, layout};
+
+/// What is shown and said.
+pub(super) struct Story<'a> {
+    /// The point of the world that coordinates are relative to.
+    pub(super) origin: DVec3,
+    /// How far the moving body goes from its start until it stops, as a length.
+    pub(super) stop: f64,
+    /// The contact normal, or that of the separating plane.
+    pub(super) normal: DVec3,
+    pub(super) contact: Option<&'a Contact>,
+    pub(super) margin: Option<f64>,
+    /// What the way is labelled with.
+    pub(super) way: String,
+    pub(super) headline: String,
+    pub(super) details: Vec<String>,
+}
+
+impl<'a> Story<'a> {
+    pub(super) fn of(scene: &Scene<'a>) -> Self {
+        match scene.answer {
+            ContactRange::Contact { first, .. } => Self::of_contact(scene, first, "Contact", None),
+            ContactRange::Grazing { first, .. } => {
+                let overlap = short(first.overlap);
+                let also = format!("the bodies slide along each other, overlapping by {overlap}");
+                Self::of_contact(scene, &first.contact, "Grazing", Some(also))
+            }
+            ContactRange::Separated(separated) => Self::of_separated(scene, separated),
+        }
+    }
+
+    fn of_contact(
+        scene: &Scene<'_>,
+        contact: &'a Contact,
+        name: &str,
+        also: Option<String>,
+    ) -> Self {
+        let length = scene.direction.length();
+        let way = quantity(contact.translation, length);
+        let Certificate { lower, upper, .. } = contact.certificate;
+        let features = format!(
+            "{} of the moving body on {} of the fixed body",
+            contact.moving_feature.kind(),
+            contact.fixed_feature.kind()
+        );
+        let mut details: Vec<String> = also.into_iter().collect();
+        details.push(features);
+        let agreement = match (upper - lower).abs() {
+            0.0 => "are equal".into(),
+            gap => format!("agree to {}", short(gap)),
+        };
+        details.push(format!(
+            "normal n = {}; proven lower and upper bound of t {agreement}",
+            components(contact.normal)
+        ));
+        Self {
+            origin: contact.point_on_fixed,
+            stop: contact.translation * length,
+            normal: contact.normal,
+            contact: Some(contact),
+            margin: None,
+            headline: format!("{name} at {way}"),
+            way,
+            details,
+        }
+    }
+
+    /// The bodies pass each other: shown where they are side by side.
+    fn of_separated(scene: &Scene<'_>, separated: &Separated) -> Self {
+        let normal = separated.certificate.normal;
+        let origin = scene.fixed_pose.transform_point(scene.fixed.vertices()[0]);
+        let moving = Solid::new(scene.moving, &scene.moving_pose, origin);
+        let fixed = Solid::new(scene.fixed, &scene.fixed_pose, origin);
+        let unit = scene.direction.normalize();
+        let ahead = (fixed.support(-normal) - moving.support(normal)).dot(unit);
+        let margin = separated.certificate.margin;
+        Self {
+            origin,
+            stop: ahead.max(0.0),
+            normal,
+            contact: None,
+            margin: Some(margin),
+            way: "d".into(),
+            headline: "Separated: the bodies never meet along d".into(),
+            details: vec![format!(
+                "margin {} across the separating plane, normal n = {}",
+                short(margin),
+                components(normal)
+            )],
+        }
+    }
+
+    /// The normal, or its opposite where that shows the contact face of the moving body: a face is
+    /// seen from its own side, and the body that has only a vertex or an edge there hides less.
+    pub(super) fn looked_along(&self) -> DVec3 {
+        let is_face = |feature| matches!(feature, Feature::Face(_));
+        match self.contact {
+            Some(c) if is_face(c.moving_feature) && !is_face(c.fixed_feature) => -self.normal,
+            _ => self.normal,
+        }
+    }
+
+    /// Ends of the gap between separated bodies where the moving one stops, along the normal.
+    pub(super) fn gap(&self, cast: &Cast) -> Option<[DVec3; 2]> {
+        let from = cast.stop.support(self.normal);
+        self.margin.map(|margin| [from, from + margin * self.normal])
+    }
+
+    /// A piece of the separating plane, midway in the gap.
+    pub(super) fn plane(&self, cast: &Cast) -> Option<[DVec3; 4]> {
+        let [from, to] = self.gap(cast)?;
+        let along = cast.way.normalize_or(self.normal.any_orthonormal_vector());
+        let across = self.normal.cross(along);
+        let half = 1.1 * layout::working_size(cast.stop.ball().1, cast.fixed.ball().1, 0.0);
+        let middle = 0.5 * (from + to);
+        let corner = |a: f64, b: f64| middle + a * half * along + b * half * across;
+        Some([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)])
+    }
+}
+
+/// A unit vector, with rounding noise as 0.
+fn components(unit: DVec3) -> String {
+    let [x, y, z] = unit.to_array().map(|c| if c.abs() < 1e-12 { 0.0 } else { c }).map(short);
+    format!("({x}, {y}, {z})")
+}
+
+fn quantity(translation: f64, length: f64) -> String {
+    if (length - 1.0).abs() < 1e-12 {
+        format!("t = {}", short(translation))
+    } else {
+        format!("t = {} (length {})", short(translation), short(translation * length))
+    }
+}
+
+/// A number in up to six digits.
+pub(super) fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude == 0.0 {
+        return "0".into();
+    }
+    if !(1e-4..1e6).contains(&magnitude) {
+        return format!("{value:.2e}");
+    }
+    let decimals = (5 - magnitude.log10().floor() as i32).clamp(0, 9) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_are_short() {
+        let shown = [0.0, -0.0, 2.5, -1.0 / 3.0, 123_456.78, 1e-16, 2e7, 1e-4].map(short);
+        assert_eq!(shown, ["0", "0", "2.5", "-0.333333", "123457", "1.00e-16", "2.00e7", "0.0001"]);
+    }
+}

@@ -1,0 +1,256 @@
+//! A page of shapes in page coordinates (pixels, y downwards), written as SVG.
+//!
+//! Everything that can lie far outside the page is cut to a frame around it, because renderers
+//! keep coordinates in few bits.
+
+use std::fmt::Write as _;
+
+use colltrans::glam::DVec2;
+
+/// Line width, colour, dashes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stroke {
+    pub(super) colour: &'static str,
+    pub(super) width: f64,
+    pub(super) dashes: Option<&'static str>,
+}
+
+impl Stroke {
+    pub(super) const fn solid(colour: &'static str, width: f64) -> Self {
+        Self { colour, width, dashes: None }
+    }
+
+    pub(super) const fn dashed(colour: &'static str, width: f64, dashes: &'static str) -> Self {
+        Self { colour, width, dashes: Some(dashes) }
+    }
+
+    fn attributes(self) -> String {
+        let Self { colour, width, dashes } = self;
+        let dashes = dashes.map(|d| format!(r#" stroke-dasharray="{d}""#)).unwrap_or_default();
+        format!(r#"stroke="{colour}" stroke-width="{width}"{dashes}"#)
+    }
+}
+
+/// An axis-parallel rectangle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
+}
+
+impl Frame {
+    /// The part of a convex polygon inside the frame.
+    fn clip(&self, polygon: &[DVec2]) -> Vec<DVec2> {
+        let mut kept = polygon.to_vec();
+        for side in self.sides() {
+            let inside = std::mem::take(&mut kept);
+            for (i, &to) in inside.iter().enumerate() {
+                let from = inside[(i + inside.len() - 1) % inside.len()];
+                let (at_from, at_to) = (side(from), side(to));
+                if (at_from < 0.0) != (at_to < 0.0) {
+                    kept.push(from.lerp(to, at_from / (at_from - at_to)));
+                }
+                if at_to >= 0.0 {
+                    kept.push(to);
+                }
+            }
+        }
+        kept
+    }
+
+    /// The part of a segment inside the frame.
+    fn clip_segment(&self, [mut a, mut b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
+        for side in self.sides() {
+            let (at_a, at_b) = (side(a), side(b));
+            if at_a < 0.0 && at_b < 0.0 {
+                return None;
+            }
+            let cut = a.lerp(b, at_a / (at_a - at_b));
+            if at_a < 0.0 {
+                a = cut;
+            } else if at_b < 0.0 {
+                b = cut;
+            }
+        }
+        Some([a, b])
+    }
+
+    /// For each side, the distance of a point from it, positive inside.
+    fn sides(&self) -> [impl Fn(DVec2) -> f64; 4] {
+        let Self { low, high } = *self;
+        let side = |normal: DVec2, offset: f64| move |p: DVec2| p.dot(normal) - offset;
+        [
+            side(DVec2::X, low.x),
+            side(DVec2::NEG_X, -high.x),
+            side(DVec2::Y, low.y),
+            side(DVec2::NEG_Y, -high.y),
+        ]
+    }
+}
+
+/// The body of an SVG file in the making.
+pub(super) struct Page {
+    body: String,
+    frame: Frame,
+}
+
+impl Page {
+    /// A page whose shapes are cut to `frame` and a margin around it.
+    pub(super) fn new(frame: Frame) -> Self {
+        let margin = DVec2::splat(20.0);
+        let frame = Frame { low: frame.low - margin, high: frame.high + margin };
+        Self { body: String::new(), frame }
+    }
+
+    pub(super) fn open_group(&mut self, attributes: &str) {
+        let _ = writeln!(self.body, "<g {attributes}>");
+    }
+
+    pub(super) fn close_group(&mut self) {
+        self.body.push_str("</g>\n");
+    }
+
+    /// Convex polygons of one look.
+    pub(super) fn polygons<I: IntoIterator<Item = Vec<DVec2>>>(&mut self, look: &str, all: I) {
+        let mut data = String::new();
+        for polygon in all {
+            push_path(&mut data, &self.frame.clip(&polygon), true);
+        }
+        self.path(look, &data);
+    }
+
+    /// Segments of one look.
+    pub(super) fn segments<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, stroke: Stroke, all: I) {
+        let mut data = String::new();
+        for segment in all {
+            if let Some(kept) = self.frame.clip_segment(segment) {
+                push_path(&mut data, &kept, false);
+            }
+        }
+        self.path(&format!(r#"fill="none" {}"#, stroke.attributes()), &data);
+    }
+
+    fn path(&mut self, look: &str, data: &str) {
+        if !data.is_empty() {
+            let _ = writeln!(self.body, r#"<path {look} d="{data}"/>"#);
+        }
+    }
+
+    /// A line with a white rim that sets it off from what lies below.
+    pub(super) fn haloed(&mut self, stroke: Stroke, segment: [DVec2; 2]) {
+        self.segments(Stroke::solid("#ffffff", stroke.width + 2.4), [segment]);
+        self.segments(stroke, [segment]);
+    }
+
+    /// A line with an arrow head at its second end.
+    pub(super) fn arrow(&mut self, colour: &'static str, width: f64, [tail, tip]: [DVec2; 2]) {
+        let along = (tip - tail).normalize_or_zero();
+        let across = along.perp();
+        let length = (4.5 * width + 3.0).min((tip - tail).length());
+        let base = tip - along * length;
+        self.haloed(Stroke::solid(colour, width), [tail, base + along * (0.3 * length)]);
+        let look = format!(r##"fill="{colour}" stroke="#ffffff" stroke-width="0.8""##);
+        let half = across * (0.36 * length);
+        self.polygons(&look, [vec![tip, base + half, base + along * (0.2 * length), base - half]]);
+    }
+
+    pub(super) fn dot(&mut self, at: DVec2, radius: f64, fill: &str, rim: &str) {
+        let (x, y) = (number(at.x), number(at.y));
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{x}" cy="{y}" r="{radius}" fill="{fill}" stroke="{rim}" stroke-width="1.2"/>"#
+        );
+    }
+
+    /// Text with a white rim around a point.
+    pub(super) fn label(&mut self, centre: DVec2, look: &str, text: &str) {
+        // The base line lies a third of a letter's height below the middle.
+        let at = centre + DVec2::new(0.0, 5.0);
+        let rim = r##"stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round""##;
+        // Twice, because not every program knows `paint-order`.
+        self.text(at, "middle", &format!("{look} {rim}"), text);
+        self.text(at, "middle", look, text);
+    }
+
+    /// Text on a base line; `anchor` is `start`, `middle` or `end`.
+    pub(super) fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
+        let (x, y) = (number(at.x), number(at.y));
+        let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {look}>{text}</text>"#
+        );
+    }
+
+    pub(super) fn rectangle(&mut self, look: &str, frame: Frame) {
+        let size = frame.high - frame.low;
+        let _ = writeln!(
+            self.body,
+            r#"<rect x="{}" y="{}" width="{}" height="{}" {look}/>"#,
+            number(frame.low.x),
+            number(frame.low.y),
+            number(size.x),
+            number(size.y)
+        );
+    }
+
+    /// The whole file; `window` is what the group with the clip path `window` shows.
+    pub(super) fn finish(self, size: DVec2, window: Frame, title: &str) -> String {
+        let DVec2 { x: width, y: height } = size;
+        let mut text = String::new();
+        let _ = writeln!(
+            text,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" stroke-linecap="round" stroke-linejoin="round">"#
+        );
+        let _ = writeln!(text, "<title>{title}</title>");
+        let mut clip = Self::new(window);
+        clip.rectangle("", window);
+        let _ = writeln!(text, "<defs><clipPath id=\"window\">{}</clipPath></defs>", clip.body);
+        let _ = writeln!(text, r##"<rect width="{width}" height="{height}" fill="#ffffff"/>"##);
+        text.push_str(&self.body);
+        text.push_str("</svg>\n");
+        text
+    }
+}
+
+fn push_path(data: &mut String, points: &[DVec2], closed: bool) {
+    let Some((first, rest)) = points.split_first() else { return };
+    let _ = write!(data, "M{} {}", number(first.x), number(first.y));
+    for point in rest {
+        let _ = write!(data, "L{} {}", number(point.x), number(point.y));
+    }
+    if closed {
+        data.push('Z');
+    }
+}
+
+/// A tenth of a pixel is finer than any line.
+fn number(value: f64) -> String {
+    let text = format!("{value:.1}");
+    let text = text.strip_suffix(".0").unwrap_or(&text);
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clipping_keeps_what_is_inside() {
+        let frame = Frame { low: DVec2::ZERO, high: DVec2::ONE };
+        let inside = [DVec2::new(0.2, 0.2), DVec2::new(0.8, 0.2), DVec2::new(0.5, 0.9)];
+        assert_eq!(frame.clip(&inside), inside);
+        let around = [DVec2::new(-1e9, -1e9), DVec2::new(3e9, -1e9), DVec2::new(-1e9, 3e9)];
+        let cut = frame.clip(&around);
+        assert!(cut.iter().all(|p| p.min_element() >= -1e-6 && p.max_element() <= 1.0 + 1e-6));
+        let area: f64 =
+            cut.iter().zip(cut.iter().cycle().skip(1)).map(|(a, b)| a.perp_dot(*b)).sum::<f64>();
+        assert!((area / 2.0 - 1.0).abs() < 1e-6, "the whole frame: {area}");
+        assert!(frame.clip(&inside.map(|p| p + 5.0)).is_empty());
+        assert_eq!(
+            frame.clip_segment([DVec2::new(-1.0, 0.5), DVec2::new(3.0, 0.5)]),
+            Some([DVec2::new(0.0, 0.5), DVec2::new(1.0, 0.5)])
+        );
+        assert_eq!(frame.clip_segment([DVec2::new(-1.0, 0.5), DVec2::new(0.5, 3.0)]), None);
+    }
+}

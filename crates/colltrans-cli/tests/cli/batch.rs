@@ -1,0 +1,241 @@
+//! `colltrans batch`: order, threads, bad lines, one line after the other.
+
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader, Write as _};
+use std::process::{Command, Stdio};
+
+use crate::support::{colltrans, folder, json, stderr, stdout};
+use serde_json::Value;
+
+const BOX: &str =
+    r#"{"points":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[0.5,0.5,0.5]]}"#;
+
+/// Queries with ever other distances; every seventh is separated.
+fn queries(count: usize) -> String {
+    let mut text = String::new();
+    for i in 0..count {
+        let aside = if i % 7 == 0 { 3.0 } else { 0.125 };
+        let body = if i % 3 == 0 { r#"{"mesh":"cube.off"}"# } else { BOX };
+        let pose = format!(r#"{{"translation":[{},{aside},0.25]}}"#, -2.0 - i as f64);
+        let _ = writeln!(
+            text,
+            r#"{{"id":{i},"moving":{body},"fixed":{BOX},"moving_pose":{pose},"direction":[1,0,0]}}"#
+        );
+    }
+    text
+}
+
+fn run(text: &str, arguments: &[&str]) -> (std::process::Output, Vec<Value>) {
+    let folder = folder();
+    std::fs::write(folder.path().join("queries.jsonl"), text).unwrap();
+    let output =
+        colltrans(folder.path()).args(["batch", "queries.jsonl"]).args(arguments).output().unwrap();
+    let results = stdout(&output).lines().map(json).collect();
+    (output, results)
+}
+
+#[test]
+fn results_come_in_order_and_alike_for_any_number_of_threads() {
+    let text = queries(3000);
+    let (one, results) = run(&text, &["--threads", "1"]);
+    assert_eq!(one.status.code(), Some(0), "{}", stderr(&one));
+    assert_eq!(stderr(&one), "", "no progress bar where nobody looks");
+    assert_eq!(results.len(), 3000);
+    for (i, result) in results.iter().enumerate() {
+        assert_eq!(result["id"], i);
+        if i % 7 == 0 {
+            assert_eq!(result["outcome"], "separated");
+            let margin = result["margin"].as_f64().unwrap();
+            assert!(margin > 0.0 && margin < 2.0 + 1e-12, "{result}");
+        } else {
+            assert_eq!(result["outcome"], "contact");
+            assert_eq!(result["translation"], 1.0 + i as f64);
+            assert_eq!(result["exit"], 3.0 + i as f64);
+        }
+    }
+    for threads in ["2", "3", "16"] {
+        let (many, _) = run(&text, &["--threads", threads]);
+        assert!(many.stdout == one.stdout, "{threads} threads");
+    }
+}
+
+#[test]
+fn a_bad_line_costs_one_result() {
+    let good = format!(r#"{{"id":"good","moving":{BOX},"fixed":{BOX},"direction":[1,0,0]}}"#);
+    let with = |from: &str, to: &str| good.replace(from, to).replace("good", "bad");
+    let bad = [
+        ("not json".to_string(), Value::Null, "column"),
+        (with("\"direction\"", "\"directoin\""), "bad".into(), "unknown field `directoin`"),
+        (with("[1,0,0]}", "[0,0,0]}"), "bad".into(), "direction"),
+        (with("[1,0,0]}", "[1,0]}"), "bad".into(), "length 2"),
+        (with(BOX, r#"{"mesh":"none.off"}"#), "bad".into(), "none.off"),
+        (with(BOX, r#"{"mesh":"dent.off"}"#), "bad".into(), "--hull"),
+        (with(BOX, r#"{"points":[]}"#), "bad".into(), "no points"),
+        (with(BOX, r#"{"points":[[1,2,1e999]]}"#), "bad".into(), "out of range"),
+        (with(BOX, "{}"), "bad".into(), "either `points` or `mesh`"),
+        (
+            with("\"id\"", "\"moving_pose\":{\"rotation\":[0,0,0,2]},\"id\""),
+            "bad".into(),
+            "moving_pose",
+        ),
+        (with("\"id\"", "\"solver\":\"best\",\"id\""), "bad".into(), "unknown variant `best`"),
+        (with("\"id\"", "\"graze_tolerance\":-1,\"id\""), "bad".into(), "graze tolerance"),
+    ];
+    let mut text = String::new();
+    for (line, _, _) in &bad {
+        let _ = writeln!(text, "{line}\n{good}\n");
+    }
+    let (output, results) = run(&text, &[]);
+    assert_eq!(results.len(), 2 * bad.len(), "blank lines have no result");
+    for (pair, (line, id, word)) in results.chunks(2).zip(&bad) {
+        assert_eq!(pair[1]["outcome"], "contact", "after {line}");
+        assert_eq!(&pair[0]["id"], id, "{line}");
+        assert_eq!(pair[0]["outcome"], "error", "{line}");
+        let message = pair[0]["message"].as_str().unwrap();
+        assert!(
+            message.starts_with("line ") && message.contains(word),
+            "{word:?} not in {message}"
+        );
+        assert_eq!(pair[0].as_object().unwrap().len(), 3);
+    }
+    assert_eq!(output.status.code(), Some(1));
+    let (failed, all) = (bad.len(), 2 * bad.len());
+    let expected = format!("error: {failed} of {all} queries have no answer\n");
+    assert_eq!(stderr(&output), expected);
+}
+
+#[test]
+fn any_id_comes_back_as_it_was_written() {
+    let ids = [r#""a \u0062""#, "12345678901234567890123", "1.50", "null", "[1, {\"x\": 2}]"];
+    let mut text = String::from("\u{feff}");
+    for id in ids {
+        let _ = write!(text, r#"{{"id":{id},"moving":{BOX},"fixed":{BOX},"direction":[1,0,0]}}"#);
+        text.push_str("\r\n");
+    }
+    let (output, _) = run(&text, &[]);
+    for (line, id) in stdout(&output).lines().zip(ids) {
+        assert!(line.starts_with(&format!(r#"{{"id":{id},"outcome":"contact","#)), "{line}");
+    }
+}
+
+#[test]
+fn a_result_has_the_documented_fields() {
+    let query = format!(
+        r#"{{"moving":{BOX},"fixed":{{"mesh":"cube.off"}},"direction":[1,0,0],
+        "moving_pose":{{"translation":[-3,0.25,0.5],"rotation":[0,0,0,1]}},"fixed_pose":{{}},
+        "graze_tolerance":1e-9,"solver":"portal"}}"#
+    )
+    .replace('\n', " ");
+    let (_, results) = run(&query, &[]);
+    let result = &results[0];
+    let fields = [
+        "id",
+        "outcome",
+        "translation",
+        "exit",
+        "normal",
+        "point",
+        "lower",
+        "upper",
+        "features",
+        "solver",
+        "steps",
+    ];
+    let found = result.as_object().unwrap();
+    assert!(
+        fields.iter().all(|f| found.contains_key(*f)) && found.len() == fields.len(),
+        "{result}"
+    );
+    assert_eq!(result["id"], Value::Null);
+    assert_eq!(result["solver"], "portal");
+    assert_eq!(result["point"][0], 0.0);
+    let vertices = &result["features"]["moving"]["vertices"];
+    let mut vertices: Vec<u64> =
+        vertices.as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
+    vertices.sort_unstable();
+    assert_eq!(vertices, [1, 2, 5, 6], "point 8 lies inside and is no vertex");
+}
+
+#[test]
+fn files_and_standard_streams() {
+    let folder = folder();
+    let nested = folder.path().join("sub");
+    std::fs::create_dir(&nested).unwrap();
+    let query =
+        r#"{"moving":{"mesh":"../cube.off"},"fixed":{"mesh":"../cube.off"},"direction":[1,0,0]}"#;
+    std::fs::write(nested.join("q.jsonl"), query).unwrap();
+    let run = |arguments: &[&str]| colltrans(folder.path()).args(arguments).output().unwrap();
+    let to_stdout = run(&["batch", "sub/q.jsonl"]);
+    assert_eq!(json(&stdout(&to_stdout))["outcome"], "contact", "relative to the query file");
+    let to_dash = run(&["batch", "sub/q.jsonl", "-o", "-"]);
+    assert_eq!(to_dash.stdout, to_stdout.stdout);
+    let to_file = run(&["batch", "sub/q.jsonl", "-o", "results.jsonl"]);
+    assert_eq!((to_file.status.code(), stdout(&to_file)), (Some(0), String::new()));
+    assert_eq!(std::fs::read(folder.path().join("results.jsonl")).unwrap(), to_stdout.stdout);
+    let from_stdin = colltrans(folder.path())
+        .args(["batch", "-"])
+        .write_stdin(query.replace("../", ""))
+        .output();
+    assert_eq!(from_stdin.unwrap().stdout, to_stdout.stdout, "relative to the current folder");
+    let hulls = colltrans(folder.path())
+        .args(["batch", "-", "--hull"])
+        .write_stdin(query.replace("../cube", "dent"))
+        .output()
+        .unwrap();
+    assert_eq!(hulls.status.code(), Some(0), "{}", stdout(&hulls));
+
+    for (arguments, code, word) in [
+        (vec!["batch", "none.jsonl"], 3, "none.jsonl: cannot be read"),
+        (vec!["batch", "sub"], 3, "sub"),
+        (
+            vec!["batch", "sub/q.jsonl", "-o", "no/such/folder"],
+            5,
+            "no/such/folder: cannot be written",
+        ),
+        (vec!["batch", "sub/q.jsonl", "--threads", "0"], 2, "--threads"),
+    ] {
+        let output = run(&arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(stderr(&output).contains(word), "{}", stderr(&output));
+    }
+}
+
+/// A result comes as soon as its query is there, before the next one is.
+#[test]
+fn queries_are_answered_while_they_come() {
+    let folder = folder();
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("colltrans"))
+        .args(["batch", "-"])
+        .current_dir(folder.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    let mut results = BufReader::new(child.stdout.take().unwrap()).lines();
+    for line in queries(3).lines() {
+        writeln!(input, "{line}").unwrap();
+        let result = json(&results.next().unwrap().unwrap());
+        assert_eq!(result["id"], json(line)["id"]);
+    }
+    drop(input);
+    assert!(results.next().is_none());
+    assert!(child.wait().unwrap().success());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_leaves_ends_the_work() {
+    let folder = folder();
+    std::fs::write(folder.path().join("queries.jsonl"), queries(20_000)).unwrap();
+    let binary = assert_cmd::cargo::cargo_bin("colltrans");
+    let script =
+        format!("{} batch queries.jsonl | head -n 1; echo ${{PIPESTATUS[0]}}", binary.display());
+    let output = assert_cmd::Command::new("bash")
+        .current_dir(folder.path())
+        .args(["-c", &script])
+        .output()
+        .unwrap();
+    assert!(stdout(&output).ends_with("}\n0\n"), "{}", stdout(&output));
+    assert_eq!(stderr(&output), "");
+}

@@ -1,0 +1,228 @@
+//! `colltrans cast` and `colltrans info`, run as a user runs them.
+
+use std::process::Output;
+
+use crate::support::{CAST, colltrans, folder, json, stderr, stdout};
+
+/// One line on standard error that says all of `words`, nothing on standard output.
+fn assert_error(output: &Output, code: i32, words: &[&str]) {
+    let message = stderr(output);
+    assert_eq!(output.status.code(), Some(code), "{message}");
+    assert_eq!(stdout(output), "");
+    assert!(message.starts_with("error: "), "{message}");
+    assert!(!message.contains("panicked") && !message.contains("RUST_BACKTRACE"), "{message}");
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in {message}");
+    }
+}
+
+#[test]
+fn a_contact_in_words() {
+    let folder = folder();
+    let output = colltrans(folder.path()).args(CAST).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(
+        text.starts_with("contact\n  translation  2 times the direction, a length of 2\n"),
+        "{text}"
+    );
+    for part in ["exit         4 times", "normal       1,0,0", "face of vertices", "gap 0e0"] {
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+    assert_eq!(stderr(&output), "");
+}
+
+#[test]
+fn a_contact_as_json() {
+    let folder = folder();
+    for solver in ["auto", "cta", "portal"] {
+        let output = colltrans(folder.path())
+            .args(CAST)
+            .args(["--json", "--solver", solver])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{solver}: {}", stderr(&output));
+        let answer = json(&stdout(&output));
+        let fields: Vec<&String> = answer.as_object().unwrap().keys().collect();
+        let expected = [
+            "outcome",
+            "translation",
+            "exit",
+            "normal",
+            "point",
+            "lower",
+            "upper",
+            "features",
+            "solver",
+            "steps",
+        ];
+        assert!(expected.iter().all(|f| fields.iter().any(|g| g == f)), "{answer}");
+        assert_eq!(fields.len(), expected.len(), "{answer}");
+        assert_eq!(answer["outcome"], "contact");
+        for (field, value) in [("translation", 2.0), ("exit", 4.0), ("lower", 2.0), ("upper", 2.0)]
+        {
+            assert!((answer[field].as_f64().unwrap() - value).abs() < 1e-14, "{answer}");
+        }
+        assert_eq!(answer["features"]["moving"]["kind"], "face");
+        let mut corners: Vec<u64> = answer["features"]["moving"]["vertices"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|v| v.as_u64().unwrap())
+            .collect();
+        corners.sort_unstable();
+        assert_eq!(corners, [1, 2, 5, 6], "the vertices at x = 1, as the file numbers them");
+        assert!(answer["steps"]["supports"].is_u64());
+    }
+}
+
+#[test]
+fn other_outcomes() {
+    let folder = folder();
+    let outcome = |pose: &str, more: &[&str]| {
+        let output = colltrans(folder.path())
+            .args(["cast", "cube.off", "cube.off", "--direction", "0,0,-2", "--json"])
+            .args(["--moving-pose", pose])
+            .args(more)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        json(&stdout(&output))
+    };
+    let separated = outcome("1.5,0,9", &[]);
+    assert_eq!(separated["outcome"], "separated");
+    let margin = separated["margin"].as_f64().unwrap();
+    assert!(margin > 0.0 && margin < 0.5 + 1e-12, "{separated}");
+    assert!(separated.get("translation").is_none());
+    let grazing = outcome("1,0,9", &[]);
+    assert_eq!(grazing["outcome"], "grazing");
+    assert_eq!(grazing["translation"], 4.0);
+    assert!(grazing["message"].as_str().unwrap().contains("overlap"));
+    assert_eq!(outcome("0.75,0,9", &[])["outcome"], "contact");
+    let tolerant = outcome("0.75,0,9", &["--graze-tolerance", "0.25"]);
+    assert_eq!(tolerant["outcome"], "grazing");
+    assert_eq!(tolerant["margin"], -0.25);
+    let opposite = outcome("0.75,0,9", &["--fixed-pose", "-1,-2,-3"]);
+    assert_eq!(opposite["outcome"], "separated", "poses may begin with a minus sign");
+    // A quarter turn about z takes the cube to x from -1 to 0.
+    let turned = outcome("0.25,0,9,0,0,0.7071067811865476,0.7071067811865476", &[]);
+    assert_eq!(turned["outcome"], "contact");
+    let turned_away = outcome("-0.25,0,9,0,0,0.7071067811865476,0.7071067811865476", &[]);
+    assert_eq!(turned_away["outcome"], "separated");
+}
+
+#[test]
+fn wrong_command_lines() {
+    let folder = folder();
+    let run = |arguments: &[&str]| colltrans(folder.path()).args(arguments).output().unwrap();
+    let cast = |more: &[&str]| run(&[&["cast", "cube.off", "cube.off"], more].concat());
+    assert_error(&cast(&[]), 2, &["--direction"]);
+    assert_error(&cast(&["--direction", "1,2"]), 2, &["2 numbers, not 3"]);
+    assert_error(&cast(&["--direction", "1,2,x"]), 2, &["`x` is no number"]);
+    assert_error(&cast(&["--direction", "0,0,0"]), 2, &["direction"]);
+    assert_error(&cast(&["--direction", "nan,0,0"]), 2, &["direction"]);
+    assert_error(
+        &cast(&["--direction", "1,0,0", "--fixed-pose", "0,0,0,1,1,1,1"]),
+        2,
+        &["length 2"],
+    );
+    assert_error(&cast(&["--direction", "1,0,0", "--solver", "best"]), 2, &["auto, cta, portal"]);
+    assert_error(&cast(&["--direction", "1,0,0", "--graze-tolerance", "-1"]), 2, &["negative"]);
+    assert_error(&cast(&["--direction", "1,0,0", "--bogus"]), 2, &["--bogus"]);
+}
+
+#[test]
+fn bad_files_are_named_with_what_helps() {
+    let folder = folder();
+    let cast = |moving: &str, more: &[&str]| {
+        colltrans(folder.path())
+            .args(["cast", moving, "cube.off", "--direction", "1,0,0"])
+            .args(more)
+            .output()
+            .unwrap()
+    };
+    assert_error(&cast("none.off", &[]), 3, &["none.off", "cannot be read"]);
+    assert_error(&cast("cube.step", &[]), 3, &["cube.step", "stl, obj, ply, off"]);
+    assert_error(&cast("broken.off", &[]), 3, &["broken.off", "line 12", "`zero`"]);
+    assert_error(&cast("open.off", &[]), 3, &["open.off", "open", "--hull"]);
+    assert_error(&cast("dent.off", &[]), 3, &["dent.off", "not convex", "2.5e-1", "--hull"]);
+    assert_error(&cast("points.ply", &[]), 3, &["points.ply", "no faces", "--hull"]);
+    for good in [
+        cast("dent.off", &["--hull"]),
+        cast("open.off", &["--hull"]),
+        cast("points.ply", &["--hull"]),
+        cast("dent.off", &["--convex-tolerance", "0.3"]),
+    ] {
+        assert_eq!(good.status.code(), Some(0), "{}", stderr(&good));
+        assert!(stdout(&good).starts_with("contact\n"));
+    }
+    let unwritable = cast("cube.off", &["--picture", "no/such/folder.svg"]);
+    assert_eq!(unwritable.status.code(), Some(5));
+    assert!(stderr(&unwritable).contains("no/such/folder.svg: cannot be written"));
+}
+
+#[test]
+fn help_documents_exit_codes_and_poses() {
+    let folder = folder();
+    let help = colltrans(folder.path()).args(["cast", "--help"]).output().unwrap();
+    let text = stdout(&help);
+    for part in ["Exit codes:", "x,y,z,qx,qy,qz,qw", "1e-5", "single precision", "STL"] {
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+    let batch = colltrans(folder.path()).args(["batch", "--help"]).output().unwrap();
+    assert!(stdout(&batch).contains(r#"BODY = {"points""#));
+}
+
+#[test]
+fn info_says_what_is_there_and_what_is_wrong() {
+    let folder = folder();
+    let info = |name: &str| {
+        let output = colltrans(folder.path()).args(["info", name]).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+    };
+    let contains = |name: &str, parts: &[&str]| {
+        let text = info(name);
+        for part in parts {
+            assert!(text.contains(part), "{part:?} is not in {text}");
+        }
+    };
+    contains(
+        "cube.off",
+        &[
+            "vertices     8",
+            "faces        6",
+            "1 x 1 x 1",
+            "volume       1\n",
+            "convex       yes",
+            "8 vertices, 12 edges, 6 faces",
+            "hull error",
+        ],
+    );
+    contains(
+        "dent.off",
+        &["vertices     9", "no; --hull", "2.5e-1", "volume       0.9166", "hull volume  1\n"],
+    );
+    contains("open.off", &["convex       no: the surface is open", "hull volume  1\n"]);
+    contains("points.ply", &["faces        0 (a cloud of points)", "no faces", "hull volume  1\n"]);
+    let both = colltrans(folder.path()).args(["info", "none.stl", "cube.off"]).output().unwrap();
+    assert_eq!(both.status.code(), Some(3));
+    assert!(stderr(&both).contains("none.stl") && stdout(&both).contains("cube.off"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_is_no_panic() {
+    let folder = folder();
+    // `true` reads nothing; the message of a panic would be the last line.
+    let binary = assert_cmd::cargo::cargo_bin("colltrans");
+    let script =
+        format!("{} info cube.off cube.off | true; echo ${{PIPESTATUS[0]}}", binary.display());
+    let output = assert_cmd::Command::new("bash")
+        .current_dir(folder.path())
+        .args(["-c", &script])
+        .output()
+        .unwrap();
+    assert_eq!(stdout(&output), "0\n");
+    assert_eq!(stderr(&output), "");
+}

@@ -1,0 +1,7 @@
+//! The real binary, run as a user runs it.
+
+mod batch;
+mod cast;
+mod example_parts;
+mod picture;
+mod support;

@@ -1,0 +1,54 @@
+//! The real binary and small files for it.
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The binary, with the current folder where the test's files are.
+pub(crate) fn colltrans(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("colltrans").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+/// A folder with a unit cube (`cube.off`), a body that is not convex (`dent.off`), an open one
+/// (`open.off`), a broken file (`broken.off`) and a point cloud (`points.ply`).
+pub(crate) fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
+    let sides = "4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("cube.off", format!("OFF\n8 6 12\n{cube}4 3 2 1 0\n4 4 5 6 7\n{sides}"));
+    write("open.off", format!("OFF\n8 5 12\n{cube}4 3 2 1 0\n{sides}"));
+    let lid = "3 4 5 8\n3 5 6 8\n3 6 7 8\n3 7 4 8\n";
+    write("dent.off", format!("OFF\n9 9 0\n{cube}0.5 0.5 0.75\n4 3 2 1 0\n{lid}{sides}"));
+    write("broken.off", format!("OFF\n8 6 12\n{cube}4 3 2 1 0\n4 4 5 6 zero\n{sides}"));
+    let header = "ply\nformat ascii 1.0\nelement vertex 8\nproperty double x\nproperty double y\n\
+        property double z\nend_header\n";
+    write("points.ply", format!("{header}{cube}"));
+    folder
+}
+
+/// Two unit cubes, the moving one 3 to the left and a little aside: contact after 2.
+pub(crate) const CAST: [&str; 7] =
+    ["cast", "cube.off", "cube.off", "--direction", "1,0,0", "--moving-pose", "-3,0.25,-0.5"];
+
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+pub(crate) fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
+}
+
+/// The folder of the example parts.
+pub(crate) fn data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
+}

@@ -1,0 +1,182 @@
+//! OBJ, text, through `tobj`.
+//!
+//! `tobj` numbers the vertices of each group anew, in the order in which faces use them, and its
+//! errors name no line. Both are mended by what it is given to read ([`Lines`]): only positions
+//! and faces, no groups, and after each position a face of that one vertex, so that the
+//! order of first use is the order of the file.
+
+use std::io::{self, BufRead, Read};
+
+use glam::DVec3;
+use tobj::{LoadError, LoadOptions};
+
+use crate::error::{Fault, Place};
+use crate::mesh::Mesh;
+use crate::stl::quoted;
+
+pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = Lines::new(&text);
+    let loaded =
+        tobj::load_obj_buf(&mut lines, &LoadOptions::default(), |_| Err(LoadError::OpenFileFailed));
+    let models = match loaded {
+        Ok((models, _)) => models,
+        Err(LoadError::FaceVertexOutOfBounds) => return Err(unknown_vertex(&text)),
+        Err(error) => return Err(lines.fault(error)),
+    };
+    let mut mesh = Mesh::default();
+    // Without groups there is one model.
+    for model in models {
+        let tobj::Mesh { positions, indices, face_arities, .. } = model.mesh;
+        mesh.vertices.extend(positions.chunks_exact(3).map(DVec3::from_slice));
+        let mut rest = indices.as_slice();
+        for arity in face_arities {
+            let (corners, others) = rest.split_at(arity as usize);
+            rest = others;
+            if corners.len() > 1 {
+                mesh.faces.push(corners.to_vec());
+            }
+        }
+    }
+    Ok(mesh)
+}
+
+/// The position and face lines of an OBJ file, cleaned, one at a time.
+struct Lines<'a> {
+    text: std::iter::Enumerate<std::str::Lines<'a>>,
+    /// Number of the line that was read last.
+    number: usize,
+    /// What is left of it, as it is passed on.
+    pending: Vec<u8>,
+    read: usize,
+    original: String,
+}
+
+impl<'a> Lines<'a> {
+    fn new(text: &'a str) -> Self {
+        Self {
+            text: text.lines().enumerate(),
+            number: 0,
+            pending: Vec::new(),
+            read: 0,
+            original: String::new(),
+        }
+    }
+
+    /// Reads on to the next position or face; `false` at the end.
+    fn advance(&mut self) -> bool {
+        self.pending.clear();
+        self.read = 0;
+        while let Some(line) = self.next_logical_line() {
+            let mut words = line.split_whitespace();
+            match words.next() {
+                Some("v") => self.pass_position(&words.collect::<Vec<_>>()),
+                Some("f") => {
+                    self.pending.push(b'f');
+                    for corner in words {
+                        // Texture and normal indices would only be checked and dropped.
+                        let vertex = corner.split('/').next().unwrap_or_default();
+                        self.pending.push(b' ');
+                        self.pending.extend_from_slice(vertex.as_bytes());
+                    }
+                    self.pending.push(b'\n');
+                }
+                _ => continue,
+            }
+            self.original = line;
+            return true;
+        }
+        false
+    }
+
+    /// A position keeps its coordinates and weight, but not its colour.
+    fn pass_position(&mut self, words: &[&str]) {
+        let kept = if words.len() == 4 { 4 } else { words.len().min(3) };
+        self.pending.push(b'v');
+        for word in &words[..kept] {
+            self.pending.push(b' ');
+            self.pending.extend_from_slice(word.as_bytes());
+        }
+        self.pending.extend_from_slice(b"\nf -1\n");
+    }
+
+    /// A line without its comment, joined with those that a final backslash continues it on.
+    fn next_logical_line(&mut self) -> Option<String> {
+        let mut line = String::new();
+        loop {
+            let Some((index, text)) = self.text.next() else {
+                return (!line.is_empty()).then_some(line);
+            };
+            self.number = index + 1;
+            let content = text.split('#').next().unwrap_or_default().trim_end();
+            let Some(start) = content.strip_suffix('\\') else {
+                line.push_str(content);
+                return Some(line);
+            };
+            line.push_str(start);
+            line.push(' ');
+        }
+    }
+
+    fn fault(&self, error: LoadError) -> Fault {
+        let what = match error {
+            LoadError::PositionParseError => {
+                "a vertex needs 3 numbers, and none but a weight after them"
+            }
+            LoadError::FaceParseError => "a face needs vertex indices",
+            LoadError::ScalingByZeroError => "a vertex has the weight 0",
+            _ => "not understood",
+        };
+        Fault::new(Place::Line(self.number), format!("{what}: {}", quoted(self.original.trim())))
+    }
+}
+
+impl BufRead for Lines<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.read == self.pending.len() {
+            self.advance();
+        }
+        Ok(&self.pending[self.read..])
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.read += amount;
+    }
+}
+
+impl Read for Lines<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let available = self.fill_buf()?;
+        let count = available.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&available[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}
+
+/// The first face that names a vertex that is not there.
+fn unknown_vertex(text: &str) -> Fault {
+    let total = text.lines().filter(|l| l.split_whitespace().next() == Some("v")).count() as i64;
+    let mut lines = Lines::new(text);
+    let mut so_far = 0;
+    while let Some(line) = lines.next_logical_line() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => so_far += 1,
+            Some("f") => {
+                for corner in words {
+                    let index = corner.split('/').next().unwrap_or_default();
+                    let known = index
+                        .parse()
+                        .is_ok_and(|i: i64| (1..=total).contains(&i) || (-so_far..0).contains(&i));
+                    if !known {
+                        let what = format!("there is no vertex {} among {total}", quoted(index));
+                        return Fault::new(Place::Line(lines.number), what);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    Fault::new(Place::End, "a face names a vertex that is not there")
+}

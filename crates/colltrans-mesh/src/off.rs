@@ -1,0 +1,121 @@
+//! OFF (Geomview's object file format), text.
+//!
+//! The first word is `OFF`, with a prefix for what follows the coordinates of each vertex
+//! (`ST` texture, `C` colour, `N` normal); then the counts of vertices, faces and edges, then one
+//! line per vertex and one per face (`n i_1 ... i_n [colour]`). `#` begins a comment; blank lines
+//! mean nothing. The counts may follow `OFF` directly, even without a space.
+
+use glam::DVec3;
+
+use crate::error::{Fault, Place};
+use crate::mesh::Mesh;
+use crate::stl::quoted;
+
+pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = text.lines().enumerate().filter_map(|(number, line)| {
+        let content = line.split('#').next().unwrap_or_default().trim();
+        (!content.is_empty()).then_some(Line { number: number + 1, content })
+    });
+    let mut next = |what: &str| {
+        lines.next().ok_or_else(|| Fault::new(Place::End, format!("{what} is missing")))
+    };
+
+    let header = next("the word `OFF`")?;
+    let rest = after_magic(&header)?;
+    let counts = if rest.content.is_empty() { next("the line of counts")? } else { rest };
+    let (vertex_count, face_count) = parse_counts(&counts)?;
+    // A vertex takes three digits, two spaces and a line end, a face one digit and a line end;
+    // the last line may lack its end.
+    if vertex_count * 6 + face_count * 2 > bytes.len() + 1 {
+        return Err(counts.fault(format!(
+            "{vertex_count} vertices and {face_count} faces cannot fit in {} bytes",
+            bytes.len()
+        )));
+    }
+
+    let mut mesh = Mesh::default();
+    for index in 0..vertex_count {
+        mesh.vertices.push(parse_vertex(&next(&format!("vertex {index} of {vertex_count}"))?)?);
+    }
+    for index in 0..face_count {
+        let line = next(&format!("face {index} of {face_count}"))?;
+        mesh.faces.push(parse_face(&line, vertex_count)?);
+    }
+    Ok(mesh)
+}
+
+struct Line<'a> {
+    number: usize,
+    content: &'a str,
+}
+
+impl Line<'_> {
+    fn fault(&self, what: impl Into<String>) -> Fault {
+        Fault::new(Place::Line(self.number), what)
+    }
+}
+
+/// What follows the word `OFF` on its line.
+fn after_magic<'a>(line: &Line<'a>) -> Result<Line<'a>, Fault> {
+    let Some((prefix, rest)) = line.content.split_once("OFF") else {
+        return Err(line.fault(format!("expected `OFF`, found {}", quoted(line.content))));
+    };
+    if !matches!(prefix, "" | "ST" | "C" | "N" | "CN" | "STC" | "STN" | "STCN") {
+        return Err(line.fault(format!(
+            "the variant {} is not supported (only three-dimensional text files are)",
+            quoted(&format!("{prefix}OFF"))
+        )));
+    }
+    let rest = rest.trim();
+    if rest.to_ascii_uppercase().starts_with("BINARY") {
+        return Err(line.fault("binary OFF files are not supported"));
+    }
+    Ok(Line { number: line.number, content: rest })
+}
+
+fn parse_counts(line: &Line<'_>) -> Result<(usize, usize), Fault> {
+    let mut words = line.content.split_whitespace();
+    let mut count = |what: &str| {
+        let word = words.next().ok_or_else(|| line.fault(format!("no number of {what}")))?;
+        word.parse::<u32>()
+            .map(|count| count as usize)
+            .map_err(|_| line.fault(format!("{} is no number of {what}", quoted(word))))
+    };
+    Ok((count("vertices")?, count("faces")?))
+}
+
+fn parse_vertex(line: &Line<'_>) -> Result<DVec3, Fault> {
+    let mut xyz = [0.0; 3];
+    let mut words = line.content.split_whitespace();
+    for c in &mut xyz {
+        let word = words.next().ok_or_else(|| line.fault("a vertex needs 3 coordinates"))?;
+        *c = word.parse().map_err(|_| line.fault(format!("{} is no number", quoted(word))))?;
+    }
+    Ok(DVec3::from_array(xyz))
+}
+
+fn parse_face(line: &Line<'_>, vertex_count: usize) -> Result<Vec<u32>, Fault> {
+    let mut words = line.content.split_whitespace();
+    let word = words.next().unwrap_or_default();
+    let corners: usize = word
+        .parse()
+        .map_err(|_| line.fault(format!("{} is no number of corners", quoted(word))))?;
+    let face = words
+        .take(corners)
+        .map(|word| match word.parse::<u32>() {
+            Ok(index) if (index as usize) < vertex_count => Ok(index),
+            Ok(index) => Err(line.fault(format!(
+                "there is no vertex {index}; the last of {vertex_count} is {}",
+                vertex_count.saturating_sub(1)
+            ))),
+            Err(_) => Err(line.fault(format!("{} is no vertex index", quoted(word)))),
+        })
+        .collect::<Result<Vec<u32>, Fault>>()?;
+    if face.len() < corners {
+        return Err(
+            line.fault(format!("{} of {corners} corners are missing", corners - face.len()))
+        );
+    }
+    Ok(face)
+}

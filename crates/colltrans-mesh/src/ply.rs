@@ -1,0 +1,194 @@
+//! PLY, text and binary, through `ply-rs-bw`.
+//!
+//! Read are `x`, `y`, `z` of the element `vertex` and the list `vertex_indices` (or
+//! `vertex_index`) of the element `face`; all else is skipped. Before anything is read, the header's
+//! counts are compared with the bytes that are there.
+
+use std::io::ErrorKind;
+
+use glam::DVec3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
+
+use crate::error::{Fault, Place};
+use crate::mesh::Mesh;
+use crate::stl::quoted;
+
+pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let mut reader = Reader::new(bytes);
+    let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|e| fault(&e, true))?;
+    let text = header.encoding == Encoding::Ascii;
+    let fault = |e| fault(&e, text);
+    check_counts(&header, reader.get_ref().len())?;
+    let mut mesh = Mesh::default();
+    let mut faces = Vec::new();
+    for (name, element) in &header.elements {
+        match name.as_str() {
+            "vertex" => {
+                check_coordinates(&header)?;
+                let parser = Parser::<Vertex>::new();
+                let found = parser.read_payload_for_element(&mut reader, element, &header);
+                mesh.vertices = found.map_err(fault)?.into_iter().map(|v| v.0).collect();
+            }
+            "face" => {
+                let parser = Parser::<Face>::new();
+                let found = parser.read_payload_for_element(&mut reader, element, &header);
+                faces = found.map_err(fault)?;
+            }
+            _ => {
+                let parser = Parser::<Skipped>::new();
+                parser.read_payload_for_element(&mut reader, element, &header).map_err(fault)?;
+            }
+        }
+    }
+    for (index, face) in faces.into_iter().enumerate() {
+        mesh.faces.push(face.checked(index, mesh.vertices.len())?);
+    }
+    Ok(mesh)
+}
+
+/// The parser's error, in one line. Where the file is binary, lines mean nothing.
+fn fault(error: &ParseError, text: bool) -> Fault {
+    let place = match error.line() {
+        Some(line) if text => Place::Line(line),
+        _ if error.kind() == ErrorKind::UnexpectedEof => Place::End,
+        _ => Place::Data,
+    };
+    let message = error.to_string();
+    let message = match message.split_once(": ") {
+        Some((_, rest)) if error.line().is_some() => rest,
+        _ => &message,
+    };
+    let first = message.lines().next().unwrap_or_default().trim();
+    let reason = message.lines().last().unwrap_or_default().trim();
+    if first == reason {
+        Fault::new(place, first)
+    } else {
+        Fault::new(place, format!("{first} {reason}"))
+    }
+}
+
+/// The header must not promise more elements than the rest of the file has room for.
+fn check_counts(header: &Header, bytes_left: usize) -> Result<(), Fault> {
+    let mut needed = 0_usize;
+    for (name, element) in &header.elements {
+        let smallest = match header.encoding {
+            // A line of text has its end and one digit per property.
+            Encoding::Ascii => 1 + element.properties.len(),
+            _ => element.properties.iter().map(|(_, p)| smallest_size(&p.data_type)).sum(),
+        };
+        if smallest == 0 && element.count > 0 {
+            let what = format!("the element {} has no properties", quoted(name));
+            return Err(Fault::new(Place::Header, what));
+        }
+        // The last line may lack its end.
+        needed = needed.saturating_add(smallest.saturating_mul(element.count));
+        if needed > bytes_left.saturating_add(1) {
+            return Err(Fault::new(
+                Place::Header,
+                format!(
+                    "{} elements {} cannot fit in the {bytes_left} bytes that follow",
+                    element.count,
+                    quoted(name)
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn smallest_size(property: &PropertyType) -> usize {
+    let (PropertyType::Scalar(scalar) | PropertyType::List(scalar, _)) = property;
+    match scalar {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    }
+}
+
+fn check_coordinates(header: &Header) -> Result<(), Fault> {
+    let vertex = header.elements.iter().find(|(name, _)| name.as_str() == "vertex");
+    for coordinate in ["x", "y", "z"] {
+        let found = vertex.is_some_and(|(_, e)| e.properties.contains_key(coordinate));
+        if !found {
+            let what = format!("the element `vertex` has no property `{coordinate}`");
+            return Err(Fault::new(Place::Header, what));
+        }
+    }
+    Ok(())
+}
+
+struct Vertex(DVec3);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self(DVec3::ZERO)
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let coordinate = match name {
+            "x" => &mut self.0.x,
+            "y" => &mut self.0.y,
+            "z" => &mut self.0.z,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        *coordinate = match value {
+            Property::Char(v) => f64::from(v),
+            Property::UChar(v) => f64::from(v),
+            Property::Short(v) => f64::from(v),
+            Property::UShort(v) => f64::from(v),
+            Property::Int(v) => f64::from(v),
+            Property::UInt(v) => f64::from(v),
+            Property::Float(v) => f64::from(v),
+            Property::Double(v) => v,
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// The corners, or `None` where an index is negative.
+struct Face(Option<Vec<u32>>);
+
+impl Face {
+    fn checked(self, index: usize, vertex_count: usize) -> Result<Vec<u32>, Fault> {
+        let Some(corners) = self.0 else {
+            return Err(Fault::new(Place::Face(index), "a vertex index is negative"));
+        };
+        match corners.iter().find(|&&v| v as usize >= vertex_count) {
+            Some(vertex) => Err(Fault::new(
+                Place::Face(index),
+                format!("there is no vertex {vertex} among {vertex_count}"),
+            )),
+            None => Ok(corners),
+        }
+    }
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self(Some(Vec::new()))
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if !matches!(name, "vertex_indices" | "vertex_index") {
+            return PropertyAccessResult::Ignored;
+        }
+        if matches!(value, Property::ListFloat(_) | Property::ListDouble(_)) {
+            return PropertyAccessResult::UnsupportedType;
+        }
+        self.0 = value.to_u32_list();
+        PropertyAccessResult::Set
+    }
+}
+
+struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
+}

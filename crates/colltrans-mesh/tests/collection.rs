@@ -1,0 +1,61 @@
+//! A collection of real and broken mesh files, where it is there: each is read or refused with a
+//! typed error, and what is known about some of them holds.
+//!
+//! The folder is `COLLTRANS_DATA`, or `../shared/data` beside the workspace.
+
+use std::path::{Path, PathBuf};
+
+use colltrans_mesh::{Error, Mesh, read};
+
+fn collection() -> Option<PathBuf> {
+    let folder = std::env::var_os("COLLTRANS_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
+    folder.is_dir().then_some(folder)
+}
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else if !matches!(path.extension().and_then(|e| e.to_str()), Some("md" | "urdf")) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn every_file_is_read_or_refused() {
+    let Some(folder) = collection() else { return };
+    let files = files(&folder);
+    assert!(!files.is_empty());
+    for path in files {
+        match read(&path) {
+            Ok(mesh) => assert!(!mesh.vertices.is_empty(), "{}", path.display()),
+            Err(Error::Syntax { .. }) => {}
+            Err(other) => panic!("{other}"),
+        }
+    }
+}
+
+#[test]
+fn known_counts() {
+    let Some(folder) = collection() else { return };
+    let counts = |name: &str| {
+        let Mesh { vertices, faces } = read(folder.join(name)).unwrap();
+        (vertices.len(), faces.len())
+    };
+    assert_eq!(counts("trimesh/unit_cube.STL"), (8, 12));
+    assert_eq!(counts("trimesh/bunny.ply"), (8171, 16301));
+    assert_eq!(counts("trimesh/fuze.ply"), (502, 1000));
+    assert_eq!(counts("bad/comments.off"), (8, 6));
+    assert_eq!(counts("bad/whitespace.off"), (8, 6));
+    assert_eq!(counts("bad/negative_indices.obj"), (8, 6));
+    assert_eq!(counts("bad/nancolor.obj"), (8, 12));
+    assert_eq!(counts("bad/points_emptyface.ply"), (1024, 0));
+}

@@ -1,0 +1,247 @@
+//! Every format: what is read, and what is said about files that cannot be.
+
+use std::path::Path;
+
+use colltrans_mesh::{Error, Format, Mesh, Place, parse, to_obj, to_off, to_stl};
+use glam::DVec3;
+
+fn read(format: Format, text: impl AsRef<[u8]>) -> Result<Mesh, Error> {
+    parse(format, text.as_ref().to_vec(), Path::new("part"))
+}
+
+fn place(format: Format, text: impl AsRef<[u8]>) -> Place {
+    match read(format, text) {
+        Err(Error::Syntax { place, what, path }) => {
+            assert_eq!(path, Path::new("part"));
+            assert!(!what.is_empty() && !what.contains('\n'), "{what:?}");
+            place
+        }
+        other => panic!("expected a syntax error, got {other:?}"),
+    }
+}
+
+fn tetrahedron() -> Mesh {
+    Mesh {
+        vertices: vec![
+            DVec3::ZERO,
+            DVec3::new(0.1, 0.0, 0.0),
+            DVec3::new(0.0, 1e-17, 0.3),
+            DVec3::new(1.0 / 3.0, 2.0, -1e22),
+        ],
+        faces: vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]],
+    }
+}
+
+#[test]
+fn text_formats_return_every_bit() {
+    let mesh = tetrahedron();
+    assert_eq!(read(Format::Obj, to_obj(&mesh)).unwrap(), mesh);
+    assert_eq!(read(Format::Off, to_off(&mesh)).unwrap(), mesh);
+}
+
+#[test]
+fn binary_stl_returns_single_precision() {
+    let mesh = tetrahedron();
+    let bytes = to_stl(&mesh).unwrap();
+    assert_eq!(bytes.len(), 84 + 50 * 4);
+    let read_back = read(Format::Stl, &bytes).unwrap();
+    // Welded in the order of the faces: 0 2 1, then 3.
+    let rounded = |v: usize| mesh.vertices[v].as_vec3().as_dvec3();
+    assert_eq!(read_back.vertices, [rounded(0), rounded(2), rounded(1), rounded(3)]);
+    assert_eq!(read_back.faces, [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 3, 1]]);
+    assert_eq!(to_stl(&Mesh { faces: vec![vec![0, 1, 2, 3]], ..mesh }), None);
+}
+
+#[test]
+fn a_binary_stl_may_begin_with_solid() {
+    let mut bytes = to_stl(&tetrahedron()).unwrap();
+    bytes[..13].copy_from_slice(b"solid by hand");
+    assert_eq!(read(Format::Stl, &bytes).unwrap().faces.len(), 4);
+}
+
+#[test]
+fn a_binary_stl_is_measured_against_its_header() {
+    let bytes = to_stl(&tetrahedron()).unwrap();
+    assert_eq!(place(Format::Stl, &bytes[..bytes.len() - 1]), Place::End);
+    assert_eq!(place(Format::Stl, &bytes[..60]), Place::End);
+    assert_eq!(place(Format::Stl, b""), Place::End);
+    let mut lying = bytes.clone();
+    lying[80..84].fill(0xff);
+    assert_eq!(place(Format::Stl, &lying), Place::End);
+    let padded = [bytes, vec![0; 7]].concat();
+    assert_eq!(read(Format::Stl, &padded).unwrap().faces.len(), 4);
+}
+
+const FACET: &str = "  facet normal 0 0 nan\n    OUTER loop\n vertex 0 0 0\n vertex 1 0 0\n\
+    vertex 0 1.00000000000000001E-014 -0\n endloop\n  endfacet\n";
+
+#[test]
+fn text_stl_keeps_digits_and_all_solids() {
+    let mesh = read(Format::Stl, format!("solid\r\n{FACET}endsolid\n\nsolid b\n{FACET}endsolid b"))
+        .unwrap();
+    assert_eq!(mesh.faces, [[0, 1, 2], [0, 1, 2]]);
+    assert_eq!(mesh.vertices[2], DVec3::new(0.0, 1e-14, 0.0));
+}
+
+#[test]
+fn text_stl_errors_name_the_line() {
+    let broken = |from: &str, to: &str| {
+        place(Format::Stl, format!("solid x\n{FACET}endsolid").replace(from, to))
+    };
+    assert_eq!(broken("vertex 1 0 0", "vertex 1 0"), Place::Line(5));
+    assert_eq!(broken("vertex 1 0 0", "vertex 1 zero 0"), Place::Line(5));
+    assert_eq!(broken(" vertex 1 0 0\n", ""), Place::Line(6));
+    assert_eq!(broken(" endloop\n  endfacet\nendsolid", ""), Place::End);
+    assert_eq!(broken(" endloop\n", ""), Place::Line(7));
+    assert_eq!(broken("  facet", "  faect"), Place::Line(2));
+}
+
+#[test]
+fn obj_keeps_order_polygons_and_negative_indices() {
+    let text = "# a comment\nmtllib none.mtl\no first\nv 9 9 9 # not used\nv 0 0 0 nan nan nan\n\
+        vt 0 0\nvn 0 0 1\nv 2 0 0 2\nv 1 \\\n 1 0\nv 0 1 0\n\
+        f 5/1/1 4//1 3/1 2\ng second\nusemtl steel\nl 2 3 4\nf -4 -3 -2\n";
+    let mesh = read(Format::Obj, text).unwrap();
+    assert_eq!(mesh.vertices.len(), 5);
+    assert_eq!(mesh.vertices[2], DVec3::X, "a weight of 2 halves the coordinates");
+    assert_eq!(mesh.vertices[3], DVec3::new(1.0, 1.0, 0.0), "a continued line");
+    assert_eq!(mesh.faces, [vec![4, 3, 2, 1], vec![1, 2, 3]]);
+    let points = read(Format::Obj, "v 0 0 0\nv 1 0 0\n").unwrap();
+    assert_eq!((points.vertices.len(), points.faces.len()), (2, 0));
+    assert_eq!(read(Format::Obj, "").unwrap(), Mesh::default());
+}
+
+#[test]
+fn obj_errors_name_the_line() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let with = |line: &str| place(Format::Obj, format!("{vertices}{line}\nf 1 2 3\n"));
+    assert_eq!(with("v 1 2"), Place::Line(4));
+    assert_eq!(with("v 1 2 x"), Place::Line(4));
+    assert_eq!(with("v 1 2 3 0"), Place::Line(4));
+    assert_eq!(with("f 1 2 x"), Place::Line(4));
+    assert_eq!(with("f 1 2 4"), Place::Line(4));
+    assert_eq!(with("f 1 2 0"), Place::Line(4));
+    assert_eq!(with("f 1 2 -4"), Place::Line(4));
+    assert_eq!(with("f 1 2 99999999999999999999999"), Place::Line(4));
+    assert_eq!(with("f 1 2 -9223372036854775808"), Place::Line(4));
+}
+
+#[test]
+fn off_bends() {
+    let body = "0 0 0\n1 0 0 0.5 0.5 0.5 1\n\n# between\n0 1 0 # after\n3 0 1 2 255 0 0\n";
+    for header in ["OFF\n3 1 3\n", "  COFF 3 1 0 # c\n", "OFF3 1 0\n", "# first\n\nSTOFF\n#\n3 1\n"]
+    {
+        let mesh = read(Format::Off, format!("{header}{body}")).unwrap();
+        assert_eq!(mesh.vertices, [DVec3::ZERO, DVec3::X, DVec3::Y], "{header}");
+        assert_eq!(mesh.faces, [[0, 1, 2]]);
+    }
+}
+
+#[test]
+fn off_errors_name_the_line() {
+    let vertices = "0 0 0\n1 0 0\n0 1 0\n";
+    assert_eq!(place(Format::Off, ""), Place::End);
+    assert_eq!(place(Format::Off, "# only\n"), Place::End);
+    assert_eq!(place(Format::Off, format!("FOO\n3 1 0\n{vertices}3 0 1 2")), Place::Line(1));
+    assert_eq!(place(Format::Off, format!("4OFF\n3 1 0\n{vertices}3 0 1 2")), Place::Line(1));
+    assert_eq!(place(Format::Off, "OFF BINARY\n"), Place::Line(1));
+    assert_eq!(place(Format::Off, format!("OFF\n3 x 0\n{vertices}")), Place::Line(2));
+    assert_eq!(place(Format::Off, format!("OFF\n4000000000 1 0\n{vertices}")), Place::Line(2));
+    assert_eq!(place(Format::Off, format!("OFF\n4 1 0\n{vertices}")), Place::End);
+    assert_eq!(place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1 3\n")), Place::Line(6));
+    assert_eq!(place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1\n")), Place::Line(6));
+    assert_eq!(place(Format::Off, format!("OFF\n3 1 0\n{vertices}3 0 1 -1\n")), Place::Line(6));
+    assert_eq!(
+        place(Format::Off, format!("OFF\n3 1 0\n{vertices}99999999999999 0 1 2\n")),
+        Place::Line(6)
+    );
+}
+
+const PLY: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 3\nproperty double x\n\
+    property double y\nproperty double z\nproperty uchar red\nelement face 1\n\
+    property list uchar int vertex_indices\nproperty float quality\nend_header\n\
+    0.1 0 0 1\n1 0 0 2\n0 1e-17 0 3\n3 0 1 2 0.5\n";
+
+/// The same in binary, of either byte order.
+fn binary_ply(little: bool) -> Vec<u8> {
+    let header = PLY.split_inclusive("end_header\n").next().unwrap();
+    let format = if little { "binary_little_endian" } else { "binary_big_endian" };
+    let mut bytes = header.replace("ascii", format).into_bytes();
+    let double = |v: f64| if little { v.to_le_bytes() } else { v.to_be_bytes() };
+    for vertex in [[0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1e-17, 0.0]] {
+        for c in vertex {
+            bytes.extend(double(c));
+        }
+        bytes.push(7);
+    }
+    bytes.push(3);
+    for index in 0..3_i32 {
+        bytes.extend(if little { index.to_le_bytes() } else { index.to_be_bytes() });
+    }
+    bytes.extend(0.5_f32.to_bits().to_le_bytes());
+    bytes
+}
+
+#[test]
+fn ply_in_all_three_encodings() {
+    for bytes in [PLY.as_bytes().to_vec(), binary_ply(true), binary_ply(false)] {
+        let mesh = read(Format::Ply, bytes).unwrap();
+        assert_eq!(mesh.vertices[0], DVec3::new(0.1, 0.0, 0.0));
+        assert_eq!(mesh.vertices[2], DVec3::new(0.0, 1e-17, 0.0));
+        assert_eq!(mesh.faces, [[0, 1, 2]]);
+    }
+}
+
+#[test]
+fn ply_errors_say_where() {
+    assert_eq!(place(Format::Ply, ""), Place::End);
+    assert_eq!(place(Format::Ply, "ply\n"), Place::Line(2));
+    assert_eq!(place(Format::Ply, PLY.replace("property double y\n", "")), Place::Header);
+    assert_eq!(place(Format::Ply, PLY.replace("vertex 3", "vertex 999999999999")), Place::Header);
+    assert_eq!(place(Format::Ply, PLY.replace("1 0 0 2", "1 0 zero 2")), Place::Line(14));
+    assert_eq!(place(Format::Ply, PLY.replace("3 0 1 2 0.5", "3 0 1 3 0.5")), Place::Face(0));
+    assert_eq!(place(Format::Ply, PLY.replace("3 0 1 2 0.5", "3 0 1 -2 0.5")), Place::Face(0));
+    assert_eq!(place(Format::Ply, PLY.replace("3 0 1 2 0.5", "250 0 1 2 0.5")), Place::Line(16));
+    let binary = binary_ply(true);
+    assert_eq!(place(Format::Ply, &binary[..binary.len() - 1]), Place::End);
+    let empty = "ply\nformat binary_little_endian 1.0\nelement nothing 99999999999\nend_header\n";
+    assert_eq!(place(Format::Ply, empty), Place::Header);
+}
+
+#[test]
+fn the_extension_tells_the_format() {
+    assert_eq!(Format::of_path(Path::new("a.b/PART.Stl")).unwrap(), Format::Stl);
+    for path in ["part.step", "part", "stl"] {
+        let message = colltrans_mesh::read(path).unwrap_err().to_string();
+        assert!(message.contains(path) && message.contains("stl, obj, ply, off"), "{message}");
+    }
+    let message = colltrans_mesh::read("not/there.obj").unwrap_err().to_string();
+    assert!(message.starts_with("not/there.obj: cannot be read"), "{message}");
+}
+
+/// No prefix and no single changed byte of a file makes a reader panic.
+#[test]
+fn mutilated_files_get_answers() {
+    let files = [
+        (Format::Stl, to_stl(&tetrahedron()).unwrap()),
+        (Format::Stl, format!("solid x\n{FACET}endsolid").into_bytes()),
+        (Format::Obj, to_obj(&tetrahedron()).into_bytes()),
+        (Format::Off, to_off(&tetrahedron()).into_bytes()),
+        (Format::Ply, PLY.as_bytes().to_vec()),
+        (Format::Ply, binary_ply(true)),
+        (Format::Ply, binary_ply(false)),
+    ];
+    for (format, bytes) in files {
+        for end in 0..bytes.len() {
+            let _ = read(format, &bytes[..end]);
+            for change in [0, 0xff, b'9', b'-', b'\n'] {
+                let mut changed = bytes.clone();
+                changed[end] = change;
+                if let Ok(mesh) = read(format, changed) {
+                    let count = mesh.vertices.len();
+                    assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < count));
+                }
+            }
+        }
+    }
+}

@@ -67,8 +67,8 @@ impl std::error::Error for Objection {}
 /// `Err` with a formatted [`Objection`] unless the condition holds; a comparison with NaN does not.
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
-        if $condition {
-        } else {
+        let holds: bool = $condition;
+        if !holds {
             return Err(Objection(format!($($text)+)));
         }
     };

@@ -7,7 +7,7 @@ use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::outcome::{Contact, Feature, Grazing, Separated, Solver, Steps};
 use crate::polyhedron::ConvexPolyhedron;
-use crate::portal::Optimum;
+use crate::portal::{OneSide, Optimum};
 use crate::pose::Pose;
 
 /// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see
@@ -83,13 +83,13 @@ pub(crate) fn grazing(
 
 pub(crate) fn separated(
     difference: &Difference,
-    normal: DVec2,
-    margin: f64,
+    found: &OneSide,
     solver: Solver,
     steps: Steps,
 ) -> Separated {
-    let normal = (difference.axes * normal.extend(0.0)).normalize();
-    Separated { certificate: Separation { normal, margin }, solver, steps }
+    let normal = (difference.axes * found.normal.extend(0.0)).normalize();
+    let certificate = Separation { normal, margin: found.margin };
+    Separated { certificate, solver, steps }
 }
 
 /// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body frame).

@@ -162,7 +162,7 @@ impl<'a> Difference<'a> {
         if det != 0.0 {
             return det > 0.0;
         }
-        if a.y != b.y { a.y > b.y } else { b.x > a.x }
+        if a.y == b.y { b.x > a.x } else { a.y > b.y }
     }
 }
 

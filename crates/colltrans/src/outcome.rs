@@ -160,6 +160,7 @@ impl ContactRange {
 
 /// How far the moving body can move *from here* along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a query allocates nothing, so nothing is boxed")]
 pub enum Clearance {
     /// As far as it likes: the bodies never meet, or only slide, or the contact lies behind.
     Free,

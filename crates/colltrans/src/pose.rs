@@ -30,8 +30,7 @@ impl Pose {
     /// A quaternion that is no rotation, a translation that is not finite or out of range.
     pub fn new(rotation: DQuat, translation: DVec3) -> Result<Self, PoseError> {
         let length = rotation.length();
-        // Written so that NaN fails.
-        if !((length - 1.0).abs() <= UNIT_LENGTH_TOLERANCE) {
+        if length.is_nan() || (length - 1.0).abs() > UNIT_LENGTH_TOLERANCE {
             let [x, y, z, w] = rotation.to_array();
             return Err(PoseError::NotARotation { x, y, z, w, length });
         }

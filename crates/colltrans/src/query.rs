@@ -1,6 +1,6 @@
 //! The public queries, each a one-off function.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::answer;
 use crate::certificate::VertexPair;
@@ -11,7 +11,7 @@ use crate::outcome::{
     Clearance, Contact, ContactRange, Grazing, Outcome, Separated, Solver, Steps,
 };
 use crate::polyhedron::ConvexPolyhedron;
-use crate::portal::{self, Enclosure, Overlap, Refined, Start};
+use crate::portal::{self, Enclosure, OneSide, Overlap, Refined, Start};
 use crate::pose::Pose;
 use crate::setting::Setting;
 
@@ -86,13 +86,11 @@ pub fn contact_range(
     options: &Options,
 ) -> Result<ContactRange, QueryError> {
     let run = |direction| cast_with(moving, moving_pose, fixed, fixed_pose, direction, options);
-    let forward = run(direction)?;
-    if let Outcome::Separated(separated) = forward {
-        return Ok(ContactRange::Separated(separated));
-    }
     // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
-    Ok(match (forward, run(-direction)?) {
-        (_, Outcome::Separated(separated)) => ContactRange::Separated(separated),
+    Ok(match (run(direction)?, run(-direction)?) {
+        (Outcome::Separated(separated), _) | (_, Outcome::Separated(separated)) => {
+            ContactRange::Separated(separated)
+        }
         (Outcome::Contact(first), Outcome::Contact(last)) => ContactRange::Contact { first, last },
         (Outcome::Grazing(first), Outcome::Contact(last)) => {
             ContactRange::Grazing { first, last: Grazing { contact: last, ..first } }
@@ -101,7 +99,6 @@ pub fn contact_range(
             ContactRange::Grazing { first: Grazing { contact: first, ..last }, last }
         }
         (Outcome::Grazing(first), Outcome::Grazing(last)) => ContactRange::Grazing { first, last },
-        (Outcome::Separated(separated), _) => ContactRange::Separated(separated),
     })
 }
 
@@ -194,17 +191,15 @@ impl Cast<'_> {
         match portal::enclose(&self.difference, &start, &mut self.steps) {
             None => Err(self.not_converged()),
             Some(Enclosure::Portal(first)) => self.contact_or_grazing(first, &start),
-            Some(Enclosure::OneSide { normal, margin, .. }) if margin > noise => {
-                Ok(Outcome::Separated(self.separated(normal, margin)))
+            Some(Enclosure::OneSide(found)) if found.margin > noise => {
+                Ok(Outcome::Separated(self.separated(&found)))
             }
-            Some(Enclosure::OneSide { normal, margin, point }) => {
-                let found = (normal, margin, point);
-                let (normal, margin) =
-                    portal::widest_margin(&self.difference, found, &mut self.steps);
-                if margin > noise {
-                    return Ok(Outcome::Separated(self.separated(normal, margin)));
+            Some(Enclosure::OneSide(found)) => {
+                let widest = portal::widest_margin(&self.difference, found, &mut self.steps);
+                if widest.margin > noise {
+                    return Ok(Outcome::Separated(self.separated(&widest)));
                 }
-                self.touching(normal, margin, &start).map(Outcome::Grazing)
+                self.touching(&widest, &start).map(Outcome::Grazing)
             }
         }
     }
@@ -248,9 +243,7 @@ impl Cast<'_> {
     ) -> Result<Outcome, QueryError> {
         let optimum = match portal::refine(&self.difference, first, &mut self.steps) {
             Some(Refined::Optimum(optimum)) => optimum,
-            Some(Refined::Rim { normal, margin }) => {
-                return self.touching(normal, margin, start).map(Outcome::Grazing);
-            }
+            Some(Refined::Rim(rim)) => return self.touching(&rim, start).map(Outcome::Grazing),
             None => return Err(self.not_converged()),
         };
         let tolerance = self.graze_tolerance.max(self.difference.touching());
@@ -267,13 +260,8 @@ impl Cast<'_> {
 
     /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact of the bodies widened
     /// sideways by a little more than that.
-    fn touching(
-        mut self,
-        normal: DVec2,
-        margin: f64,
-        start: &Start,
-    ) -> Result<Grazing, QueryError> {
-        self.difference = self.difference.widened(margin);
+    fn touching(mut self, rim: &OneSide, start: &Start) -> Result<Grazing, QueryError> {
+        self.difference = self.difference.widened(rim.margin);
         let Some(Enclosure::Portal(first)) =
             portal::enclose(&self.difference, start, &mut self.steps)
         else {
@@ -285,15 +273,15 @@ impl Cast<'_> {
             return Err(self.not_converged());
         };
         let contact = self.contact(&optimum)?;
-        Ok(answer::grazing(&self.difference, normal, -margin, contact))
+        Ok(answer::grazing(&self.difference, rim.normal, -rim.margin, contact))
     }
 
     fn contact(&self, optimum: &portal::Optimum) -> Result<Contact, QueryError> {
         answer::contact(&self.difference, self.moving_pose, optimum, self.solver, self.steps)
     }
 
-    fn separated(&self, normal: DVec2, margin: f64) -> Separated {
-        answer::separated(&self.difference, normal, margin, self.solver, self.steps)
+    fn separated(&self, found: &OneSide) -> Separated {
+        answer::separated(&self.difference, found, self.solver, self.steps)
     }
 
     fn not_converged(&self) -> QueryError {
@@ -301,109 +289,6 @@ impl Cast<'_> {
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
             tolerance: self.difference.noise,
-        }
-    }
-}
-
-#[cfg(test)]
-mod timing {
-    use super::*;
-    use crate::polyhedron::testing::ring_ellipsoid;
-    use std::time::Instant;
-    struct Rng(u64);
-    impl Rng {
-        fn f(&mut self) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
-        fn v(&mut self) -> DVec3 {
-            DVec3::new(self.f() - 0.5, self.f() - 0.5, self.f() - 0.5)
-        }
-    }
-    #[test]
-    fn timing() {
-        for n in [8, 8, 32, 128, 512, 2000, 10_000, 50_000, 200_000].into_iter() {
-            for solver in [Solver::Portal, Solver::Cta] {
-                let mut r = Rng(0x1234_5678_9abc_def1);
-                let mut bodies = vec![];
-                for _ in 0..4 {
-                    let ax = DVec3::new(0.6 + 0.8 * r.f(), 0.6 + 0.8 * r.f(), 0.6 + 0.8 * r.f());
-                    bodies.push(ring_ellipsoid(n, ax));
-                }
-                let mut settings = vec![];
-                for i in 0..2000 {
-                    let q = |r: &mut Rng| {
-                        glam::DQuat::from_xyzw(r.f() - 0.5, r.f() - 0.5, r.f() - 0.5, r.f() - 0.5)
-                            .normalize()
-                    };
-                    let d = r.v().normalize();
-                    let lat = r.v().cross(d).normalize() * r.f() * 1.2;
-                    let pp = Pose::new(q(&mut r), DVec3::ZERO).unwrap();
-                    let pq = Pose::new(q(&mut r), d * 5.0 + lat).unwrap();
-                    settings.push((i % 4, (i / 4 + 1 + i) % 4, pp, pq, d));
-                }
-                let mut sup = vec![];
-                let (mut times, mut steps, mut sep) = (vec![], Steps::default(), 0);
-                let mut worst = 0.0_f64;
-                for pass in 0..(if n == 8 { 60 } else { 5 }) {
-                    for (a, b, pp, pq, d) in &settings {
-                        let t = Instant::now();
-                        let out = cast_with(
-                            &bodies[*a],
-                            pp,
-                            &bodies[*b],
-                            pq,
-                            *d,
-                            &Options { solver, ..Options::default() },
-                        );
-                        let el = t.elapsed().as_nanos();
-                        match out.unwrap() {
-                            Outcome::Contact(c) => {
-                                times.push(el);
-                                sup.push((c.steps.supports, c.steps.pivots));
-                                steps.supports += c.steps.supports;
-                                steps.pivots += c.steps.pivots;
-                                steps.planar_problems += c.steps.planar_problems;
-                                worst = worst.max(c.certificate.gap() / c.certificate.tolerance);
-                                if pass == 0 {
-                                    c.certificate
-                                        .verify(&bodies[*a], pp, &bodies[*b], pq, *d)
-                                        .unwrap();
-                                }
-                            }
-                            Outcome::Grazing(_) => panic!(),
-                            Outcome::Separated(_) => sep += 1,
-                        }
-                    }
-                }
-                let t = Instant::now();
-                for _ in 0..1000 {
-                    std::hint::black_box(Instant::now());
-                }
-                let clock = t.elapsed().as_nanos() / 1000;
-                times.sort_unstable();
-                sup.sort_unstable();
-                println!(
-                    "sup p50 {:?} p90 {:?} p99 {:?} max {:?}",
-                    sup[sup.len() / 2],
-                    sup[sup.len() * 9 / 10],
-                    sup[sup.len() * 99 / 100],
-                    sup[sup.len() - 1]
-                );
-                let k = times.len();
-                println!(
-                    "n {n:7} {:7} clock {clock} median {:6} p99 {:6} supports {:.2} pivots {:.2} sep {sep} worst {worst:.2} bytes/v {}",
-                    bodies[0].vertices().len(),
-                    times[k / 2],
-                    times[k * 99 / 100],
-                    f64::from(steps.supports) / k as f64,
-                    f64::from(steps.pivots) / k as f64,
-                    bodies[0].memory_bytes() / bodies[0].vertices().len()
-                );
-                println!("planar {:.2}", f64::from(steps.planar_problems) / k as f64);
-            }
         }
     }
 }

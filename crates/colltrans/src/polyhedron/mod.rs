@@ -202,33 +202,3 @@ impl ConvexPolyhedron {
         Self::from_hull(vertices, hull)
     }
 }
-
-#[cfg(test)]
-pub(crate) mod testing {
-    use super::*;
-
-    /// Vertices on an ellipsoid in rings around z.
-    pub(crate) fn ring_ellipsoid(n: usize, axes: DVec3) -> ConvexPolyhedron {
-        let m = ((n as f64 / 2.0).sqrt() * 1.0).round().max(2.0) as usize; // rings
-        let k = ((n - 2) / m).max(3);
-        let mut v = vec![DVec3::Z * axes.z];
-        for i in 0..m {
-            let th = std::f64::consts::PI * (i + 1) as f64 / (m + 1) as f64;
-            for j in 0..k {
-                let ph = std::f64::consts::TAU * j as f64 / k as f64;
-                v.push(DVec3::new(th.sin() * ph.cos(), th.sin() * ph.sin(), th.cos()) * axes);
-            }
-        }
-        v.push(-DVec3::Z * axes.z);
-        let id = |i: usize, j: usize| (1 + i * k + j % k) as u32;
-        let mut faces = vec![];
-        for j in 0..k {
-            faces.push(vec![0, id(0, j), id(0, j + 1)]);
-            for i in 0..m - 1 {
-                faces.push(vec![id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]);
-            }
-            faces.push(vec![id(m - 1, j), (v.len() - 1) as u32, id(m - 1, j + 1)]);
-        }
-        ConvexPolyhedron::from_convex_faces(&v, &faces)
-    }
-}

@@ -7,7 +7,7 @@ use glam::DVec3;
 /// From its two shorter edges: the product of two long, nearly parallel edges would lose the normal to rounding.
 pub(crate) fn triangle_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [b - a, c - b, a - c];
-    let lengths = edges.map(|e| e.length_squared());
+    let lengths = edges.map(DVec3::length_squared);
     if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
         edges[1].cross(edges[2])
     } else if lengths[1] >= lengths[2] {
@@ -18,10 +18,11 @@ pub(crate) fn triangle_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 }
 
 /// Unit normal of a convex polygon, from a triangle of its corners that spans it widely; zero if it has no area.
-pub(crate) fn polygon_normal(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
-    let Some(a) = corners.clone().next() else { return DVec3::ZERO };
+pub(crate) fn polygon_normal<I: Iterator<Item = DVec3> + Clone>(mut corners: I) -> DVec3 {
+    let all = corners.clone();
+    let Some(a) = corners.next() else { return DVec3::ZERO };
     let farthest = |measure: &dyn Fn(DVec3) -> f64| {
-        corners.clone().enumerate().fold((0, a, 0.0), |best, (k, p)| {
+        all.clone().enumerate().fold((0, a, 0.0), |best, (k, p)| {
             let value = measure(p);
             if value > best.2 { (k, p, value) } else { best }
         })

@@ -19,16 +19,20 @@ use crate::outcome::Steps;
 pub(crate) enum Enclosure {
     /// A portal.
     Portal(Portal),
-    /// All of `M` lies on one side: `normal . s >= margin` for every shadow `s`, up to rounding. The margin may be negative
-    /// by a few roundings, when the shadow of `M` ends at the line.
-    OneSide {
-        /// Unit normal in the shadow plane.
-        normal: DVec2,
-        /// The margin.
-        margin: f64,
-        /// The support point that gives it.
-        point: Point,
-    },
+    /// All of `M` lies on one side.
+    OneSide(OneSide),
+}
+
+/// `normal . s >= margin` for every shadow `s` of `M`, up to rounding. The margin may be negative by what counts as touching,
+/// when the shadow of `M` ends at the line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OneSide {
+    /// Unit normal in the shadow plane.
+    pub(crate) normal: DVec2,
+    /// The margin.
+    pub(crate) margin: f64,
+    /// The support point that gives it.
+    pub(crate) point: Point,
 }
 
 /// How far beyond the line the model aims, in multiples of the distance to it, try by try.
@@ -46,11 +50,11 @@ pub(crate) fn enclose(
     let mut search = Search { difference, guide: Guide::Start(start), steps };
     let first = match search.first(start) {
         Ok(tangent) => tangent,
-        Err(one_side) => return Some(one_side),
+        Err(one_side) => return Some(Enclosure::OneSide(one_side)),
     };
     let second = match search.beyond(&[first], first.point.shadow(), first.slope) {
         Ok(tangent) => tangent,
-        Err(one_side) => return Some(one_side),
+        Err(one_side) => return Some(Enclosure::OneSide(one_side)),
     };
     search.close([first, second])
 }
@@ -96,7 +100,7 @@ impl Search<'_> {
             let (toward_edge, slope) = nearest_on(&edge);
             let third = match self.beyond(&edge, toward_edge, slope) {
                 Ok(tangent) => tangent,
-                Err(one_side) => return Some(one_side),
+                Err(one_side) => return Some(Enclosure::OneSide(one_side)),
             };
             let [from, to] = edge;
             if !difference.is_left(&to.point, &third.point) {
@@ -111,7 +115,7 @@ impl Search<'_> {
     }
 
     /// The support point along the guess; if the guess is lateral, it may already separate.
-    fn first(&mut self, start: &Start) -> Result<Tangent, Enclosure> {
+    fn first(&mut self, start: &Start) -> Result<Tangent, OneSide> {
         let normal = start.normal;
         self.steps.supports += 1;
         let point = match start.near {
@@ -124,7 +128,7 @@ impl Search<'_> {
         let lateral = normal.truncate().normalize_or_zero();
         let margin = lateral.dot(point.shadow());
         if margin > 0.0 {
-            return Err(Enclosure::OneSide { normal: lateral, margin, point });
+            return Err(OneSide { normal: lateral, margin, point });
         }
         Ok(Tangent { point, slope: steep(lateral) })
     }
@@ -137,7 +141,7 @@ impl Search<'_> {
         known: &[Tangent],
         near_side: DVec2,
         slope: DVec2,
-    ) -> Result<Tangent, Enclosure> {
+    ) -> Result<Tangent, OneSide> {
         let outward = outward(known, near_side);
         // Points closer to the line than this may be on either side of it.
         let clearly = -self.difference.touching();
@@ -165,7 +169,7 @@ impl Search<'_> {
         let point = self.difference.support(outward.extend(0.0));
         let margin = outward.dot(point.shadow());
         if margin >= clearly {
-            return Err(Enclosure::OneSide { normal: outward, margin, point });
+            return Err(OneSide { normal: outward, margin, point });
         }
         Ok(Tangent { point, slope })
     }
@@ -209,21 +213,17 @@ pub(super) fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
 ///
 /// Used when the margin found is too small to tell separation from touching: it converges to the true distance of
 /// the line from the shadow (Gilbert's algorithm with segments).
-pub(crate) fn widest_margin(
-    difference: &Difference,
-    found: (DVec2, f64, Point),
-    steps: &mut Steps,
-) -> (DVec2, f64) {
-    let mut segment = [found.2; 2];
-    let mut best = (found.0, found.1);
+pub(crate) fn widest_margin(difference: &Difference, found: OneSide, steps: &mut Steps) -> OneSide {
+    let mut segment = [found.point; 2];
+    let mut best = found;
     for _ in 0..MAX_POINTS {
         let Some((normal, distance)) = from_segment(&segment) else { break };
         steps.supports += 1;
         let lateral: DVec3 = normal.extend(0.0);
         let point = difference.support_from(lateral, segment[0].pair);
         let margin = normal.dot(point.shadow());
-        if margin > best.1 {
-            best = (normal, margin);
+        if margin > best.margin {
+            best = OneSide { normal, margin, point };
         }
         let options = [[segment[0], point], [segment[1], point]];
         let away = options.map(|s| from_segment(&s).map_or(0.0, |(_, distance)| distance));

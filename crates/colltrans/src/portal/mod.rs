@@ -4,8 +4,8 @@
 //! *portal* is a triangle of points of `M` whose shadow contains the line. With `f(a) = min_M n.m` (concave, piecewise linear) the collision
 //! translation is `max f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
 //!
-//! The way: [`start`] guesses a slope, [`enclose`] finds a first portal or a separating direction, [`refine`] exchanges one point
-//! of the portal after another until its plane supports `M`, [`graze`] measures
+//! The way: [`mod@start`] guesses a slope, [`mod@enclose`] finds a first portal or a separating direction, [`mod@refine`] exchanges one point
+//! of the portal after another until its plane supports `M`, [`mod@graze`] measures
 //! how far the shadows overlap.
 //! Section 1 of the paper for the bounds; the exchange is the dual of the simplex method with two variables.
 
@@ -16,7 +16,7 @@ mod start;
 
 use glam::{DVec2, DVec3};
 
-pub(crate) use enclose::{Enclosure, enclose, widest_margin};
+pub(crate) use enclose::{Enclosure, OneSide, enclose, widest_margin};
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use refine::{Optimum, Refined, refine};
 pub(crate) use start::Start;

@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::enclose::{Enclosure, Guide, complete};
+use super::enclose::{Enclosure, Guide, OneSide, complete};
 use super::{Portal, Tangent};
 use crate::certificate::VertexPair;
 use crate::exact::{accurate_cross, accurate_det};
@@ -42,14 +42,8 @@ const MAX_PORTALS: usize = 10_000;
 pub(crate) enum Refined {
     /// The lowest face.
     Optimum(Optimum),
-    /// The line passes the rim of the shadow of `M`: `normal . s >= margin` for every shadow, and the margin is no less than
-    /// minus [`Difference::touching`].
-    Rim {
-        /// Unit normal in the shadow plane.
-        normal: DVec2,
-        /// The margin.
-        margin: f64,
-    },
+    /// The line passes the rim of the shadow of `M`.
+    Rim(OneSide),
 }
 
 /// Follows portals down to the optimum. `None` if rounding makes them run in a circle.
@@ -64,9 +58,7 @@ pub(crate) fn refine(
         let Some(plane) = plane_normal(difference, &portal) else {
             match widen(difference, &portal, steps)? {
                 Enclosure::Portal(wide) => portal = wide,
-                Enclosure::OneSide { normal, margin, .. } => {
-                    return Some(Refined::Rim { normal, margin });
-                }
+                Enclosure::OneSide(rim) => return Some(Refined::Rim(rim)),
             }
             continue;
         };

@@ -274,7 +274,7 @@ impl<'a> Builder<'a> {
             orphans = next;
         }
         self.pending.extend(&cone);
-        self.free.extend(self.seen.drain(..));
+        self.free.append(&mut self.seen);
     }
 
     /// Takes a point off a triangle's list without inserting it.

@@ -40,6 +40,9 @@ pub struct Setting {
 
 impl Setting {
     /// A random setting of bodies that are apart at the start.
+    ///
+    /// # Panics
+    /// If there are no bodies, or their vertices are out of range.
     pub fn draw(bodies: &[ConvexPolyhedron], meeting: Meeting, rng: &mut Rng) -> Self {
         let index = |rng: &mut Rng| rng.int(0, bodies.len() as i64 - 1) as usize;
         let (moving, fixed) = (index(rng), index(rng));

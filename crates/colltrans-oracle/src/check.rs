@@ -64,7 +64,7 @@ impl fmt::Display for Objection {
 
 impl std::error::Error for Objection {}
 
-/// `Err` with a formatted [`Objection`] unless the condition holds.
+/// `Err` with a formatted [`Objection`] unless the condition holds; a comparison with NaN does not.
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
         let holds: bool = $condition;
@@ -384,4 +384,111 @@ impl Judge<'_> {
 
 fn is_unit(v: DVec3) -> bool {
     (v.length() - 1.0).abs() <= UNIT_ERROR
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::{Setting, setting};
+    use colltrans::Solver;
+
+    /// An answer, and what the judge says about it after a change.
+    fn objects(setting: &Setting, outcome: &Outcome) -> bool {
+        let bodies = setting.bodies().expect("bodies");
+        let judge = setting.judge(&bodies);
+        judge.check(outcome).and_then(|_| judge.compare_with_oracle(outcome)).is_err()
+    }
+
+    fn answers(kind: fn(&Outcome) -> bool) -> Vec<(Setting, Outcome)> {
+        let ask = |seed| {
+            let setting = setting(["random", "boxes", "peg"][seed as usize % 3], seed);
+            let outcome = setting.cast(&setting.bodies().expect("bodies"), Solver::Portal);
+            outcome.ok().map(|outcome| (setting, outcome))
+        };
+        (0..240).filter_map(ask).filter(|(_, outcome)| kind(outcome)).take(20).collect()
+    }
+
+    #[test]
+    fn changed_contacts_are_refused() {
+        let changes: [(&str, fn(&mut Contact)); 9] = [
+            ("later", |c| c.translation += 4.0 * c.certificate.tolerance),
+            ("earlier", |c| c.translation -= 4.0 * c.certificate.tolerance),
+            ("lower bound", |c| c.certificate.lower += 4.0 * c.certificate.tolerance),
+            ("upper bound", |c| c.certificate.upper -= 100.0 * c.certificate.tolerance),
+            ("turned normal", |c| {
+                let aside = c.normal.any_orthonormal_vector();
+                c.normal = (c.normal + aside * 1e-3).normalize();
+                c.certificate.normal = c.normal;
+            }),
+            ("opposite normal", |c| {
+                c.normal = -c.normal;
+                c.certificate.normal = c.normal;
+            }),
+            ("weights", |c| c.certificate.weights = [1.0, -1.0, 1.0]),
+            ("vertex", |c| c.certificate.pairs[0].fixed = 99),
+            ("point", |c| c.point_on_fixed += c.normal * 1e-9),
+        ];
+        let contacts = answers(|o| matches!(o, Outcome::Contact(_)));
+        assert_eq!(contacts.len(), 20);
+        for (setting, outcome) in contacts {
+            assert!(!objects(&setting, &outcome), "{setting}");
+            let Outcome::Contact(contact) = outcome else { unreachable!() };
+            for (name, change) in changes {
+                let mut changed = contact;
+                change(&mut changed);
+                assert!(objects(&setting, &Outcome::Contact(changed)), "{setting}: {name}");
+            }
+            let Certificate { normal, .. } = contact.certificate;
+            let orthogonal = normal.cross(setting.direction).normalize();
+            let mut separated = Separated {
+                certificate: colltrans::Separation { normal: orthogonal, margin: 1e-3 },
+                solver: Solver::Portal,
+                steps: contact.steps,
+            };
+            if !orthogonal.is_finite() {
+                separated.certificate.normal = setting.direction.any_orthonormal_vector();
+            }
+            assert!(objects(&setting, &Outcome::Separated(separated)), "{setting}: separated");
+            let grazing = Grazing {
+                separating_direction: separated.certificate.normal,
+                overlap: 0.0,
+                contact,
+            };
+            assert!(objects(&setting, &Outcome::Grazing(grazing)), "{setting}: grazing");
+        }
+    }
+
+    #[test]
+    fn changed_separations_are_refused() {
+        let separations = answers(|o| matches!(o, Outcome::Separated(_)));
+        assert_eq!(separations.len(), 20);
+        for (setting, outcome) in separations {
+            assert!(!objects(&setting, &outcome), "{setting}");
+            let Outcome::Separated(separated) = outcome else { unreachable!() };
+            let changes: [fn(&mut Separated, DVec3); 4] = [
+                |s, _| s.certificate.margin += 1e-9,
+                |s, _| s.certificate.normal = -s.certificate.normal,
+                |s, d| s.certificate.normal = (s.certificate.normal + d * 1e-9).normalize(),
+                |s, _| s.certificate.normal *= 1.001,
+            ];
+            for (index, change) in changes.into_iter().enumerate() {
+                let mut changed = separated;
+                change(&mut changed, setting.direction.normalize());
+                assert!(objects(&setting, &Outcome::Separated(changed)), "{setting}: {index}");
+            }
+        }
+    }
+
+    #[test]
+    fn grazing_is_no_contact() {
+        let grazings = answers(|o| matches!(o, Outcome::Grazing(_)));
+        assert_eq!(grazings.len(), 20);
+        for (setting, outcome) in grazings {
+            assert!(!objects(&setting, &outcome), "{setting}");
+            let Outcome::Grazing(grazing) = outcome else { unreachable!() };
+            assert!(objects(&setting, &Outcome::Contact(grazing.contact)), "{setting}");
+            let aside = Grazing { overlap: grazing.overlap - 1e-3, ..grazing };
+            assert!(objects(&setting, &Outcome::Grazing(aside)), "{setting}: overlap");
+        }
+    }
 }

@@ -200,6 +200,10 @@ pub const FAMILIES: &[Family] = &[
     ("flat", flat),
     ("segment-point", segment_point),
     ("nearly", nearly),
+    ("shallow", shallow),
+    ("thin", thin),
+    ("cylinders", cylinders),
+    ("magnitude", magnitude),
 ];
 
 /// A setting before it is turned and scaled as a whole.
@@ -571,5 +575,66 @@ fn nearly(rng: &mut Rng) -> Draft {
     let tilt = rng.pick(&[1e-3, 1e-7, 1e-9, 1e-11, 1e-14]);
     draft.moving_rotation = DQuat::from_axis_angle(rng.direction(), tilt);
     draft.moving_at += rng.vector() * rng.pick(&[0.0, tilt]);
+    draft
+}
+
+/// A block that glides over a slab, a little downwards: the contact normal is almost orthogonal to the direction.
+fn shallow(rng: &mut Rng) -> Draft {
+    let slab = cuboid(DVec3::new(rng.whole(2, 9), rng.whole(1, 3), rng.pick(&[0.0, 0.5, 1.0])));
+    let block = match rng.int(0, 3) {
+        0 => octahedron(0.5),
+        1 => cloud(rng),
+        _ => cuboid(rng.grid(1, 3) * 0.25),
+    };
+    let descent = rng.pick(&[0.1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 0.0]);
+    let drift = rng.pick(&[0.0, 0.0, 0.3]);
+    let direction = DVec3::new(1.0, drift, -descent);
+    let start = rng.range(-4.0, 4.0);
+    let low = block.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
+    let top = slab[7].z;
+    let height = top - low + descent * rng.pick(&[0.0, 1.0, 3.0]);
+    let at = DVec3::new(start, rng.range(-1.0, 1.0), -height);
+    Draft::new(block, slab, at, direction)
+}
+
+/// Slabs from a thousandth of their width down to nothing.
+fn thin(rng: &mut Rng) -> Draft {
+    let mut slab = || {
+        let thickness = rng.pick(&[1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-17, 0.0]);
+        let half = DVec3::new(rng.whole(1, 2), rng.whole(1, 2), thickness);
+        let turn = if rng.one_in(2) { rng.rotation() } else { DQuat::IDENTITY };
+        cuboid(half).into_iter().map(|v| turn * v).collect::<Vec<_>>()
+    };
+    let (moving, fixed) = (slab(), slab());
+    let direction = axis_or_any(rng);
+    let at = direction * rng.whole(-1, 6) + rng.vector() * rng.pick(&[0.0, 1.0]);
+    let draft = Draft::new(moving, fixed, at, direction);
+    if rng.one_in(2) { draft } else { draft.turned(rng.rotation(), DQuat::IDENTITY) }
+}
+
+/// Prisms of many sides, side by side or one over the other, on the same axis or tangent.
+fn cylinders(rng: &mut Rng) -> Draft {
+    let sides = rng.pick(&[8, 12]);
+    let (r, s) = (rng.whole(1, 3), rng.whole(1, 3));
+    let moving = prism(sides, r, rng.whole(1, 2), 0.0);
+    let fixed = prism(sides, s, rng.whole(1, 2), rng.pick(&[0.0, TAU / f64::from(2 * sides)]));
+    let direction = rng.pick(&[DVec3::Z, DVec3::X, DVec3::new(1.0, 1.0, 0.0)]);
+    let lateral = rng.pick(&[DVec3::X, DVec3::Y, DVec3::Z]).reject_from(direction);
+    let at = direction * rng.whole(2, 8) + lateral * rng.pick(&[0.0, r + s, r - s, s]);
+    Draft::new(moving, fixed, at, direction)
+}
+
+/// Very small and very large scenes.
+fn magnitude(rng: &mut Rng) -> Draft {
+    let mut draft = match rng.int(0, 3) {
+        0 => boxes(rng),
+        1 => grid(rng),
+        2 => flat(rng),
+        _ => random(rng),
+    };
+    let factor = rng.pick(&[1e-50, 1e-30, 1e-9, 1e9, 1e30, 1e50]);
+    draft.moving.iter_mut().chain(&mut draft.fixed).for_each(|v| *v *= factor);
+    draft.moving_at *= factor;
+    draft.fixed_at *= factor;
     draft
 }

@@ -6,9 +6,9 @@ use colltrans_oracle::settings::{FAMILIES, setting};
 const SOLVERS: [Solver; 3] = [Solver::Cta, Solver::Portal, Solver::Auto];
 
 /// Settings per family whose certificates are re-verified.
-const SETTINGS: u64 = 400;
+const SETTINGS: u64 = 1_000;
 /// One of so many is also solved by the rational linear programme.
-const LP_EVERY: u64 = 10;
+const LP_EVERY: u64 = 20;
 
 fn check_family(family: &str) {
     let mut wrong = Vec::new();
@@ -72,4 +72,8 @@ families! {
     flat_bodies => "flat",
     segments_and_points => "segment-point",
     nearly_tied => "nearly",
+    shallow_descents => "shallow",
+    thin_slabs => "thin",
+    cylinders => "cylinders",
+    magnitudes => "magnitude",
 }

@@ -260,7 +260,7 @@ fn verify_accepts_every_answer_and_no_other_body() {
         let outcome = setting.cast(&bodies, Solver::Auto).unwrap();
         let verify = |moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron| match &outcome {
             Outcome::Contact(c) => {
-                c.certificate.verify(moving, m, fixed, f, setting.direction).map(|gap| gap.abs())
+                c.certificate.verify(moving, m, fixed, f, setting.direction).map(f64::abs)
             }
             Outcome::Grazing(g) => {
                 g.contact.certificate.verify(moving, m, fixed, f, setting.direction)

@@ -117,7 +117,7 @@ fn turned_box_onto_a_wide_floor() {
     assert!((found.translation - 1.43397).abs() < 5e-6, "{}", found.translation);
 }
 
-/// PhysX issue 610 reports 2.9975.
+/// `PhysX` issue 610 reports 2.9975.
 #[test]
 fn box_falls_three_units_on_a_box() {
     let cube = body(&cuboid(DVec3::splat(0.5)));

@@ -61,7 +61,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         let number = |text: &str| text.parse().map_err(|_| format!("{text} is not a number"));
         match word.as_str() {
             "--sizes" => {
-                arguments.sizes = value.split(',').map(number).collect::<Result<_, _>>()?
+                arguments.sizes = value.split(',').map(number).collect::<Result<_, _>>()?;
             }
             "--seed" => arguments.seed = number(&value)? as u64,
             "--json" => arguments.json = Some(value),
@@ -211,11 +211,10 @@ struct Row {
 impl Row {
     fn measure(bodies: &Bodies, meeting: Meeting, arguments: &Arguments) -> Self {
         let mut rng = Rng::new(arguments.seed.wrapping_mul(77) ^ bodies.asked as u64);
-        let count = match (bodies.asked, arguments.quick) {
-            (100_000.., true) => 100,
-            (100_000.., false) => 200,
-            (_, true) => 200,
-            (_, false) => 1000,
+        let count = match (arguments.quick, bodies.asked >= 100_000) {
+            (true, true) => 100,
+            (true, false) | (false, true) => 200,
+            (false, false) => 1000,
         };
         let settings: Vec<Setting> =
             (0..count).map(|_| Setting::draw(&bodies.ours, meeting, &mut rng)).collect();

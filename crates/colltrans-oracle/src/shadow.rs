@@ -39,11 +39,7 @@ impl SignedDistance {
 /// bodies overlap by that much, negative if they are that far apart.
 ///
 /// # Panics
-<<<<<<< HEAD
-/// If a body has no point.
-=======
 /// If a body has no points, which no polyhedron lacks.
->>>>>>> oracle
 pub fn sideways_overlap(scene: &Scene) -> SignedDistance {
     let points = scene.differences();
     let coordinates: Vec<Dyadic> = points.iter().flat_map(|m| scene.shadow(m)).collect();

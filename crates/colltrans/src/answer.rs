@@ -2,13 +2,14 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::certificate::{Certificate, Separation, VertexPair, distance_along};
+use crate::certificate::{Certificate, Separation, distance_along};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::outcome::{Contact, Feature, Grazing, Separated, Solver, Steps};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::portal::{OneSide, Optimum};
 use crate::pose::Pose;
+use crate::setting::VertexPair;
 
 /// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see
 /// [`crate::certificate`]).

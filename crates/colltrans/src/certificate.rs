@@ -21,16 +21,7 @@ use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
-use crate::setting::Setting;
-
-/// One vertex of each body, by index.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct VertexPair {
-    /// Index into the moving body's vertices.
-    pub moving: u32,
-    /// Index into the fixed body's vertices.
-    pub fixed: u32,
-}
+use crate::setting::{Setting, VertexPair};
 
 /// Both bounds of a collision translation with their proofs.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -14,8 +14,9 @@ mod pose;
 mod query;
 mod section;
 mod setting;
+mod topology;
 
-pub use certificate::{Certificate, CertificateError, Separation, VertexPair};
+pub use certificate::{Certificate, CertificateError, Separation};
 pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
 pub use glam;
 pub use outcome::{
@@ -26,3 +27,4 @@ pub use pose::Pose;
 pub use query::{
     Options, cast, cast_with, clearance, contact_range, directional_depth, intersects,
 };
+pub use setting::VertexPair;

@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use crate::answer;
-use crate::certificate::VertexPair;
 use crate::cta::{self, CtaOptions, CtaStart, Guess};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
@@ -13,7 +12,7 @@ use crate::outcome::{
 use crate::polyhedron::ConvexPolyhedron;
 use crate::portal::{self, Enclosure, OneSide, Overlap, Refined, Start};
 use crate::pose::Pose;
-use crate::setting::Setting;
+use crate::setting::{Setting, VertexPair};
 
 /// Choices of a query; the default is right for almost everyone.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

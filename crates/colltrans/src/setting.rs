@@ -6,11 +6,19 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::certificate::VertexPair;
 use crate::error::{QueryError, in_exact_range};
 use crate::exact::{self, ExactVector};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
+
+/// One vertex of each body, by index.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct VertexPair {
+    /// Index into the moving body's vertices.
+    pub moving: u32,
+    /// Index into the fixed body's vertices.
+    pub fixed: u32,
+}
 
 /// Two placed bodies and a direction.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::topology::Topology;
+use crate::topology::Topology;
 
 /// Size and resemblance of a body, in its own frame.
 #[derive(Debug, Clone, Copy)]

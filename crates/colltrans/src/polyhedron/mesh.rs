@@ -7,10 +7,10 @@
 use glam::DVec3;
 
 use super::hull::{self, Hull};
-use super::topology::Topology;
 use super::{ConvexPolyhedron, Measure};
 use crate::error::{BuildError, TopologyError};
 use crate::plane::polygon_normal;
+use crate::topology::Topology;
 
 /// How far a mesh is from convex.
 #[derive(Debug, Clone, Copy, PartialEq)]

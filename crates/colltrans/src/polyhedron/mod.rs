@@ -1,24 +1,23 @@
 //! Convex polyhedra, checked once at the door.
 //!
-//! The data's way: points -> [`hull`] (which vertices, which faces) -> [`topology`] (half-edges, no
+//! The data's way: points -> [`hull`] (which vertices, which faces) -> [`crate::topology`] (half-edges, no
 //! coordinates) -> the indices built on both (support points, sections).
 
 mod hull;
 mod measure;
 mod mesh;
 mod support;
-pub(crate) mod topology;
 
 use glam::DVec3;
 
 use crate::error::BuildError;
 use crate::plane::polygon_normal;
 use crate::section::SectionIndex;
+use crate::topology::Topology;
 use hull::Hull;
 pub(crate) use measure::Measure;
 pub use mesh::{ConvexityDefect, convexity_defect};
 use support::SupportIndex;
-use topology::Topology;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
 ///

@@ -1,4 +1,5 @@
-//! From what a solver found to the answer: bounds, witness points and contact features, in the world.
+//! From what a solver found to the answer: bounds, witness points and contact features, in the
+//! world.
 
 use glam::{DVec2, DVec3};
 
@@ -93,7 +94,8 @@ pub(crate) fn separated(
     Separated { certificate, solver, steps }
 }
 
-/// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body frame).
+/// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body
+/// frame).
 fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
     let at = body.vertices()[vertex as usize];
     let in_plane =
@@ -108,7 +110,8 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
             continue;
         }
         edge = edge.or(Some(neighbours[i]));
-        // The face between neighbour `i` and the next one is on the left of the half-edge to the next one.
+        // The face between neighbour `i` and the next one is on the left of the half-edge to the
+        // next one.
         let next = (i + 1) % neighbours.len();
         if !outgoing.is_empty() && next != i && in_plane(neighbours[next]) {
             let face = topology.half_edge(outgoing[next]).face;
@@ -122,7 +125,8 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
     edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
 }
 
-/// Up to [`SAMPLES`] vertices, spread over a face: those near a vertex may lie in a plane that the others do not.
+/// Up to [`SAMPLES`] vertices, spread over a face: those near a vertex may lie in a plane that the
+/// others do not.
 fn spread(vertices: impl ExactSizeIterator<Item = u32>) -> impl Iterator<Item = u32> {
     let stride = vertices.len().div_ceil(SAMPLES);
     vertices.step_by(stride)

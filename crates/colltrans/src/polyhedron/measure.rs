@@ -16,8 +16,8 @@ pub(crate) struct Measure {
     pub(crate) reach: f64,
     /// Centroid of the volume (of the vertices, for a body of lower dimension).
     pub(crate) center: DVec3,
-    /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is `c + L
-    /// (unit ball)`.
+    /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is
+    /// `c + L (unit ball)`.
     pub(crate) factor: DMat3,
     /// Root of the trace of `S`: the ellipsoid's mean size.
     pub(crate) radius: f64,

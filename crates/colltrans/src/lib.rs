@@ -136,3 +136,8 @@ pub use query::{
     Options, cast, cast_with, clearance, contact_range, directional_depth, intersects,
 };
 pub use setting::VertexPair;
+
+/// The example of the README, compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;

@@ -108,15 +108,30 @@ pub fn cast_with(
         Solver::Auto => Solver::Portal,
         solver => solver,
     };
-    Cast {
-        difference: Difference::new(&setting),
-        moving_pose,
-        graze_tolerance: tolerance,
-        solver,
-        steps: Steps::default(),
+    let mut answer = Err(QueryError::NotConverged {
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        tolerance: Difference::noise_of(&setting),
+    });
+    for turn_rad in LATERAL_TURNS_RAD {
+        let cast = Cast {
+            difference: Difference::new(&setting, turn_rad),
+            moving_pose,
+            graze_tolerance: tolerance,
+            solver,
+            steps: Steps::default(),
+        };
+        answer = cast.run();
+        if !matches!(answer, Err(QueryError::NotConverged { .. })) {
+            break;
+        }
     }
-    .run()
+    answer
 }
+
+/// Turns of the lateral axes, tried one after the other: ties that follow each other in a circle in
+/// one frame do not in another.
+const LATERAL_TURNS_RAD: [f64; 3] = [0.0, 0.7, 2.1];
 
 /// All translations along `direction` at which the bodies meet, both ends certified.
 ///

@@ -13,10 +13,9 @@ use std::cmp::Ordering;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::certificate::VertexPair;
 use crate::error::MIN_MAGNITUDE;
 use crate::exact;
-use crate::setting::Setting;
+use crate::setting::{Setting, VertexPair};
 
 /// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
 #[derive(Debug, Clone, Copy)]

@@ -1,16 +1,16 @@
 //! Bodies from meshes: closed, oriented, one sphere, convex.
 //!
-//! Convexity is judged by the *defect*: how deep the surface lies below its convex hull. A face whose vertices lie on one face of the hull
-//! has none. Unlike a face's own plane, depth does not depend on the normals of slivers, which rounding makes
-//! arbitrary.
+//! Convexity is judged by the *defect*: how deep the surface lies below its convex hull. A face
+//! whose vertices lie on one face of the hull has none. Unlike a face's own plane, depth does not
+//! depend on the normals of slivers, which rounding makes arbitrary.
 
 use glam::DVec3;
 
 use super::hull::{self, Hull, Locator};
-use super::topology::Topology;
 use super::{ConvexPolyhedron, Measure};
 use crate::error::{BuildError, TopologyError};
 use crate::plane::polygon_normal;
+use crate::topology::Topology;
 
 /// How far a mesh is from convex.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,8 +23,25 @@ pub struct ConvexityDefect {
 
 /// How deep the surface of a closed mesh lies below its convex hull.
 ///
+/// Vertices in any frame and unit, faces as in [`ConvexPolyhedron::from_mesh`], which refuses a
+/// mesh when this depth exceeds its tolerance.
+///
 /// # Errors
 /// What is wrong with the points, the topology or the orientation.
+///
+/// ```
+/// use colltrans::convexity_defect;
+/// use colltrans::glam::DVec3;
+///
+/// // An octahedron whose top is pushed in: its apex lies below the square of the other four.
+/// let rim = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+/// let vertices = [rim[0], rim[1], rim[2], rim[3], DVec3::Z * -1.0, DVec3::Z * -0.25];
+/// let faces: Vec<[u32; 3]> =
+///     (0..4).flat_map(|i| [[i, (i + 1) % 4, 5], [(i + 1) % 4, i, 4]]).collect();
+/// let defect = convexity_defect(&vertices, &faces)?;
+/// assert!((defect.depth - 0.25).abs() < 1e-12);
+/// # Ok::<(), colltrans::BuildError>(())
+/// ```
 pub fn convexity_defect<F: AsRef<[u32]>>(
     vertices: &[DVec3],
     faces: &[F],
@@ -109,7 +126,8 @@ impl Surface {
         Ok(Self { points: index.iter().map(|&v| vertices[v as usize]).collect(), index, topology })
     }
 
-    /// Refuses a surface that encloses a negative volume, beyond what rounding can make of a flat one.
+    /// Refuses a surface that encloses a negative volume, beyond what rounding can make of a flat
+    /// one.
     fn check_orientation(&self) -> Result<(), BuildError> {
         let signed_volume = Measure::signed_volume(&self.points, &self.topology);
         let extent = self.points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -234,7 +252,8 @@ impl<'a> Depths<'a> {
             return false;
         };
         let face_of = |h: &u32| topology.half_edge(*h).face;
-        // Whichever is shorter: the faces at a vertex (not at an apex) or the vertices of a face (not of a cap).
+        // Whichever is shorter: the faces at a vertex (not at an apex) or the vertices of a face
+        // (not of a cap).
         let contains = |f: u32, v: u32| {
             if topology.outgoing(v).len() <= topology.face(f).len() {
                 topology.outgoing(v).iter().any(|h| face_of(h) == f)

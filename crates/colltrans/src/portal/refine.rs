@@ -10,11 +10,11 @@ use glam::{DVec2, DVec3};
 use super::enclose::{Enclosure, Guide, OneSide, complete};
 use super::graze::{Overlap, overlap};
 use super::{Portal, Tangent};
-use crate::certificate::VertexPair;
 use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 use crate::plane::triangle_normal;
+use crate::setting::VertexPair;
 
 /// The lowest face on the line.
 #[derive(Debug, Clone, Copy)]

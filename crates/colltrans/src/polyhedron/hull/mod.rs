@@ -15,8 +15,8 @@ mod violation;
 
 use glam::DVec3;
 
-use super::topology::Topology;
 use crate::error::{BuildError, TopologyError, in_exact_range};
+use crate::topology::Topology;
 use quickhull::Simplicial;
 pub(super) use violation::Locator;
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::quickhull::Simplicial;
 use crate::plane::polygon_normal;
-use crate::polyhedron::topology::Topology;
+use crate::topology::Topology;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to face.
 ///

@@ -366,7 +366,7 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     });
     let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
     for (i, polygon) in polygons.iter().enumerate() {
-        let least = polygon.iter().map(|c| c.h()).fold(f64::INFINITY, f64::min);
+        let least = polygon.iter().map(super::side::Crossing::h).fold(f64::INFINITY, f64::min);
         assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
     }
     let edges = |i: usize| {
@@ -377,8 +377,8 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     let inside =
         |i: usize, w: glam::DVec2| edges(i).all(|(s, t)| (t - s).perp_dot(w - s) >= -1e-12);
     let mut least = f64::INFINITY;
-    for i in 0..2 {
-        for c in &polygons[i] {
+    for (i, polygon) in polygons.iter().enumerate() {
+        for c in polygon {
             if inside(1 - i, c.w) {
                 least = least.min(c.h());
             }

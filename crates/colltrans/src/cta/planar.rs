@@ -12,6 +12,9 @@ use glam::DVec2;
 use super::ROUNDING;
 use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
 
+/// Steps from a guess of the edges that cross before the problem is solved from scratch.
+const STEPS_NEAR: usize = 8;
+
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Planar {
@@ -33,12 +36,61 @@ struct Problem<'a> {
 /// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is known not to lie below height `known`.
 /// `None` if rounding errors of the mesh hide a section.
 pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
-    let sections = [sides[0].section(levels[0])?, sides[1].section(levels[1])?];
+    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
     let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
     let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
     let problem = Problem { sections, upper, h0: bottoms[upper].vertex.h() };
     let shortcut = if known > problem.h0 { problem.slide_from(known, &bottoms) } else { None };
     shortcut.or_else(|| problem.solve(&bottoms))
+}
+
+/// A guess of the two edges that cross.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    /// A crossing mesh edge of each body, as the half-edge that runs upwards.
+    pub(super) ups: [u32; 2],
+    /// The body on the right.
+    pub(super) right: usize,
+}
+
+/// The answer if it is a crossing of two edges, few steps from the guess. It is certain, however it was found: where the edges
+/// of facing chains cross while the gap falls, nothing in common lies below.
+pub(super) fn solve_near(sides: &[Side; 2], levels: [f64; 2], near: &Near) -> Option<Planar> {
+    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
+    let mut chains = [Chain::Right; 2];
+    chains[near.right] = Chain::Left;
+    let mut edges = [
+        sections[0].edge_at(chains[0], near.ups[0])?,
+        sections[1].edge_at(chains[1], near.ups[1])?,
+    ];
+    for _ in 0..STEPS_NEAR {
+        if !closes(&edges, near.right) {
+            return None;
+        }
+        let contact = crossing_of(&edges);
+        let mut settled = true;
+        for (body, edge) in edges.iter_mut().enumerate() {
+            let (section, chain) = (&sections[body], chains[body]);
+            if edge.direction.dot(contact - edge.high.w) > 0.0 {
+                *edge = section.proceed(chain, edge)?;
+                settled = false;
+            } else if edge.direction.dot(contact - edge.low.w) < 0.0 {
+                *edge = section.retreat(chain, edge)?;
+                settled = false;
+            }
+        }
+        if settled {
+            return Some(Planar::Edges { edges, contact });
+        }
+    }
+    None
+}
+
+/// Whether the gap between facing chains falls along these edges.
+fn closes(edges: &[Bracket; 2], right: usize) -> bool {
+    let [r, s] = [&edges[1 - right].direction, &edges[right].direction];
+    let sine = r.perp_dot(*s);
+    sine < 0.0 && sine * sine > ROUNDING * ROUNDING * r.length_squared() * s.length_squared()
 }
 
 impl Problem<'_> {
@@ -89,7 +141,7 @@ impl Problem<'_> {
             let edges = [first, second];
             let slide = Slide { problem: self, chains, right };
             if slide.gap(&edges, known) > 0.0 {
-                return slide.closes(&edges).then(|| slide.solve(&edges, known)).flatten();
+                return closes(&edges, right).then(|| slide.solve(&edges, known)).flatten();
             }
         }
         None
@@ -121,9 +173,13 @@ impl Problem<'_> {
 
 /// Two edges that cross, and where.
 fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
-    let [r, s] = edges;
+    Planar::Edges { edges: *edges, contact: crossing_of(edges) }
+}
+
+/// Where the lines of two edges cross.
+fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
     let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
-    Planar::Edges { edges: *edges, contact: r.low.w + r.direction * step }
+    r.low.w + r.direction * step
 }
 
 /// Newton's method up two chains that face each other.
@@ -141,7 +197,7 @@ impl Slide<'_, '_> {
         let mut edges = *edges;
         let mut h = start;
         for _ in 0..self.step_limit() {
-            if !self.closes(&edges) {
+            if !closes(&edges, self.right) {
                 return self.separated_at_least_gap(&edges);
             }
             // The edge that ends first decides whether they have met, without a quotient.
@@ -177,13 +233,6 @@ impl Slide<'_, '_> {
             }
         }
         None
-    }
-
-    /// Whether the gap falls along these edges.
-    fn closes(&self, edges: &[Bracket; 2]) -> bool {
-        let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
-        let sine = r.perp_dot(*s);
-        sine < 0.0 && sine * sine > ROUNDING * ROUNDING * r.length_squared() * s.length_squared()
     }
 
     fn step_limit(&self) -> usize {
@@ -232,7 +281,7 @@ impl Slide<'_, '_> {
             if let Some(below) = below {
                 candidate[body] = below;
             }
-            if below.is_none() || self.closes(&candidate) {
+            if below.is_none() || closes(&candidate, self.right) {
                 return Some(self.separated(&edges[1 - body], edges.map(|edge| edge.low)));
             }
             edges = candidate;

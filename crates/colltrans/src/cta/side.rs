@@ -5,7 +5,7 @@
 //! to its highest one where `g` is smaller, the *right* chain where `g` is greater. The *drift* of a crossing
 //! edge is how its section vertex moves per unit of level.
 
-use std::cell::Cell;
+use std::cell::OnceCell;
 
 use glam::{DVec2, DVec3};
 
@@ -17,6 +17,9 @@ use crate::section::{
 
 /// Newton's method walks so far up a chain before it searches the snapshot.
 const STEPS_BEFORE_SEARCH: usize = 2;
+
+/// Edges of a vertex that are compared one by one.
+const EDGES_TRIED: usize = 16;
 
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]
@@ -193,14 +196,28 @@ impl<'a> Side<'a> {
         any - self.shadow[0].length() * self.sections.diameter
     }
 
-    /// The section at level `x` of the range; `None` if rounding leaves the body no sections.
-    pub(super) fn section(&self, x: f64) -> Option<Section<'_>> {
-        let snapshot = self.sections.snapshot(x);
-        if snapshot.is_empty() {
+    /// The section at level `x` of the range.
+    pub(super) fn section(&self, x: f64) -> Section<'_> {
+        Section { side: self, lowest: OnceCell::new(), highest: OnceCell::new(), x }
+    }
+
+    /// The mesh edge at a support vertex that stays closest to the supporting plane with this normal (body frame), as the half-edge
+    /// that runs upwards, and the level of its middle. `None` if the edge is level or the vertex has too many edges to try each.
+    pub(super) fn edge_along(&self, vertex: u32, normal: DVec3) -> Option<(u32, f64)> {
+        let here = self.vertices[vertex as usize];
+        let neighbours = self.topology.neighbours(vertex);
+        if neighbours.len() > EDGES_TRIED {
             return None;
         }
-        let lowest = snapshot.extreme(&self.height, 1.0);
-        Some(Section { side: self, snapshot, lowest, highest: Cell::new(None), x })
+        let (mut nearest, mut least) = (0, f64::INFINITY);
+        for (k, &neighbour) in neighbours.iter().enumerate() {
+            let depth = normal.dot(self.vertices[neighbour as usize] - here).abs();
+            (nearest, least) = if depth < least { (k, depth) } else { (nearest, least) };
+        }
+        let out = *self.topology.outgoing(vertex).get(nearest)?;
+        let levels = [self.axis.dot(here), self.level(neighbours[nearest])];
+        let up = if levels[1] > levels[0] { out } else { self.topology.half_edge(out).twin };
+        (levels[0] != levels[1]).then_some((up, f64::midpoint(levels[0], levels[1])))
     }
 
     pub(super) fn level(&self, vertex: u32) -> f64 {
@@ -228,14 +245,22 @@ impl<'a> Side<'a> {
 #[derive(Debug)]
 pub(super) struct Section<'a> {
     side: &'a Side<'a>,
-    snapshot: Snapshot<'a>,
-    /// Where the snapshot is lowest and, once asked for, where it is highest.
-    lowest: usize,
-    highest: Cell<Option<usize>>,
+    /// Once asked for: the nearest snapshot and its lowest entry. `None` if rounding leaves the body no sections.
+    lowest: OnceCell<Option<(Snapshot<'a>, usize)>>,
+    /// Once asked for: its highest entry.
+    highest: OnceCell<usize>,
     x: f64,
 }
 
-impl Section<'_> {
+impl<'a> Section<'a> {
+    fn lowest(&self) -> Option<(Snapshot<'a>, usize)> {
+        *self.lowest.get_or_init(|| {
+            let snapshot = self.side.sections.snapshot(self.x);
+            let lowest = || snapshot.extreme(&self.side.height, 1.0);
+            (!snapshot.is_empty()).then(|| (snapshot, lowest()))
+        })
+    }
+
     /// More steps along one section than this are a walk in circles.
     pub(super) fn step_limit(&self) -> usize {
         self.side.topology.edge_count()
@@ -312,7 +337,8 @@ impl Section<'_> {
 
     /// The lowest vertex.
     pub(super) fn bottom(&self) -> Option<Bottom> {
-        let up = self.climb(self.snapshot.up(self.lowest), |h| h)?;
+        let (snapshot, lowest) = self.lowest()?;
+        let up = self.climb(snapshot.up(lowest), |h| h)?;
         let mut vertex = self.crossing(up);
         let mut left = self.direction(Chain::Left, &vertex);
         let mut right = self.direction(Chain::Right, &vertex);
@@ -342,11 +368,11 @@ impl Section<'_> {
     /// The edge of a chain at height `h`, which is not below the bottom.
     pub(super) fn locate(&self, chain: Chain, h: f64) -> Option<Located> {
         let height = &self.side.height;
-        let highest = self.highest.get().unwrap_or_else(|| self.snapshot.extreme(height, -1.0));
-        self.highest.set(Some(highest));
+        let (snapshot, lowest) = self.lowest()?;
+        let highest = *self.highest.get_or_init(|| snapshot.extreme(height, -1.0));
         let turn = self.side.turn_up(chain);
-        let index = self.snapshot.locate(height, (self.lowest, highest), turn, (h, self.x));
-        let up = self.climb(self.snapshot.up(index), |height| (height - h).abs())?;
+        let index = snapshot.locate(height, (lowest, highest), turn, (h, self.x));
+        let up = self.climb(snapshot.up(index), |height| (height - h).abs())?;
         let start = self.crossing(up);
         let mut bracket = if start.h() <= h {
             Bracket::new(start, self.up(chain, &start))
@@ -366,6 +392,17 @@ impl Section<'_> {
             }
         }
         Some(self.walk(chain, bracket, h, self.step_limit()))
+    }
+
+    /// An edge of the chain at the crossing mesh edge `up`, if that lies on it.
+    pub(super) fn edge_at(&self, chain: Chain, up: u32) -> Option<Bracket> {
+        let start = self.crossing(up);
+        let above = Bracket::new(start, self.up(chain, &start));
+        if chain.ascends(above.direction) {
+            return Some(above);
+        }
+        let below = Bracket::new(self.down(chain, &start), start);
+        chain.ascends(below.direction).then_some(below)
     }
 
     /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite chain.

@@ -47,12 +47,9 @@ impl Start {
         Self { normal, near: None, slope_per_shadow }
     }
 
-    /// From a normal (shadow frame) and a pair that another solver found.
-    pub(crate) fn from_guess(difference: &Difference, normal: DVec3, near: VertexPair) -> Self {
-        let (_, [a, b]) = difference.ellipsoids();
-        let normal = tempered(normal);
-        let (_, slope_per_shadow) = response([&a, &b], normal);
-        Self { normal, near: Some(near), slope_per_shadow }
+    /// With a normal (shadow frame) and a pair that another solver found.
+    pub(crate) fn guided(self, normal: DVec3, near: VertexPair) -> Self {
+        Self { normal: tempered(normal), near: Some(near), ..self }
     }
 }
 

@@ -221,6 +221,7 @@ impl Cast<'_> {
         let start = (!seems_apart).then(|| CtaStart {
             normal: self.difference.axes * ellipsoids.normal,
             supports: [support.pair.moving, support.pair.fixed],
+            touching: ellipsoids.touching(&self.difference),
         });
         let narrowed = cta::minimise(setting, &CtaOptions { start, ..CtaOptions::default() });
         self.steps.planar_problems += narrowed.planar_problems;

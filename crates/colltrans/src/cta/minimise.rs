@@ -19,6 +19,8 @@ pub(crate) struct CtaStart {
     pub(crate) normal: DVec3,
     /// The support points of P along it and of Q against it, as vertices.
     pub(crate) supports: [u32; 2],
+    /// Guesses of the points of contact, in the frames of P and of Q.
+    pub(crate) touching: [DVec3; 2],
 }
 
 /// Choices of a minimisation.
@@ -150,27 +152,24 @@ impl<'a> Query<'a> {
         search.result()
     }
 
-    /// From the supporting plane of a start: the levels through the mesh edges at its support points that are nearest to it.
+    /// From the supporting plane of a start, at the levels of its touching points.
     fn begin(&self, setting: &Setting, start: &CtaStart) -> Begin {
         let normal = start.normal / start.normal.dot(setting.unit);
         let p = setting.moving_matrix * setting.moving.vertices()[start.supports[0] as usize];
         let q = setting.fixed_matrix * setting.fixed.vertices()[start.supports[1] as usize];
         let t = normal.dot(q + setting.offset - p) - self.constant;
-        let in_body = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        let edges =
-            [0, 1].map(|body| self.sides[body].edge_along(start.supports[body], in_body[body]));
-        let levels = [0, 1].map(|body| match edges[body] {
-            Some((_, level)) => level,
-            None => self.sides[body].level(start.supports[body]),
+        let levels = [0, 1].map(|body| {
+            let [low, high] = self.sides[body].range();
+            let margin = MARGIN * (high - low);
+            self.sides[body].level_of(start.touching[body]).clamp(low + margin, high - margin)
         });
-        let near = match edges {
-            // P ends, and Q begins, towards the normal.
-            [Some((p, _)), Some((q, _))] => {
-                let right = usize::from(normal.dot(self.frame.shadow[1]) > 0.0);
-                Some(Near { ups: [p, q], right })
-            }
-            _ => None,
+        let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+        let edge = |body: usize| {
+            self.sides[body].edge_near(start.supports[body], normals[body], levels[body])
         };
+        // P ends, and Q begins, towards the normal.
+        let right = usize::from(normal.dot(self.frame.shadow[1]) > 0.0);
+        let near = edge(0).zip(edge(1)).map(|(p, q)| Near { ups: [p, q], right });
         Begin { floor: Piece::constant(t, normal), at: DVec2::from_array(levels), near }
     }
 }
@@ -184,8 +183,8 @@ struct Begin {
     near: Option<Near>,
 }
 
-/// How near to the ends of the levels a search may start, in half ranges from their middle.
-const LARGEST_START: f64 = 0.99;
+/// A search does not start nearer to the ends of the levels than this share of their range: a section has to have an area.
+const MARGIN: f64 = 0.005;
 
 /// The state of a minimisation; levels are relative to `origin`.
 struct Search<'q, 'a> {
@@ -206,11 +205,7 @@ struct Search<'q, 'a> {
 
 impl Search<'_, '_> {
     fn run(&mut self, start: DVec2, max_steps: u32, gap: f64) {
-        // Within the body's levels: a section has to have an area.
-        let mut at = start.clamp(-LARGEST_START * self.half, LARGEST_START * self.half);
-        if at != start {
-            self.near = None;
-        }
+        let mut at = start;
         for _ in 0..max_steps {
             if !self.step(at) || self.upper - self.bound.t <= gap {
                 break;

@@ -21,6 +21,9 @@ const STEPS_BEFORE_SEARCH: usize = 2;
 /// Edges of a vertex that are compared one by one.
 const EDGES_TRIED: usize = 16;
 
+/// Vertices on the way from a support vertex to a level.
+const VERTICES_TRIED: usize = 4;
+
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
@@ -201,27 +204,42 @@ impl<'a> Side<'a> {
         Section { side: self, lowest: OnceCell::new(), highest: OnceCell::new(), x }
     }
 
-    /// The mesh edge at a support vertex that stays closest to the supporting plane with this normal (body frame), as the half-edge
-    /// that runs upwards, and the level of its middle. `None` if the edge is level or the vertex has too many edges to try each.
-    pub(super) fn edge_along(&self, vertex: u32, normal: DVec3) -> Option<(u32, f64)> {
-        let here = self.vertices[vertex as usize];
-        let neighbours = self.topology.neighbours(vertex);
-        if neighbours.len() > EDGES_TRIED {
-            return None;
+    /// A mesh edge that crosses level `x`, as the half-edge that runs upwards: the way there from a support vertex leads
+    /// along edges that stay close to the supporting plane with this normal (body frame). `None` if it is long.
+    pub(super) fn edge_near(&self, support: u32, normal: DVec3, x: f64) -> Option<u32> {
+        let mut vertex = support;
+        let upwards = self.level(vertex) <= x;
+        for _ in 0..VERTICES_TRIED {
+            let here = self.vertices[vertex as usize];
+            let neighbours = self.topology.neighbours(vertex);
+            if neighbours.len() > EDGES_TRIED {
+                return None;
+            }
+            let (mut best, mut least) = (None, f64::INFINITY);
+            for (k, &neighbour) in neighbours.iter().enumerate() {
+                let edge = self.vertices[neighbour as usize] - here;
+                let rise = self.axis.dot(edge);
+                let depth = normal.dot(edge).abs() / rise.abs();
+                let better = (rise > 0.0) == upwards && depth < least;
+                (best, least) = if better { (Some(k), depth) } else { (best, least) };
+            }
+            let best = best?;
+            if (self.level(neighbours[best]) <= x) != upwards {
+                let out = self.topology.outgoing(vertex)[best];
+                return Some(if upwards { out } else { self.topology.half_edge(out).twin });
+            }
+            vertex = neighbours[best];
         }
-        let (mut nearest, mut least) = (0, f64::INFINITY);
-        for (k, &neighbour) in neighbours.iter().enumerate() {
-            let depth = normal.dot(self.vertices[neighbour as usize] - here).abs();
-            (nearest, least) = if depth < least { (k, depth) } else { (nearest, least) };
-        }
-        let out = *self.topology.outgoing(vertex).get(nearest)?;
-        let levels = [self.axis.dot(here), self.level(neighbours[nearest])];
-        let up = if levels[1] > levels[0] { out } else { self.topology.half_edge(out).twin };
-        (levels[0] != levels[1]).then_some((up, f64::midpoint(levels[0], levels[1])))
+        None
     }
 
     pub(super) fn level(&self, vertex: u32) -> f64 {
-        self.axis.dot(self.vertices[vertex as usize])
+        self.level_of(self.vertices[vertex as usize])
+    }
+
+    /// The level of a point of the body frame.
+    pub(super) fn level_of(&self, point: DVec3) -> f64 {
+        self.axis.dot(point)
     }
 
     #[inline]

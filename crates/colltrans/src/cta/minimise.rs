@@ -138,7 +138,6 @@ impl<'a> Query<'a> {
         let mut search = Search {
             query: self,
             origin,
-            half,
             region: Region::rectangle(-half, half),
             bound: LowerBound::new(-half, half, begin.floor),
             upper: f64::INFINITY,
@@ -167,8 +166,9 @@ impl<'a> Query<'a> {
         let edge = |body: usize| {
             self.sides[body].edge_near(start.supports[body], normals[body], levels[body])
         };
-        // P ends, and Q begins, towards the normal.
-        let right = usize::from(normal.dot(self.frame.shadow[1]) > 0.0);
+        // In their sections P ends, and Q begins, towards what the normal has besides the axes.
+        let in_section = normal - self.frame.axes[0];
+        let right = usize::from(in_section.dot(self.frame.shadow[1]) > 0.0);
         let near = edge(0).zip(edge(1)).map(|(p, q)| Near { ups: [p, q], right });
         Begin { floor: Piece::constant(t, normal), at: DVec2::from_array(levels), near }
     }
@@ -190,7 +190,6 @@ const MARGIN: f64 = 0.005;
 struct Search<'q, 'a> {
     query: &'q Query<'a>,
     origin: DVec2,
-    half: DVec2,
     region: Region,
     bound: LowerBound,
     upper: f64,

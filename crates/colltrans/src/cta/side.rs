@@ -21,6 +21,9 @@ const STEPS_BEFORE_SEARCH: usize = 2;
 /// Edges of a vertex that are compared one by one.
 const EDGES_TRIED: usize = 16;
 
+/// Edges of the opposite chain that are passed on the way to the bottom.
+const STEPS_TO_CHAIN: usize = 4;
+
 /// Vertices on the way from a support vertex to a level.
 const VERTICES_TRIED: usize = 4;
 
@@ -412,15 +415,17 @@ impl<'a> Section<'a> {
         Some(self.walk(chain, bracket, h, self.step_limit()))
     }
 
-    /// An edge of the chain at the crossing mesh edge `up`, if that lies on it.
+    /// An edge of the chain at or near the crossing mesh edge `up`: also from the other side of the bottom.
     pub(super) fn edge_at(&self, chain: Chain, up: u32) -> Option<Bracket> {
-        let start = self.crossing(up);
-        let above = Bracket::new(start, self.up(chain, &start));
-        if chain.ascends(above.direction) {
-            return Some(above);
+        let mut low = self.crossing(up);
+        for _ in 0..STEPS_TO_CHAIN {
+            let above = Bracket::new(low, self.up(chain, &low));
+            if chain.ascends(above.direction) {
+                return Some(above);
+            }
+            low = above.high;
         }
-        let below = Bracket::new(self.down(chain, &start), start);
-        chain.ascends(below.direction).then_some(below)
+        None
     }
 
     /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite chain.

@@ -6,7 +6,7 @@ use crate::exact::accurate_cross;
 
 /// Sine of the angle below which the product of two edges is formed without cancellation: above, it
 /// loses two bits at most.
-const NEARLY_PARALLEL: f64 = 0.25;
+const NEARLY_PARALLEL: f64 = 0.1;
 
 /// Twice the area times the unit normal of the counter-clockwise triangle `a b c`.
 ///

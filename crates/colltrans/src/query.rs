@@ -108,11 +108,6 @@ pub fn cast_with(
         Solver::Auto => Solver::Portal,
         solver => solver,
     };
-    let mut answer = Err(QueryError::NotConverged {
-        lower: f64::NEG_INFINITY,
-        upper: f64::INFINITY,
-        tolerance: Difference::noise_of(&setting),
-    });
     for turn_rad in LATERAL_TURNS_RAD {
         let cast = Cast {
             difference: Difference::new(&setting, turn_rad),
@@ -121,12 +116,16 @@ pub fn cast_with(
             solver,
             steps: Steps::default(),
         };
-        answer = cast.run();
-        if !matches!(answer, Err(QueryError::NotConverged { .. })) {
-            break;
+        match cast.run() {
+            Err(QueryError::NotConverged { .. }) => {}
+            answer => return answer,
         }
     }
-    answer
+    Err(QueryError::NotConverged {
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        tolerance: Difference::noise_of(&setting),
+    })
 }
 
 /// Turns of the lateral axes, tried one after the other: ties that follow each other in a circle in

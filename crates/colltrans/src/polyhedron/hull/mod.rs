@@ -18,6 +18,7 @@ use glam::DVec3;
 use crate::error::{BuildError, TopologyError, in_exact_range};
 use crate::topology::Topology;
 use quickhull::Simplicial;
+pub(super) use violation::Locator;
 
 /// Which input points are vertices, and the faces over them.
 #[derive(Debug, Clone)]

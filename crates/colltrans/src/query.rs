@@ -343,28 +343,29 @@ impl Cast<'_> {
             return Start::from_ellipsoids(&self.difference);
         }
         let ellipsoids = Start::from_ellipsoids(&self.difference);
-        let start = (ellipsoids.normal.z > 0.0).then(|| {
-            self.steps.supports += 1;
-            let VertexPair { moving, fixed } = self.difference.support(ellipsoids.normal).pair;
-            let normal = self.difference.axes * ellipsoids.normal;
-            CtaStart { normal, supports: [moving, fixed] }
+        self.steps.supports += 1;
+        let support = self.difference.support(ellipsoids.normal);
+        let seems_apart = ellipsoids.normal.z == 0.0;
+        if seems_apart && ellipsoids.normal.dot(support.at) > 0.0 {
+            return ellipsoids.guided(ellipsoids.normal, support.pair);
+        }
+        let start = (!seems_apart).then(|| CtaStart {
+            normal: self.difference.axes * ellipsoids.normal,
+            supports: [support.pair.moving, support.pair.fixed],
+            touching: ellipsoids.touching(&self.difference),
         });
         let narrowed = cta::minimise(setting, &CtaOptions { start, ..CtaOptions::default() });
         self.steps.planar_problems += narrowed.planar_problems;
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair { moving: moving[0], fixed: fixed[0] };
+        let in_shadow = |normal| self.difference.axes.transpose() * normal;
         match narrowed.guess {
-            Guess::Contact { normal } => self.guess(normal, near),
+            Guess::Contact { normal } => ellipsoids.guided(in_shadow(normal), near),
             Guess::Separation { direction } => {
-                let lateral = self.difference.axes.transpose() * direction;
-                Start::from_guess(&self.difference, lateral.truncate().extend(0.0), near)
+                ellipsoids.guided(in_shadow(direction).with_z(0.0), near)
             }
-            Guess::Nothing => Start::from_ellipsoids(&self.difference),
+            Guess::Nothing => ellipsoids,
         }
-    }
-
-    fn guess(&self, normal: DVec3, near: VertexPair) -> Start {
-        Start::from_guess(&self.difference, self.difference.axes.transpose() * normal, near)
     }
 
     fn contact_or_grazing(

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::MAX_STEPS;
 use super::bound::{LowerBound, Progress};
 use super::cell::{Affine, Frame, Piece};
-use super::planar::{self, Planar};
+use super::planar::{self, Near, Planar};
 use super::region::Region;
 use super::side::{Crossing, Side};
 use crate::polyhedron::ConvexPolyhedron;
@@ -19,6 +19,8 @@ pub(crate) struct CtaStart {
     pub(crate) normal: DVec3,
     /// The support points of P along it and of Q against it, as vertices.
     pub(crate) supports: [u32; 2],
+    /// Guesses of the points of contact, in the frames of P and of Q.
+    pub(crate) touching: [DVec3; 2],
 }
 
 /// Choices of a minimisation.
@@ -34,7 +36,7 @@ pub(crate) struct CtaOptions {
 
 impl Default for CtaOptions {
     fn default() -> Self {
-        Self { start: None, max_steps: MAX_STEPS, gap: 5e-3 }
+        Self { start: None, max_steps: MAX_STEPS, gap: 0.2 }
     }
 }
 
@@ -125,48 +127,69 @@ impl<'a> Query<'a> {
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
         let extent =
             2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
-        let start = options.start.map(|start| self.plane_at(setting, &start));
-        let (floor, at) = start.unwrap_or_else(|| {
-            let least = origin.y / self.frame.along[1] - origin.x / self.frame.along[0]
-                + self.sides[0].least_height()
-                - extent;
-            (Piece::constant(least, DVec3::ZERO), origin)
-        });
+        let begin = match &options.start {
+            Some(start) => self.begin(setting, start),
+            None => {
+                let base = self.frame.base(origin.to_array());
+                let least = base + self.sides[0].least_height() - extent;
+                Begin { floor: Piece::constant(least, DVec3::ZERO), at: origin, near: None }
+            }
+        };
         let mut search = Search {
             query: self,
             origin,
-            half,
             region: Region::rectangle(-half, half),
-            bound: LowerBound::new(-half, half, floor),
+            bound: LowerBound::new(-half, half, begin.floor),
             upper: f64::INFINITY,
             best: None,
             last_separation: None,
             contradiction: None,
             planar_problems: 0,
+            near: begin.near,
         };
-        search.run(at - origin, options.max_steps.min(MAX_STEPS), options.gap * extent);
+        search.run(begin.at - origin, options.max_steps.min(MAX_STEPS), options.gap * extent);
         search.result()
     }
 
-    /// The supporting plane of a start as a piece, and the levels of its support points.
-    fn plane_at(&self, setting: &Setting, start: &CtaStart) -> (Piece, DVec2) {
+    /// From the supporting plane of a start, at the levels of its touching points.
+    fn begin(&self, setting: &Setting, start: &CtaStart) -> Begin {
         let normal = start.normal / start.normal.dot(setting.unit);
         let p = setting.moving_matrix * setting.moving.vertices()[start.supports[0] as usize];
         let q = setting.fixed_matrix * setting.fixed.vertices()[start.supports[1] as usize];
         let t = normal.dot(q + setting.offset - p) - self.constant;
-        let levels = [0, 1].map(|body| self.sides[body].level(start.supports[body]));
-        (Piece::constant(t, normal), DVec2::from_array(levels))
+        let levels = [0, 1].map(|body| {
+            let [low, high] = self.sides[body].range();
+            let margin = MARGIN * (high - low);
+            self.sides[body].level_of(start.touching[body]).clamp(low + margin, high - margin)
+        });
+        let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+        let edge = |body: usize| {
+            self.sides[body].edge_near(start.supports[body], normals[body], levels[body])
+        };
+        // In their sections P ends, and Q begins, towards what the normal has besides the axes.
+        let in_section = normal - self.frame.axes[0];
+        let right = usize::from(in_section.dot(self.frame.shadow[1]) > 0.0);
+        let near = edge(0).zip(edge(1)).map(|(p, q)| Near { ups: [p, q], right });
+        Begin { floor: Piece::constant(t, normal), at: DVec2::from_array(levels), near }
     }
 }
 
-/// How near to the ends of the levels a search may start, in half ranges from their middle.
-const LARGEST_START: f64 = 0.99;
+/// What a minimisation begins with.
+struct Begin {
+    floor: Piece,
+    /// The first levels.
+    at: DVec2,
+    /// A guess of the edges that cross there.
+    near: Option<Near>,
+}
+
+/// A search does not start nearer to the ends of the levels than this share of their range: a section has to have an area.
+const MARGIN: f64 = 0.005;
 
 /// The state of a minimisation; levels are relative to `origin`.
 struct Search<'q, 'a> {
     query: &'q Query<'a>,
     origin: DVec2,
-    half: DVec2,
     region: Region,
     bound: LowerBound,
     upper: f64,
@@ -175,12 +198,13 @@ struct Search<'q, 'a> {
     last_separation: Option<(Features, DVec3)>,
     contradiction: Option<DVec3>,
     planar_problems: u32,
+    /// A guess for the first step.
+    near: Option<Near>,
 }
 
 impl Search<'_, '_> {
     fn run(&mut self, start: DVec2, max_steps: u32, gap: f64) {
-        // Within the body's levels: a section has to have an area.
-        let mut at = start.clamp(-LARGEST_START * self.half, LARGEST_START * self.half);
+        let mut at = start;
         for _ in 0..max_steps {
             if !self.step(at) || self.upper - self.bound.t <= gap {
                 break;
@@ -196,8 +220,7 @@ impl Search<'_, '_> {
     fn step(&mut self, at: DVec2) -> bool {
         let levels = (self.origin + at).to_array();
         self.planar_problems += 1;
-        let known = self.bound.below(at) - self.query.frame.base(levels);
-        let Some(answer) = planar::solve(&self.query.sides, levels, known) else { return false };
+        let Some(answer) = self.solve(at, levels) else { return false };
         let local = answer.piece(&self.query.frame, levels);
         let bound = Affine {
             value: local.bound.value - local.bound.gradient.dot(at),
@@ -220,6 +243,15 @@ impl Search<'_, '_> {
             return false;
         }
         true
+    }
+
+    fn solve(&mut self, at: DVec2, levels: [f64; 2]) -> Option<Planar> {
+        let sides = &self.query.sides;
+        let near = self.near.take();
+        near.and_then(|near| planar::solve_near(sides, levels, &near)).or_else(|| {
+            let known = self.bound.below(at) - self.query.frame.base(levels);
+            planar::solve(sides, levels, known)
+        })
     }
 
     fn result(&self) -> Narrowed {

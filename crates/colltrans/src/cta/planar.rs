@@ -12,6 +12,9 @@ use glam::DVec2;
 use super::ROUNDING;
 use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
 
+/// Steps from a guess of the edges that cross before the problem is solved from scratch.
+const STEPS_NEAR: usize = 8;
+
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Planar {
@@ -33,12 +36,31 @@ struct Problem<'a> {
 /// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is known not to lie below height `known`.
 /// `None` if rounding errors of the mesh hide a section.
 pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
-    let sections = [sides[0].section(levels[0])?, sides[1].section(levels[1])?];
+    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
     let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
     let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
     let problem = Problem { sections, upper, h0: bottoms[upper].vertex.h() };
     let shortcut = if known > problem.h0 { problem.slide_from(known, &bottoms) } else { None };
     shortcut.or_else(|| problem.solve(&bottoms))
+}
+
+/// A guess of the two edges that cross.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    /// A crossing mesh edge of each body, as the half-edge that runs upwards.
+    pub(super) ups: [u32; 2],
+    /// The body on the right.
+    pub(super) right: usize,
+}
+
+/// The answer if it is a crossing of two edges or a separating line, few steps from the guess. It is certain, however it was
+/// found: where the edges of facing chains cross while the gap falls, nothing in common lies below, and where it is least
+/// and positive, nothing in common is anywhere.
+pub(super) fn solve_near(sides: &[Side; 2], levels: [f64; 2], near: &Near) -> Option<Planar> {
+    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
+    let slide = Slide::new(&sections, near.right);
+    let edge = |body: usize| sections[body].edge_at(slide.chains[body], near.ups[body]);
+    slide.settle([edge(0)?, edge(1)?])
 }
 
 impl Problem<'_> {
@@ -82,12 +104,11 @@ impl Problem<'_> {
     fn slide_from(&self, known: f64, bottoms: &[Bottom; 2]) -> Option<Planar> {
         let likely = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
         for right in [likely, 1 - likely] {
-            let mut chains = [Chain::Right; 2];
-            chains[right] = Chain::Left;
-            let Located::Edge(first) = self.sections[0].locate(chains[0], known)? else { break };
-            let Located::Edge(second) = self.sections[1].locate(chains[1], known)? else { break };
+            let slide = Slide::new(&self.sections, right);
+            let locate = |body: usize| self.sections[body].locate(slide.chains[body], known);
+            let Located::Edge(first) = locate(0)? else { break };
+            let Located::Edge(second) = locate(1)? else { break };
             let edges = [first, second];
-            let slide = Slide { problem: self, chains, right };
             if slide.gap(&edges, known) > 0.0 {
                 return slide.closes(&edges).then(|| slide.solve(&edges, known)).flatten();
             }
@@ -109,40 +130,99 @@ impl Problem<'_> {
     fn slide(&self, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
         let facing = chain.opposite();
         let first = Bracket::new(end, self.sections[self.upper].up(facing, &end));
-        Slide {
-            problem: self,
-            chains: self.by_body(facing, chain),
-            // The body that shows its left chain is the one on the right.
-            right: if chain == Chain::Left { 1 - self.upper } else { self.upper },
-        }
-        .solve(&self.by_body(first, edge), self.h0)
+        // The body that shows its left chain is the one on the right.
+        let right = if chain == Chain::Left { 1 - self.upper } else { self.upper };
+        Slide::new(&self.sections, right).solve(&self.by_body(first, edge), self.h0)
     }
 }
 
 /// Two edges that cross, and where.
 fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
-    let [r, s] = edges;
+    Planar::Edges { edges: *edges, contact: crossing_of(edges) }
+}
+
+/// Where the lines of two edges cross.
+fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
     let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
-    Planar::Edges { edges: *edges, contact: r.low.w + r.direction * step }
+    r.low.w + r.direction * step
 }
 
 /// Newton's method up two chains that face each other.
 struct Slide<'a, 'b> {
-    problem: &'a Problem<'b>,
+    sections: &'a [Section<'b>; 2],
     /// The chain that each body shows to the other.
     chains: [Chain; 2],
     /// The body on the right.
     right: usize,
 }
 
-impl Slide<'_, '_> {
+impl<'a, 'b> Slide<'a, 'b> {
+    fn new(sections: &'a [Section<'b>; 2], right: usize) -> Self {
+        let mut chains = [Chain::Right; 2];
+        chains[right] = Chain::Left;
+        Self { sections, chains, right }
+    }
+
+    /// Up or down the chains to where they cross or the gap is least, if that is few steps away.
+    fn settle(&self, mut edges: [Bracket; 2]) -> Option<Planar> {
+        for _ in 0..STEPS_NEAR {
+            if !self.closes(&edges) {
+                let body = self.higher(&edges);
+                if self.gap(&edges, edges[body].low.h()) > 0.0 {
+                    return self.separated_at_least_gap(&edges, STEPS_NEAR);
+                }
+                edges[body] = self.retreat(body, &edges[body])?;
+                continue;
+            }
+            let contact = crossing_of(&edges);
+            let mut settled = true;
+            for body in 0..2 {
+                let edge = &edges[body];
+                if edge.direction.dot(contact - edge.high.w) > 0.0 {
+                    let Some(above) = self.proceed(body, edge) else {
+                        return self.separated_near_top(body, &edges);
+                    };
+                    edges[body] = above;
+                    settled = false;
+                } else if edge.direction.dot(contact - edge.low.w) < 0.0 {
+                    edges[body] = self.retreat(body, edge)?;
+                    settled = false;
+                }
+            }
+            if settled {
+                return Some(Planar::Edges { edges, contact });
+            }
+        }
+        None
+    }
+
+    /// [`Self::separated_at_top`] if the other chain has been followed up to there and has not met this one.
+    fn separated_near_top(&self, body: usize, edges: &[Bracket; 2]) -> Option<Planar> {
+        let top = edges[body].high.h();
+        let other = &edges[1 - body];
+        let level = other.low.h() <= top && top <= other.high.h();
+        (level && self.gap(edges, top) > 0.0).then(|| self.separated_at_top(body, edges))
+    }
+
+    /// The body whose edge begins higher.
+    fn higher(&self, edges: &[Bracket; 2]) -> usize {
+        usize::from(edges[1].low.h() > edges[0].low.h())
+    }
+
+    /// Whether the gap falls along these edges.
+    fn closes(&self, edges: &[Bracket; 2]) -> bool {
+        let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
+        let sine = r.perp_dot(*s);
+        sine < 0.0 && sine * sine > ROUNDING * ROUNDING * r.length_squared() * s.length_squared()
+    }
+
     /// From the edges at height `start`, where the gap is positive.
     fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
         let mut edges = *edges;
         let mut h = start;
         for _ in 0..self.step_limit() {
             if !self.closes(&edges) {
-                return self.separated_at_least_gap(&edges);
+                return self.separated_at_least_gap(&edges, self.step_limit());
             }
             // The edge that ends first decides whether they have met, without a quotient.
             let ending = usize::from(edges[1].high.h() < edges[0].high.h());
@@ -158,7 +238,7 @@ impl Slide<'_, '_> {
             edges[ending] = next;
             h = meet;
             for (body, edge) in edges.iter_mut().enumerate() {
-                let section = &self.problem.sections[body];
+                let section = &self.sections[body];
                 *edge = match section.advance(self.chains[body], edge, meet)? {
                     Located::Edge(edge) => edge,
                     Located::Beyond(edge) => {
@@ -179,15 +259,8 @@ impl Slide<'_, '_> {
         None
     }
 
-    /// Whether the gap falls along these edges.
-    fn closes(&self, edges: &[Bracket; 2]) -> bool {
-        let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
-        let sine = r.perp_dot(*s);
-        sine < 0.0 && sine * sine > ROUNDING * ROUNDING * r.length_squared() * s.length_squared()
-    }
-
     fn step_limit(&self) -> usize {
-        self.problem.sections[0].step_limit() + self.problem.sections[1].step_limit()
+        self.sections[0].step_limit() + self.sections[1].step_limit()
     }
 
     fn slope(&self, edges: &[Bracket; 2]) -> f64 {
@@ -199,11 +272,11 @@ impl Slide<'_, '_> {
     }
 
     fn proceed(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
-        self.problem.sections[body].proceed(self.chains[body], edge)
+        self.sections[body].proceed(self.chains[body], edge)
     }
 
     fn retreat(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
-        self.problem.sections[body].retreat(self.chains[body], edge)
+        self.sections[body].retreat(self.chains[body], edge)
     }
 
     fn down_to(&self, body: usize, edge: Bracket, h: f64) -> Bracket {
@@ -218,15 +291,11 @@ impl Slide<'_, '_> {
     }
 
     /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one chain, where a line along the
-    /// other's edge separates best.
-    fn separated_at_least_gap(&self, edges: &[Bracket; 2]) -> Option<Planar> {
+    /// other's edge separates best. `None` if that is more than `limit` steps away.
+    fn separated_at_least_gap(&self, edges: &[Bracket; 2], limit: usize) -> Option<Planar> {
         let mut edges = *edges;
-        for _ in 0..self.step_limit() {
-            let body = usize::from(edges[1].low.h() > edges[0].low.h());
-            if edges[body].low.h() <= self.problem.h0 {
-                let upper = self.problem.upper;
-                return Some(self.separated(&edges[1 - upper], edges.map(|edge| edge.low)));
-            }
+        for _ in 0..limit {
+            let body = self.higher(&edges);
             let mut candidate = edges;
             let below = self.retreat(body, &edges[body]);
             if let Some(below) = below {

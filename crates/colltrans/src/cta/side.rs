@@ -5,7 +5,7 @@
 //! to its highest one where `g` is smaller, the *right* chain where `g` is greater. The *drift* of a crossing
 //! edge is how its section vertex moves per unit of level.
 
-use std::cell::Cell;
+use std::cell::OnceCell;
 
 use glam::{DVec2, DVec3};
 
@@ -17,6 +17,15 @@ use crate::topology::Topology;
 
 /// Newton's method walks so far up a chain before it searches the snapshot.
 const STEPS_BEFORE_SEARCH: usize = 2;
+
+/// Edges of a vertex that are compared one by one.
+const EDGES_TRIED: usize = 16;
+
+/// Edges of the opposite chain that are passed on the way to the bottom.
+const STEPS_TO_CHAIN: usize = 4;
+
+/// Vertices on the way from a support vertex to a level.
+const VERTICES_TRIED: usize = 4;
 
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]
@@ -193,18 +202,47 @@ impl<'a> Side<'a> {
         any - self.shadow[0].length() * self.sections.diameter
     }
 
-    /// The section at level `x` of the range; `None` if rounding leaves the body no sections.
-    pub(super) fn section(&self, x: f64) -> Option<Section<'_>> {
-        let snapshot = self.sections.snapshot(x);
-        if snapshot.is_empty() {
-            return None;
+    /// The section at level `x` of the range.
+    pub(super) fn section(&self, x: f64) -> Section<'_> {
+        Section { side: self, lowest: OnceCell::new(), highest: OnceCell::new(), x }
+    }
+
+    /// A mesh edge that crosses level `x`, as the half-edge that runs upwards: the way there from a support vertex leads
+    /// along edges that stay close to the supporting plane with this normal (body frame). `None` if it is long.
+    pub(super) fn edge_near(&self, support: u32, normal: DVec3, x: f64) -> Option<u32> {
+        let mut vertex = support;
+        let upwards = self.level(vertex) <= x;
+        for _ in 0..VERTICES_TRIED {
+            let here = self.vertices[vertex as usize];
+            let neighbours = self.topology.neighbours(vertex);
+            if neighbours.len() > EDGES_TRIED {
+                return None;
+            }
+            let (mut best, mut least) = (None, f64::INFINITY);
+            for (k, &neighbour) in neighbours.iter().enumerate() {
+                let edge = self.vertices[neighbour as usize] - here;
+                let rise = self.axis.dot(edge);
+                let depth = normal.dot(edge).abs() / rise.abs();
+                let better = (rise > 0.0) == upwards && depth < least;
+                (best, least) = if better { (Some(k), depth) } else { (best, least) };
+            }
+            let best = best?;
+            if (self.level(neighbours[best]) <= x) != upwards {
+                let out = self.topology.outgoing(vertex)[best];
+                return Some(if upwards { out } else { self.topology.half_edge(out).twin });
+            }
+            vertex = neighbours[best];
         }
-        let lowest = snapshot.extreme(&self.height, 1.0);
-        Some(Section { side: self, snapshot, lowest, highest: Cell::new(None), x })
+        None
     }
 
     pub(super) fn level(&self, vertex: u32) -> f64 {
-        self.axis.dot(self.vertices[vertex as usize])
+        self.level_of(self.vertices[vertex as usize])
+    }
+
+    /// The level of a point of the body frame.
+    pub(super) fn level_of(&self, point: DVec3) -> f64 {
+        self.axis.dot(point)
     }
 
     #[inline]
@@ -228,14 +266,22 @@ impl<'a> Side<'a> {
 #[derive(Debug)]
 pub(super) struct Section<'a> {
     side: &'a Side<'a>,
-    snapshot: Snapshot<'a>,
-    /// Where the snapshot is lowest and, once asked for, where it is highest.
-    lowest: usize,
-    highest: Cell<Option<usize>>,
+    /// Once asked for: the nearest snapshot and its lowest entry. `None` if rounding leaves the body no sections.
+    lowest: OnceCell<Option<(Snapshot<'a>, usize)>>,
+    /// Once asked for: its highest entry.
+    highest: OnceCell<usize>,
     x: f64,
 }
 
-impl Section<'_> {
+impl<'a> Section<'a> {
+    fn lowest(&self) -> Option<(Snapshot<'a>, usize)> {
+        *self.lowest.get_or_init(|| {
+            let snapshot = self.side.sections.snapshot(self.x);
+            let lowest = || snapshot.extreme(&self.side.height, 1.0);
+            (!snapshot.is_empty()).then(|| (snapshot, lowest()))
+        })
+    }
+
     /// More steps along one section than this are a walk in circles.
     pub(super) fn step_limit(&self) -> usize {
         self.side.topology.edge_count()
@@ -312,7 +358,8 @@ impl Section<'_> {
 
     /// The lowest vertex.
     pub(super) fn bottom(&self) -> Option<Bottom> {
-        let up = self.climb(self.snapshot.up(self.lowest), |h| h)?;
+        let (snapshot, lowest) = self.lowest()?;
+        let up = self.climb(snapshot.up(lowest), |h| h)?;
         let mut vertex = self.crossing(up);
         let mut left = self.direction(Chain::Left, &vertex);
         let mut right = self.direction(Chain::Right, &vertex);
@@ -342,11 +389,11 @@ impl Section<'_> {
     /// The edge of a chain at height `h`, which is not below the bottom.
     pub(super) fn locate(&self, chain: Chain, h: f64) -> Option<Located> {
         let height = &self.side.height;
-        let highest = self.highest.get().unwrap_or_else(|| self.snapshot.extreme(height, -1.0));
-        self.highest.set(Some(highest));
+        let (snapshot, lowest) = self.lowest()?;
+        let highest = *self.highest.get_or_init(|| snapshot.extreme(height, -1.0));
         let turn = self.side.turn_up(chain);
-        let index = self.snapshot.locate(height, (self.lowest, highest), turn, (h, self.x));
-        let up = self.climb(self.snapshot.up(index), |height| (height - h).abs())?;
+        let index = snapshot.locate(height, (lowest, highest), turn, (h, self.x));
+        let up = self.climb(snapshot.up(index), |height| (height - h).abs())?;
         let start = self.crossing(up);
         let mut bracket = if start.h() <= h {
             Bracket::new(start, self.up(chain, &start))
@@ -366,6 +413,19 @@ impl Section<'_> {
             }
         }
         Some(self.walk(chain, bracket, h, self.step_limit()))
+    }
+
+    /// An edge of the chain at or near the crossing mesh edge `up`: also from the other side of the bottom.
+    pub(super) fn edge_at(&self, chain: Chain, up: u32) -> Option<Bracket> {
+        let mut low = self.crossing(up);
+        for _ in 0..STEPS_TO_CHAIN {
+            let above = Bracket::new(low, self.up(chain, &low));
+            if chain.ascends(above.direction) {
+                return Some(above);
+            }
+            low = above.high;
+        }
+        None
     }
 
     /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite chain.

@@ -328,7 +328,7 @@ fn figures() {
 
 /// All vertices of a section in order, from the bottom up the left chain.
 fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
-    let section = side.section(x).unwrap();
+    let section = side.section(x);
     let first = section.bottom().unwrap().vertex;
     let mut all = vec![first];
     loop {

@@ -20,6 +20,8 @@ pub(crate) struct Start {
     /// The change of slope that moves the shadow of the support point by minus a given vector: the inverse Hessian of the
     /// ellipsoids' support functions.
     pub(crate) slope_per_shadow: DMat2,
+    /// The matrices of the ellipsoids.
+    ellipsoids: [Symmetric; 2],
 }
 
 /// Least share of a contact normal along the direction that is guessed: a steeper guess
@@ -44,15 +46,27 @@ impl Start {
                 normal += step.extend(0.0);
             }
         }
-        Self { normal, near: None, slope_per_shadow }
+        Self { normal, near: None, slope_per_shadow, ellipsoids: [a, b] }
     }
 
-    /// From a normal (shadow frame) and a pair that another solver found.
-    pub(crate) fn from_guess(difference: &Difference, normal: DVec3, near: VertexPair) -> Self {
-        let (_, [a, b]) = difference.ellipsoids();
-        let normal = tempered(normal);
-        let (_, slope_per_shadow) = response([&a, &b], normal);
-        Self { normal, near: Some(near), slope_per_shadow }
+    /// Where the ellipsoids have their supporting planes across the normal, in the frames of the moving and of the fixed body.
+    pub(crate) fn touching(&self, difference: &Difference) -> [DVec3; 2] {
+        let setting = difference.setting;
+        let normal = self.normal;
+        let away = |k: &Symmetric| {
+            let kn = k.apply(normal);
+            difference.axes * (kn * (1.0 / normal.dot(kn).sqrt()))
+        };
+        let [a, b] = &self.ellipsoids;
+        [
+            setting.moving.measure().center + setting.moving_normal(away(a)),
+            setting.fixed.measure().center - setting.fixed_normal(away(b)),
+        ]
+    }
+
+    /// With a normal (shadow frame) and a pair that another solver found.
+    pub(crate) fn guided(self, normal: DVec3, near: VertexPair) -> Self {
+        Self { normal: tempered(normal), near: Some(near), ..self }
     }
 }
 

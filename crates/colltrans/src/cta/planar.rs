@@ -12,6 +12,9 @@ use glam::DVec2;
 use super::ROUNDING;
 use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
 
+/// Halvings of a height: none are left between two numbers after so many.
+const HALVINGS: usize = 64;
+
 /// Steps from a guess of the edges that cross before the problem is solved from scratch.
 const STEPS_NEAR: usize = 8;
 
@@ -220,10 +223,12 @@ impl<'a, 'b> Slide<'a, 'b> {
     fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
         let mut edges = *edges;
         let mut h = start;
+        let mut closing = start;
         for _ in 0..self.step_limit() {
             if !self.closes(&edges) {
-                return self.separated_at_least_gap(&edges, self.step_limit());
+                return self.separated_between(&edges, closing, h);
             }
+            closing = h;
             // The edge that ends first decides whether they have met, without a quotient.
             let ending = usize::from(edges[1].high.h() < edges[0].high.h());
             let end = &edges[ending].high;
@@ -288,6 +293,33 @@ impl<'a, 'b> Slide<'a, 'b> {
             }
         }
         edge
+    }
+
+    /// The gap grows at height `high`, where `edges` are, falls at height `low`, and is positive between: to where it is least, by
+    /// halving and at the end in steps.
+    fn separated_between(
+        &self,
+        edges: &[Bracket; 2],
+        mut low: f64,
+        mut high: f64,
+    ) -> Option<Planar> {
+        let mut edges = *edges;
+        let mut lowered = true;
+        for _ in 0..HALVINGS {
+            if lowered && let Some(found) = self.separated_at_least_gap(&edges, STEPS_NEAR) {
+                return Some(found);
+            }
+            let h = f64::midpoint(low, high);
+            let locate = |body: usize| self.sections[body].locate(self.chains[body], h);
+            let (Located::Edge(p), Located::Edge(q)) = (locate(0)?, locate(1)?) else { break };
+            lowered = !self.closes(&[p, q]);
+            if lowered {
+                (edges, high) = ([p, q], h);
+            } else {
+                low = h;
+            }
+        }
+        self.separated_at_least_gap(&edges, self.step_limit())
     }
 
     /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one chain, where a line along the

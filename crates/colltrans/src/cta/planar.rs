@@ -16,7 +16,7 @@ use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
 const HALVINGS: usize = 64;
 
 /// Steps from a guess of the edges that cross before the problem is solved from scratch.
-const STEPS_NEAR: usize = 8;
+const STEPS_NEAR: usize = 24;
 
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]

@@ -410,7 +410,8 @@ mod tests {
 
     #[test]
     fn changed_contacts_are_refused() {
-        let changes: [(&str, fn(&mut Contact)); 9] = [
+        type Change = fn(&mut Contact);
+        let changes: [(&str, Change); 9] = [
             ("later", |c| c.translation += 4.0 * c.certificate.tolerance),
             ("earlier", |c| c.translation -= 4.0 * c.certificate.tolerance),
             ("lower bound", |c| c.certificate.lower += 4.0 * c.certificate.tolerance),

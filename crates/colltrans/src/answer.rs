@@ -1,14 +1,16 @@
-//! From what a solver found to the answer: bounds, witness points and contact features, in the world.
+//! From what a solver found to the answer: bounds, witness points and contact features, in the
+//! world.
 
 use glam::{DVec2, DVec3};
 
-use crate::certificate::{Certificate, Separation, VertexPair, distance_along};
+use crate::certificate::{Certificate, Separation, distance_along};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::outcome::{Contact, Feature, Grazing, Separated, Solver, Steps};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::portal::{OneSide, Optimum};
 use crate::pose::Pose;
+use crate::setting::VertexPair;
 
 /// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see
 /// [`crate::certificate`]).
@@ -92,7 +94,8 @@ pub(crate) fn separated(
     Separated { certificate, solver, steps }
 }
 
-/// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body frame).
+/// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body
+/// frame).
 fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
     let at = body.vertices()[vertex as usize];
     let in_plane =
@@ -107,7 +110,8 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
             continue;
         }
         edge = edge.or(Some(neighbours[i]));
-        // The face between neighbour `i` and the next one is on the left of the half-edge to the next one.
+        // The face between neighbour `i` and the next one is on the left of the half-edge to the
+        // next one.
         let next = (i + 1) % neighbours.len();
         if !outgoing.is_empty() && next != i && in_plane(neighbours[next]) {
             let face = topology.half_edge(outgoing[next]).face;
@@ -121,7 +125,8 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
     edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
 }
 
-/// Up to [`SAMPLES`] vertices, spread over a face: those near a vertex may lie in a plane that the others do not.
+/// Up to [`SAMPLES`] vertices, spread over a face: those near a vertex may lie in a plane that the
+/// others do not.
 fn spread(vertices: impl ExactSizeIterator<Item = u32>) -> impl Iterator<Item = u32> {
     let stride = vertices.len().div_ceil(SAMPLES);
     vertices.step_by(stride)

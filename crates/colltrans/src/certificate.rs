@@ -1,18 +1,19 @@
 //! Certificates: proofs of an answer that two support evaluations can check.
 //!
-//! Notation (section 1 of the paper). `P` moves along `d`, `Q` is fixed, both are placed in the world;
-//! `M = {q - p : p in P, q in Q}`. The line `t d` meets `M` for `t` in `[coll, exit]`.
+//! Notation (section 1 of the paper). `P` moves along `d`, `Q` is fixed, both are placed in the
+//! world; `M = {q - p : p in P, q in Q}`. The line `t d` meets `M` for `t` in `[coll, exit]`.
 //!
 //! - Lower bound: for any `n` with `n.d > 0`, `coll >= (min_Q n.q - max_P n.p) / n.d`.
 //! - Upper bound: weights `w_i >= 0` with sum 1 over pairs of vertices `(p_i, q_i)` such that
 //!   `sum w_i (q_i - p_i) = t d`; then `coll <= t`.
 //! - Separation: `n` with `n.d = 0` and `min_Q n.q - max_P n.p > 0`.
-
 //!
-//! Rounding. A bound on `n.q - n.p` for a unit `n` has an error of at most [`Difference::noise`](crate::minkowski::Difference::noise)
-//! `= 32 u S` (`u = 2^-53`, `S` the size of the configuration); dividing by `n.d` turns it into an error of `t`. The plane is
-//! accepted when no point of `M` is below it by more than the noise (eight times the noise after many ties), the lower and the upper
-//! bound each add at most one more: `upper - lower <= 10 noise / (n.d)`, which is [`Certificate::tolerance`].
+//! Rounding. A bound on `n.q - n.p` for a unit `n` has an error of at most
+//! [`Difference::noise`](crate::minkowski::Difference::noise) `= 32 u S` (`u = 2^-53`, `S` the size
+//! of the configuration); dividing by `n.d` turns it into an error of `t`. The plane is accepted
+//! when no point of `M` is below it by more than the noise (eight times the noise after many ties),
+//! the lower and the upper bound each add at most one more: `upper - lower <= 10 noise / (n.d)`,
+//! which is [`Certificate::tolerance`].
 
 use glam::DVec3;
 use thiserror::Error;
@@ -21,41 +22,49 @@ use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
-use crate::setting::Setting;
+use crate::setting::{Setting, VertexPair};
 
-/// One vertex of each body, by index.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct VertexPair {
-    /// Index into the moving body's vertices.
-    pub moving: u32,
-    /// Index into the fixed body's vertices.
-    pub fixed: u32,
-}
-
-/// Both bounds of a collision translation with their proofs.
+/// Both bounds of a collision translation with their proofs (section 1 of the paper).
+///
+/// With `P` the moving body, `Q` the fixed one and `d` the direction:
+///
+/// - `t >= (min_Q n.q - max_P n.p) / n.d` for any `n` with `n.d > 0`: the plane proves `lower`;
+/// - if `sum w_i (q_i - p_i) = t d` with weights `w_i >= 0` of sum 1, the bodies meet at `t`: the
+///   pairs prove `upper`.
+///
+/// `lower` and `upper` may change places by rounding error. In [`Grazing`](crate::Grazing) the
+/// bounds are those of the bodies *widened sideways* by a little more than rounding error, and so
+/// is `tolerance`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
-    /// Unit normal of the supporting plane that proves the lower bound, in the world; `normal . d > 0`.
+    /// Unit normal of the supporting plane that proves the lower bound, in the world;
+    /// `normal . d > 0`.
     pub normal: DVec3,
     /// The lower bound it proves, in multiples of the direction.
     pub lower: f64,
-    /// Three pairs of vertices whose differences `q - p` have the line `t d` pass through their triangle.
+    /// Three pairs of vertices whose differences `q - p` span a triangle that the line `t d`
+    /// pierces.
     pub pairs: [VertexPair; 3],
-    /// The weights (barycentric coordinates) of the pairs where the line passes: not negative, sum 1.
-    /// The witness points are `sum w_i p_i` and `sum w_i q_i`.
+    /// The weights (barycentric coordinates) of the pairs where the line passes: not negative, sum
+    /// 1. The witness points are `sum w_i p_i` and `sum w_i q_i`.
     pub weights: [f64; 3],
     /// The upper bound they prove, in multiples of the direction.
     pub upper: f64,
-    /// What rounding alone can make of `upper - lower` at the size of this configuration.
+    /// What rounding alone can make of `upper - lower` at the size of this configuration: ten
+    /// noises (see [the crate's introduction](crate#accuracy)) over `normal . d`, in multiples of
+    /// the direction.
     pub tolerance: f64,
 }
 
-/// The proof that two bodies never meet along the direction.
+/// The proof that two bodies never meet along the direction: a plane parallel to it lies between
+/// them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Separation {
-    /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed one.
+    /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed
+    /// one.
     pub normal: DVec3,
     /// `min_Q n.q - max_P n.p > 0`: how far the shadows stay apart along `normal`, in world units.
+    /// A lower bound of the distance of the shadows, not the distance itself.
     pub margin: f64,
 }
 
@@ -66,8 +75,8 @@ pub enum CertificateError {
     /// The setting itself is not valid.
     #[error(transparent)]
     Setting(#[from] QueryError),
-    /// The normal is not a unit vector with a component along the direction (contact), or orthogonal to it
-    /// (separation).
+    /// The normal is not a unit vector with a component along the direction (contact), or
+    /// orthogonal to it (separation).
     #[error("the normal {normal} is not a unit vector on the right side of the direction")]
     Normal {
         /// The normal.
@@ -130,12 +139,34 @@ impl Certificate {
         self.upper - self.lower
     }
 
-    /// Checks the certificate against the two bodies, in `O(log n)`, and returns the gap that is really proven.
+    /// Checks the certificate against the two bodies, in `O(log n)`, and returns the gap
+    /// `upper - lower` that is really proven, in multiples of the direction.
     ///
-    /// Nothing of the solver is used: two support points for the lower bound, three pairs of vertices for the upper one.
+    /// Nothing of the solver is used: two support points for the lower bound, three pairs of
+    /// vertices for the upper one. Bodies, poses and direction must be those of the query; for the
+    /// `last` contact of a [`ContactRange`](crate::ContactRange) the direction is the opposite one.
     ///
     /// # Errors
     /// What the certificate fails to prove.
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
+    /// let triangle = ConvexPolyhedron::from_points(&[DVec3::X, DVec3::Y, DVec3::Z])?;
+    /// let start = Pose::from_translation(DVec3::new(-5.0, 0.0, 0.0))?;
+    /// let world = Pose::IDENTITY;
+    /// let Outcome::Contact(contact) = cast(&triangle, &start, &triangle, &world, DVec3::X)? else {
+    ///     unreachable!("the same triangle, five units further")
+    /// };
+    /// let proof = contact.certificate;
+    /// let gap = proof.verify(&triangle, &start, &triangle, &world, DVec3::X)?;
+    /// assert!(gap <= proof.tolerance);
+    ///
+    /// let mut lie = proof;
+    /// lie.lower += 1.0;
+    /// assert!(lie.verify(&triangle, &start, &triangle, &world, DVec3::X).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn verify(
         &self,
         moving: &ConvexPolyhedron,
@@ -185,10 +216,28 @@ impl Certificate {
 }
 
 impl Separation {
-    /// Checks the separation against the two bodies, in `O(log n)`, and returns the margin that is really proven.
+    /// Checks the separation against the two bodies, in `O(log n)`, and returns the margin that is
+    /// really proven, in world units.
+    ///
+    /// Nothing of the solver is used: two support points. Bodies, poses and direction must be those
+    /// of the query.
     ///
     /// # Errors
     /// What the certificate fails to prove.
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
+    /// let point = ConvexPolyhedron::from_points(&[DVec3::ZERO])?;
+    /// let beside = Pose::from_translation(DVec3::new(-5.0, 2.0, 0.0))?;
+    /// let world = Pose::IDENTITY;
+    /// let Outcome::Separated(separated) = cast(&point, &beside, &point, &world, DVec3::X)? else {
+    ///     unreachable!("it passes two units beside")
+    /// };
+    /// let margin = separated.certificate.verify(&point, &beside, &point, &world, DVec3::X)?;
+    /// assert!(margin > 0.0 && margin <= 2.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn verify(
         &self,
         moving: &ConvexPolyhedron,

@@ -29,7 +29,7 @@ pub enum BuildError {
         limit: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("point {index} is not finite: {point}")]
+    #[error("point {index} is not finite: {:?}", .point.to_array())]
     NotFinite {
         /// Index of the point in the input.
         index: usize,
@@ -38,8 +38,9 @@ pub enum BuildError {
     },
     /// A coordinate is outside the range in which the predicates are exact.
     #[error(
-        "point {index} = {point} has a coordinate outside the exact range \
-         (0, or a magnitude from 2^-200 to 2^200); rescale the input"
+        "point {index} = {:?} has a coordinate outside the exact range \
+         (0, or a magnitude from 2^-200 to 2^200); rescale the input",
+        .point.to_array()
     )]
     OutOfRange {
         /// Index of the point in the input.
@@ -103,7 +104,8 @@ pub enum TopologyError {
     },
     /// An edge has a face on one side only.
     #[error(
-        "the surface is open: the edge from vertex {from} to vertex {to} of face {face} has no face on its other side"
+        "the surface is open: the edge from vertex {from} to vertex {to} of face {face} has no face \
+         on its other side"
     )]
     OpenEdge {
         /// Start of the edge, along its face.
@@ -133,7 +135,8 @@ pub enum TopologyError {
     },
     /// The faces form several surfaces, or one with handles.
     #[error(
-        "the surface is not one sphere: {vertices} vertices - {edges} edges + {faces} faces = {euler}, not 2"
+        "the surface is not one sphere: {vertices} vertices - {edges} edges + {faces} faces = \
+         {euler}, not 2"
     )]
     NotASphere {
         /// Number of vertices in use.
@@ -170,7 +173,9 @@ pub enum PoseError {
     },
     /// The translation is not finite, or beyond the range in which the predicates are exact.
     #[error(
-        "the translation {translation} is not finite or has a component outside the exact range (0, or a magnitude from 2^-200 to 2^200)"
+        "the translation {:?} is not finite or has a component outside the exact range \
+         (0, or a magnitude from 2^-200 to 2^200)",
+        .translation.to_array()
     )]
     Translation {
         /// The translation as given.
@@ -184,7 +189,9 @@ pub enum PoseError {
 pub enum QueryError {
     /// The direction is zero, not finite, or beyond the exact range.
     #[error(
-        "the direction {direction} is zero, not finite or has a component outside the exact range (0, or a magnitude from 2^-200 to 2^200)"
+        "the direction {:?} is zero, not finite or has a component outside the exact range \
+         (0, or a magnitude from 2^-200 to 2^200)",
+        .direction.to_array()
     )]
     Direction {
         /// The direction as given.
@@ -198,10 +205,11 @@ pub enum QueryError {
     },
     /// No solver could close the gap between the bounds to rounding error.
     #[error(
-        "the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}; please report this case"
+        "the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}; \
+         please report this case"
     )]
     NotConverged {
-        /// Best proven lower bound of the collision translation.
+        /// Best proven lower bound of the collision translation, in multiples of the direction.
         lower: f64,
         /// Best proven upper bound.
         upper: f64,

@@ -1,13 +1,14 @@
 //! Exact arithmetic for the few decisions that rounding cannot make.
 //!
-//! Every coordinate, matrix entry and translation is a dyadic rational, so the determinant that says on which side of a
-//! segment the line passes is an integer times a power of two. It is formed here in whole numbers of fixed capacity, on
-//! the stack, only when the rounded determinant is too close to zero to be trusted: in ties, which are the rule in
-//! designed parts.
+//! Every coordinate, matrix entry and translation is a dyadic rational, so the determinant that
+//! says on which side of a segment the line passes is an integer times a power of two. It is formed
+//! here in whole numbers of fixed capacity, on the stack, only when the rounded determinant is too
+//! close to zero to be trusted: in ties, which are the rule in designed parts.
 //!
-//! Capacity. The door admits magnitudes from `2^-200` to `2^200` with 53 significant bits. A product of two spans
-//! `2^-505..2^400`, a coordinate of `M` (eight terms) stays below `2^404`: 909 bits. A product of two such coordinates and a
-//! component of the direction has at most `2 * 909 + 453 + 3 = 2274` bits, 36 limbs.
+//! Capacity. The door admits magnitudes from `2^-200` to `2^200` with 53 significant bits. A
+//! product of two spans `2^-505..2^400`, a coordinate of `M` (eight terms) stays below `2^404`: 909
+//! bits. A product of two such coordinates and a component of the direction has at most `2 * 909 +
+//! 453 + 3 = 2274` bits, 36 limbs.
 
 use std::cmp::Ordering;
 
@@ -15,8 +16,8 @@ use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 const LIMBS: usize = 37;
 
-/// Exponent of the unit: every product of two admitted numbers is a multiple of `2^UNIT`, and so is every
-/// admitted number.
+/// Exponent of the unit: every product of two admitted numbers is a multiple of `2^UNIT`, and so is
+/// every admitted number.
 const UNIT: i32 = -505;
 
 /// An integer with a sign; limbs above `len` are zero.
@@ -185,7 +186,8 @@ pub(crate) fn difference(
     }))
 }
 
-/// Sign of `det[a - o, b - o, d]` with `o = (eps, eps^2)` on the two world axes along which `d` is smaller.
+/// Sign of `det[a - o, b - o, d]` with `o = (eps, eps^2)` on the two world axes along which `d` is
+/// smaller.
 ///
 /// Zero only if `a` and `b` have the same shadow along `d`.
 pub(crate) fn orientation(a: &ExactVector, b: &ExactVector, d: DVec3) -> Ordering {

@@ -1,4 +1,112 @@
-//! Collision translations of convex polyhedra: how far can one body move before it touches another.
+//! Collision translations of convex polyhedra: how far can one body move before it touches
+//! another?
+//!
+//! A convex body `P`, the *moving* one, is translated along a direction `d`; a convex body `Q`
+//! is *fixed*. [`cast`] returns the *collision translation*
+//!
+//! `coll = min { t : P + t d meets Q }`
+//!
+//! with the contact normal, a contact point on each body and the vertices, edges or faces that
+//! meet; or it says that they never do. `t` ranges over all real numbers: a negative answer is a
+//! contact that lies behind, or an overlap now. Every answer carries a proof that can be checked
+//! without trusting the search that found it.
+//!
+//! ```
+//! use colltrans::glam::DVec3;
+//! use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
+//!
+//! // A pyramid one unit high, and a plate of 4 x 4 x 1 whose top is at z = 0.
+//! let pyramid = ConvexPolyhedron::from_points(&[
+//!     DVec3::new(-1.0, -1.0, 1.0),
+//!     DVec3::new(1.0, -1.0, 1.0),
+//!     DVec3::new(1.0, 1.0, 1.0),
+//!     DVec3::new(-1.0, 1.0, 1.0),
+//!     DVec3::ZERO,
+//! ])?;
+//! let corners: Vec<DVec3> = (0..8)
+//!     .map(|i| DVec3::new([-2.0, 2.0][i & 1], [-2.0, 2.0][i >> 1 & 1], [-1.0, 0.0][i >> 2]))
+//!     .collect();
+//! let plate = ConvexPolyhedron::from_points(&corners)?;
+//!
+//! // The pyramid starts with its apex at (0.5, 0, 3) and moves downwards.
+//! let (start, world) = (Pose::from_translation(DVec3::new(0.5, 0.0, 3.0))?, Pose::IDENTITY);
+//! let down = DVec3::NEG_Z;
+//! let Outcome::Contact(contact) = cast(&pyramid, &start, &plate, &world, down)? else {
+//!     unreachable!("the plate is below")
+//! };
+//! assert_eq!(contact.translation, 3.0);
+//! assert_eq!(contact.normal, DVec3::NEG_Z);
+//! assert_eq!(contact.point_on_fixed, DVec3::new(0.5, 0.0, 0.0));
+//! assert_eq!(contact.moving_feature.kind(), "vertex");
+//! assert_eq!(contact.fixed_feature.kind(), "face");
+//!
+//! // The proof: checked against the two bodies alone.
+//! let gap = contact.certificate.verify(&pyramid, &start, &plate, &world, down)?;
+//! assert!(gap <= contact.certificate.tolerance);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Bodies
+//!
+//! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
+//! convex hull) or from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked), and then asked
+//! as often as one likes, from any thread. Flat polygons, segments and single points are bodies
+//! too. Bodies that are not convex are not supported: cut them into convex pieces first.
+//!
+//! # Frames and units
+//!
+//! Vertices are in the *body frame*; a [`Pose`] places a body in the *world*, by
+//! `x_world = R x_body + t`. Directions, normals and points of answers are in the world.
+//! The unit of length is the caller's, the same for both bodies. Translations are counted in
+//! multiples of the direction, so they are lengths if the direction has length 1. Normals are
+//! unit vectors and point from the moving body to the fixed one. Numbers are `f64`; those that
+//! are not 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to `2^200`.
+//!
+//! # Answers
+//!
+//! | query | question |
+//! |---|---|
+//! | [`cast`], [`cast_with`] | at which translation do the bodies first meet? |
+//! | [`contact_range`] | at which do they first and last meet? |
+//! | [`clearance`] | how far can one move from where it is? |
+//! | [`directional_depth`] | how far must one go back until the overlap ends? |
+//! | [`intersects`] | do they meet where they are? |
+//!
+//! An [`Outcome`] is a [`Contact`], [`Separated`] or [`Grazing`]. The bodies' *shadows*, their
+//! projections along the direction, decide: disjoint shadows are a separation, overlapping
+//! ones a contact. Where they overlap by no more than the *graze tolerance* the bodies slide
+//! along each other, as a peg does in a hole of its own size. That is an outcome of its own,
+//! with the contact that results if the overlap is taken for real: whether it blocks is for the
+//! caller to say ([`clearance`] says it does not). The default tolerance is what rounding
+//! cannot decide, eight times the *noise*; a larger one may be set as a length in
+//! [`Options::graze_tolerance`].
+//!
+//! # Accuracy
+//!
+//! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of
+//! its body frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise*
+//! `32 u S`, with `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two
+//! points. A contact's two bounds differ by at most 10 noises divided by `n . d`
+//! ([`Certificate::tolerance`]); if they do not come that close, the query returns
+//! [`QueryError::NotConverged`], never a number. A displacement of both bodies together costs
+//! the translation nothing. The same input gives the same bits on every run and thread.
+//!
+//! # How it works
+//!
+//! The Minkowski difference `M = {q - p}` is never built. A search narrows down which face of `M`
+//! the line `t d` enters first: *portal refinement*, which exchanges the corners of a triangle of
+//! points of `M` that the line pierces, alone or after the *collision translation algorithm*,
+//! a convex minimisation over pairs of planar sections of the bodies (Mirolo, Carpin and Pagello,
+//! "Incremental Convex Minimization for Computing Collision Translations of Convex
+//! Polyhedra", IEEE Transactions on Robotics 23(3), 2007: *the paper* of all comments). Both end
+//! in the same portal, whose plane is the lower bound and whose corners are the upper one.
+//! Ties, where rounding cannot tell on which side of an edge the line passes, are decided in
+//! whole numbers.
+//!
+//! The modules, each using only those before it: `error`, `pose`, `exact` and `plane`
+//! (arithmetic); `topology`, `section` and `polyhedron` (bodies); `setting` and `minkowski` (two
+//! bodies and a direction); `certificate` and `outcome` (answers); `cta` and `portal` (solvers);
+//! `answer` and `query`.
 
 mod answer;
 mod certificate;
@@ -14,8 +122,9 @@ mod pose;
 mod query;
 mod section;
 mod setting;
+mod topology;
 
-pub use certificate::{Certificate, CertificateError, Separation, VertexPair};
+pub use certificate::{Certificate, CertificateError, Separation};
 pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
 pub use glam;
 pub use outcome::{
@@ -26,3 +135,9 @@ pub use pose::Pose;
 pub use query::{
     Options, cast, cast_with, clearance, contact_range, directional_depth, intersects,
 };
+pub use setting::VertexPair;
+
+/// The example of the README, compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;

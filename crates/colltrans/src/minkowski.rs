@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::certificate::VertexPair;
+use crate::error::MIN_MAGNITUDE;
 use crate::exact;
-use crate::setting::Setting;
+use crate::setting::{Setting, VertexPair};
 
 /// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
 #[derive(Debug, Clone, Copy)]
@@ -34,6 +34,9 @@ impl Point {
     }
 }
 
+/// The sides of the widening rectangle: not equal, because a diagonal of a square would often be parallel to an edge.
+const WIDENING_RATIO: f64 = 0.8;
+
 /// `M` in the shadow frame: support points and orientations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Difference<'a> {
@@ -48,14 +51,19 @@ pub(crate) struct Difference<'a> {
     offset: DVec3,
     /// Bound on the rounding error of a coordinate of a point.
     pub(crate) noise: f64,
-    /// Half-side of a square by which `M` is widened sideways: 0, or a little more than the rounding error when shadows
+    /// Half the longer side of a rectangle by which `M` is widened sideways: 0, or a little more than the rounding error when shadows
     /// only touch, so that the line passes through the widened body.
     pub(crate) widening: f64,
 }
 
 impl<'a> Difference<'a> {
-    pub(crate) fn new(setting: &'a Setting<'a>) -> Self {
-        let e1 = setting.unit.any_orthonormal_vector();
+    /// With the lateral axes turned by an angle (0: along the world's axes where the direction is).
+    pub(crate) fn new(setting: &'a Setting<'a>, turn_rad: f64) -> Self {
+        let mut e1 = setting.unit.any_orthonormal_vector();
+        if turn_rad != 0.0 {
+            let (sin, cos) = turn_rad.sin_cos();
+            e1 = (e1 * cos + setting.unit.cross(e1) * sin).normalize();
+        }
         let e2 = setting.unit.cross(e1);
         let axes = DMat3::from_cols(e1, e2, setting.unit);
         Self {
@@ -71,7 +79,8 @@ impl<'a> Difference<'a> {
 
     /// Bound on the rounding error of a coordinate of a point of `M`, and of comparing two along a unit normal.
     pub(crate) fn noise_of(setting: &Setting) -> f64 {
-        16.0 * f64::EPSILON * setting.scale()
+        // Two points in one place have no size; the least there can be stands for it.
+        16.0 * f64::EPSILON * setting.scale().max(MIN_MAGNITUDE)
     }
 
     /// The same body, widened sideways by four times [`Self::touching`] and, if the line misses it, by `margin` more: then
@@ -111,7 +120,7 @@ impl<'a> Difference<'a> {
             (transposed(&self.fixed_axes, q) - transposed(&self.moving_axes, p)) + self.offset;
         if self.widening != 0.0 {
             at.x -= self.widening.copysign(normal.x);
-            at.y -= self.widening.copysign(normal.y);
+            at.y -= (WIDENING_RATIO * self.widening).copysign(normal.y);
         }
         Point { at, pair }
     }

@@ -5,7 +5,10 @@ use glam::DVec3;
 use crate::certificate::{Certificate, Separation};
 use crate::polyhedron::ConvexPolyhedron;
 
-/// The answer of [`cast`](crate::cast).
+/// The answer of [`cast`](crate::cast): do the bodies meet along the direction, and where.
+///
+/// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
+/// the graze tolerance, by no more than it, or not at all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outcome {
     /// The moving body meets the fixed one at some translation (which may be negative).
@@ -17,39 +20,43 @@ pub enum Outcome {
     Separated(Separated),
 }
 
-/// The bodies meet.
+/// Where the bodies first meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// The collision translation in multiples of the direction (a length if the direction is a unit vector):
-    /// the smallest `t` at which the moving body, moved by `t * direction`, meets the fixed one. Negative: the bodies
-    /// overlap now, or the contact lies behind.
+    /// The collision translation in multiples of the direction (a length if the direction is a
+    /// unit vector): the smallest `t` at which the moving body, moved by `t * direction`, meets the
+    /// fixed one. Negative: the bodies overlap now, or the contact lies behind. It is the
+    /// certificate's upper bound.
     pub translation: f64,
-    /// Unit contact normal in the world, from the moving body to the fixed one; `normal . direction > 0`.
+    /// Unit contact normal in the world, from the moving body to the fixed one;
+    /// `normal . direction > 0`. Where corners meet, or parallel edges, it is one of several.
     pub normal: DVec3,
     /// Witness point on the moving body, in the world, at its *start* pose.
     pub point_on_moving: DVec3,
-    /// Witness point on the fixed body, in the world: the contact point. It is `point_on_moving + translation * direction`
-    /// up to rounding.
+    /// Witness point on the fixed body, in the world: the contact point. It is
+    /// `point_on_moving + translation * direction` up to rounding. Where an edge or a face lies on
+    /// the other body, it is one of many.
     pub point_on_fixed: DVec3,
-    /// The part of the moving body that lies in the contact plane.
+    /// The part of the moving body that lies in the contact plane, to within rounding error.
     pub moving_feature: Feature,
-    /// The part of the fixed body that lies in the contact plane.
+    /// The part of the fixed body that lies in the contact plane, to within rounding error.
     pub fixed_feature: Feature,
     /// Lower and upper bound with their proofs.
     pub certificate: Certificate,
-    /// The solver that narrowed the search.
+    /// The solver that narrowed the search (never `Auto`).
     pub solver: Solver,
     /// Work done.
     pub steps: Steps,
 }
 
-/// The bodies slide along each other.
+/// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grazing {
-    /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the fixed one's.
+    /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the
+    /// fixed one's.
     pub separating_direction: DVec3,
-    /// How far the shadows overlap along `separating_direction`, in world units: at most the graze tolerance; negative when
-    /// they miss each other by less than rounding error can tell.
+    /// How far the shadows overlap along `separating_direction`, in world units: at most the graze
+    /// tolerance; negative when they miss each other by less than rounding error can tell.
     pub overlap: f64,
     /// The contact that results if the overlap is taken for real.
     pub contact: Contact,
@@ -66,7 +73,10 @@ pub struct Separated {
     pub steps: Steps,
 }
 
-/// A vertex, an edge or a face of a polyhedron, by index.
+/// A vertex, an edge or a face of a [`ConvexPolyhedron`], by its own indices.
+///
+/// [`ConvexPolyhedron::input_indices`] leads from there to the points or mesh vertices it was made
+/// from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Feature {
     /// A vertex.
@@ -103,12 +113,14 @@ impl Feature {
 /// How the search is narrowed. The answer, its certificate and its accuracy are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Solver {
-    /// Whichever was measured to be fastest for bodies of these sizes.
+    /// Whichever was measured to be fastest: at present portal refinement, for all bodies.
     #[default]
     Auto,
-    /// The collision translation algorithm: convex minimisation over pairs of planar sections.
+    /// The collision translation algorithm (the paper, section III): convex minimisation over pairs
+    /// of planar sections, then portal refinement from the normal found. Bodies of lower dimension
+    /// have no sections to speak of: portal refinement does their work alone.
     Cta,
-    /// Portal refinement from scratch.
+    /// Portal refinement from scratch, starting from what the contact of two ellipsoids would be.
     Portal,
 }
 
@@ -123,15 +135,17 @@ pub struct Steps {
     pub pivots: u32,
 }
 
-/// All translations at which the bodies meet: an interval, with the contact at either end.
+/// The answer of [`contact_range`](crate::contact_range): all translations at which the bodies
+/// meet, an interval, with the contact at either end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactRange {
     /// The bodies meet exactly for the translations in [`ContactRange::interval`].
     Contact {
         /// First contact along the direction.
         first: Contact,
-        /// Last contact along the direction: the contact of the cast along the *opposite* direction, as that cast gives it
-        /// (its certificate is for that direction, and its translation counts in multiples of it).
+        /// Last contact along the direction: the contact of the cast along the *opposite*
+        /// direction, as that cast gives it (its certificate is for that direction, and its
+        /// translation counts in multiples of it).
         last: Contact,
     },
     /// The shadows overlap by no more than the graze tolerance.
@@ -158,7 +172,8 @@ impl ContactRange {
     }
 }
 
-/// How far the moving body can move *from here* along the direction.
+/// The answer of [`clearance`](crate::clearance): how far the moving body can move *from where it
+/// is* along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a query allocates nothing, so nothing is boxed")]
 pub enum Clearance {
@@ -171,7 +186,7 @@ pub enum Clearance {
         /// The contact that stops it.
         contact: Contact,
     },
-    /// The bodies overlap now.
+    /// The bodies overlap now, by more than rounding error.
     Overlapping {
         /// The translations at which they do: `[enter, exit]`, with 0 inside.
         range: [f64; 2],

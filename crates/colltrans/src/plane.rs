@@ -4,13 +4,14 @@ use glam::DVec3;
 
 use crate::exact::accurate_cross;
 
-/// Sine of the angle below which the product of two edges is formed without cancellation: above, it loses two bits at most.
+/// Sine of the angle below which the product of two edges is formed without cancellation: above, it
+/// loses two bits at most.
 const NEARLY_PARALLEL: f64 = 0.25;
 
 /// Twice the area times the unit normal of the counter-clockwise triangle `a b c`.
 ///
-/// From its two shorter edges, which determine it best: the product of two long, nearly parallel ones would lose the normal to
-/// rounding.
+/// From its two shorter edges, which determine it best: the product of two long, nearly parallel
+/// ones would lose the normal to rounding.
 #[inline]
 pub(crate) fn triangle_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [b - a, c - b, a - c];
@@ -31,7 +32,8 @@ pub(crate) fn triangle_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     normal
 }
 
-/// Unit normal of a convex polygon, from a triangle of its corners that spans it widely; zero if it has no area.
+/// Unit normal of a convex polygon, from a triangle of its corners that spans it widely; zero if it
+/// has no area.
 pub(crate) fn polygon_normal<I: Iterator<Item = DVec3> + Clone>(mut corners: I) -> DVec3 {
     let all = corners.clone();
     let Some(a) = corners.next() else { return DVec3::ZERO };

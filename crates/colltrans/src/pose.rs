@@ -12,6 +12,22 @@ use crate::error::{PoseError, in_exact_range};
 const UNIT_LENGTH_TOLERANCE: f64 = 1e-6;
 
 /// A rigid placement of a body in the world: `x_world = R x_body + t`.
+///
+/// ```
+/// use colltrans::Pose;
+/// use colltrans::glam::{DQuat, DVec3};
+///
+/// // A quarter turn about z, then two units up.
+/// let turn = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+/// let pose = Pose::new(turn, DVec3::new(0.0, 0.0, 2.0))?;
+/// let moved = pose.transform_point(DVec3::X);
+/// assert!(moved.distance(DVec3::new(0.0, 1.0, 2.0)) < 1e-15);
+/// assert!(pose.inverse()?.transform_point(moved).distance(DVec3::X) < 1e-15);
+///
+/// // A quaternion that is no rotation is refused.
+/// assert!(Pose::new(DQuat::from_xyzw(0.0, 0.0, 1.0, 1.0), DVec3::ZERO).is_err());
+/// # Ok::<(), colltrans::PoseError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     rotation: DQuat,
@@ -49,7 +65,7 @@ impl Pose {
         Self::new(DQuat::IDENTITY, translation)
     }
 
-    /// The unit quaternion.
+    /// The rotation as a unit quaternion.
     pub const fn rotation(&self) -> DQuat {
         self.rotation
     }
@@ -59,7 +75,7 @@ impl Pose {
         self.matrix
     }
 
-    /// The translation `t`.
+    /// The translation `t`, in world units.
     pub const fn translation(&self) -> DVec3 {
         self.translation
     }

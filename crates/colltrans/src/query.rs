@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use crate::answer;
-use crate::certificate::VertexPair;
 use crate::cta::{self, CtaOptions, CtaStart, Guess};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
@@ -13,25 +12,48 @@ use crate::outcome::{
 use crate::polyhedron::ConvexPolyhedron;
 use crate::portal::{self, Enclosure, OneSide, Overlap, Refined, Start};
 use crate::pose::Pose;
-use crate::setting::Setting;
+use crate::setting::{Setting, VertexPair};
 
-/// Choices of a query; the default is right for almost everyone.
+/// Choices of a query; the default is right for most.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// How the search is narrowed.
     pub solver: Solver,
-    /// Sideways overlap (world units) up to which a contact counts as grazing. `0`, the default, stands for the rounding
-    /// error of the configuration, which is the least that is ever used.
+    /// Sideways overlap (world units) up to which a contact counts as grazing. `0`, the default,
+    /// stands for the rounding error of the configuration, which is the least that is ever used:
+    /// eight noises, `256 u S` (see [the crate's introduction](crate#accuracy)).
     pub graze_tolerance: f64,
 }
 
 /// How far `moving` can translate along `direction` before it touches `fixed`.
 ///
-/// The poses place both bodies in the world; `direction` is a vector of the world of any length, and translations are in
-/// multiples of it.
+/// The poses place both bodies in the world; `direction` is a vector of the world of any length,
+/// and translations are in multiples of it. See [`Contact::translation`] for negative answers, and
+/// [`clearance`] for "from here on". Takes `O(log n)` steps in practice and allocates nothing.
 ///
 /// # Errors
 /// A direction that is zero, not finite or out of range; bounds that could not be closed.
+///
+/// ```
+/// # use colltrans::glam::DVec3;
+/// # use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
+/// # let corners: Vec<DVec3> = (0..8)
+/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
+/// #     .collect();
+/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
+/// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+/// let Outcome::Contact(contact) = cast(&cube, &start, &cube, &Pose::IDENTITY, DVec3::X)? else {
+///     unreachable!("half of the cube is in the way")
+/// };
+/// assert_eq!(contact.translation, 2.0);
+/// assert_eq!(contact.normal, DVec3::X);
+/// assert_eq!((contact.moving_feature.kind(), contact.fixed_feature.kind()), ("face", "face"));
+///
+/// let beside = Pose::from_translation(DVec3::new(-3.0, 1.5, 0.0))?;
+/// let outcome = cast(&cube, &beside, &cube, &Pose::IDENTITY, DVec3::X)?;
+/// assert!(matches!(outcome, Outcome::Separated(_)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn cast(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -46,6 +68,29 @@ pub fn cast(
 ///
 /// # Errors
 /// As [`cast`], and a graze tolerance that is negative or not finite.
+///
+/// ```
+/// # use colltrans::glam::DVec3;
+/// # use colltrans::{ConvexPolyhedron, Options, Outcome, Pose, Solver, cast_with};
+/// # let corners: Vec<DVec3> = (0..8)
+/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
+/// #     .collect();
+/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
+/// // A slide with a thousandth of overlap: contact, or grazing for those who tolerate as much.
+/// let start = Pose::from_translation(DVec3::new(-3.0, 0.999, 0.0))?;
+/// let slide = |options: &Options| {
+///     cast_with(&cube, &start, &cube, &Pose::IDENTITY, DVec3::X, options)
+/// };
+/// assert!(matches!(slide(&Options::default())?, Outcome::Contact(_)));
+/// let Outcome::Grazing(grazing) =
+///     slide(&Options { graze_tolerance: 0.01, solver: Solver::Cta })?
+/// else {
+///     unreachable!("they overlap by less than tolerated")
+/// };
+/// assert!((grazing.overlap - 0.001).abs() < 1e-12);
+/// assert_eq!(grazing.contact.translation, 2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn cast_with(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -63,20 +108,52 @@ pub fn cast_with(
         Solver::Auto => Solver::Portal,
         solver => solver,
     };
-    Cast {
-        difference: Difference::new(&setting),
-        moving_pose,
-        graze_tolerance: tolerance,
-        solver,
-        steps: Steps::default(),
+    let mut answer = Err(QueryError::NotConverged {
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        tolerance: Difference::noise_of(&setting),
+    });
+    for turn_rad in LATERAL_TURNS_RAD {
+        let cast = Cast {
+            difference: Difference::new(&setting, turn_rad),
+            moving_pose,
+            graze_tolerance: tolerance,
+            solver,
+            steps: Steps::default(),
+        };
+        answer = cast.run();
+        if !matches!(answer, Err(QueryError::NotConverged { .. })) {
+            break;
+        }
     }
-    .run()
+    answer
 }
 
-/// All translations along `direction` at which the bodies meet.
+/// Turns of the lateral axes, tried one after the other: ties that follow each other in a circle in
+/// one frame do not in another.
+const LATERAL_TURNS_RAD: [f64; 3] = [0.0, 0.7, 2.1];
+
+/// All translations along `direction` at which the bodies meet, both ends certified.
+///
+/// Frames and units as for [`cast`]. Two casts, along the direction and against it.
 ///
 /// # Errors
 /// As [`cast_with`].
+///
+/// ```
+/// # use colltrans::glam::DVec3;
+/// # use colltrans::{ConvexPolyhedron, Options, Pose, contact_range};
+/// # let corners: Vec<DVec3> = (0..8)
+/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
+/// #     .collect();
+/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
+/// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+/// let direction = DVec3::X * 0.5;
+/// let range =
+///     contact_range(&cube, &start, &cube, &Pose::IDENTITY, direction, &Options::default())?;
+/// assert_eq!(range.interval(), Some([4.0, 8.0])); // in multiples of the direction
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn contact_range(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -104,11 +181,31 @@ pub fn contact_range(
 
 /// How far `moving` can move along `direction` from where it is.
 ///
-/// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding, block each other if
-/// the motion would make them overlap, and do not if it takes them apart.
+/// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding,
+/// block each other if the motion would make them overlap, and do not if it takes them apart.
+/// Frames and units as for [`cast`].
 ///
 /// # Errors
 /// As [`cast_with`].
+///
+/// ```
+/// # use colltrans::glam::DVec3;
+/// # use colltrans::{Clearance, ConvexPolyhedron, Options, Pose, clearance};
+/// # let corners: Vec<DVec3> = (0..8)
+/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
+/// #     .collect();
+/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
+/// // One cube upon another: it can go up, and aside, but not down.
+/// let (above, world) = (Pose::from_translation(DVec3::Z)?, Pose::IDENTITY);
+/// let free = |direction| clearance(&cube, &above, &cube, &world, direction, &Options::default());
+/// assert_eq!(free(DVec3::Z)?, Clearance::Free);
+/// assert_eq!(free(DVec3::X)?, Clearance::Free);
+/// let Clearance::Blocked { distance, .. } = free(DVec3::NEG_Z)? else {
+///     unreachable!("the other cube is below")
+/// };
+/// assert_eq!(distance, 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn clearance(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -131,13 +228,31 @@ pub fn clearance(
     })
 }
 
-/// Whether the bodies, as closed sets and to within rounding error, have a point in common where they are.
+/// Whether the bodies, as closed sets and to within rounding error, have a point in common where
+/// they are.
 ///
 /// The moving body is cast along the line through both centres, which passes the deepest
 /// part of the Minkowski difference, so the answer is as well conditioned as the question.
 ///
 /// # Errors
 /// As [`cast`].
+///
+/// ```
+/// # use colltrans::glam::DVec3;
+/// # use colltrans::{ConvexPolyhedron, Pose, intersects};
+/// # let corners: Vec<DVec3> = (0..8)
+/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
+/// #     .collect();
+/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
+/// let at = |x| Pose::from_translation(DVec3::new(x, 0.0, 0.0));
+/// let meets = |x| Ok::<_, Box<dyn std::error::Error>>(
+///     intersects(&cube, &at(x)?, &cube, &Pose::IDENTITY)?
+/// );
+/// assert!(meets(0.5)?);
+/// assert!(meets(1.0)?); // they touch
+/// assert!(!meets(1.001)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn intersects(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -156,11 +271,27 @@ pub fn intersects(
     })
 }
 
-/// How far `moving`, where it overlaps `fixed`, has to go back along `-direction` until they only touch, in multiples of
-/// `direction`; 0 if they do not overlap.
+/// How far `moving`, where it overlaps `fixed`, has to go back along `-direction` until they only
+/// touch, in multiples of `direction`; 0 if they do not overlap.
 ///
 /// # Errors
 /// As [`cast_with`].
+///
+/// ```
+/// # use colltrans::glam::DVec3;
+/// # use colltrans::{ConvexPolyhedron, Options, Pose, directional_depth};
+/// # let corners: Vec<DVec3> = (0..8)
+/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
+/// #     .collect();
+/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
+/// let inside = Pose::from_translation(DVec3::new(-0.75, 0.0, 0.0))?;
+/// let depth = |direction| {
+///     directional_depth(&cube, &inside, &cube, &Pose::IDENTITY, direction, &Options::default())
+/// };
+/// assert_eq!(depth(DVec3::X)?, 0.25);
+/// assert_eq!(depth(DVec3::NEG_X)?, 1.75);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn directional_depth(
     moving: &ConvexPolyhedron,
     moving_pose: &Pose,
@@ -259,8 +390,8 @@ impl Cast<'_> {
         })
     }
 
-    /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact of the bodies widened
-    /// sideways by a little more than that.
+    /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
+    /// of the bodies widened sideways by a little more than that.
     fn touching(mut self, rim: &OneSide, start: &Start) -> Result<Grazing, QueryError> {
         self.difference = self.difference.widened(rim.margin);
         let Some(Enclosure::Portal(first)) =

@@ -1,16 +1,24 @@
 //! The setting of a query: two placed bodies and a direction, in a frame that all solvers share.
 //!
 //! The *setting frame* has the axes of the world and its origin at the moving body's translation:
-//! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both bodies, however
-//! large, costs no accuracy.
+//! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both
+//! bodies, however large, costs no accuracy.
 
 use glam::{DMat3, DVec3};
 
-use crate::certificate::VertexPair;
 use crate::error::{QueryError, in_exact_range};
 use crate::exact::{self, ExactVector};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
+
+/// One vertex of each body, by index into [`ConvexPolyhedron::vertices`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct VertexPair {
+    /// Index into the moving body's vertices.
+    pub moving: u32,
+    /// Index into the fixed body's vertices.
+    pub fixed: u32,
+}
 
 /// Two placed bodies and a direction.
 #[derive(Debug, Clone, Copy)]

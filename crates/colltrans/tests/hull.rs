@@ -97,9 +97,10 @@ fn slabs_needles_and_offsets_stay_solid() {
         DVec3::new(3000.0, 1.0, 1.0),
         DVec3::new(1e6, 1.0, 1.0),
         DVec3::new(1.0, 1e-3, 1e-5),
+        DVec3::new(1e6, 1e6, 1.0),
     ] {
         for counts in [[2, 2, 2], [5, 4, 3]] {
-            for round in 0..20 {
+            for round in 0..100 {
                 let rotation = random.rotation();
                 let points: Vec<DVec3> =
                     grid(counts, spacing).iter().map(|p| rotation * *p).collect();
@@ -360,4 +361,36 @@ fn a_large_sphere_is_built_quickly() {
     let start = std::time::Instant::now();
     ConvexPolyhedron::from_mesh(body.vertices(), &faces, 0.0).unwrap();
     println!("the same from its mesh: {:?}", start.elapsed());
+}
+
+#[test]
+fn a_flat_mesh_that_is_not_convex_is_refused() {
+    let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
+    let points: Vec<DVec3> = corners.iter().map(|&(x, y)| DVec3::new(x, y, 3.0)).collect();
+    let faces = [[0, 1, 2, 3, 4, 5], [5, 4, 3, 2, 1, 0]];
+    let defect = convexity_defect(&points, &faces).unwrap();
+    assert!((defect.depth - 0.5_f64.sqrt()).abs() < 1e-12, "{defect:?}");
+    assert!(ConvexPolyhedron::from_mesh(&points, &faces, 0.1).is_err());
+    let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+    let body = ConvexPolyhedron::from_mesh(&square, &[[0, 1, 2, 3], [3, 2, 1, 0]], 0.0).unwrap();
+    assert_eq!((body.dimension(), body.vertices().len()), (2, 4));
+}
+
+#[test]
+fn single_precision_meshes_are_nearly_convex() {
+    let (count, per_ring) = if cfg!(debug_assertions) { (20, 40) } else { (100, 200) };
+    let exact = rings(count, per_ring, DVec3::new(0.7, 1.3, 1.0));
+    let body = ConvexPolyhedron::from_points(&exact).unwrap();
+    let faces: Vec<Vec<u32>> =
+        (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
+    let rounded: Vec<DVec3> = body
+        .vertices()
+        .iter()
+        .map(|p| DVec3::from_array(p.to_array().map(|c| f64::from(c as f32))))
+        .collect();
+    let start = std::time::Instant::now();
+    let defect = convexity_defect(&rounded, &faces).unwrap();
+    println!("{} vertices in single precision: {defect:?}, {:?}", rounded.len(), start.elapsed());
+    assert!(defect.depth > 0.0 && defect.depth < 2e-7);
+    assert!(ConvexPolyhedron::from_mesh(&rounded, &faces, 1e-6).is_ok());
 }

@@ -10,10 +10,10 @@ use std::cell::OnceCell;
 use glam::{DVec2, DVec3};
 
 use super::ROUNDING;
-use crate::polyhedron::topology::Topology;
 use crate::section::{
     AxisSections, SectionForm, Snapshot, Turn, next_clockwise, next_counter_clockwise,
 };
+use crate::topology::Topology;
 
 /// Newton's method walks so far up a chain before it searches the snapshot.
 const STEPS_BEFORE_SEARCH: usize = 2;

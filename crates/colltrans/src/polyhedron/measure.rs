@@ -1,12 +1,13 @@
 //! The size of a body: how large its coordinates are, and the ellipsoid it resembles.
 //!
-//! The *inertia ellipsoid* `{c + x : x^T S^-1 x <= 1}` has the body's centroid `c` and `S = 5 cov`, where
-//! `cov` is the covariance of the body's volume; a solid ellipsoid is its own. It is only ever a guess: for
-//! the first normal of a query and for directions in which the body's normals spread evenly.
+//! The *inertia ellipsoid* `{c + x : x^T S^-1 x <= 1}` has the body's centroid `c` and `S = 5 cov`,
+//! where `cov` is the covariance of the body's volume; a solid ellipsoid is its own. It is only
+//! ever a guess: for the first normal of a query and for directions in which the body's normals
+//! spread evenly.
 
 use glam::{DMat3, DVec3};
 
-use super::topology::Topology;
+use crate::topology::Topology;
 
 /// Size and resemblance of a body, in its own frame.
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +16,8 @@ pub(crate) struct Measure {
     pub(crate) reach: f64,
     /// Centroid of the volume (of the vertices, for a body of lower dimension).
     pub(crate) center: DVec3,
-    /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is `c + L (unit ball)`.
+    /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is
+    /// `c + L (unit ball)`.
     pub(crate) factor: DMat3,
     /// Root of the trace of `S`: the ellipsoid's mean size.
     pub(crate) radius: f64,
@@ -44,7 +46,8 @@ impl Measure {
         Self { reach, center, factor: cholesky(&shape), radius, volume }
     }
 
-    /// The volume that a closed surface encloses: positive if its faces are counter-clockwise from outside.
+    /// The volume that a closed surface encloses: positive if its faces are counter-clockwise from
+    /// outside.
     pub(crate) fn signed_volume(vertices: &[DVec3], topology: &Topology) -> f64 {
         let apex = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         (0..topology.face_count() as u32)
@@ -91,8 +94,8 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// Volume, centroid and covariance by the tetrahedra between `apex` and the triangles of a fan of each face.
-/// `None` if rounding leaves no positive volume.
+/// Volume, centroid and covariance by the tetrahedra between `apex` and the triangles of a fan of
+/// each face. `None` if rounding leaves no positive volume.
 fn solid_moments(
     vertices: &[DVec3],
     topology: &Topology,

@@ -1,29 +1,30 @@
 //! Convex polyhedra, checked once at the door.
 //!
-//! The data's way: points -> [`hull`] (which vertices, which faces) -> [`topology`] (half-edges, no
-//! coordinates) -> the indices built on both (support points, sections).
+//! The data's way: points -> [`hull`] (which vertices, which faces) -> [`crate::topology`]
+//! (half-edges, no coordinates) -> the indices built on both (support points, sections).
 
 mod hull;
 mod measure;
 mod mesh;
 mod support;
-pub(crate) mod topology;
 
 use glam::DVec3;
 
 use crate::error::BuildError;
 use crate::plane::polygon_normal;
 use crate::section::SectionIndex;
+use crate::topology::Topology;
 use hull::Hull;
 pub(crate) use measure::Measure;
 pub use mesh::{ConvexityDefect, convexity_defect};
 use support::SupportIndex;
-use topology::Topology;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
 ///
 /// It may be of lower dimension: a flat polygon, a segment, a point. Immutable, `Send` and `Sync`;
 /// everything a query needs is built once, here, in `O(n)` space.
+///
+/// Vertices and faces are numbered from 0; [`Self::input_indices`] leads back to the input.
 #[derive(Debug, Clone)]
 pub struct ConvexPolyhedron {
     vertices: Vec<DVec3>,
@@ -41,24 +42,58 @@ impl ConvexPolyhedron {
     ///
     /// Coplanar triangles are merged into polygons and points within rounding error of a face
     /// or an edge are no vertices; [`Self::hull_error`] says how far outside the faces any
-    /// input point was left.
+    /// input point was left. Takes `O(n log n)` for points in general.
     ///
     /// # Errors
-    /// No points, a point that is not finite, a coordinate out of the exact range.
+    /// No points, more than 32-bit indices can number, a point that is not finite, a coordinate
+    /// out of the exact range.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// // A grid of 3 x 3 x 3 points: a cube of 8 vertices and 6 faces.
+    /// let grid: Vec<DVec3> = (0..27)
+    ///     .map(|i| DVec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64))
+    ///     .collect();
+    /// let cube = ConvexPolyhedron::from_points(&grid)?;
+    /// assert_eq!((cube.vertices().len(), cube.edge_count(), cube.face_count()), (8, 12, 6));
+    /// assert_eq!(cube.volume(), 8.0);
+    ///
+    /// assert!(ConvexPolyhedron::from_points(&[DVec3::NAN]).is_err());
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
     pub fn from_points(points: &[DVec3]) -> Result<Self, BuildError> {
         hull::check_points(points)?;
         Ok(Self::from_hull(points, hull::convex_hull(points)))
     }
 
-    /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of vertex indices,
-    /// counter-clockwise as seen from outside.
+    /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of
+    /// vertex indices, counter-clockwise as seen from outside.
     ///
-    /// The surface must be closed, consistently oriented, one sphere, and nowhere more than `tolerance`
-    /// below its convex hull; the hull is what is kept. Vertices that no face uses are ignored.
+    /// The surface must be closed, consistently oriented, one sphere, and nowhere more than
+    /// `tolerance` (a length; rounding error is tolerated in any case) below its convex hull; the
+    /// hull is what is kept. Vertices that no face uses are ignored.
     ///
     /// # Errors
-    /// What is wrong with the points, the topology, the orientation, or the convexity (with the worst
-    /// face and its depth).
+    /// What is wrong with the points, the topology, the orientation, or the convexity (with the
+    /// worst face and its depth).
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{BuildError, ConvexPolyhedron, TopologyError};
+    ///
+    /// let vertices = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    /// let tetrahedron = ConvexPolyhedron::from_mesh(&vertices, &faces, 0.0)?;
+    /// assert_eq!(tetrahedron.face_count(), 4);
+    ///
+    /// let open = ConvexPolyhedron::from_mesh(&vertices, &faces[..3], 0.0);
+    /// let Err(BuildError::Topology(TopologyError::OpenEdge { .. })) = open else {
+    ///     unreachable!("a face is missing")
+    /// };
+    /// # Ok::<(), BuildError>(())
+    /// ```
     pub fn from_mesh<F: AsRef<[u32]>>(
         vertices: &[DVec3],
         faces: &[F],
@@ -99,12 +134,13 @@ impl ConvexPolyhedron {
         &self.input_index
     }
 
-    /// 3 for a solid, 2 for a flat polygon (with a front and a back face), 1 for a segment, 0 for a point.
+    /// 3 for a solid, 2 for a flat polygon (with a front and a back face), 1 for a segment, 0 for a
+    /// point.
     pub fn dimension(&self) -> u8 {
         self.dimension
     }
 
-    /// Number of faces.
+    /// Number of faces: 2 for a flat polygon, 0 for a segment or a point.
     pub fn face_count(&self) -> usize {
         self.topology.face_count()
     }
@@ -122,7 +158,7 @@ impl ConvexPolyhedron {
         self.topology.face_vertices(face)
     }
 
-    /// Unit normal of a face, outwards, in the body frame.
+    /// Unit normal of a face, outwards, in the body frame, rounded.
     ///
     /// # Panics
     /// If there is no such face.
@@ -138,17 +174,30 @@ impl ConvexPolyhedron {
         self.topology.neighbours(vertex)
     }
 
-    /// The largest distance by which an input point lies outside a face plane: the hull's own error.
+    /// The largest distance by which an input point lies outside a face plane: the hull's own
+    /// error, in the unit of the input.
     pub fn hull_error(&self) -> f64 {
         self.hull_error
     }
 
-    /// The volume; 0 for a body of lower dimension.
+    /// The volume, in the cube of the input's unit; 0 for a body of lower dimension.
     pub fn volume(&self) -> f64 {
         self.measure.volume
     }
 
-    /// The vertex farthest along `direction` (body frame, any length): a support point, in `O(log n)`.
+    /// The vertex farthest along `direction` (body frame, any length): a support point, in
+    /// `O(log n)`. One of the farthest, to within rounding error, if there are several.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let needle = ConvexPolyhedron::from_points(&[DVec3::X * 100.0, DVec3::Y, DVec3::Z])?;
+    /// let tip = needle.support(DVec3::new(1.0, -0.5, 0.25));
+    /// assert_eq!(needle.vertices()[tip as usize], DVec3::new(100.0, 0.0, 0.0));
+    /// assert_eq!(needle.input_indices()[tip as usize], 0);
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
     #[inline]
     pub fn support(&self, direction: DVec3) -> u32 {
         self.support.extreme(&self.vertices, &self.topology, direction)
@@ -160,7 +209,8 @@ impl ConvexPolyhedron {
         self.support.extreme_from(&self.vertices, &self.topology, direction, near)
     }
 
-    /// Positions among the neighbours of `vertex` that may lie in its supporting plane along `direction`: the first and how many.
+    /// Positions among the neighbours of `vertex` that may lie in its supporting plane along
+    /// `direction`: the first and how many.
     pub(crate) fn plane_candidates(&self, vertex: u32, direction: DVec3) -> (usize, usize) {
         self.support.plane_candidates(&self.vertices, &self.topology, vertex, direction)
     }

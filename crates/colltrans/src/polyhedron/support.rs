@@ -17,7 +17,7 @@
 use glam::{DMat3, DVec3};
 
 use super::measure::Measure;
-use super::topology::Topology;
+use crate::topology::Topology;
 
 /// Up to this many vertices, looking at each is fastest (measured).
 const SCAN_LIMIT: usize = 20;

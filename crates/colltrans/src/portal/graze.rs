@@ -1,10 +1,12 @@
 //! How far the shadows overlap sideways: the distance from the line to the rim of the shadow of `M`.
 //!
 //! Invariant: a polygon of shadows of points of `M` contains the line, so the distance to its nearest edge is a lower
-//! bound of the overlap; the support point beyond that edge gives an upper bound, and becomes a corner.
+//! bound of the overlap; the support point beyond that edge gives an upper bound, and becomes a corner. The polygon is the convex hull of
+//! its points.
 
 use glam::DVec2;
 
+use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 
@@ -37,8 +39,9 @@ pub(crate) fn overlap(
     }
     let mut corners = [portal[0]; MAX_CORNERS];
     corners[..3].copy_from_slice(portal);
-    let mut count = 3;
-    loop {
+    let mut count = hull(&mut corners[..3]);
+    let mut slightest = Overlap::Ample;
+    for _ in 0..MAX_ROUNDS {
         let Some((edge, outward, reach)) = nearest_edge(&corners[..count]) else {
             return Overlap::Slight { inward: DVec2::X, depth: 0.0 };
         };
@@ -55,10 +58,50 @@ pub(crate) fn overlap(
                 Overlap::Slight { inward: -outward, depth }
             };
         }
-        corners.copy_within(edge + 1..count, edge + 2);
-        corners[edge + 1] = point;
-        count += 1;
+        if depth <= tolerance {
+            slightest = Overlap::Slight { inward: -outward, depth };
+        }
+        corners[count] = point;
+        count = hull(&mut corners[..=count]);
     }
+    slightest
+}
+
+/// Bound on the rounds: each adds a corner, unless rounding makes them repeat; then the last overlap found within the tolerance stands.
+const MAX_ROUNDS: usize = 200;
+
+/// Moves the corners of the convex hull to the front, counter-clockwise, and returns their number.
+fn hull(points: &mut [Point]) -> usize {
+    let at = |p: &Point| p.shadow();
+    points.sort_unstable_by(|p, q| {
+        let (p, q) = (at(p), at(q));
+        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
+    });
+    let mut chain = [points[0]; 2 * MAX_CORNERS];
+    let mut count = 0;
+    // The lower chain from left to right, then the upper one back.
+    for (base, upper) in [(0, false), (1, true)] {
+        let first = if upper { count - base } else { 0 };
+        for k in 0..points.len() {
+            let new = points[if upper { points.len() - 1 - k } else { k }];
+            while count > first + 1 {
+                let [a, b] = [chain[count - 2], chain[count - 1]].map(|p| at(&p));
+                if accurate_det(b - a, at(&new) - a) > 0.0 {
+                    break;
+                }
+                count -= 1;
+            }
+            if count > first && at(&chain[count - 1]) == at(&new) {
+                continue;
+            }
+            chain[count] = new;
+            count += 1;
+        }
+    }
+    // The upper chain ends where the lower one began.
+    let count = if count > 1 { count - 1 } else { 1 };
+    points[..count].copy_from_slice(&chain[..count]);
+    count
 }
 
 /// Whether all edges of the portal are farther from the line than `tolerance`.

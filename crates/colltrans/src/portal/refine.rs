@@ -8,12 +8,13 @@
 use glam::{DVec2, DVec3};
 
 use super::enclose::{Enclosure, Guide, OneSide, complete};
+use super::graze::{Overlap, overlap};
 use super::{Portal, Tangent};
-use crate::certificate::VertexPair;
 use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 use crate::plane::triangle_normal;
+use crate::setting::VertexPair;
 
 /// The lowest face on the line.
 #[derive(Debug, Clone, Copy)]
@@ -92,7 +93,14 @@ fn widen(difference: &Difference, portal: &Portal, steps: &mut Steps) -> Option<
             }
         }
     }
-    None
+    // Only narrow portals contain a line that passes the rim.
+    let points = portal.map(|t| t.point);
+    match overlap(difference, &points, difference.touching(), steps) {
+        Overlap::Slight { inward, depth } => {
+            Some(Enclosure::OneSide(OneSide { normal: inward, margin: -depth, point: low.point }))
+        }
+        Overlap::Ample => None,
+    }
 }
 
 /// A point of `M` whose shadow is far from that of another.

@@ -7,8 +7,8 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use crate::certificate::VertexPair;
 use crate::minkowski::{Difference, Symmetric};
+use crate::setting::VertexPair;
 
 /// Where to begin, and how the shadow of the support point answers to a change of slope.
 #[derive(Debug, Clone, Copy)]

@@ -17,7 +17,7 @@ mod walk;
 
 use glam::DVec3;
 
-use crate::polyhedron::topology::Topology;
+use crate::topology::Topology;
 pub(crate) use axes::{AXES, AxisPair};
 pub(crate) use snapshots::{AxisSections, SectionForm, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};

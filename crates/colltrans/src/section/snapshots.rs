@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::walk::next_counter_clockwise;
-use crate::polyhedron::topology::Topology;
+use crate::topology::Topology;
 
 /// Edges of vertices passed per entry of a snapshot: about two vertices' worth of upward and downward edges.
 const EDGES_PER_ENTRY: usize = 4;

@@ -15,9 +15,10 @@ mod violation;
 
 use glam::DVec3;
 
-use super::topology::Topology;
 use crate::error::{BuildError, TopologyError, in_exact_range};
+use crate::topology::Topology;
 use quickhull::Simplicial;
+pub(super) use violation::Locator;
 
 /// Which input points are vertices, and the faces over them.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::Hull;
 use super::quickhull::Flat;
-use crate::polyhedron::topology::Topology;
+use crate::topology::Topology;
 
 pub(super) fn hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> Hull {
     match flat {

@@ -112,6 +112,16 @@ fn side(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
     -robust::orient3d(coord(a), coord(b), coord(c), coord(p))
 }
 
+/// Where a point went.
+enum Assigned {
+    /// On the list of a triangle.
+    To(u32),
+    /// Within the tolerance of a triangle, outside none by more.
+    Near,
+    /// Nowhere: it is inside of all.
+    Inside,
+}
+
 struct Builder<'a> {
     points: &'a [DVec3],
     tolerance: f64,
@@ -168,8 +178,8 @@ impl<'a> Builder<'a> {
             self.triangles[face as usize].neighbours = neighbours;
         }
         for &i in kept {
-            if ![a, b, c, e].contains(&i) {
-                self.assign(i, 0..4);
+            if ![a, b, c, e].contains(&i) && matches!(self.assign(i, 0..4), Assigned::Near) {
+                self.near.push(i);
             }
         }
         self.pending.extend([0, 1, 2, 3]);
@@ -212,22 +222,66 @@ impl<'a> Builder<'a> {
     }
 
     /// Puts a point on the list of the triangle it is farthest outside of, if by more than the tolerance.
-    fn assign(&mut self, i: u32, faces: impl Iterator<Item = u32>) {
+    fn assign(&mut self, i: u32, faces: impl Iterator<Item = u32>) -> Assigned {
         let p = self.at(i);
-        let best = faces
-            .map(|f| (self.distance(f, p), f))
-            .fold((f64::NEG_INFINITY, NONE), |a, b| if b.0 > a.0 { b } else { a });
-        let (distance, face) = best;
-        if distance > self.tolerance {
-            let triangle = &mut self.triangles[face as usize];
-            self.next[i as usize] = triangle.outside;
-            triangle.outside = i;
-            if distance > triangle.farthest.0 {
-                triangle.farthest = (distance, i);
+        let mut best = (self.tolerance, NONE);
+        let mut nearest = f64::NEG_INFINITY;
+        for face in faces {
+            let distance = self.distance(face, p);
+            nearest = nearest.max(distance);
+            if distance > best.0 && self.is_outside(face, p, distance) {
+                best = (distance, face);
             }
-        } else if distance > -self.tolerance {
-            self.near.push(i);
         }
+        let (distance, face) = best;
+        if face == NONE {
+            return if nearest > -self.tolerance { Assigned::Near } else { Assigned::Inside };
+        }
+        let triangle = &mut self.triangles[face as usize];
+        self.next[i as usize] = triangle.outside;
+        triangle.outside = i;
+        if distance > triangle.farthest.0 {
+            triangle.farthest = (distance, i);
+        }
+        Assigned::To(face)
+    }
+
+    /// Whether a point at a rounded distance is really outside: slivers have arbitrary rounded normals.
+    fn is_outside(&self, face: u32, p: DVec3, distance: f64) -> bool {
+        let triangle = &self.triangles[face as usize];
+        if distance.abs() > triangle.doubt {
+            return distance > 0.0;
+        }
+        let [a, b, c] = triangle.corners.map(|i| self.at(i));
+        side(a, b, c, p) > 0.0
+    }
+
+    /// Assigns a point that lost its triangle.
+    ///
+    /// In exact arithmetic one of the new triangles sees it if any triangle does. But it may be within the tolerance of
+    /// that one and far outside an older one (a corner of a box in the planes of its faces): then the triangles that see it are
+    /// searched from the rim on.
+    fn reassign(&mut self, i: u32, cone: &[u32]) {
+        if !matches!(self.assign(i, cone.iter().copied()), Assigned::Near) {
+            return;
+        }
+        let p = self.at(i);
+        self.insertion += 1;
+        let mut stack: Vec<u32> = self.rim.iter().map(|&(_, _, hidden)| hidden).collect();
+        while let Some(face) = stack.pop() {
+            if self.triangles[face as usize].stamp == self.insertion {
+                continue;
+            }
+            self.mark(face, false);
+            if let Assigned::To(face) = self.assign(i, std::iter::once(face)) {
+                self.pending.push(face);
+                return;
+            }
+            if self.sees(face, p) {
+                stack.extend(self.triangles[face as usize].neighbours);
+            }
+        }
+        self.near.push(i);
     }
 
     /// Whether a point sees a triangle, or lies in its plane; exact.
@@ -245,12 +299,6 @@ impl<'a> Builder<'a> {
     fn insert(&mut self, face: u32) {
         let apex = self.triangles[face as usize].farthest.1;
         let p = self.at(apex);
-        let [a, b, c] = self.triangles[face as usize].corners.map(|i| self.at(i));
-        if side(a, b, c, p) <= 0.0 {
-            // A sliver's rounded normal called the point outside; it is not.
-            self.pass_over(face, apex);
-            return;
-        }
         self.find_rim(face, p);
         let mut orphans = NONE;
         for k in 0..self.seen.len() {
@@ -270,26 +318,11 @@ impl<'a> Builder<'a> {
         let cone = self.build_cone(apex);
         while orphans != NONE {
             let next = self.next[orphans as usize];
-            self.assign(orphans, cone.iter().copied());
+            self.reassign(orphans, &cone);
             orphans = next;
         }
         self.pending.extend(&cone);
         self.free.append(&mut self.seen);
-    }
-
-    /// Takes a point off a triangle's list without inserting it.
-    fn pass_over(&mut self, face: u32, point: u32) {
-        self.near.push(point);
-        let mut i = std::mem::replace(&mut self.triangles[face as usize].outside, NONE);
-        self.triangles[face as usize].farthest = (0.0, NONE);
-        while i != NONE {
-            let next = self.next[i as usize];
-            if i != point {
-                self.assign(i, std::iter::once(face));
-            }
-            i = next;
-        }
-        self.pending.push(face);
     }
 
     /// Collects the triangles that `p` sees and the rim edges `(from, to, hidden triangle)`.

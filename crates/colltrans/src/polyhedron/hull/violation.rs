@@ -4,13 +4,13 @@ use glam::DVec3;
 
 use super::quickhull::Simplicial;
 use crate::plane::polygon_normal;
-use crate::polyhedron::topology::Topology;
+use crate::topology::Topology;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to face.
 ///
 /// With the inner point as origin, faces are the points `n / o` of the polar polytope and the face sought is its
 /// support point, so a walk to ever better neighbours ends at it.
-pub(super) struct Locator {
+pub(in crate::polyhedron) struct Locator {
     center: DVec3,
     /// Unit normal and offset from the centre of each face.
     planes: Vec<(DVec3, f64)>,
@@ -36,7 +36,7 @@ impl Locator {
     }
 
     /// The faces of a polyhedron.
-    fn of_faces(vertices: &[DVec3], topology: &Topology) -> Self {
+    pub(in crate::polyhedron) fn of_faces(vertices: &[DVec3], topology: &Topology) -> Self {
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let plane = |face: u32| {
             let corners = topology.face_vertices(face).map(|v| vertices[v as usize]);
@@ -62,6 +62,28 @@ impl Locator {
     /// walk starts, and where it ended.
     pub(super) fn outside(&self, point: DVec3, near: &mut usize) -> f64 {
         let ray = point - self.center;
+        self.walk(ray, near);
+        let outside = |f: usize| self.planes[f].0.dot(ray) - self.planes[f].1;
+        self.around(*near).map(outside).fold(outside(*near), f64::max)
+    }
+
+    /// An upper bound of the depth of a point below the faces, close to it for points near the surface.
+    pub(in crate::polyhedron) fn depth_bound(&self, point: DVec3, near: &mut usize) -> f64 {
+        let ray = point - self.center;
+        self.walk(ray, near);
+        let depth = |f: usize| self.planes[f].1 - self.planes[f].0.dot(ray);
+        self.around(*near).map(depth).fold(depth(*near), f64::min)
+    }
+
+    /// Unit normals and offsets from the origin of the coordinates.
+    pub(in crate::polyhedron) fn planes_from_origin(
+        &self,
+    ) -> impl Iterator<Item = (DVec3, f64)> + '_ {
+        self.planes.iter().map(|&(normal, offset)| (normal, offset + normal.dot(self.center)))
+    }
+
+    /// Walks to the face that a ray from the centre passes.
+    fn walk(&self, ray: DVec3, near: &mut usize) {
         let passing = |f: usize| {
             let (normal, offset) = self.planes[f];
             normal.dot(ray) / offset.max(f64::MIN_POSITIVE)
@@ -78,8 +100,6 @@ impl Locator {
             }
             (value, *near) = better;
         }
-        let outside = |f: usize| self.planes[f].0.dot(ray) - self.planes[f].1;
-        self.around(*near).map(outside).fold(outside(*near), f64::max)
     }
 
     fn around(&self, face: usize) -> impl Iterator<Item = usize> + '_ {

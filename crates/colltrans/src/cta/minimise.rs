@@ -155,13 +155,12 @@ impl<'a> Query<'a> {
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
         let extent =
             2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
-        let begin = match &options.start {
-            Some(start) => self.begin(setting, start),
-            None => {
-                let base = self.frame.base(origin.to_array());
-                let least = base + self.sides[0].least_height() - extent;
-                Begin { floor: Piece::constant(least, DVec3::ZERO), at: origin, near: None }
-            }
+        let begin = if let Some(start) = &options.start {
+            self.begin(setting, start)
+        } else {
+            let base = self.frame.base(origin.to_array());
+            let least = base + self.sides[0].least_height() - extent;
+            Begin { floor: Piece::constant(least, DVec3::ZERO), at: origin, near: None }
         };
         let gap = options.gap * extent;
         let at = begin.at - origin;

@@ -4,7 +4,8 @@
 //! *upper* section is the one with the higher bottom, at height `h0`. If that bottom lies in the other section it is
 //! the answer. Otherwise one section is to the left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the right chain `r` of the
 //! one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive at `h0`: Newton's method from there never
-//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls. Pieces found earlier bound the answer
+//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls. A guess of these edges is followed
+//! along the mesh first, from above or below. Pieces found earlier bound the answer
 //! from below: then Newton's method starts at that height.
 
 use glam::DVec2;
@@ -144,6 +145,11 @@ fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
     Planar::Edges { edges: *edges, contact: crossing_of(edges) }
 }
 
+/// The body whose edge begins higher.
+fn higher(edges: &[Bracket; 2]) -> usize {
+    usize::from(edges[1].low.h() > edges[0].low.h())
+}
+
 /// Where the lines of two edges cross.
 fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
     let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
@@ -170,7 +176,7 @@ impl<'a, 'b> Slide<'a, 'b> {
     fn settle(&self, mut edges: [Bracket; 2]) -> Option<Planar> {
         for _ in 0..STEPS_NEAR {
             if !self.closes(&edges) {
-                let body = self.higher(&edges);
+                let body = higher(&edges);
                 if self.gap(&edges, edges[body].low.h()) > 0.0 {
                     return self.separated_at_least_gap(&edges, STEPS_NEAR);
                 }
@@ -205,11 +211,6 @@ impl<'a, 'b> Slide<'a, 'b> {
         let other = &edges[1 - body];
         let level = other.low.h() <= top && top <= other.high.h();
         (level && self.gap(edges, top) > 0.0).then(|| self.separated_at_top(body, edges))
-    }
-
-    /// The body whose edge begins higher.
-    fn higher(&self, edges: &[Bracket; 2]) -> usize {
-        usize::from(edges[1].low.h() > edges[0].low.h())
     }
 
     /// Whether the gap falls along these edges.
@@ -327,7 +328,7 @@ impl<'a, 'b> Slide<'a, 'b> {
     fn separated_at_least_gap(&self, edges: &[Bracket; 2], limit: usize) -> Option<Planar> {
         let mut edges = *edges;
         for _ in 0..limit {
-            let body = self.higher(&edges);
+            let body = higher(&edges);
             let mut candidate = edges;
             let below = self.retreat(body, &edges[body]);
             if let Some(below) = below {

@@ -353,7 +353,7 @@ impl Cast<'_> {
             supports: [support.pair.moving, support.pair.fixed],
             touching: ellipsoids.touching(&self.difference),
         });
-        let narrowed = cta::minimise(setting, &CtaOptions { start, ..CtaOptions::default() });
+        let narrowed = cta::minimise(setting, &CtaOptions::new(start));
         self.steps.planar_problems += narrowed.planar_problems;
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair { moving: moving[0], fixed: fixed[0] };

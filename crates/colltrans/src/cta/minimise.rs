@@ -34,9 +34,24 @@ pub(crate) struct CtaOptions {
     pub(crate) gap: f64,
 }
 
+/// Where the remaining work is done faster by portal refinement (measured: from here on more planar problems save it few supports or
+/// none).
+const GAP: f64 = 0.2;
+
+/// Planar problems after a start, for the same reason.
+const STEPS_AFTER_START: u32 = 2;
+
+impl CtaOptions {
+    /// From a start, or without one if there is none.
+    pub(crate) fn new(start: Option<CtaStart>) -> Self {
+        let max_steps = if start.is_some() { STEPS_AFTER_START } else { MAX_STEPS };
+        Self { start, max_steps, ..Self::default() }
+    }
+}
+
 impl Default for CtaOptions {
     fn default() -> Self {
-        Self { start: None, max_steps: MAX_STEPS, gap: 0.2 }
+        Self { start: None, max_steps: MAX_STEPS, gap: GAP }
     }
 }
 
@@ -71,6 +86,19 @@ pub(crate) struct Narrowed {
     /// Lower bound, in units of length.
     #[cfg_attr(not(test), expect(dead_code, reason = "as `upper`"))]
     pub(crate) lower: f64,
+}
+
+impl Narrowed {
+    /// No section could be found.
+    fn nothing() -> Self {
+        Self {
+            guess: Guess::Nothing,
+            vertices: Features::default(),
+            planar_problems: 1,
+            upper: f64::INFINITY,
+            lower: f64::NEG_INFINITY,
+        }
+    }
 }
 
 /// Narrows the search for the contact of two bodies of dimension 3.
@@ -127,14 +155,26 @@ impl<'a> Query<'a> {
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
         let extent =
             2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
-        let begin = match &options.start {
-            Some(start) => self.begin(setting, start),
-            None => {
-                let base = self.frame.base(origin.to_array());
-                let least = base + self.sides[0].least_height() - extent;
-                Begin { floor: Piece::constant(least, DVec3::ZERO), at: origin, near: None }
-            }
+        let begin = if let Some(start) = &options.start {
+            self.begin(setting, start)
+        } else {
+            let base = self.frame.base(origin.to_array());
+            let least = base + self.sides[0].least_height() - extent;
+            Begin { floor: Piece::constant(least, DVec3::ZERO), at: origin, near: None }
         };
+        let gap = options.gap * extent;
+        let at = begin.at - origin;
+        let levels = begin.at.to_array();
+        let first = begin
+            .near
+            .and_then(|near| planar::solve_near(&self.sides, levels, &near))
+            .or_else(|| planar::solve(&self.sides, levels, f64::NEG_INFINITY));
+        let Some(first) = first else { return Narrowed::nothing() };
+        if options.start.is_some()
+            && let Some(confirmed) = self.confirm(&begin, &first, gap)
+        {
+            return confirmed;
+        }
         let mut search = Search {
             query: self,
             origin,
@@ -144,11 +184,29 @@ impl<'a> Query<'a> {
             best: None,
             last_separation: None,
             contradiction: None,
-            planar_problems: 0,
-            near: begin.near,
+            planar_problems: 1,
+            begun: options.start.is_some(),
         };
-        search.run(begin.at - origin, options.max_steps.min(MAX_STEPS), options.gap * extent);
+        if search.learn(at, levels, &first) {
+            search.run(options.max_steps.min(MAX_STEPS), gap);
+        }
         search.result()
+    }
+
+    /// The result if the first planar problem confirms the supporting plane that the search began with.
+    fn confirm(&self, begin: &Begin, first: &Planar, gap: f64) -> Option<Narrowed> {
+        let levels = begin.at.to_array();
+        let cell = first.cell(levels)?;
+        let bound = first.piece(&self.frame, levels).bound;
+        let upper = bound.value + cell.least(bound.gradient);
+        let lower = begin.floor.bound.value;
+        (upper - lower <= gap).then(|| Narrowed {
+            guess: Guess::Contact { normal: begin.floor.normal },
+            vertices: first.features(),
+            planar_problems: 1,
+            upper: upper + self.constant,
+            lower: lower + self.constant,
+        })
     }
 
     /// From the supporting plane of a start, at the levels of its touching points.
@@ -198,29 +256,27 @@ struct Search<'q, 'a> {
     last_separation: Option<(Features, DVec3)>,
     contradiction: Option<DVec3>,
     planar_problems: u32,
-    /// A guess for the first step.
-    near: Option<Near>,
+    /// Whether the search began with a supporting plane of the bodies.
+    begun: bool,
 }
 
 impl Search<'_, '_> {
-    fn run(&mut self, start: DVec2, max_steps: u32, gap: f64) {
-        let mut at = start;
-        for _ in 0..max_steps {
-            if !self.step(at) || self.upper - self.bound.t <= gap {
+    /// One planar problem after the other, at the centroid of what is left.
+    fn run(&mut self, max_steps: u32, gap: f64) {
+        while self.planar_problems < max_steps && self.upper - self.bound.t > gap {
+            let Some(at) = self.region.centroid() else { break };
+            let levels = (self.origin + at).to_array();
+            let known = self.bound.below(at) - self.query.frame.base(levels);
+            self.planar_problems += 1;
+            let answer = planar::solve(&self.query.sides, levels, known);
+            if !answer.is_some_and(|answer| self.learn(at, levels, &answer)) {
                 break;
-            }
-            match self.region.centroid() {
-                Some(centroid) => at = centroid,
-                None => break,
             }
         }
     }
 
-    /// One planar problem; `false` if there is nothing more to learn.
-    fn step(&mut self, at: DVec2) -> bool {
-        let levels = (self.origin + at).to_array();
-        self.planar_problems += 1;
-        let Some(answer) = self.solve(at, levels) else { return false };
+    /// Cuts the region and raises the bound; `false` if there is nothing more to learn.
+    fn learn(&mut self, at: DVec2, levels: [f64; 2], answer: &Planar) -> bool {
         let local = answer.piece(&self.query.frame, levels);
         let bound = Affine {
             value: local.bound.value - local.bound.gradient.dot(at),
@@ -245,18 +301,13 @@ impl Search<'_, '_> {
         true
     }
 
-    fn solve(&mut self, at: DVec2, levels: [f64; 2]) -> Option<Planar> {
-        let sides = &self.query.sides;
-        let near = self.near.take();
-        near.and_then(|near| planar::solve_near(sides, levels, &near)).or_else(|| {
-            let known = self.bound.below(at) - self.query.frame.base(levels);
-            planar::solve(sides, levels, known)
-        })
-    }
-
     fn result(&self) -> Narrowed {
         let (guess, vertices) = match (self.best, self.last_separation) {
             (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, best),
+            // Not all of the levels were searched, but every normal that the bounds combine is one of a supporting plane.
+            (None, Some((features, _))) if self.begun && self.contradiction.is_none() => {
+                (Guess::Contact { normal: self.bound.normal() }, features)
+            }
             (None, Some((features, normal))) => {
                 let direction = self.contradiction.unwrap_or(normal);
                 (Guess::Separation { direction }, features)

@@ -4,7 +4,8 @@
 //! *upper* section is the one with the higher bottom, at height `h0`. If that bottom lies in the other section it is
 //! the answer. Otherwise one section is to the left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the right chain `r` of the
 //! one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive at `h0`: Newton's method from there never
-//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls. Pieces found earlier bound the answer
+//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls. A guess of these edges is followed
+//! along the mesh first, from above or below. Pieces found earlier bound the answer
 //! from below: then Newton's method starts at that height.
 
 use glam::DVec2;
@@ -12,8 +13,11 @@ use glam::DVec2;
 use super::ROUNDING;
 use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
 
+/// Halvings of a height: none are left between two numbers after so many.
+const HALVINGS: usize = 64;
+
 /// Steps from a guess of the edges that cross before the problem is solved from scratch.
-const STEPS_NEAR: usize = 8;
+const STEPS_NEAR: usize = 24;
 
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
@@ -141,6 +145,11 @@ fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
     Planar::Edges { edges: *edges, contact: crossing_of(edges) }
 }
 
+/// The body whose edge begins higher.
+fn higher(edges: &[Bracket; 2]) -> usize {
+    usize::from(edges[1].low.h() > edges[0].low.h())
+}
+
 /// Where the lines of two edges cross.
 fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
     let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
@@ -167,7 +176,7 @@ impl<'a, 'b> Slide<'a, 'b> {
     fn settle(&self, mut edges: [Bracket; 2]) -> Option<Planar> {
         for _ in 0..STEPS_NEAR {
             if !self.closes(&edges) {
-                let body = self.higher(&edges);
+                let body = higher(&edges);
                 if self.gap(&edges, edges[body].low.h()) > 0.0 {
                     return self.separated_at_least_gap(&edges, STEPS_NEAR);
                 }
@@ -204,11 +213,6 @@ impl<'a, 'b> Slide<'a, 'b> {
         (level && self.gap(edges, top) > 0.0).then(|| self.separated_at_top(body, edges))
     }
 
-    /// The body whose edge begins higher.
-    fn higher(&self, edges: &[Bracket; 2]) -> usize {
-        usize::from(edges[1].low.h() > edges[0].low.h())
-    }
-
     /// Whether the gap falls along these edges.
     fn closes(&self, edges: &[Bracket; 2]) -> bool {
         let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
@@ -220,10 +224,12 @@ impl<'a, 'b> Slide<'a, 'b> {
     fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
         let mut edges = *edges;
         let mut h = start;
+        let mut closing = start;
         for _ in 0..self.step_limit() {
             if !self.closes(&edges) {
-                return self.separated_at_least_gap(&edges, self.step_limit());
+                return self.separated_between(&edges, closing, h);
             }
+            closing = h;
             // The edge that ends first decides whether they have met, without a quotient.
             let ending = usize::from(edges[1].high.h() < edges[0].high.h());
             let end = &edges[ending].high;
@@ -290,12 +296,39 @@ impl<'a, 'b> Slide<'a, 'b> {
         edge
     }
 
+    /// The gap grows at height `high`, where `edges` are, falls at height `low`, and is positive between: to where it is least, by
+    /// halving and at the end in steps.
+    fn separated_between(
+        &self,
+        edges: &[Bracket; 2],
+        mut low: f64,
+        mut high: f64,
+    ) -> Option<Planar> {
+        let mut edges = *edges;
+        let mut lowered = true;
+        for _ in 0..HALVINGS {
+            if lowered && let Some(found) = self.separated_at_least_gap(&edges, STEPS_NEAR) {
+                return Some(found);
+            }
+            let h = f64::midpoint(low, high);
+            let locate = |body: usize| self.sections[body].locate(self.chains[body], h);
+            let (Located::Edge(p), Located::Edge(q)) = (locate(0)?, locate(1)?) else { break };
+            lowered = !self.closes(&[p, q]);
+            if lowered {
+                (edges, high) = ([p, q], h);
+            } else {
+                low = h;
+            }
+        }
+        self.separated_at_least_gap(&edges, self.step_limit())
+    }
+
     /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one chain, where a line along the
     /// other's edge separates best. `None` if that is more than `limit` steps away.
     fn separated_at_least_gap(&self, edges: &[Bracket; 2], limit: usize) -> Option<Planar> {
         let mut edges = *edges;
         for _ in 0..limit {
-            let body = self.higher(&edges);
+            let body = higher(&edges);
             let mut candidate = edges;
             let below = self.retreat(body, &edges[body]);
             if let Some(below) = below {

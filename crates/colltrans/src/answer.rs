@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::certificate::{Certificate, Separation, distance_along};
+use crate::certificate::{Certificate, Separation, distance_along, gap_tolerance};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::outcome::{Contact, Feature, Grazing, Separated, Solver, Steps};
@@ -11,13 +11,6 @@ use crate::polyhedron::ConvexPolyhedron;
 use crate::portal::{OneSide, Optimum};
 use crate::pose::Pose;
 use crate::setting::VertexPair;
-
-/// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see
-/// [`crate::certificate`]).
-const GAP_IN_NOISES: f64 = 10.0;
-
-/// Widened bodies touch within a square of this many half-sides, seen from its centre.
-const WIDENED_REACH: f64 = 2.0;
 
 pub(crate) fn contact(
     difference: &Difference,
@@ -62,14 +55,13 @@ fn certificate(difference: &Difference, optimum: &Optimum) -> Certificate {
     let lower = distance_along(setting, normal, optimum.lowest) / along;
     let heights = optimum.portal.map(|point| point.height());
     let height: f64 = heights.iter().zip(optimum.weights).map(|(h, w)| h * w).sum();
-    let sideways = normal.cross(setting.unit).length() * WIDENED_REACH * difference.widening;
     Certificate {
         normal,
         lower,
         pairs: optimum.portal.map(|point| point.pair),
         weights: optimum.weights,
         upper: height / setting.direction.length(),
-        tolerance: (GAP_IN_NOISES * difference.noise + sideways) / along,
+        tolerance: gap_tolerance(setting, normal, difference.widening),
     }
 }
 

@@ -133,6 +133,21 @@ fn extreme_pair(setting: &Setting, normal: DVec3) -> VertexPair {
 /// Relative rounding error allowed in the length and the orthogonality of a stored normal.
 const NORMAL_NOISE: f64 = 16.0 * f64::EPSILON;
 
+/// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see the
+/// header).
+const GAP_IN_NOISES: f64 = 10.0;
+
+/// Touching bodies are widened by at most this many noises: four times what counts as touching, and a margin of one.
+const WIDEST_IN_NOISES: f64 = 33.0;
+
+/// What rounding, and a widening sideways, can make of `upper - lower` for a normal, in multiples of the direction.
+pub(crate) fn gap_tolerance(setting: &Setting, normal: DVec3, widening: f64) -> f64 {
+    // The rectangle's corners are at most 1.3 half-sides off; seen from the other side, twice that.
+    let sideways = normal.cross(setting.unit).length() * 2.6 * widening;
+    let noise = Difference::noise_of(setting);
+    (GAP_IN_NOISES * noise + sideways) / normal.dot(setting.direction)
+}
+
 impl Certificate {
     /// `upper - lower`: how far apart the proven bounds are, in multiples of the direction.
     pub fn gap(&self) -> f64 {
@@ -182,11 +197,20 @@ impl Certificate {
             return Err(CertificateError::Normal { normal });
         }
         let lower = distance_along(&setting, normal, extreme_pair(&setting, normal)) / along;
-        if lower < self.lower - self.tolerance {
-            let (proven, claimed, tolerance) = (lower, self.lower, self.tolerance);
-            return Err(CertificateError::Bound { proven, claimed, tolerance });
+        let upper = self.proven_upper(&setting)?;
+        // What a certificate says of its own tolerance proves nothing: it is derived anew.
+        let widest = WIDEST_IN_NOISES * Difference::noise_of(&setting);
+        let tolerance = gap_tolerance(&setting, normal, widest);
+        for (proven, claimed, holds) in [
+            (lower, self.lower, self.lower <= lower + tolerance),
+            (upper, self.upper, (self.upper - upper).abs() <= tolerance),
+            (tolerance, self.tolerance, self.tolerance <= 2.0 * tolerance),
+        ] {
+            if !holds {
+                return Err(CertificateError::Bound { proven, claimed, tolerance });
+            }
         }
-        Ok(self.proven_upper(&setting)? - lower)
+        Ok(upper - lower)
     }
 
     /// The upper bound that the witness pairs prove.
@@ -206,12 +230,13 @@ impl Certificate {
         }
         let upper = difference.dot(setting.unit) / setting.direction.length();
         let residual = (difference - setting.direction * upper).length();
-        // Grazing contacts may miss by the widening: at most 33 noises along either axis.
-        let tolerance = 48.0 * Difference::noise_of(setting);
-        if residual > tolerance {
-            return Err(CertificateError::Residual { residual, tolerance });
+        // Grazing contacts may miss by the widening along both lateral axes.
+        let tolerance = 1.5 * WIDEST_IN_NOISES * Difference::noise_of(setting);
+        if residual <= tolerance {
+            Ok(upper)
+        } else {
+            Err(CertificateError::Residual { residual, tolerance })
         }
-        Ok(upper)
     }
 }
 
@@ -254,10 +279,11 @@ impl Separation {
         }
         let margin = distance_along(&setting, normal, extreme_pair(&setting, normal));
         let tolerance = Difference::noise_of(&setting);
-        if margin < self.margin - tolerance || margin <= 0.0 {
-            let claimed = self.margin;
-            return Err(CertificateError::Bound { proven: margin, claimed, tolerance });
+        let claimed = self.margin;
+        if margin > 0.0 && claimed > 0.0 && claimed <= margin + tolerance {
+            Ok(margin)
+        } else {
+            Err(CertificateError::Bound { proven: margin, claimed, tolerance })
         }
-        Ok(margin)
     }
 }

@@ -2,9 +2,9 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{
-    BuildError, Clearance, ContactRange, ConvexPolyhedron, MAX_MAGNITUDE, MIN_MAGNITUDE, Options,
-    Outcome, Pose, PoseError, QueryError, TopologyError, cast, cast_with, clearance, contact_range,
-    directional_depth, intersects,
+    BuildError, Certificate, Clearance, ContactRange, ConvexPolyhedron, MAX_MAGNITUDE,
+    MIN_MAGNITUDE, Options, Outcome, Pose, PoseError, QueryError, Separation, TopologyError, cast,
+    cast_with, clearance, contact_range, directional_depth, intersects,
 };
 use colltrans_oracle::settings::cuboid;
 
@@ -195,4 +195,43 @@ fn overlapping_boxes() {
     assert!((depth.expect("an answer") - 0.25).abs() < 1e-13);
     assert_eq!(intersects(&cube, &world, &cube, &pose), Ok(true));
     assert_eq!(intersects(&cube, &world, &cube, &at(1.01, 0.25, 0.0)), Ok(false));
+}
+
+#[test]
+fn tampered_certificates_are_refused() {
+    let corners: Vec<DVec3> = (0..8)
+        .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+        .collect();
+    let cube = ConvexPolyhedron::from_points(&corners).unwrap();
+    let start = Pose::from_translation(DVec3::new(-3.0, 0.25, 0.125)).unwrap();
+    let world = Pose::IDENTITY;
+    let Outcome::Contact(contact) = cast(&cube, &start, &cube, &world, DVec3::X).unwrap() else {
+        panic!("the cubes meet")
+    };
+    let good = contact.certificate;
+    let verify = |c: &Certificate| c.verify(&cube, &start, &cube, &world, DVec3::X);
+    assert!(verify(&good).is_ok());
+    for bad in [f64::NAN, f64::INFINITY, 3.0] {
+        assert!(verify(&Certificate { lower: bad, ..good }).is_err());
+        assert!(verify(&Certificate { upper: bad, ..good }).is_err());
+        assert!(verify(&Certificate { tolerance: bad, ..good }).is_err());
+        assert!(verify(&Certificate { normal: DVec3::splat(bad), ..good }).is_err());
+        assert!(verify(&Certificate { weights: [bad, 0.0, 0.0], ..good }).is_err());
+    }
+    assert!(verify(&Certificate { upper: 1.0, ..good }).is_err());
+    let mut pairs = good.pairs;
+    pairs[0].fixed = 99;
+    assert!(verify(&Certificate { pairs, ..good }).is_err());
+    let beside = Pose::from_translation(DVec3::new(-3.0, 5.0, 0.0)).unwrap();
+    let Outcome::Separated(separated) = cast(&cube, &beside, &cube, &world, DVec3::X).unwrap()
+    else {
+        panic!("they pass")
+    };
+    let good = separated.certificate;
+    let verify = |s: &Separation| s.verify(&cube, &beside, &cube, &world, DVec3::X);
+    assert!(verify(&good).is_ok());
+    for bad in [f64::NAN, 99.0, -1.0] {
+        assert!(verify(&Separation { margin: bad, ..good }).is_err());
+    }
+    assert!(verify(&Separation { normal: -good.normal, ..good }).is_err());
 }

@@ -106,7 +106,7 @@ pub(crate) struct BatchArguments {
     /// Number of threads [default: all cores]
     ///
     /// The results are the same, byte for byte and in the order of the queries.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
     #[command(flatten)]
     pub(crate) body: BodyArguments,
@@ -201,6 +201,16 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|word| word.trim().parse().map_err(|_| format!("`{}` is no number", word.trim())))
         .collect()
+}
+
+/// Most threads that make sense to ask for.
+const MOST_THREADS: usize = 1024;
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    match text.parse::<NonZeroUsize>() {
+        Ok(count) if count.get() <= MOST_THREADS => Ok(count),
+        _ => Err(format!("a number from 1 to {MOST_THREADS} is needed")),
+    }
 }
 
 #[cfg(test)]

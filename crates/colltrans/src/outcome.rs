@@ -162,13 +162,14 @@ pub enum ContactRange {
 impl ContactRange {
     /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet.
     pub fn interval(&self) -> Option<[f64; 2]> {
-        match self {
-            Self::Contact { first, last } => Some([first.translation, -last.translation]),
-            Self::Grazing { first, last } => {
-                Some([first.contact.translation, -last.contact.translation])
-            }
-            Self::Separated(_) => None,
-        }
+        let (first, last) = match self {
+            Self::Contact { first, last } => (first, last),
+            Self::Grazing { first, last } => (&first.contact, &last.contact),
+            Self::Separated(_) => return None,
+        };
+        // Where both ends are one, rounding may have turned them round.
+        let (enter, exit) = (first.translation, -last.translation);
+        Some([enter.min(exit), enter.max(exit)])
     }
 }
 

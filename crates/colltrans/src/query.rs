@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::answer;
 use crate::cta::{self, CtaOptions, CtaStart, Guess};
-use crate::error::QueryError;
+use crate::error::{MIN_MAGNITUDE, QueryError};
 use crate::minkowski::Difference;
 use crate::outcome::{
     Clearance, Contact, ContactRange, Grazing, Outcome, Separated, Solver, Steps,
@@ -261,7 +261,10 @@ pub fn intersects(
     let center = |body: &ConvexPolyhedron, pose: &Pose| pose.matrix() * body.measure().center;
     let between = (center(fixed, fixed_pose) - center(moving, moving_pose))
         + (fixed_pose.translation() - moving_pose.translation());
-    let Some(direction) = between.try_normalize() else { return Ok(true) };
+    let Some(unit) = between.try_normalize() else { return Ok(true) };
+    // Components out of the exact range are rounding noise of zero.
+    let significant = |c: f64| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c };
+    let direction = DVec3::from_array(unit.to_array().map(significant));
     Ok(match cast(moving, moving_pose, fixed, fixed_pose, direction)? {
         Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {
             contact.translation <= contact.certificate.tolerance

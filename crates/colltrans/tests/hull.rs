@@ -394,3 +394,49 @@ fn single_precision_meshes_are_nearly_convex() {
     assert!(defect.depth > 0.0 && defect.depth < 2e-7);
     assert!(ConvexPolyhedron::from_mesh(&rounded, &faces, 1e-6).is_ok());
 }
+
+#[test]
+fn many_points_on_a_flat_circle() {
+    let count = 100_000;
+    let mut random = Random(9);
+    let rotation = random.rotation();
+    let points: Vec<DVec3> = (0..count)
+        .map(|k| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(count);
+            rotation * DVec3::new(angle.cos(), angle.sin(), 0.0)
+        })
+        .collect();
+    let start = std::time::Instant::now();
+    let body = ConvexPolyhedron::from_points(&points).unwrap();
+    assert_eq!((body.dimension(), body.vertices().len()), (2, points.len()));
+    assert!(body.hull_error() < 1e-13);
+    assert!(start.elapsed().as_secs_f64() < 20.0, "{:?}", start.elapsed());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn clouds_of_any_shape_have_hulls(
+        cloud in prop::collection::vec((-3_i32..=3, -3_i32..=3, -3_i32..=3), 1..12),
+        exponents in (-60_i32..60, -60_i32..60, -60_i32..60),
+        noise in -60_i32..-10,
+        seed in any::<u64>(),
+    ) {
+        let mut random = Random(seed);
+        let rotation = random.rotation();
+        let scale = DVec3::new(2.0_f64.powi(exponents.0), 2.0_f64.powi(exponents.1), 2.0_f64.powi(exponents.2));
+        let points: Vec<DVec3> = cloud
+            .iter()
+            .map(|&(x, y, z)| {
+                let exact = DVec3::new(x.into(), y.into(), z.into());
+                rotation * ((exact + random.vector() * 2.0_f64.powi(noise)) * scale)
+            })
+            .collect();
+        let body = ConvexPolyhedron::from_points(&points).unwrap();
+        let size = points.iter().map(|p| p.length()).fold(0.0, f64::max);
+        // Beyond a million to one, rounding alone makes faces of what is flat.
+        let spread = scale.max_element() / scale.min_element();
+        prop_assert!(spread > 1e6 || body.hull_error() <= 1e-12 * size, "{:e} of {size:e}", body.hull_error());
+    }
+}

@@ -25,6 +25,7 @@ use query::Desk;
 const CACHED_VERTICES: usize = 500_000;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
+    refuse_own_input(&arguments.queries, arguments.output.as_deref())?;
     let (queries, size, folder) = open_queries(&arguments.queries)?;
     let (results, results_name) = open_results(arguments.output.as_deref())?;
     let threads = arguments
@@ -53,6 +54,20 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     if end.failed > 0 {
         let message = format!("{} of {} queries have no answer", end.failed, end.answered);
         return Err(Failure::new(Code::Lines, message));
+    }
+    Ok(())
+}
+
+/// Writing the results over the queries would lose both.
+fn refuse_own_input(queries: &Path, output: Option<&Path>) -> Result<(), Failure> {
+    let same = output.is_some_and(|output| {
+        let (a, b) = (queries.canonicalize(), output.canonicalize());
+        matches!((a, b), (Ok(a), Ok(b)) if a == b && a.is_file())
+    });
+    if same {
+        let name = queries.display();
+        let message = format!("{name}: holds the queries; give the results another file");
+        return Err(Failure::new(Code::Input, message));
     }
     Ok(())
 }

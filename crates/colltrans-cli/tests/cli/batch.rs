@@ -239,3 +239,27 @@ fn a_reader_that_leaves_ends_the_work() {
     assert!(stdout(&output).ends_with("}\n0\n"), "{}", stdout(&output));
     assert_eq!(stderr(&output), "");
 }
+
+#[test]
+fn results_never_overwrite_their_queries() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("queries.jsonl");
+    let text = "{\"moving\":{\"points\":[[0,0,0]]},\"fixed\":{\"points\":[[1,0,0]]},\"direction\":[1,0,0]}\n";
+    std::fs::write(&path, text).unwrap();
+    let output = assert_cmd::Command::cargo_bin("colltrans")
+        .unwrap()
+        .arg("batch")
+        .arg(&path)
+        .arg("-o")
+        .arg(&path)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    let many = assert_cmd::Command::cargo_bin("colltrans")
+        .unwrap()
+        .args(["batch", "-", "--threads", "999999999"])
+        .output()
+        .unwrap();
+    assert_eq!(many.status.code(), Some(2));
+}

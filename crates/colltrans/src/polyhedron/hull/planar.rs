@@ -32,9 +32,14 @@ fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32]) -> Hull {
     }
 }
 
-/// A polygon as a front and a back face.
+/// A polygon as a front and a back face; a segment if all points turn out to lie on one line.
 fn polygon(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> Hull {
-    let corners = corners(points, kept, normal, tolerance);
+    let plane = Projection { points, main: normal.abs().max_position(), normal };
+    let corners = plane.corners(kept, tolerance);
+    let &[first, .., last] = &corners[..] else { return without_faces(points, kept, &corners) };
+    if corners.len() == 2 {
+        return without_faces(points, kept, &[first, last]);
+    }
     let mut vertices = corners.clone();
     vertices.sort_unstable();
     let position = |v: &u32| vertices.binary_search(v).unwrap_or(0) as u32;
@@ -42,45 +47,114 @@ fn polygon(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> Hul
     let back: Vec<u32> = face_vertices.iter().rev().copied().collect();
     face_vertices.extend(back);
     let count = corners.len() as u32;
-    let origin = points[corners[0] as usize];
-    let height = |i: &u32| normal.dot(points[*i as usize] - origin).abs();
-    let flat = kept.iter().map(height).fold(0.0, f64::max);
-    let sideways = kept.iter().map(|&i| outside(points, &corners, normal, points[i as usize]));
-    let violation = sideways.fold(flat, f64::max);
+    let violation = plane.violation(kept, &corners);
     let topology = Topology::from_faces(vertices.len(), vec![0, count, 2 * count], &face_vertices)
         .expect("the front and the back of a polygon are a closed surface");
     Hull { dimension: 2, vertices, topology, violation }
 }
 
-/// How far a point lies outside the edges of a polygon, in its plane.
-fn outside(points: &[DVec3], corners: &[u32], normal: DVec3, p: DVec3) -> f64 {
-    let at = |k: usize| points[corners[k % corners.len()] as usize];
-    (0..corners.len())
-        .map(|k| (at(k + 1) - at(k)).cross(normal).normalize_or_zero().dot(p - at(k)))
-        .fold(f64::NEG_INFINITY, f64::max)
+/// Points in a plane, on the two coordinates orthogonal to its normal's largest component.
+struct Projection<'a> {
+    points: &'a [DVec3],
+    /// The coordinate left out.
+    main: usize,
+    normal: DVec3,
 }
 
-/// The corners, counter-clockwise around `normal`: a monotone chain on the coordinates orthogonal to the normal's largest
-/// component, on exact orientations; then corners within the tolerance of the line between their neighbours go.
-fn corners(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> Vec<u32> {
-    let main = normal.abs().max_position();
-    let flip = normal[main] < 0.0;
-    let project = |i: u32| {
-        let p = points[i as usize];
-        let (x, y) = (p[(main + 1) % 3], p[(main + 2) % 3]);
-        if flip { DVec2::new(y, x) } else { DVec2::new(x, y) }
-    };
-    let mut order = kept.to_vec();
-    order.sort_unstable_by(|&a, &b| {
-        let (p, q) = (project(a), project(b));
-        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(a.cmp(&b))
-    });
-    order.dedup_by_key(|i| project(*i).to_array());
-    let mut chain = half_chain(order.iter().copied(), &project);
-    let upper = half_chain(order.iter().rev().copied(), &project);
-    chain.pop();
-    chain.extend(&upper[..upper.len() - 1]);
-    drop_collinear(points, chain, tolerance)
+impl Projection<'_> {
+    fn at(&self, i: u32) -> DVec3 {
+        self.points[i as usize]
+    }
+
+    fn project(&self, i: u32) -> DVec2 {
+        let p = self.at(i);
+        let (x, y) = (p[(self.main + 1) % 3], p[(self.main + 2) % 3]);
+        if self.normal[self.main] < 0.0 { DVec2::new(y, x) } else { DVec2::new(x, y) }
+    }
+
+    /// The corners, counter-clockwise around the normal from the one with least `x`: a monotone
+    /// chain on exact orientations; then corners within the tolerance of the line between their
+    /// neighbours go.
+    fn corners(&self, kept: &[u32], tolerance: f64) -> Vec<u32> {
+        let project = |i: u32| self.project(i);
+        let mut order = kept.to_vec();
+        order.sort_unstable_by(|&a, &b| {
+            let (p, q) = (project(a), project(b));
+            p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(a.cmp(&b))
+        });
+        order.dedup_by_key(|i| project(*i).to_array());
+        let mut chain = half_chain(order.iter().copied(), &project);
+        let upper = half_chain(order.iter().rev().copied(), &project);
+        chain.pop();
+        chain.extend(&upper[..upper.len() - 1]);
+        self.drop_collinear(&chain, tolerance)
+    }
+
+    fn drop_collinear(&self, chain: &[u32], tolerance: f64) -> Vec<u32> {
+        let is_on_line = |a: u32, b: u32, c: u32| {
+            let [a, b, c] = [a, b, c].map(|i| self.at(i));
+            (b - a).cross((c - a).normalize_or_zero()).length() <= tolerance
+        };
+        let mut corners: Vec<u32> = Vec::with_capacity(chain.len());
+        for &c in chain {
+            while let [.., a, b] = corners[..] {
+                if !is_on_line(a, b, c) {
+                    break;
+                }
+                corners.pop();
+            }
+            corners.push(c);
+        }
+        // The chain starts at a corner for its least `x`, which only its tolerance can dispute.
+        while let [first, .., a, b] = corners[..] {
+            if corners.len() <= 3 || !is_on_line(a, b, first) {
+                break;
+            }
+            corners.pop();
+        }
+        if let [first, second, _, .., last] = corners[..]
+            && is_on_line(last, first, second)
+        {
+            corners.remove(0);
+        }
+        corners
+    }
+
+    /// The largest distance of a point from the plane, or outside the polygon's edges in it.
+    fn violation(&self, kept: &[u32], corners: &[u32]) -> f64 {
+        let origin = self.at(corners[0]);
+        let count = corners.len();
+        // From least to greatest `x` along the lower chain, then back along the upper one.
+        let x = |k: usize| self.project(corners[k % count]).x;
+        let start = (0..count).min_by(|&a, &b| x(a).total_cmp(&x(b))).unwrap_or(0);
+        let turn = (0..count).max_by(|&a, &b| x(start + a).total_cmp(&x(start + b))).unwrap_or(0);
+        let outside = |k: usize, p: DVec3| {
+            let (a, b) = (self.at(corners[k % count]), self.at(corners[(k + 1) % count]));
+            (b - a).cross(self.normal).normalize_or_zero().dot(p - a)
+        };
+        let of_point = |&i: &u32| {
+            let (p, px) = (self.at(i), self.project(i).x);
+            let lower = first_from(0, turn, |k| x(start + k) >= px);
+            let upper = first_from(turn, count, |k| x(start + k) <= px);
+            let near =
+                [lower, upper].into_iter().flat_map(|k| (0..3).map(move |j| k + count + j - 2));
+            near.map(|k| outside(start + k, p)).fold(self.normal.dot(p - origin).abs(), f64::max)
+        };
+        kept.iter().map(of_point).fold(0.0, f64::max)
+    }
+}
+
+/// The first number from `low` on, at most `high`, for which a condition holds that holds for all greater ones.
+fn first_from(mut low: usize, mut high: usize, holds: impl Fn(usize) -> bool) -> usize {
+    while low < high {
+        let middle = low.midpoint(high);
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
 }
 
 fn half_chain(order: impl Iterator<Item = u32>, project: &dyn Fn(u32) -> DVec2) -> Vec<u32> {
@@ -99,26 +173,4 @@ fn half_chain(order: impl Iterator<Item = u32>, project: &dyn Fn(u32) -> DVec2) 
         chain.push(i);
     }
     chain
-}
-
-fn drop_collinear(points: &[DVec3], mut corners: Vec<u32>, tolerance: f64) -> Vec<u32> {
-    let at = |i: u32| points[i as usize];
-    let mut k = 0;
-    let mut unchanged = 0;
-    while corners.len() > 3 && unchanged < corners.len() {
-        let count = corners.len();
-        k %= count;
-        let (a, b, c) =
-            (at(corners[(k + count - 1) % count]), at(corners[k]), at(corners[(k + 1) % count]));
-        let along = (c - a).normalize_or_zero();
-        if (b - a).cross(along).length() <= tolerance {
-            corners.remove(k);
-            unchanged = 0;
-            k = (k + count - 2) % (count - 1);
-        } else {
-            unchanged += 1;
-            k += 1;
-        }
-    }
-    corners
 }

@@ -97,7 +97,7 @@ fn first_simplex(points: &[DVec3], kept: &[u32], tolerance: f64) -> Result<[u32;
     if width <= tolerance {
         return Err(Flat::Segment([a, b]));
     }
-    let normal = (at(b) - at(a)).cross(at(c) - at(a)).normalize();
+    let normal = triangle_normal([at(a), at(b), at(c)]).normalize();
     let (height, e) = farthest(&|p| (p - at(a)).dot(normal).abs());
     let above = side(at(a), at(b), at(c), at(e));
     if height <= tolerance || above == 0.0 {

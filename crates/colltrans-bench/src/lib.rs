@@ -1,4 +1,5 @@
-//! Bodies and settings for benchmarks, and the one other library that is measured beside `colltrans`.
+//! Bodies and settings for benchmarks, and the one other library that is measured beside
+//! `colltrans`.
 //!
 //! The data's way: [`shapes`] -> [`settings`] -> the solvers, and [`parry`] on the same settings.
 

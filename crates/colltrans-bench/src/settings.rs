@@ -1,4 +1,5 @@
-//! Settings to measure: bodies in random orientations that collide, or pass each other, by construction.
+//! Settings to measure: bodies in random orientations that collide, or pass each other, by
+//! construction.
 
 use colltrans::{ConvexPolyhedron, Options, Outcome, Pose, QueryError, Solver};
 use colltrans_oracle::settings::Rng;

@@ -9,7 +9,8 @@ use glam::DVec3;
 /// A kind of body, of any number of vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// Vertices on an ellipsoid with random semi-axes from 0.6 to 1.4, in rings: nearly all faces are trapezoids.
+    /// Vertices on an ellipsoid with random semi-axes from 0.6 to 1.4, in rings: nearly all faces
+    /// are trapezoids.
     Ellipsoid,
     /// Random points on a sphere: all faces are triangles.
     RandomHull,
@@ -42,7 +43,8 @@ impl Shape {
                 let points: Vec<DVec3> = (0..n).map(|_| rng.direction()).collect();
                 ConvexPolyhedron::from_points(&points)
             }
-            // Of the same length whatever the ratio; the rings run around the long axis or across the plate.
+            // Of the same length whatever the ratio; the rings run around the long axis or across
+            // the plate.
             Self::Needle(ratio) => {
                 ring_ellipsoid(n, semi_axes * DVec3::new(1.0 / ratio, 1.0 / ratio, 1.0))
             }
@@ -51,7 +53,8 @@ impl Shape {
     }
 }
 
-/// Vertices and faces of a sphere in rings between two poles, about as many rings as vertices in a ring.
+/// Vertices and faces of a sphere in rings between two poles, about as many rings as vertices in a
+/// ring.
 pub fn ring_sphere(n: usize) -> (Vec<DVec3>, Vec<Vec<u32>>) {
     let around = (n.saturating_sub(2) as f64).sqrt().round().max(3.0) as u32;
     let rings = (n.saturating_sub(2) as f64 / f64::from(around)).round().max(1.0) as u32;
@@ -88,7 +91,8 @@ pub fn ring_sphere(n: usize) -> (Vec<DVec3>, Vec<Vec<u32>>) {
 pub fn ring_ellipsoid(n: usize, semi_axes: DVec3) -> Result<ConvexPolyhedron, BuildError> {
     let (vertices, faces) = ring_sphere(n);
     let vertices: Vec<DVec3> = vertices.iter().map(|v| *v * semi_axes).collect();
-    // The corners of a trapezoid are rounded: its face is flat to within a few units in the last place.
+    // The corners of a trapezoid are rounded: its face is flat to within a few units in the last
+    // place.
     ConvexPolyhedron::from_mesh(&vertices, &faces, 64.0 * f64::EPSILON)
 }
 

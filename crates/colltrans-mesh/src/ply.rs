@@ -1,8 +1,8 @@
 //! PLY, text and binary, through `ply-rs-bw`.
 //!
-//! Read are `x`, `y`, `z` of the element `vertex` and the list `vertex_indices` (or
-//! `vertex_index`) of the element `face`; all else is skipped. Before anything is read, the header's
-//! counts are compared with the bytes that are there.
+//! Read are `x`, `y`, `z` of the element `vertex` and the list `vertex_indices` (or `vertex_index`)
+//! of the element `face`; all else is skipped. Before anything is read, the header's counts are
+//! compared with the bytes that are there.
 
 use std::io::ErrorKind;
 

@@ -1,17 +1,20 @@
-//! Checks an answer of the library in exact arithmetic: what its certificate proves, and whether that is what it says.
+//! Checks an answer of the library in exact arithmetic: what its certificate proves, and whether
+//! that is what it says.
 //!
 //! Notation as in [`scene`](crate::scene). Every number of a certificate is taken as exact.
 //!
 //! - *Lower bound.* `L = (min_Q n.q - max_P n.p) / n.d` over all vertices.
-//! - *Upper bound.* If the line passes through the triangle of the three differences `q - p`, exactly, it
-//!   does so at `U`, and the bodies provably meet. Then `L <= coll <= U`, and `U - L` is the gap that is proven. Rounding can make
-//!   the line miss a triangle that ends at it (a contact at a vertex, an edge or the rim), or cross one without area somewhere else; the
-//!   answer is then *near*: its witness points miss each other by a residual, which must be rounding error, and outcome and value have to be
-//!   decided by the oracle.
-//! - *Separation.* `n' = n (d.d) - d (n.d)` is exactly orthogonal to `d`; `min_Q n'.q > max_P n'.p` proves that the bodies never
-//!   meet. Nothing depends on how well `n` itself is orthogonal.
-//! - *Grazing.* `n'` from the separating direction bounds the overlap from above, the residual of the
-//!   witness points from below: two bodies whose witness points come within `r` overlap by at least `-r`.
+//! - *Upper bound.* If the line passes through the triangle of the three differences `q - p`,
+//!   exactly, it does so at `U`, and the bodies provably meet. Then `L <= coll <= U`, and `U - L`
+//!   is the gap that is proven. Rounding can make the line miss a triangle that ends at it (a
+//!   contact at a vertex, an edge or the rim), or cross one without area somewhere else; the answer
+//!   is then *near*: its witness points miss each other by a residual, which must be rounding
+//!   error, and outcome and value have to be decided by the oracle.
+//! - *Separation.* `n' = n (d.d) - d (n.d)` is exactly orthogonal to `d`; `min_Q n'.q > max_P n'.p`
+//!   proves that the bodies never meet. Nothing depends on how well `n` itself is orthogonal.
+//! - *Grazing.* `n'` from the separating direction bounds the overlap from above, the residual of
+//!   the witness points from below: two bodies whose witness points come within `r` overlap by at
+//!   least `-r`.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -26,14 +29,16 @@ use crate::scene::Scene;
 use crate::shadow::sideways_overlap;
 use crate::simplex::collision_translation;
 
-/// How many units of rounding error ([`Scene::noise`]) two different computations of the same sideways distance may differ by:
-/// each is allowed one.
+/// How many units of rounding error ([`Scene::noise`]) two different computations of the same
+/// sideways distance may differ by: each is allowed one.
 const TWO_ROUNDINGS: f64 = 2.0;
 
-/// How many units of rounding error the witness points of a contact may miss each other by: each of the two is allowed one.
+/// How many units of rounding error the witness points of a contact may miss each other by: each of
+/// the two is allowed one.
 const RESIDUAL_ROUNDINGS: f64 = 2.0;
 
-/// The same for a grazing contact, whose bodies the library widens by up to 33 units along either lateral axis.
+/// The same for a grazing contact, whose bodies the library widens by up to 33 units along either
+/// lateral axis.
 const GRAZING_RESIDUAL_ROUNDINGS: f64 = 48.0;
 
 /// Relative error that computing a unit vector may leave.
@@ -100,8 +105,8 @@ impl Judge<'_> {
         }
     }
 
-    /// Compares an answer with the linear programme and the exact sideways overlap: outcome exactly, value within
-    /// the stated bound.
+    /// Compares an answer with the linear programme and the exact sideways overlap: outcome
+    /// exactly, value within the stated bound.
     ///
     /// # Errors
     /// How they disagree.
@@ -285,7 +290,8 @@ impl Judge<'_> {
         Ok(miss.to_f64().length())
     }
 
-    /// The witness points come together after the translation, and lie in the contact plane of their bodies.
+    /// The witness points come together after the translation, and lie in the contact plane of
+    /// their bodies.
     fn check_points(&self, contact: &Contact, roundings: f64) -> Result<(), Objection> {
         let Contact { point_on_moving, point_on_fixed, translation, normal, .. } = *contact;
         // In the world, at whatever distance from its origin.
@@ -339,7 +345,8 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// A unit vector orthogonal to `d`, made exactly orthogonal: `(min_Q n'.q - max_P n'.p) / |n'|`, whose sign is exact.
+    /// A unit vector orthogonal to `d`, made exactly orthogonal: `(min_Q n'.q - max_P n'.p) /
+    /// |n'|`, whose sign is exact.
     fn margin(&self, normal: DVec3) -> Result<f64, Objection> {
         require!(is_unit(normal), "the normal {normal} is no unit vector");
         let (n, d) = (Vector::new(normal), &self.scene.direction);

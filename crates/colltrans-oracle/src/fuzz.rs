@@ -1,7 +1,9 @@
-//! What the fuzz targets do with their bytes. The corpora run through the same functions as ordinary tests.
+//! What the fuzz targets do with their bytes. The corpora run through the same functions as
+//! ordinary tests.
 //!
-//! Bytes become bodies in one of two ways, chosen by the first byte: as the bits of `f64` numbers, which reaches every
-//! special value and magnitude, or as small whole numbers, which reaches every tie.
+//! Bytes become bodies in one of two ways, chosen by the first byte: as the bits of `f64` numbers,
+//! which reaches every special value and magnitude, or as small whole numbers, which reaches every
+//! tie.
 
 use colltrans::{ConvexPolyhedron, Options, Pose, Solver};
 use glam::{DQuat, DVec3};
@@ -64,8 +66,9 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The convex hull of any points is a body whose vertices are among the points, that is the same when it is built again from
-/// its own vertices' bits, and that leaves no point farther outside than it says.
+/// The convex hull of any points is a body whose vertices are among the points, that is the same
+/// when it is built again from its own vertices' bits, and that leaves no point farther outside
+/// than it says.
 ///
 /// # Panics
 /// If it is not.
@@ -152,7 +155,8 @@ fn check_surface(body: &ConvexPolyhedron) {
     assert_eq!(degrees, 2 * edges, "an edge has two ends");
 }
 
-/// No point is farther outside a face's plane than the hull's own error says, with the plane taken through three of its corners.
+/// No point is farther outside a face's plane than the hull's own error says, with the plane taken
+/// through three of its corners.
 fn check_inside(body: &ConvexPolyhedron, points: &[DVec3]) {
     let reach = points.iter().map(|p| p.length()).fold(0.0, f64::max);
     for face in 0..body.face_count() as u32 {
@@ -173,7 +177,8 @@ fn check_inside(body: &ConvexPolyhedron, points: &[DVec3]) {
     }
 }
 
-/// A point of a face and its unit normal, by Newell's sum in units of its own extent; `None` for faces too narrow to have one.
+/// A point of a face and its unit normal, by Newell's sum in units of its own extent; `None` for
+/// faces too narrow to have one.
 fn plane(corners: &[DVec3]) -> Option<(DVec3, DVec3)> {
     let anchor = corners[0];
     let extent = corners.iter().map(|c| c.distance(anchor)).fold(0.0, f64::max);

@@ -1,9 +1,9 @@
-//! What the tests of `colltrans` are judged by: an oracle in exact rational arithmetic, an exact checker of certificates, and
-//! settings that are hard on purpose.
+//! What the tests of `colltrans` are judged by: an oracle in exact rational arithmetic, an exact
+//! checker of certificates, and settings that are hard on purpose.
 //!
 //! The data's way: [`settings`] -> the library -> [`check`], which reads the answer against the
-//! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme ([`simplex`]) and the exact
-//! sideways overlap ([`shadow`]).
+//! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
+//! ([`simplex`]) and the exact sideways overlap ([`shadow`]).
 
 pub mod check;
 pub mod exact;

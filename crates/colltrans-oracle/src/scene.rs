@@ -1,9 +1,10 @@
 //! A setting in exact coordinates: both bodies in the world, and the direction.
 //!
 //! Notation. `P` moves along `d`, `Q` is fixed; `M = {q - p}`. A body stands where the nine entries
-//! of its pose's matrix and its translation, all taken as exact numbers, put it.
-//! A *shadow* is what is left of a point modulo `d`. With `k` an axis where `d_k != 0` and `i, j` the other two, its coordinates here
-//! are `s_i = m_i d_k - m_k d_i` and `s_j` alike: exact, zero along `d`, an affine image of the orthogonal projection.
+//! of its pose's matrix and its translation, all taken as exact numbers, put it. A *shadow* is what
+//! is left of a point modulo `d`. With `k` an axis where `d_k != 0` and `i, j` the other two, its
+//! coordinates here are `s_i = m_i d_k - m_k d_i` and `s_j` alike: exact, zero along `d`, an affine
+//! image of the orthogonal projection.
 
 use colltrans::{ConvexPolyhedron, Pose};
 use dashu_int::IBig;
@@ -24,7 +25,8 @@ pub struct Scene {
     pub size: f64,
     /// What the library states as its rounding error: `32 u S`, with `u = 2^-53`.
     pub noise: f64,
-    /// The sideways overlap up to which the library calls a contact grazing by itself: `8` times that.
+    /// The sideways overlap up to which the library calls a contact grazing by itself: `8` times
+    /// that.
     pub touching: f64,
     /// The axis `k` along which `d` is largest.
     pub(crate) main_axis: usize,
@@ -42,7 +44,7 @@ impl Scene {
         let size = reach(moving) + reach(fixed) + offset.length();
         let sizes = direction.abs().to_array();
         let main_axis = (0..3).fold(0, |k, i| if sizes[i] > sizes[k] { i } else { k });
-        let noise = 16.0 * f64::EPSILON * size;
+        let noise = 16.0 * f64::EPSILON * size.max(colltrans::MIN_MAGNITUDE);
         Self {
             moving: place(moving_pose.matrix(), moving_pose.translation(), moving),
             fixed: place(fixed_pose.matrix(), fixed_pose.translation(), fixed),

@@ -1,6 +1,8 @@
-//! Settings that are hard on purpose: random ones, and tied ones, which are the rule among the parts of machines.
+//! Settings that are hard on purpose: random ones, and tied ones, which are the rule among the
+//! parts of machines.
 //!
-//! A setting is a function of its family's name and a seed, so that a line of a report is enough to replay it.
+//! A setting is a function of its family's name and a seed, so that a line of a report is enough to
+//! replay it.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -247,8 +249,8 @@ impl Draft {
     }
 }
 
-/// The setting of a family with a seed: half of them as drawn, half turned as a whole; some with a direction that is
-/// turned around or no unit vector.
+/// The setting of a family with a seed: half of them as drawn, half turned as a whole; some with a
+/// direction that is turned around or no unit vector.
 ///
 /// # Panics
 /// If there is no such family.
@@ -578,7 +580,8 @@ fn nearly(rng: &mut Rng) -> Draft {
     draft
 }
 
-/// A block that glides over a slab, a little downwards: the contact normal is almost orthogonal to the direction.
+/// A block that glides over a slab, a little downwards: the contact normal is almost orthogonal to
+/// the direction.
 fn shallow(rng: &mut Rng) -> Draft {
     let slab = cuboid(DVec3::new(rng.whole(2, 9), rng.whole(1, 3), rng.pick(&[0.0, 0.5, 1.0])));
     let block = match rng.int(0, 3) {

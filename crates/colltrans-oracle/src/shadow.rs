@@ -1,4 +1,5 @@
-//! How far the line runs inside or outside the shadow of `M`: the exact sideways overlap of two bodies.
+//! How far the line runs inside or outside the shadow of `M`: the exact sideways overlap of two
+//! bodies.
 
 use std::cmp::Ordering;
 
@@ -35,8 +36,8 @@ impl SignedDistance {
     }
 }
 
-/// The distance of the line from the boundary of the shadow of `M`, in world units: positive if the shadows of the two
-/// bodies overlap by that much, negative if they are that far apart.
+/// The distance of the line from the boundary of the shadow of `M`, in world units: positive if the
+/// shadows of the two bodies overlap by that much, negative if they are that far apart.
 ///
 /// # Panics
 /// If a body has no points, which no polyhedron lacks.
@@ -91,7 +92,8 @@ fn turn(a: [&IBig; 2], b: [&IBig; 2], c: [&IBig; 2]) -> Ordering {
     ((b[0] - a[0]) * (c[1] - a[1])).cmp(&((b[1] - a[1]) * (c[0] - a[0])))
 }
 
-/// Indices of the strict corners of the convex hull, in counter-clockwise order (Andrew's monotone chain).
+/// Indices of the strict corners of the convex hull, in counter-clockwise order (Andrew's monotone
+/// chain).
 fn convex_hull(points: &[[&IBig; 2]]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&i, &j| points[i].cmp(&points[j]));

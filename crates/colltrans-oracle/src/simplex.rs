@@ -6,9 +6,10 @@
 //!             sum x_j     = 1
 //! ```
 //!
-//! Two phases, Bland's rule, a full tableau of integers: after each pivot all entries have the pivot as their common
-//! denominator, and the division by the previous one leaves no remainder (Edmonds, Bareiss). Nothing is rounded,
-//! nothing is clever, and nothing is shared with the library.
+//! Two phases, Bland's rule, a full tableau of integers: after each pivot all entries have the
+//! pivot as their common denominator, and the division by the previous one leaves no remainder
+//! (Edmonds, Bareiss). Nothing is rounded, nothing is clever, and nothing is shared with the
+//! library.
 
 use dashu_int::IBig;
 
@@ -36,8 +37,8 @@ const ARTIFICIAL: usize = 3;
 /// Row of the objective.
 const COST: usize = 4;
 
-/// Rows `[constraints; objectives]`, columns `[variables; right side]`. Artificial variables, numbered after the others, have no
-/// columns, since they never enter the basis again.
+/// Rows `[constraints; objectives]`, columns `[variables; right side]`. Artificial variables,
+/// numbered after the others, have no columns, since they never enter the basis again.
 struct Tableau {
     rows: [Vec<IBig>; 5],
     denominator: IBig,
@@ -92,8 +93,8 @@ impl Tableau {
         })
     }
 
-    /// Artificial variables that are still in the basis are zero: exchanges them, or leaves them where their
-    /// constraint is void.
+    /// Artificial variables that are still in the basis are zero: exchanges them, or leaves them
+    /// where their constraint is void.
     fn drive_out_artificials(&mut self) {
         for row in 0..CONSTRAINTS {
             if self.basis[row] < self.variables {

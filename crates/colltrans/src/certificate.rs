@@ -133,14 +133,16 @@ fn extreme_pair(setting: &Setting, normal: DVec3) -> VertexPair {
 /// Relative rounding error allowed in the length and the orthogonality of a stored normal.
 const NORMAL_NOISE: f64 = 16.0 * f64::EPSILON;
 
-/// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see the
-/// header).
+/// Rounding the two bounds costs one noise each, accepting the plane one or, among ties, eight (see
+/// the header).
 const GAP_IN_NOISES: f64 = 10.0;
 
-/// Touching bodies are widened by at most this many noises: four times what counts as touching, and a margin of one.
+/// Touching bodies are widened by at most this many noises: four times what counts as touching, and
+/// a margin of one.
 const WIDEST_IN_NOISES: f64 = 33.0;
 
-/// What rounding, and a widening sideways, can make of `upper - lower` for a normal, in multiples of the direction.
+/// What rounding, and a widening sideways, can make of `upper - lower` for a normal, in multiples
+/// of the direction.
 pub(crate) fn gap_tolerance(setting: &Setting, normal: DVec3, widening: f64) -> f64 {
     // The rectangle's corners are at most 1.3 half-sides off; seen from the other side, twice that.
     let sideways = normal.cross(setting.unit).length() * 2.6 * widening;

@@ -1,13 +1,14 @@
 //! The Minkowski difference `M = {q - p : p in P, q in Q}`, seen along the direction.
 //!
-//! Notation. The *shadow frame* has two lateral axes `e1, e2` and `d` at length 1; a point of `M` has the coordinates
-//! `(s1, s2, h)`: its shadow `s` and its height `h`. The line `t d` is the axis `s = 0`; the collision translation is the lowest
-//! height at which it meets `M`.
+//! Notation. The *shadow frame* has two lateral axes `e1, e2` and `d` at length 1; a point of `M`
+//! has the coordinates `(s1, s2, h)`: its shadow `s` and its height `h`. The line `t d` is the axis
+//! `s = 0`; the collision translation is the lowest height at which it meets `M`.
 //!
-//! Rounding. With `u = 2^-53` and `S = reach_P + reach_Q + |offset|`, a coordinate of a point of `M` is a sum of three
-//! dot products. Rotating a lateral axis into a body costs a relative error of at most `3 u` in each component, the dot product `3 u`, adding the
-//! three parts `2 u`, the axis itself `2 u`: together less than `10 u S sqrt(3) < 18 u S`. [`Difference::noise`] is `32 u S`, which also covers comparing
-//! two such coordinates along a unit normal of the frame.
+//! Rounding. With `u = 2^-53` and `S = reach_P + reach_Q + |offset|`, a coordinate of a point of
+//! `M` is a sum of three dot products. Rotating a lateral axis into a body costs a relative error
+//! of at most `3 u` in each component, the dot product `3 u`, adding the three parts `2 u`, the
+//! axis itself `2 u`: together less than `10 u S sqrt(3) < 18 u S`. [`Difference::noise`] is `32 u
+//! S`, which also covers comparing two such coordinates along a unit normal of the frame.
 
 use std::cmp::Ordering;
 
@@ -34,7 +35,8 @@ impl Point {
     }
 }
 
-/// The sides of the widening rectangle: not equal, because a diagonal of a square would often be parallel to an edge.
+/// The sides of the widening rectangle: not equal, because a diagonal of a square would often be
+/// parallel to an edge.
 const WIDENING_RATIO: f64 = 0.8;
 
 /// `M` in the shadow frame: support points and orientations.
@@ -51,8 +53,9 @@ pub(crate) struct Difference<'a> {
     offset: DVec3,
     /// Bound on the rounding error of a coordinate of a point.
     pub(crate) noise: f64,
-    /// Half the longer side of a rectangle by which `M` is widened sideways: 0, or a little more than the rounding error when shadows
-    /// only touch, so that the line passes through the widened body.
+    /// Half the longer side of a rectangle by which `M` is widened sideways: 0, or a little more
+    /// than the rounding error when shadows only touch, so that the line passes through the widened
+    /// body.
     pub(crate) widening: f64,
 }
 
@@ -77,21 +80,23 @@ impl<'a> Difference<'a> {
         }
     }
 
-    /// Bound on the rounding error of a coordinate of a point of `M`, and of comparing two along a unit normal.
+    /// Bound on the rounding error of a coordinate of a point of `M`, and of comparing two along a
+    /// unit normal.
     pub(crate) fn noise_of(setting: &Setting) -> f64 {
         // Two points in one place have no size; the least there can be stands for it.
         16.0 * f64::EPSILON * setting.scale().max(MIN_MAGNITUDE)
     }
 
-    /// The same body, widened sideways by four times [`Self::touching`] and, if the line misses it, by `margin` more: then
-    /// the line passes clearly inside.
+    /// The same body, widened sideways by four times [`Self::touching`] and, if the line misses it,
+    /// by `margin` more: then the line passes clearly inside.
     pub(crate) fn widened(&self, margin: f64) -> Self {
         Self { widening: margin.max(0.0) + 4.0 * self.touching(), ..*self }
     }
 
-    /// Sideways distance below which points are not told apart: shadows that overlap by less only touch, and triangles
-    /// of shadows that are narrower have no plane. Eight times the bound on the rounding error, so
-    /// that directions across such a distance are still known to better than 1/8.
+    /// Sideways distance below which points are not told apart: shadows that overlap by less only
+    /// touch, and triangles of shadows that are narrower have no plane. Eight times the bound on
+    /// the rounding error, so that directions across such a distance are still known to better than
+    /// 1/8.
     pub(crate) fn touching(&self) -> f64 {
         8.0 * self.noise
     }
@@ -133,13 +138,15 @@ impl<'a> Difference<'a> {
         Point { at, pair }
     }
 
-    /// The corners that widening makes of a vertex, each lowest along one diagonal; four times the vertex itself without widening.
+    /// The corners that widening makes of a vertex, each lowest along one diagonal; four times the
+    /// vertex itself without widening.
     pub(crate) fn corners(&self, vertex: &Point) -> [Point; 4] {
         [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
             .map(|(x, y)| self.point(vertex.pair, DVec3::new(x, y, 0.0)))
     }
 
-    /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and their matrices.
+    /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and
+    /// their matrices.
     pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.measure(), self.setting.fixed.measure());
         let center = (transposed(&self.fixed_axes, fixed.center)
@@ -150,11 +157,12 @@ impl<'a> Difference<'a> {
         (center, [a, b])
     }
 
-    /// Whether the line passes to the left (`true`) or to the right of the directed segment between two shadows.
+    /// Whether the line passes to the left (`true`) or to the right of the directed segment between
+    /// two shadows.
     ///
-    /// Exact: a rounded determinant decides where its error allows, whole numbers otherwise. Where the line meets the
-    /// segment's carrier it is moved, in thought, by `(eps, eps^2)`: so it is never *on* a segment, and
-    /// three consistent answers always mean a triangle that contains it.
+    /// Exact: a rounded determinant decides where its error allows, whole numbers otherwise. Where
+    /// the line meets the segment's carrier it is moved, in thought, by `(eps, eps^2)`: so it is
+    /// never *on* a segment, and three consistent answers always mean a triangle that contains it.
     pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
         let (a, b) = (from.shadow(), to.shadow());
         let det = a.perp_dot(b);

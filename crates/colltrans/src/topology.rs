@@ -39,7 +39,8 @@ pub(crate) struct Topology {
 const NONE: u32 = u32::MAX;
 
 impl Topology {
-    /// From faces as lists of vertices: face `f` is `face_vertices[face_start[f]..face_start[f + 1]]`.
+    /// From faces as lists of vertices: face `f` is `face_vertices[face_start[f]..face_start[f +
+    /// 1]]`.
     ///
     /// Vertices that no face uses are allowed here and have no neighbours.
     pub(crate) fn from_faces(
@@ -173,7 +174,8 @@ impl Topology {
         Ok(())
     }
 
-    /// Makes twins of the half-edges along one edge, if there are two and they run in opposite directions.
+    /// Makes twins of the half-edges along one edge, if there are two and they run in opposite
+    /// directions.
     fn pair(&mut self, group: &[u32], (from, to): (u32, u32)) -> Result<(), TopologyError> {
         match *group {
             [g, h] if self.half_edge(g).origin != self.half_edge(h).origin => {

@@ -11,26 +11,60 @@ const SETTINGS: u64 = 1_000;
 const LP_EVERY: u64 = 20;
 
 fn check_family(family: &str) {
-    let mut wrong = Vec::new();
-    for seed in 0..SETTINGS {
-        let setting = setting(family, seed);
-        let bodies = setting.bodies().expect("a body");
-        let judge = setting.judge(&bodies);
-        for solver in SOLVERS {
-            let verdict =
-                setting.cast(&bodies, solver).map_err(|e| e.to_string()).and_then(|out| {
-                    let proof = judge.check(&out).map_err(|e| e.to_string())?;
-                    if !proof.exact || seed % LP_EVERY == 0 {
-                        judge.compare_with_oracle(&out).map_err(|e| e.to_string())?;
-                    }
-                    Ok(())
-                });
-            if let Err(objection) = verdict {
-                wrong.push(format!("{setting} {solver:?}: {objection}"));
-            }
-        }
-    }
+    let wrong: Vec<String> =
+        (0..SETTINGS).flat_map(|seed| check_setting(family, seed, seed % LP_EVERY == 0)).collect();
     assert!(wrong.is_empty(), "{} wrong answers, among them\n{}", wrong.len(), some_of(&wrong));
+}
+
+/// What is wrong with the solvers' answers.
+fn check_setting(family: &str, seed: u64, by_lp: bool) -> Vec<String> {
+    let setting = setting(family, seed);
+    let bodies = setting.bodies().expect("a body");
+    let judge = setting.judge(&bodies);
+    let verdict = |solver| {
+        let answer = setting.cast(&bodies, solver).map_err(|e| e.to_string())?;
+        let proof = judge.check(&answer).map_err(|e| e.to_string())?;
+        if by_lp || !proof.exact {
+            judge.compare_with_oracle(&answer).map_err(|e| e.to_string())?;
+        }
+        Ok(())
+    };
+    let objection =
+        |solver| verdict(solver).err().map(|text: String| format!("{setting} {solver:?}: {text}"));
+    SOLVERS.into_iter().filter_map(objection).collect()
+}
+
+/// Settings that the campaign once found without an answer, or with a wrong one.
+#[test]
+fn found_by_the_campaign() {
+    let cases = [
+        // The line passes a portal's edge, or its corner, within rounding error.
+        ("vertex-over-vertex", 4_294_967_474),
+        ("rim", 4_294_967_319),
+        ("flat", 4_294_967_332),
+        ("size-ratio", 4_294_967_571),
+        // Narrow portals with inaccurate weights or normals.
+        ("nearly", 4_294_967_609),
+        ("nearly", 4_294_967_896),
+        ("nearly", 4_294_978_579),
+        ("nearly", 4_294_977_081),
+        // Touching bodies: their widened corners follow each other.
+        ("grid", 4_294_971_940),
+        ("rim", 4_295_017_388),
+        ("segment-point", 4_294_967_717),
+        ("segment-point", 4_294_989_267),
+        ("segment-point", 38_654_725_471),
+        // Two points in one place.
+        ("segment-point", 38_654_731_328),
+        // A margin that cancellation hid, an overlap on a polygon that was not convex, a line at
+        // the rim of a huge shadow.
+        ("nearly", 30_064_775_285),
+        ("size-ratio", 38_654_725_214),
+        ("size-ratio", 38_654_732_680),
+    ];
+    let wrong: Vec<String> =
+        cases.iter().flat_map(|(family, seed)| check_setting(family, *seed, true)).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 fn some_of(lines: &[String]) -> String {

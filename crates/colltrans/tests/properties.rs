@@ -109,8 +109,8 @@ proptest! {
         let by = Pose::new(rng.rotation(), rng.vector() * 10.0).unwrap();
         let other = moved(&setting, &by);
         let (a, b) = (scene(&setting, &bodies), scene(&other, &bodies));
-        // The poses are rounded at the size of the world coordinates; lateral shifts of that size move the value
-        // by as much as the contact is inclined.
+        // The poses are rounded at the size of the world coordinates; lateral shifts of that size
+        // move the value by as much as the contact is inclined.
         let far = setting.moving_pose.translation().length() + setting.fixed_pose.translation().length();
         let rounding = 64.0 * f64::EPSILON * (a.size + far + 20.0);
         let here = setting.cast(&bodies, Solver::Auto).unwrap();

@@ -1,12 +1,14 @@
-//! Measures all solvers and `parry3d-f64` in the same run on the same settings; prints a table and writes JSON.
+//! Measures all solvers and `parry3d-f64` in the same run on the same settings; prints a table and
+//! writes JSON.
 //!
 //! ```text
 //! table [--quick] [--sizes 8,128,2000] [--json FILE] [--seed S]
 //! ```
 //!
-//! A query is timed alone, with the clock's own cost taken off. The solvers take turns, each on a block of settings that none of the others has just
-//! visited: each meets its bodies as cold as a program that does many different queries does, and a
-//! disturbance of the machine hits all of them.
+//! A query is timed alone, with the clock's own cost taken off. The solvers take turns, each on a
+//! block of settings that none of the others has just visited: each meets its bodies as cold as a
+//! program that does many different queries does, and a disturbance of the machine hits all of
+//! them.
 
 use std::fs;
 use std::hint::black_box;
@@ -29,7 +31,8 @@ const BLOCK: usize = 25;
 /// Our solvers and parry.
 const CONTESTANTS: usize = SOLVERS.len() + 1;
 
-/// Two answers agree when they differ by less than this share of the bodies' length; parry stops at about as much.
+/// Two answers agree when they differ by less than this share of the bodies' length; parry stops at
+/// about as much.
 const AGREEMENT: f64 = 1e-4;
 
 struct Arguments {

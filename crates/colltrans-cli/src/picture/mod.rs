@@ -1,7 +1,8 @@
 //! A picture of an answer, as one would put it in a paper: both bodies, the moving one at its start
 //! (light) and where it stops, the way it goes, the contact.
 //!
-//! Notation as in [`view`]; `P` is the moving body, `Q` the fixed one, `n` the unit normal from `P` to `Q`.
+//! Notation as in [`view`]; `P` is the moving body, `Q` the fixed one, `n` the unit normal from `P`
+//! to `Q`.
 //!
 //! Hidden surfaces. A convex body hides its own parts where they look away ([`solid`]). Between
 //! bodies, a plane that separates them tells which is nearer: `Q` if `n.v > 0`. For
@@ -11,8 +12,8 @@
 //! Where the contact lies behind, the start may overlap `Q`; it is drawn last, as an outline that
 //! hides nothing.
 //!
-//! The data's way: [`story`] (what is to be shown) -> [`view`] (from where) -> [`layout`] (how large)
-//! -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
+//! The data's way: [`story`] (what is to be shown) -> [`view`] (from where) -> [`layout`] (how
+//! large) -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
 
 mod layout;
 mod notes;

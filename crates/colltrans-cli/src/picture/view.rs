@@ -1,7 +1,7 @@
 //! Where to look from: an orthographic view that shows the motion and the contact.
 //!
-//! Notation. `v` is the unit vector towards the viewer, `d` the direction of motion, `n` the contact
-//! normal. World z points up on the page; the viewer stands above the ground.
+//! Notation. `v` is the unit vector towards the viewer, `d` the direction of motion, `n` the
+//! contact normal. World z points up on the page; the viewer stands above the ground.
 
 use colltrans::glam::{DVec2, DVec3};
 

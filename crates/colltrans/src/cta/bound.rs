@@ -1,10 +1,12 @@
 //! The lower bound: the linear programme over all pieces found so far.
 //!
-//! Notation. Minimise `t` over `(X, Y, t)` subject to `weight_i t >= value_i + gradient_i . (X, Y)`. The dual multipliers
-//! `lambda_i >= 0` satisfy `sum lambda_i (weight_i, gradient_i) = (1, 0, 0)`. Three pieces are the *basis*: their
-//! planes meet in the optimum, and `sum lambda_i normal_i` is the normal of a supporting plane of the bodies that proves the bound
-//! `t`, whatever the section levels are. A new piece that cuts off the optimum enters the basis in a pivot of the dual
-//! simplex method; if none can leave, the pieces contradict each other: the bodies are separated.
+//! Notation. Minimise `t` over `(X, Y, t)` subject to `weight_i t >= value_i + gradient_i . (X,
+//! Y)`. The dual multipliers `lambda_i >= 0` satisfy `sum lambda_i (weight_i, gradient_i) = (1, 0,
+//! 0)`. Three pieces are the *basis*: their planes meet in the optimum, and `sum lambda_i normal_i`
+//! is the normal of a supporting plane of the bodies that proves the bound `t`, whatever the
+//! section levels are. A new piece that cuts off the optimum enters the basis in a pivot of the
+//! dual simplex method; if none can leave, the pieces contradict each other: the bodies are
+//! separated.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -120,7 +122,8 @@ impl LowerBound {
         worst
     }
 
-    /// Exchanges a piece of the basis for `entering`. An error if none can leave: the normal of the contradiction.
+    /// Exchanges a piece of the basis for `entering`. An error if none can leave: the normal of the
+    /// contradiction.
     fn pivot(&mut self, entering: usize) -> Result<(), DVec3> {
         let multipliers = self.inverse * DVec3::X;
         let entering_column = column(&self.pieces[entering]);
@@ -148,7 +151,8 @@ impl LowerBound {
         Ok(())
     }
 
-    /// Gauss-Jordan: the inverse after the column with the coordinates `rates` has replaced that of `slot`.
+    /// Gauss-Jordan: the inverse after the column with the coordinates `rates` has replaced that of
+    /// `slot`.
     fn exchange(&mut self, slot: usize, rates: DVec3) {
         let pivot_row = self.inverse.row(slot) / rates[slot];
         let mut others = rates;

@@ -1,9 +1,11 @@
-//! Pieces and cells: where the features in contact stay the same, `phi` is linear (the paper, section III-C).
+//! Pieces and cells: where the features in contact stay the same, `phi` is linear (the paper,
+//! section III-C).
 //!
-//! Notation. `(X, Y) = (x - x0, y - y0)` around the levels `(x0, y0)` of a planar problem. A *piece* is an affine function
-//! that bounds `phi` from below (weight 1), or that is positive only where the sections miss each other (weight 0). The covector of a piece,
-//! in the shadow plane's terms, is what the supporting plane of the sections contributes to the contact normal.
-//! A *cell* is the set, an intersection of half-planes, on which the piece is `phi` itself.
+//! Notation. `(X, Y) = (x - x0, y - y0)` around the levels `(x0, y0)` of a planar problem. A
+//! *piece* is an affine function that bounds `phi` from below (weight 1), or that is positive only
+//! where the sections miss each other (weight 0). The covector of a piece, in the shadow plane's
+//! terms, is what the supporting plane of the sections contributes to the contact normal. A *cell*
+//! is the set, an intersection of half-planes, on which the piece is `phi` itself.
 
 use glam::{DVec2, DVec3};
 
@@ -35,7 +37,8 @@ impl Frame {
     }
 }
 
-/// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and `normal . d = weight`.
+/// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and
+/// `normal . d = weight`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Piece {
     pub(super) bound: Affine,
@@ -79,7 +82,8 @@ impl Cell {
         self.keep(high - level, -unit);
     }
 
-    /// The least change of `gradient . (X, Y)` over the cell: the simplex method in the plane, from the inside.
+    /// The least change of `gradient . (X, Y)` over the cell: the simplex method in the plane, from
+    /// the inside.
     pub(super) fn least(&self, gradient: DVec2) -> f64 {
         let mut at = DVec2::ZERO;
         let mut way = -gradient;

@@ -1,4 +1,5 @@
-//! The minimisation: solve the planar problem at the centroid, shift to the cell's best point, cut, repeat.
+//! The minimisation: solve the planar problem at the centroid, shift to the cell's best point, cut,
+//! repeat.
 
 use glam::{DVec2, DVec3};
 
@@ -30,12 +31,13 @@ pub(crate) struct CtaOptions {
     pub(crate) start: Option<CtaStart>,
     /// Planar problems at most (never more than [`MAX_STEPS`]).
     pub(crate) max_steps: u32,
-    /// Stops when upper minus lower bound is at most this part of the extent of both bodies along the direction.
+    /// Stops when upper minus lower bound is at most this part of the extent of both bodies along
+    /// the direction.
     pub(crate) gap: f64,
 }
 
-/// Where the remaining work is done faster by portal refinement (measured: from here on more planar problems save it few supports or
-/// none).
+/// Where the remaining work is done faster by portal refinement (measured: from here on more planar
+/// problems save it few supports or none).
 const GAP: f64 = 0.2;
 
 /// Planar problems after a start, for the same reason.
@@ -58,7 +60,8 @@ impl Default for CtaOptions {
 /// Where the search was narrowed to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Guess {
-    /// The bodies seem to meet: the contact normal `n`, not of unit length, with `n . d = 1`, in the setting frame.
+    /// The bodies seem to meet: the contact normal `n`, not of unit length, with `n . d = 1`, in
+    /// the setting frame.
     Contact { normal: DVec3 },
     /// The bodies seem never to meet: a direction from P to Q with `u . d = 0` up to rounding.
     Separation { direction: DVec3 },
@@ -73,11 +76,13 @@ type Features = [[u32; 4]; 2];
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Narrowed {
     pub(crate) guess: Guess,
-    /// The two mesh edges of each body nearest to the contact or the separating plane, as two pairs of vertices.
+    /// The two mesh edges of each body nearest to the contact or the separating plane, as two pairs
+    /// of vertices.
     pub(crate) vertices: Features,
     /// Planar problems solved.
     pub(crate) planar_problems: u32,
-    /// Least `phi` found, an upper bound of the collision translation in units of length; infinite without a contact.
+    /// Least `phi` found, an upper bound of the collision translation in units of length; infinite
+    /// without a contact.
     #[cfg_attr(
         not(test),
         expect(dead_code, reason = "the finish proves its own bounds; the tests compare")
@@ -193,7 +198,8 @@ impl<'a> Query<'a> {
         search.result()
     }
 
-    /// The result if the first planar problem confirms the supporting plane that the search began with.
+    /// The result if the first planar problem confirms the supporting plane that the search began
+    /// with.
     fn confirm(&self, begin: &Begin, first: &Planar, gap: f64) -> Option<Narrowed> {
         let levels = begin.at.to_array();
         let cell = first.cell(levels)?;
@@ -241,7 +247,8 @@ struct Begin {
     near: Option<Near>,
 }
 
-/// A search does not start nearer to the ends of the levels than this share of their range: a section has to have an area.
+/// A search does not start nearer to the ends of the levels than this share of their range: a
+/// section has to have an area.
 const MARGIN: f64 = 0.005;
 
 /// The state of a minimisation; levels are relative to `origin`.
@@ -304,7 +311,8 @@ impl Search<'_, '_> {
     fn result(&self) -> Narrowed {
         let (guess, vertices) = match (self.best, self.last_separation) {
             (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, best),
-            // Not all of the levels were searched, but every normal that the bounds combine is one of a supporting plane.
+            // Not all of the levels were searched, but every normal that the bounds combine is one
+            // of a supporting plane.
             (None, Some((features, _))) if self.begun && self.contradiction.is_none() => {
                 (Guess::Contact { normal: self.bound.normal() }, features)
             }

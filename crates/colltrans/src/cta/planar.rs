@@ -1,12 +1,15 @@
-//! The planar problem: the lowest point of the intersection of two convex polygons, or a line that separates them (the paper, section III-B).
+//! The planar problem: the lowest point of the intersection of two convex polygons, or a line that
+//! separates them (the paper, section III-B).
 //!
-//! Notation. Body 0 is P with its section at `x`, body 1 is Q with its section at `y`, in the shadow plane `w = (h, g)`. The
-//! *upper* section is the one with the higher bottom, at height `h0`. If that bottom lies in the other section it is
-//! the answer. Otherwise one section is to the left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the right chain `r` of the
-//! one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive at `h0`: Newton's method from there never
-//! overshoots and ends on the pair of edges that meet first, or where the gap no longer falls. A guess of these edges is followed
-//! along the mesh first, from above or below. Pieces found earlier bound the answer
-//! from below: then Newton's method starts at that height.
+//! Notation. Body 0 is P with its section at `x`, body 1 is Q with its section at `y`, in the
+//! shadow plane `w = (h, g)`. The *upper* section is the one with the higher bottom, at height
+//! `h0`. If that bottom lies in the other section it is the answer. Otherwise one section is to the
+//! left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the
+//! right chain `r` of the one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive
+//! at `h0`: Newton's method from there never overshoots and ends on the pair of edges that meet
+//! first, or where the gap no longer falls. A guess of these edges is followed along the mesh
+//! first, from above or below. Pieces found earlier bound the answer from below: then Newton's
+//! method starts at that height.
 
 use glam::DVec2;
 
@@ -37,8 +40,8 @@ struct Problem<'a> {
     h0: f64,
 }
 
-/// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is known not to lie below height `known`.
-/// `None` if rounding errors of the mesh hide a section.
+/// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is
+/// known not to lie below height `known`. `None` if rounding errors of the mesh hide a section.
 pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
     let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
     let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
@@ -57,9 +60,9 @@ pub(super) struct Near {
     pub(super) right: usize,
 }
 
-/// The answer if it is a crossing of two edges or a separating line, few steps from the guess. It is certain, however it was
-/// found: where the edges of facing chains cross while the gap falls, nothing in common lies below, and where it is least
-/// and positive, nothing in common is anywhere.
+/// The answer if it is a crossing of two edges or a separating line, few steps from the guess. It
+/// is certain, however it was found: where the edges of facing chains cross while the gap falls,
+/// nothing in common lies below, and where it is least and positive, nothing in common is anywhere.
 pub(super) fn solve_near(sides: &[Side; 2], levels: [f64; 2], near: &Near) -> Option<Planar> {
     let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
     let slide = Slide::new(&sections, near.right);
@@ -130,7 +133,8 @@ impl Problem<'_> {
         Planar::Separated { u: DVec2::new(sign, 0.0), supports: self.by_body(*bottom, *top) }
     }
 
-    /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose edge at `h0` is `edge`.
+    /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose
+    /// edge at `h0` is `edge`.
     fn slide(&self, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
         let facing = chain.opposite();
         let first = Bracket::new(end, self.sections[self.upper].up(facing, &end));
@@ -205,7 +209,8 @@ impl<'a, 'b> Slide<'a, 'b> {
         None
     }
 
-    /// [`Self::separated_at_top`] if the other chain has been followed up to there and has not met this one.
+    /// [`Self::separated_at_top`] if the other chain has been followed up to there and has not met
+    /// this one.
     fn separated_near_top(&self, body: usize, edges: &[Bracket; 2]) -> Option<Planar> {
         let top = edges[body].high.h();
         let other = &edges[1 - body];
@@ -296,8 +301,8 @@ impl<'a, 'b> Slide<'a, 'b> {
         edge
     }
 
-    /// The gap grows at height `high`, where `edges` are, falls at height `low`, and is positive between: to where it is least, by
-    /// halving and at the end in steps.
+    /// The gap grows at height `high`, where `edges` are, falls at height `low`, and is positive
+    /// between: to where it is least, by halving and at the end in steps.
     fn separated_between(
         &self,
         edges: &[Bracket; 2],
@@ -323,8 +328,9 @@ impl<'a, 'b> Slide<'a, 'b> {
         self.separated_at_least_gap(&edges, self.step_limit())
     }
 
-    /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one chain, where a line along the
-    /// other's edge separates best. `None` if that is more than `limit` steps away.
+    /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one
+    /// chain, where a line along the other's edge separates best. `None` if that is more than
+    /// `limit` steps away.
     fn separated_at_least_gap(&self, edges: &[Bracket; 2], limit: usize) -> Option<Planar> {
         let mut edges = *edges;
         for _ in 0..limit {

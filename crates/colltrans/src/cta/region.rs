@@ -1,8 +1,10 @@
-//! The search region: a convex polygon in the plane of the two levels, cut down step by step (the paper, section III-A).
+//! The search region: a convex polygon in the plane of the two levels, cut down step by step (the
+//! paper, section III-A).
 
 use glam::DVec2;
 
-/// A cut adds at most one side, there is one cut per step, and while it is made old and new corners are held.
+/// A cut adds at most one side, there is one cut per step, and while it is made old and new corners
+/// are held.
 const CAPACITY: usize = 2 * (super::MAX_STEPS as usize + 5);
 
 /// A convex polygon, counter-clockwise; empty once a cut leaves nothing.

@@ -1,9 +1,10 @@
 //! One body as the planar problem sees it: sections in the shadow plane, walked on the mesh.
 //!
-//! Notation. A point of the body has a *level* (`x` for the moving, `y` for the fixed body) and shadow coordinates
-//! `w = (h, g)`; all three are affine in the body frame. The *left* chain of a section runs from its lowest point (least `h`)
-//! to its highest one where `g` is smaller, the *right* chain where `g` is greater. The *drift* of a crossing
-//! edge is how its section vertex moves per unit of level.
+//! Notation. A point of the body has a *level* (`x` for the moving, `y` for the fixed body) and
+//! shadow coordinates `w = (h, g)`; all three are affine in the body frame. The *left* chain of a
+//! section runs from its lowest point (least `h`) to its highest one where `g` is smaller, the
+//! *right* chain where `g` is greater. The *drift* of a crossing edge is how its section vertex
+//! moves per unit of level.
 
 use std::cell::OnceCell;
 
@@ -57,8 +58,8 @@ impl Crossing {
         self.w.y
     }
 
-    /// Direction of the polygon edge to its neighbour `next`, of any length: exact even where a mesh vertex
-    /// that both edges share makes the polygon edge vanish.
+    /// Direction of the polygon edge to its neighbour `next`, of any length: exact even where a
+    /// mesh vertex that both edges share makes the polygon edge vanish.
     pub(super) fn towards(&self, next: &Self) -> DVec2 {
         if self.vertices[0] == next.vertices[0] {
             next.drift - self.drift
@@ -93,8 +94,8 @@ impl Chain {
         }
     }
 
-    /// Whether `direction` leads up this chain; the horizontal edge at the bottom belongs to the chain that starts
-    /// along it, the one at the top to none.
+    /// Whether `direction` leads up this chain; the horizontal edge at the bottom belongs to the
+    /// chain that starts along it, the one at the top to none.
     pub(super) fn ascends(self, direction: DVec2) -> bool {
         if is_horizontal(direction) { self.sign() * direction.y > 0.0 } else { direction.x > 0.0 }
     }
@@ -123,7 +124,8 @@ impl Bracket {
         self.direction.y / self.direction.x
     }
 
-    /// `g` at height `h` on the edge; its ends bound it, since on a nearly horizontal edge the quotient has no digits.
+    /// `g` at height `h` on the edge; its ends bound it, since on a nearly horizontal edge the
+    /// quotient has no digits.
     pub(super) fn g_at(&self, h: f64) -> f64 {
         let (low, high) = (self.low.g(), self.high.g());
         let g = low + (h - self.low.h()) * self.slope();
@@ -169,8 +171,8 @@ pub(super) struct Side<'a> {
 }
 
 impl<'a> Side<'a> {
-    /// The two covectors of the shadow are in the body frame, `constant` is the shadow of its origin.
-    /// `along` is the axis' component along the direction.
+    /// The two covectors of the shadow are in the body frame, `constant` is the shadow of its
+    /// origin. `along` is the axis' component along the direction.
     pub(super) fn new(
         (vertices, topology, sections): (&'a [DVec3], &'a Topology, &'a AxisSections),
         along: f64,
@@ -185,8 +187,9 @@ impl<'a> Side<'a> {
             shadow,
             constant,
             height: sections.form(shadow[0], constant.x),
-            // (level, h, g) is right-handed if the axis points along the direction; then counter-clockwise leads from
-            // +h to +g, and from the bottom, at -h, to -g: up the left chain.
+            // (level, h, g) is right-handed if the axis points along the direction; then
+            // counter-clockwise leads from +h to +g, and from the bottom, at -h, to -g: up the left
+            // chain.
             left_turn: if along > 0.0 { Turn::CounterClockwise } else { Turn::Clockwise },
         }
     }
@@ -207,8 +210,9 @@ impl<'a> Side<'a> {
         Section { side: self, lowest: OnceCell::new(), highest: OnceCell::new(), x }
     }
 
-    /// A mesh edge that crosses level `x`, as the half-edge that runs upwards: the way there from a support vertex leads
-    /// along edges that stay close to the supporting plane with this normal (body frame). `None` if it is long.
+    /// A mesh edge that crosses level `x`, as the half-edge that runs upwards: the way there from a
+    /// support vertex leads along edges that stay close to the supporting plane with this normal
+    /// (body frame). `None` if it is long.
     pub(super) fn edge_near(&self, support: u32, normal: DVec3, x: f64) -> Option<u32> {
         let mut vertex = support;
         let upwards = self.level(vertex) <= x;
@@ -266,7 +270,8 @@ impl<'a> Side<'a> {
 #[derive(Debug)]
 pub(super) struct Section<'a> {
     side: &'a Side<'a>,
-    /// Once asked for: the nearest snapshot and its lowest entry. `None` if rounding leaves the body no sections.
+    /// Once asked for: the nearest snapshot and its lowest entry. `None` if rounding leaves the
+    /// body no sections.
     lowest: OnceCell<Option<(Snapshot<'a>, usize)>>,
     /// Once asked for: its highest entry.
     highest: OnceCell<usize>,
@@ -316,7 +321,8 @@ impl<'a> Section<'a> {
         self.up(chain.opposite(), from)
     }
 
-    /// The direction of the polygon edge from `from` to its neighbour in the direction of `chain`, from one more vertex of the face.
+    /// The direction of the polygon edge from `from` to its neighbour in the direction of `chain`,
+    /// from one more vertex of the face.
     fn direction(&self, chain: Chain, from: &Crossing) -> DVec2 {
         let topology = self.side.topology;
         let along = match self.side.turn_up(chain) {
@@ -330,8 +336,9 @@ impl<'a> Section<'a> {
         (third.shadow - base) - from.drift * (third.level - from.levels[0])
     }
 
-    /// From an edge that crosses at or below the level, up the mesh to one that crosses, at each vertex by the edge
-    /// whose line has the least `score` at the level. `None` if rounding hides the way up.
+    /// From an edge that crosses at or below the level, up the mesh to one that crosses, at each
+    /// vertex by the edge whose line has the least `score` at the level. `None` if rounding hides
+    /// the way up.
     fn climb(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
         let topology = self.side.topology;
         let mut up = from;
@@ -415,7 +422,8 @@ impl<'a> Section<'a> {
         Some(self.walk(chain, bracket, h, self.step_limit()))
     }
 
-    /// An edge of the chain at or near the crossing mesh edge `up`: also from the other side of the bottom.
+    /// An edge of the chain at or near the crossing mesh edge `up`: also from the other side of the
+    /// bottom.
     pub(super) fn edge_at(&self, chain: Chain, up: u32) -> Option<Bracket> {
         let mut low = self.crossing(up);
         for _ in 0..STEPS_TO_CHAIN {
@@ -428,7 +436,8 @@ impl<'a> Section<'a> {
         None
     }
 
-    /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite chain.
+    /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite
+    /// chain.
     fn any_edge(&self, chain: Chain, start: Crossing) -> Bracket {
         let mut bracket = Bracket::new(self.down(chain, &start), start);
         if chain.ascends(bracket.direction) {
@@ -445,7 +454,8 @@ impl<'a> Section<'a> {
         bracket
     }
 
-    /// From `bracket` up the chain to height `h`: a few steps along the mesh, or a search from scratch.
+    /// From `bracket` up the chain to height `h`: a few steps along the mesh, or a search from
+    /// scratch.
     pub(super) fn advance(&self, chain: Chain, bracket: &Bracket, h: f64) -> Option<Located> {
         match self.walk(chain, *bracket, h, STEPS_BEFORE_SEARCH) {
             Located::Short => self.locate(chain, h),

@@ -196,8 +196,8 @@ impl<'a> Depths<'a> {
         Self { surface, hull, planes, locator, in_hull }
     }
 
-    /// Greatest depth of a face's corners, edge midpoints and centre, or any number up to `known` if it is not greater
-    /// than that; 0 if the corners lie on one face of the hull.
+    /// Greatest depth of a face's corners, edge midpoints and centre, or any number up to `known`
+    /// if it is not greater than that; 0 if the corners lie on one face of the hull.
     ///
     /// A flat surface covers its inside twice; its edges are where it turns back.
     fn of_face(&self, face: u32, known: f64, near: &mut usize) -> f64 {

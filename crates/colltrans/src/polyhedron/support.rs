@@ -1,18 +1,21 @@
 //! Support points: the vertex of a body farthest along a direction, in `O(log n)`.
 //!
-//! Two steps. A *table* over directions gives a vertex that is right for a direction nearby; from there a *climb*
-//! along edges, always to the steepest neighbour, ends at the support point, because on a convex body a local
-//! maximum is global. Solvers that already know a vertex nearby climb from it and leave the table out.
+//! Two steps. A *table* over directions gives a vertex that is right for a direction nearby; from
+//! there a *climb* along edges, always to the steepest neighbour, ends at the support point,
+//! because on a convex body a local maximum is global. Solvers that already know a vertex nearby
+//! climb from it and leave the table out.
 //!
-//! The table is a cube map of *normalised* directions `L^T n`, where `L L^T` is the shape of the body's inertia
-//! ellipsoid: a support point of an affine image `L u` of a round body in direction `n` is that of the round body in
-//! direction `L^T n`, so needles and plates spread over the table as evenly as balls. Where vertices still
-//! crowd (the rim of a prism with many sides, a rounded corner), a cell is divided in four, and again, until its
-//! centre and its corners are a few edges apart. The number of cells is at most proportional to the number of vertices.
+//! The table is a cube map of *normalised* directions `L^T n`, where `L L^T` is the shape of the
+//! body's inertia ellipsoid: a support point of an affine image `L u` of a round body in direction
+//! `n` is that of the round body in direction `L^T n`, so needles and plates spread over the table
+//! as evenly as balls. Where vertices still crowd (the rim of a prism with many sides, a rounded
+//! corner), a cell is divided in four, and again, until its centre and its corners are a few edges
+//! apart. The number of cells is at most proportional to the number of vertices.
 //!
-//! A vertex with many neighbours (the apex of a cone) would make one step linear. Cut by a plane, the edges of a vertex are the
-//! corners of a convex polygon, over which a linear function has one maximum and one minimum: the steepest edge is found among
-//! widely spaced ones first, then among ever closer ones.
+//! A vertex with many neighbours (the apex of a cone) would make one step linear. Cut by a plane,
+//! the edges of a vertex are the corners of a convex polygon, over which a linear function has one
+//! maximum and one minimum: the steepest edge is found among widely spaced ones first, then among
+//! ever closer ones.
 
 use glam::{DMat3, DVec3};
 
@@ -31,14 +34,16 @@ const NEAR_STEPS: usize = 3;
 /// After this many steps a climb from a guess asks the table.
 const PATIENCE: usize = 4;
 
-/// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that single-precision models have.
+/// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that
+/// single-precision models have.
 const MAX_DEPTH: u32 = 20;
 
 /// A vertex with more neighbours than this is searched, not scanned.
 const FAN: usize = 32;
 
-/// Relative rounding error of a dot product of a direction with an edge: a gain below this share of the terms'
-/// magnitudes may not be real. Demanding more makes every climb strictly ascending, so it ends.
+/// Relative rounding error of a dot product of a direction with an edge: a gain below this share of
+/// the terms' magnitudes may not be real. Demanding more makes every climb strictly ascending, so
+/// it ends.
 const GAIN_NOISE: f64 = 4.0 * f64::EPSILON;
 
 /// The table over directions.
@@ -52,7 +57,8 @@ pub(crate) struct SupportIndex {
     cells: Vec<u32>,
     /// The vertices of a body small enough to scan.
     groups: Vec<Group>,
-    /// Vertices with many neighbours, ascending, each with a vector that has a positive product with all its edges.
+    /// Vertices with many neighbours, ascending, each with a vector that has a positive product
+    /// with all its edges.
     fans: Vec<(u32, DVec3)>,
 }
 
@@ -125,8 +131,8 @@ impl SupportIndex {
 
     /// Steepest ascent along edges, at most `limit` steps, and the number of steps it took.
     ///
-    /// Gains are taken from edge vectors, not from differences of dot products, so their rounding error is relative to
-    /// the edge and not to the body.
+    /// Gains are taken from edge vectors, not from differences of dot products, so their rounding
+    /// error is relative to the edge and not to the body.
     fn climb(
         &self,
         vertices: &[DVec3],
@@ -174,8 +180,9 @@ impl SupportIndex {
         greatest_on_cycle(neighbours.len(), slope)
     }
 
-    /// Candidates for neighbours in the supporting plane at `vertex`: positions of consecutive neighbours, as
-    /// first position and count, that contain all of them if the vertex has few, and the three steepest if it has many.
+    /// Candidates for neighbours in the supporting plane at `vertex`: positions of consecutive
+    /// neighbours, as first position and count, that contain all of them if the vertex has few, and
+    /// the three steepest if it has many.
     pub(crate) fn plane_candidates(
         &self,
         vertices: &[DVec3],
@@ -314,7 +321,8 @@ impl Builder<'_> {
         self.index.climb(self.vertices, self.topology, direction, start, usize::MAX)
     }
 
-    /// The entry of a cell whose centre has the support point `center`: divided while its corners are far.
+    /// The entry of a cell whose centre has the support point `center`: divided while its corners
+    /// are far.
     fn entry(&self, cell: Cell, center: u32, cells: &mut Vec<u32>) -> u32 {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
         let is_near = |(s, t)| self.support(cell.direction(s, t), center).1 <= NEAR_STEPS;
@@ -354,8 +362,8 @@ fn groups(vertices: &[DVec3]) -> Vec<Group> {
     vertices.chunks(LANES).map(group).collect()
 }
 
-/// Looks at every vertex. Of equals, one is chosen by position alone, so the answer does not depend on where
-/// a search starts.
+/// Looks at every vertex. Of equals, one is chosen by position alone, so the answer does not depend
+/// on where a search starts.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan: 7 %")]
 fn scan(groups: &[Group], direction: DVec3) -> u32 {
@@ -398,7 +406,8 @@ fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec
 
 /// Where a function on a cycle with one maximum and one minimum is greatest.
 ///
-/// Between samples with a common distance, the maximum is at most that distance from the greatest sample.
+/// Between samples with a common distance, the maximum is at most that distance from the greatest
+/// sample.
 fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut stride = (count / 8).max(1).next_power_of_two();
     let (mut best, mut greatest) = (0, f64::NEG_INFINITY);
@@ -420,13 +429,15 @@ fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
     best
 }
 
-/// The vertices with more than [`FAN`] neighbours, with the mean of the inward unit normals of their faces.
+/// The vertices with more than [`FAN`] neighbours, with the mean of the inward unit normals of
+/// their faces.
 fn fans(vertices: &[DVec3], topology: &Topology) -> Vec<(u32, DVec3)> {
     let inward = |v: u32| {
         let here = vertices[v as usize];
         let neighbours = topology.neighbours(v);
         let next = neighbours.iter().cycle().skip(1);
-        // Neighbours are clockwise from outside, so the product of two consecutive edges points inwards.
+        // Neighbours are clockwise from outside, so the product of two consecutive edges points
+        // inwards.
         let normal = |(&a, &b): (&u32, &u32)| {
             (vertices[a as usize] - here).cross(vertices[b as usize] - here).normalize_or_zero()
         };

@@ -1,9 +1,11 @@
-//! The first portal: three points of `M` whose shadows contain the line, or a proof that there are none.
+//! The first portal: three points of `M` whose shadows contain the line, or a proof that there are
+//! none.
 //!
-//! Invariant. The search holds one or two points; two of them, `from` and `to`, have the line on their left. The next point is
-//! sought beyond the line. A tilted normal is tried first, which finds one near the lowest face, so that the first portal is small;
-//! if that one does not pass the line, a lateral normal decides: either its support point passes
-//! the line, or the whole of `M` lies on this side of it and the normal separates. Every step widens the angle under which the
+//! Invariant. The search holds one or two points; two of them, `from` and `to`, have the line on
+//! their left. The next point is sought beyond the line. A tilted normal is tried first, which
+//! finds one near the lowest face, so that the first portal is small; if that one does not pass the
+//! line, a lateral normal decides: either its support point passes the line, or the whole of `M`
+//! lies on this side of it and the normal separates. Every step widens the angle under which the
 //! line sees the points, so the search ends.
 
 use glam::{DVec2, DVec3};
@@ -23,8 +25,8 @@ pub(crate) enum Enclosure {
     OneSide(OneSide),
 }
 
-/// `normal . s >= margin` for every shadow `s` of `M`, up to rounding. The margin may be negative by what counts as touching,
-/// when the shadow of `M` ends at the line.
+/// `normal . s >= margin` for every shadow `s` of `M`, up to rounding. The margin may be negative
+/// by what counts as touching, when the shadow of `M` ends at the line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OneSide {
     /// Unit normal in the shadow plane.
@@ -38,7 +40,8 @@ pub(crate) struct OneSide {
 /// How far beyond the line the model aims, in multiples of the distance to it, try by try.
 const OVERSHOOT: [f64; 2] = [1.6, 6.0];
 
-/// Bound on the number of points: far beyond what any body needs; reaching it is reported, never hidden.
+/// Bound on the number of points: far beyond what any body needs; reaching it is reported, never
+/// hidden.
 const MAX_POINTS: usize = 10_000;
 
 /// Finds a first portal. `None` if rounding makes the search run in a circle.
@@ -59,8 +62,8 @@ pub(crate) fn enclose(
     search.close([first, second])
 }
 
-/// A portal that begins with an edge which the line passes, completed by wide points: for edges that a narrow portal left
-/// behind. `None` if rounding makes the search run in a circle.
+/// A portal that begins with an edge which the line passes, completed by wide points: for edges
+/// that a narrow portal left behind. `None` if rounding makes the search run in a circle.
 pub(super) fn complete(
     difference: &Difference,
     edge: [Tangent; 2],
@@ -88,7 +91,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Adds points until they enclose the line. `None` if rounding makes the search run in a circle.
+    /// Adds points until they enclose the line. `None` if rounding makes the search run in a
+    /// circle.
     fn close(&mut self, [first, second]: [Tangent; 2]) -> Option<Enclosure> {
         let difference = self.difference;
         let mut edge = if difference.is_left(&first.point, &second.point) {
@@ -133,7 +137,8 @@ impl Search<'_> {
         Ok(Tangent { point, slope: steep(lateral) })
     }
 
-    /// A point on the other side of the line than `near_side`, the point nearest to the line of what is known.
+    /// A point on the other side of the line than `near_side`, the point nearest to the line of
+    /// what is known.
     ///
     /// `slope` is the slope that belongs to `near_side` by interpolation.
     fn beyond(
@@ -175,7 +180,8 @@ impl Search<'_> {
     }
 }
 
-/// From the line towards what is known: the candidate for a separating normal, of a length fit to be normalised.
+/// From the line towards what is known: the candidate for a separating normal, of a length fit to
+/// be normalised.
 fn outward(known: &[Tangent], near_side: DVec2) -> DVec2 {
     if let [from, to] = known {
         // The line is on the left of the edge, so the edge is on the right of the line.
@@ -209,10 +215,11 @@ pub(super) fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
     (a + along * share, from.slope + (to.slope - from.slope) * share)
 }
 
-/// The lateral normal along which the shadow of `M` keeps the largest distance from the line, from any that separates it.
+/// The lateral normal along which the shadow of `M` keeps the largest distance from the line, from
+/// any that separates it.
 ///
-/// Used when the margin found is too small to tell separation from touching: it converges to the true distance of
-/// the line from the shadow (Gilbert's algorithm with segments).
+/// Used when the margin found is too small to tell separation from touching: it converges to the
+/// true distance of the line from the shadow (Gilbert's algorithm with segments).
 pub(crate) fn widest_margin(difference: &Difference, found: OneSide, steps: &mut Steps) -> OneSide {
     let mut segment = [found.point; 2];
     let mut best = found;
@@ -236,8 +243,8 @@ pub(crate) fn widest_margin(difference: &Difference, found: OneSide, steps: &mut
     best
 }
 
-/// Unit normal from the line towards a segment of shadows, and the distance; without cancellation, also where a long segment
-/// passes the line closely. `None` if it touches it.
+/// Unit normal from the line towards a segment of shadows, and the distance; without cancellation,
+/// also where a long segment passes the line closely. `None` if it touches it.
 fn from_segment(segment: &[Point; 2]) -> Option<(DVec2, f64)> {
     let [a, b] = segment.map(|p| p.shadow());
     let along = b - a;

@@ -1,8 +1,9 @@
-//! How far the shadows overlap sideways: the distance from the line to the rim of the shadow of `M`.
+//! How far the shadows overlap sideways: the distance from the line to the rim of the shadow of
+//! `M`.
 //!
-//! Invariant: a polygon of shadows of points of `M` contains the line, so the distance to its nearest edge is a lower
-//! bound of the overlap; the support point beyond that edge gives an upper bound, and becomes a corner. The polygon is the convex hull of
-//! its points.
+//! Invariant: a polygon of shadows of points of `M` contains the line, so the distance to its
+//! nearest edge is a lower bound of the overlap; the support point beyond that edge gives an upper
+//! bound, and becomes a corner. The polygon is the convex hull of its points.
 
 use glam::DVec2;
 
@@ -15,7 +16,8 @@ use crate::outcome::Steps;
 pub(crate) enum Overlap {
     /// More than the tolerance.
     Ample,
-    /// At most the tolerance: `inward . s >= -depth` for every shadow, with equality up to rounding.
+    /// At most the tolerance: `inward . s >= -depth` for every shadow, with equality up to
+    /// rounding.
     Slight {
         /// Unit vector from the rim inwards.
         inward: DVec2,
@@ -24,7 +26,8 @@ pub(crate) enum Overlap {
     },
 }
 
-/// Corners the polygon can have. A tolerance of rounding size needs a few; a large one on a smooth body about 20.
+/// Corners the polygon can have. A tolerance of rounding size needs a few; a large one on a smooth
+/// body about 20.
 const MAX_CORNERS: usize = 64;
 
 /// Compares the overlap with `tolerance`, from a portal around the line.
@@ -67,7 +70,8 @@ pub(crate) fn overlap(
     slightest
 }
 
-/// Bound on the rounds: each adds a corner, unless rounding makes them repeat; then the last overlap found within the tolerance stands.
+/// Bound on the rounds: each adds a corner, unless rounding makes them repeat; then the last
+/// overlap found within the tolerance stands.
 const MAX_ROUNDS: usize = 200;
 
 /// Moves the corners of the convex hull to the front, counter-clockwise, and returns their number.
@@ -113,7 +117,8 @@ fn is_ample(portal: &[Point; 3], tolerance: f64) -> bool {
     })
 }
 
-/// The edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal and distance.
+/// The edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal and
+/// distance.
 fn nearest_edge(corners: &[Point]) -> Option<(usize, DVec2, f64)> {
     let mut nearest: Option<(usize, DVec2, f64)> = None;
     for (i, corner) in corners.iter().enumerate() {

@@ -1,8 +1,9 @@
 //! From a portal to the lowest face of `M` on the line.
 //!
-//! Invariant: the three shadows, counter-clockwise, contain the line (decided exactly, with ties broken consistently). Each step asks for
-//! the support point along a normal; if it lies below the portal's plane it replaces one of the three, and the
-//! height at which the line passes the portal falls. The end: no point of `M` is below the plane by more than rounding error; then the plane
+//! Invariant: the three shadows, counter-clockwise, contain the line (decided exactly, with ties
+//! broken consistently). Each step asks for the support point along a normal; if it lies below the
+//! portal's plane it replaces one of the three, and the height at which the line passes the portal
+//! falls. The end: no point of `M` is below the plane by more than rounding error; then the plane
 //! proves the lower bound and the portal the upper one.
 
 use glam::{DVec2, DVec3};
@@ -29,8 +30,8 @@ pub(crate) struct Optimum {
     pub(crate) weights: [f64; 3],
 }
 
-/// More portals than any body needs: then ties within rounding error keep following each other, and points below the
-/// plane by less than what counts as touching are taken to lie on it.
+/// More portals than any body needs: then ties within rounding error keep following each other, and
+/// points below the plane by less than what counts as touching are taken to lie on it.
 const LONG: usize = 200;
 
 /// Bound on the number of portals; reaching it is reported, never hidden.
@@ -76,8 +77,9 @@ pub(crate) fn refine(
     None
 }
 
-/// A portal with a plane in place of one too narrow to have one: over the edge that the line passes lowest or, if that gives the new
-/// portal no width, around its lower point. `None` if there is none.
+/// A portal with a plane in place of one too narrow to have one: over the edge that the line passes
+/// lowest or, if that gives the new portal no width, around its lower point. `None` if there is
+/// none.
 fn widen(difference: &Difference, portal: &Portal, steps: &mut Steps) -> Option<Enclosure> {
     let edge = lowest_edge(difference, portal);
     let [from, to] = edge.map(|t| t.point);
@@ -148,21 +150,24 @@ fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
 /// Replaces the one point whose exchange keeps the line inside, and says which.
 fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize {
     let left = [0, 1, 2].map(|i| difference.is_left(&portal[i].point, &new.point));
-    // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the sides change.
+    // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the
+    // sides change.
     for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         if !left[i] && left[j] {
             portal[k] = new;
             return k;
         }
     }
-    // All on one side: the shadows coincide, and the new point takes the place of the one it lies under.
+    // All on one side: the shadows coincide, and the new point takes the place of the one it lies
+    // under.
     let distances = portal.map(|t| -t.point.shadow().distance_squared(new.point.shadow()));
     let same = largest(distances);
     portal[same] = new;
     same
 }
 
-/// The upward normal of the plane through the three points; `None` if the portal is too narrow to have one.
+/// The upward normal of the plane through the three points; `None` if the portal is too narrow to
+/// have one.
 fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
     let [a, b, c] = portal.map(|t| t.point.shadow());
     let longest = (b - a).length_squared().max((c - b).length_squared());
@@ -175,8 +180,8 @@ fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
 
 /// Barycentric coordinates of the line in the shadow of the portal.
 ///
-/// From determinants without cancellation, so that narrow portals have accurate ones; if the line is outside in the rounded
-/// coordinates, those of the nearest point of the rim.
+/// From determinants without cancellation, so that narrow portals have accurate ones; if the line
+/// is outside in the rounded coordinates, those of the nearest point of the rim.
 fn weights(portal: &Portal) -> [f64; 3] {
     let shadows = portal.map(|t| t.point.shadow());
     let [a, b, c] = shadows;

@@ -1,9 +1,11 @@
 //! A first guess of the contact normal: what it would be if both bodies were ellipsoids.
 //!
-//! Notation. `A`, `B` are the matrices of the bodies' inertia ellipsoids and `c` the difference of their centres, all in the
-//! shadow frame; `n = (a, 1)`. The difference of the ellipsoids has `f(a) = c.n - sqrt(n^T A n) - sqrt(n^T B n)`, whose maximum is sought:
-//! first with both replaced by the one ellipsoid `K = (1 + r) A + (1 + 1/r) B` that contains their sum (for any
-//! `r > 0`; `r^2 = tr B / tr A` makes its mean size least), which the line enters where a quadratic equation says; then by one Newton step on `f`.
+//! Notation. `A`, `B` are the matrices of the bodies' inertia ellipsoids and `c` the difference of
+//! their centres, all in the shadow frame; `n = (a, 1)`. The difference of the ellipsoids has `f(a)
+//! = c.n - sqrt(n^T A n) - sqrt(n^T B n)`, whose maximum is sought: first with both replaced by the
+//! one ellipsoid `K = (1 + r) A + (1 + 1/r) B` that contains their sum (for any `r > 0`; `r^2 = tr
+//! B / tr A` makes its mean size least), which the line enters where a quadratic equation says;
+//! then by one Newton step on `f`.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -13,12 +15,13 @@ use crate::setting::VertexPair;
 /// Where to begin, and how the shadow of the support point answers to a change of slope.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Start {
-    /// Guess of the contact normal in the shadow frame: `(a, 1)`, or lateral (height 0) if the bodies seem to pass each other.
+    /// Guess of the contact normal in the shadow frame: `(a, 1)`, or lateral (height 0) if the
+    /// bodies seem to pass each other.
     pub(crate) normal: DVec3,
     /// A pair near the contact, if one is known.
     pub(crate) near: Option<VertexPair>,
-    /// The change of slope that moves the shadow of the support point by minus a given vector: the inverse Hessian of the
-    /// ellipsoids' support functions.
+    /// The change of slope that moves the shadow of the support point by minus a given vector: the
+    /// inverse Hessian of the ellipsoids' support functions.
     pub(crate) slope_per_shadow: DMat2,
     /// The matrices of the ellipsoids.
     ellipsoids: [Symmetric; 2],
@@ -28,7 +31,8 @@ pub(crate) struct Start {
 /// would say nothing about where the walls of the body are.
 const LEAST_INCLINATION: f64 = 0.05;
 
-/// Newton's step is taken if it is shorter than this share of the normal; a longer one leaves the region it knows.
+/// Newton's step is taken if it is shorter than this share of the normal; a longer one leaves the
+/// region it knows.
 const LONGEST_STEP: f64 = 0.5;
 
 impl Start {
@@ -49,7 +53,8 @@ impl Start {
         Self { normal, near: None, slope_per_shadow, ellipsoids: [a, b] }
     }
 
-    /// Where the ellipsoids have their supporting planes across the normal, in the frames of the moving and of the fixed body.
+    /// Where the ellipsoids have their supporting planes across the normal, in the frames of the
+    /// moving and of the fixed body.
     pub(crate) fn touching(&self, difference: &Difference) -> [DVec3; 2] {
         let setting = difference.setting;
         let normal = self.normal;
@@ -70,8 +75,8 @@ impl Start {
     }
 }
 
-/// The normal where the axis enters the ellipsoid around `center` with inverse matrix `j`, or, if it misses it,
-/// where it passes closest in the ellipsoid's metric.
+/// The normal where the axis enters the ellipsoid around `center` with inverse matrix `j`, or, if
+/// it misses it, where it passes closest in the ellipsoid's metric.
 fn entry_normal(j: &Symmetric, center: DVec3) -> DVec3 {
     let jc = j.apply(center);
     let middle = jc.z / j.zz;
@@ -99,7 +104,8 @@ pub(super) fn steep(lateral: DVec2) -> DVec2 {
     lateral.normalize_or_zero() / LEAST_INCLINATION
 }
 
-/// Gradient of the ellipsoids' support functions in the lateral components of `normal`, and the inverse of their Hessian.
+/// Gradient of the ellipsoids' support functions in the lateral components of `normal`, and the
+/// inverse of their Hessian.
 fn response(ellipsoids: [&Symmetric; 2], normal: DVec3) -> (DVec2, DMat2) {
     let n = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
     let (mut gradient, mut hessian) = (DVec2::ZERO, DMat2::ZERO);

@@ -1,10 +1,11 @@
 //! The four section axes of a body, and the choice of one for each of two bodies.
 //!
-//! Two axes `a`, `b` and the direction `d` are in general configuration if `a . d != 0`, `b . d != 0` and `a x b != 0`.
-//! No three of the four tetrahedral axes are coplanar, so `d` is orthogonal to at most two of them: at least two of
-//! each body have a component along `d`, and of these pairs at least one is not parallel. Over all rotations and
-//! directions the best pair has `min(|a.d|, |b.d|, |a x b|) >= 1/3` for unit vectors (found by numerical minimisation; it is
-//! met when the frames agree and `d` is a coordinate axis).
+//! Two axes `a`, `b` and the direction `d` are in general configuration if `a . d != 0`, `b . d !=
+//! 0` and `a x b != 0`. No three of the four tetrahedral axes are coplanar, so `d` is orthogonal to
+//! at most two of them: at least two of each body have a component along `d`, and of these pairs at
+//! least one is not parallel. Over all rotations and directions the best pair has `min(|a.d|,
+//! |b.d|, |a x b|) >= 1/3` for unit vectors (found by numerical minimisation; it is met when the
+//! frames agree and `d` is a coordinate axis).
 
 use glam::{DMat3, DVec3};
 

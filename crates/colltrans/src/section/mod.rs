@@ -1,11 +1,14 @@
-//! Planar sections of a polyhedron across fixed axes: `O(n)` space, logarithmic access (the paper, section III).
+//! Planar sections of a polyhedron across fixed axes: `O(n)` space, logarithmic access (the paper,
+//! section III).
 //!
-//! Notation. `level(v) = a . v` for a section axis `a` of the body frame. The section at level `x` is the convex polygon
-//! in which the plane `a . v = x` cuts the body; each of its vertices lies on a mesh edge that *crosses* the level.
+//! Notation. `level(v) = a . v` for a section axis `a` of the body frame. The section at level `x`
+//! is the convex polygon in which the plane `a . v = x` cuts the body; each of its vertices lies on
+//! a mesh edge that *crosses* the level.
 //!
-//! Tie rule, used by every function here: a mesh vertex is *above* if its level is `> x`, else *below*. So a section is the one
-//! just above level `x`, it never passes through a mesh vertex, and it exists for `min <= x < max`.
-//! A crossing edge is named by its half-edge that runs upwards. Counter-clockwise is meant as seen from the tip of the axis.
+//! Tie rule, used by every function here: a mesh vertex is *above* if its level is `> x`, else
+//! *below*. So a section is the one just above level `x`, it never passes through a mesh vertex,
+//! and it exists for `min <= x < max`. A crossing edge is named by its half-edge that runs upwards.
+//! Counter-clockwise is meant as seen from the tip of the axis.
 
 mod axes;
 mod snapshots;

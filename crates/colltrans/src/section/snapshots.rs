@@ -1,17 +1,19 @@
 //! Snapshots: the whole section, in cyclic order, at chosen levels.
 //!
-//! The first snapshot is at the lowest level. The next one comes after the vertices passed have as many edges as
-//! [`EDGES_PER_ENTRY`] times the edges of the current section, so all snapshots together have `O(n)` entries, and a vertex of very many edges
-//! (the apex of a cone) gets a snapshot of its own. A query at level `x` starts from the last snapshot at or below `x`: no
-//! such vertex lies between. An entry holds a crossing edge and, as `f32`, where it crosses; these positions only
-//! guide a search, whose end is decided on the mesh.
+//! The first snapshot is at the lowest level. The next one comes after the vertices passed have as
+//! many edges as [`EDGES_PER_ENTRY`] times the edges of the current section, so all snapshots
+//! together have `O(n)` entries, and a vertex of very many edges (the apex of a cone) gets a
+//! snapshot of its own. A query at level `x` starts from the last snapshot at or below `x`: no such
+//! vertex lies between. An entry holds a crossing edge and, as `f32`, where it crosses; these
+//! positions only guide a search, whose end is decided on the mesh.
 
 use glam::DVec3;
 
 use super::walk::next_counter_clockwise;
 use crate::topology::Topology;
 
-/// Edges of vertices passed per entry of a snapshot: about two vertices' worth of upward and downward edges.
+/// Edges of vertices passed per entry of a snapshot: about two vertices' worth of upward and
+/// downward edges.
 const EDGES_PER_ENTRY: usize = 4;
 
 /// Candidates of one round of the search for an extreme entry.
@@ -86,7 +88,8 @@ impl AxisSections {
             if edges_passed < edges_due || next_level == level {
                 continue;
             }
-            // A vertex below the top has an edge upwards; rounding may hide it, then its predecessor serves.
+            // A vertex below the top has an edge upwards; rounding may hide it, then its
+            // predecessor serves.
             let first = order[..=rank].iter().rev().find_map(|&(_, v)| {
                 let mut outgoing = topology.outgoing(v).iter().copied();
                 outgoing.find(|&h| vertex_levels[topology.target(h) as usize] > level)
@@ -112,7 +115,8 @@ impl AxisSections {
         // Halfway no two of its vertices coincide.
         let halfway = f64::midpoint(level, next_level);
         let mut up = first;
-        // A section has no more entries than there are edges; rounding in the levels could make the walk miss its start.
+        // A section has no more entries than there are edges; rounding in the levels could make the
+        // walk miss its start.
         for _ in 0..topology.edge_count() {
             let (low, high) = (topology.half_edge(up).origin, topology.target(up));
             let (low_level, high_level) =
@@ -161,7 +165,8 @@ impl AxisSections {
     }
 }
 
-/// Coordinates of the planes across `axis` in which the body has about unit size, right-handed with the axis.
+/// Coordinates of the planes across `axis` in which the body has about unit size, right-handed with
+/// the axis.
 fn scaled_plane(vertices: &[DVec3], axis: DVec3) -> ([DVec3; 2], [f64; 2]) {
     let first = axis.normalize().any_orthonormal_vector();
     let second = axis.normalize().cross(first);
@@ -240,8 +245,9 @@ impl Snapshot<'_> {
 
     /// The entry where `sign * form` is least, `sign` being 1 or -1.
     ///
-    /// On a convex polygon the minimum lies within one stride of the best of every `stride`-th entry. All candidates of a
-    /// round are compared, without branches that hardware could not predict.
+    /// On a convex polygon the minimum lies within one stride of the best of every `stride`-th
+    /// entry. All candidates of a round are compared, without branches that hardware could not
+    /// predict.
     pub(crate) fn extreme(&self, form: &SectionForm, sign: f32) -> usize {
         let count = self.entries.len();
         let slope = form.slope.map(|s| sign * s);
@@ -278,7 +284,8 @@ impl Snapshot<'_> {
         centre
     }
 
-    /// The last entry on the way from `bottom` to `top`, which `form` ascends, where it is at most `value` on the section at level `x`.
+    /// The last entry on the way from `bottom` to `top`, which `form` ascends, where it is at most
+    /// `value` on the section at level `x`.
     pub(crate) fn locate(
         &self,
         form: &SectionForm,

@@ -130,7 +130,8 @@ fn snapshot_searches_agree_with_a_scan() {
                 let least = values.iter().copied().fold(f32::INFINITY, f32::min);
                 let greatest = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
                 let (bottom, top) = (snapshot.extreme(&form, 1.0), snapshot.extreme(&form, -1.0));
-                // Positions are rounded to f32, so neighbours of the extreme may seem to rise again.
+                // Positions are rounded to f32, so neighbours of the extreme may seem to rise
+                // again.
                 assert!(values[bottom] <= least + 1e-5, "{} {least}", values[bottom]);
                 assert!(values[top] >= greatest - 1e-5, "{} {greatest}", values[top]);
                 for turn in [Turn::CounterClockwise, Turn::Clockwise] {

@@ -1,12 +1,13 @@
 //! Steps around a section, face by face.
 //!
-//! A convex face is cut by a level in one segment: along its boundary the vertices that are above form one run, those below
-//! the other. From the half-edge at one change of runs, the other change is found by galloping and bisection, so a face with
-//! `k` vertices costs `O(log k)`.
+//! A convex face is cut by a level in one segment: along its boundary the vertices that are above
+//! form one run, those below the other. From the half-edge at one change of runs, the other change
+//! is found by galloping and bisection, so a face with `k` vertices costs `O(log k)`.
 
 use crate::topology::Topology;
 
-/// Vertices of a face tried one by one before galloping: most faces are triangles or quadrilaterals.
+/// Vertices of a face tried one by one before galloping: most faces are triangles or
+/// quadrilaterals.
 const TRIED_IN_TURN: u32 = 4;
 
 /// The crossing edge that follows `up` counter-clockwise.

@@ -1,8 +1,9 @@
 //! Coplanar triangles become polygons.
 //!
-//! A *region* is a connected set of triangles whose corners all lie within the tolerance of one plane, the plane of its largest
-//! triangle: slivers among them are taken in whatever their own normals say, for those mean nothing. A point
-//! at which fewer than three planes of regions meet lies inside a face or inside an edge: it is *redundant*.
+//! A *region* is a connected set of triangles whose corners all lie within the tolerance of one
+//! plane, the plane of its largest triangle: slivers among them are taken in whatever their own
+//! normals say, for those mean nothing. A point at which fewer than three planes of regions meet
+//! lies inside a face or inside an edge: it is *redundant*.
 
 use glam::DVec3;
 
@@ -99,7 +100,8 @@ fn rim_edges(simplicial: &Simplicial, regions: &Regions, members: &[u32]) -> Vec
         .collect()
 }
 
-/// The corners along a region's rim from one of its edges; `None` if they pass through a corner twice.
+/// The corners along a region's rim from one of its edges; `None` if they pass through a corner
+/// twice.
 fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Option<Vec<u32>> {
     let triangles = &simplicial.triangles;
     let region = regions.of[start.0 as usize];
@@ -189,7 +191,8 @@ fn coplanar(points: &[DVec3], simplicial: &Simplicial, [a, b]: [u32; 2], toleran
     a.normal.dot(b.normal) > 0.0 && lies_in(a, b) && lies_in(b, a)
 }
 
-/// Which of the `dropped` points lie outside the hull of the `kept` ones by more than the tolerance.
+/// Which of the `dropped` points lie outside the hull of the `kept` ones by more than the
+/// tolerance.
 pub(super) fn lost(points: &[DVec3], kept: &[u32], dropped: &[u32], tolerance: f64) -> Vec<u32> {
     if kept.len() < 4 {
         return dropped.to_vec();

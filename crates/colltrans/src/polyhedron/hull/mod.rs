@@ -1,12 +1,14 @@
 //! The convex hull of a point cloud, of any dimension, with coplanar faces as polygons.
 //!
-//! The way: [`quickhull`] makes a simplicial hull on exact decisions, of the points that are outside by more than the tolerance;
-//! [`merge`] joins its coplanar triangles and names the vertices that are then no corners; the hull is made again without
-//! those, until none is left; [`planar`] does the same for points in a plane.
+//! The way: [`quickhull`] makes a simplicial hull on exact decisions, of the points that are
+//! outside by more than the tolerance; [`merge`] joins its coplanar triangles and names the
+//! vertices that are then no corners; the hull is made again without those, until none is left;
+//! [`planar`] does the same for points in a plane.
 //!
-//! Tolerance. A point of a designed plane that was rotated and translated in double precision has been rounded about eight
-//! times at the magnitude `r` of its coordinates, so it is off its plane by up to `8 u r sqrt(3)` with `u = 2^-53`; a plane through three
-//! such points is off by as much again, more beyond their triangle. Points within `64 u r` of a face are taken to lie on it.
+//! Tolerance. A point of a designed plane that was rotated and translated in double precision has
+//! been rounded about eight times at the magnitude `r` of its coordinates, so it is off its plane
+//! by up to `8 u r sqrt(3)` with `u = 2^-53`; a plane through three such points is off by as much
+//! again, more beyond their triangle. Points within `64 u r` of a face are taken to lie on it.
 
 mod merge;
 mod planar;
@@ -124,7 +126,8 @@ fn finish(
     Hull { dimension: 3, vertices, topology, violation }
 }
 
-/// The vertices, in the order of the input because whoever wrote it kept neighbours together, and the faces over them.
+/// The vertices, in the order of the input because whoever wrote it kept neighbours together, and
+/// the faces over them.
 fn faces(
     point_count: usize,
     simplicial: &Simplicial,

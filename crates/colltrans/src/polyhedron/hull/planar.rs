@@ -144,7 +144,8 @@ impl Projection<'_> {
     }
 }
 
-/// The first number from `low` on, at most `high`, for which a condition holds that holds for all greater ones.
+/// The first number from `low` on, at most `high`, for which a condition holds that holds for all
+/// greater ones.
 fn first_from(mut low: usize, mut high: usize, holds: impl Fn(usize) -> bool) -> usize {
     while low < high {
         let middle = low.midpoint(high);

@@ -1,11 +1,14 @@
 //! Quickhull on exact decisions.
 //!
-//! Invariant: the triangles are the boundary of the exact convex hull of the points inserted so far. A point is inserted
-//! if it lies more than the tolerance outside a triangle's plane; the triangles it sees, decided by exact orientations, are replaced by a cone
-//! from their rim to the point. A triangle whose plane contains the point counts as seen: then the triangles across the rim are
-//! strictly hidden, so no rim edge is collinear with the point and no degenerate triangle is ever made.
+//! Invariant: the triangles are the boundary of the exact convex hull of the points inserted so
+//! far. A point is inserted if it lies more than the tolerance outside a triangle's plane; the
+//! triangles it sees, decided by exact orientations, are replaced by a cone from their rim to the
+//! point. A triangle whose plane contains the point counts as seen: then the triangles across the
+//! rim are strictly hidden, so no rim edge is collinear with the point and no degenerate triangle
+//! is ever made.
 //!
-//! Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", ACM TOMS 22(4), 1996, for the conflict lists.
+//! Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", ACM TOMS 22(4), 1996, for
+//! the conflict lists.
 
 use glam::DVec3;
 
@@ -77,7 +80,8 @@ pub(super) fn simplicial_hull(
     Ok(builder.finish())
 }
 
-/// Four points that span a volume, the first three counter-clockwise as seen from the outside, away from the fourth.
+/// Four points that span a volume, the first three counter-clockwise as seen from the outside, away
+/// from the fourth.
 fn first_simplex(points: &[DVec3], kept: &[u32], tolerance: f64) -> Result<[u32; 4], Flat> {
     let at = |i: u32| points[i as usize];
     let farthest = |from: &dyn Fn(DVec3) -> f64| {
@@ -190,7 +194,8 @@ impl<'a> Builder<'a> {
         let [a, b, c] = corners.map(|i| self.at(i));
         let normal = triangle_normal([a, b, c]);
         let area = normal.length();
-        // The product of the two shorter edges, and the distance of a point `extent` away, are off by a few roundings.
+        // The product of the two shorter edges, and the distance of a point `extent` away, are off
+        // by a few roundings.
         let lengths = [a.distance(b), b.distance(c), c.distance(a)];
         let longest = lengths[0].max(lengths[1]).max(lengths[2]);
         let product = lengths[0] * lengths[1] * lengths[2] / longest;
@@ -221,7 +226,8 @@ impl<'a> Builder<'a> {
         triangle.normal.dot(p - self.at(triangle.corners[0]))
     }
 
-    /// Puts a point on the list of the triangle it is farthest outside of, if by more than the tolerance.
+    /// Puts a point on the list of the triangle it is farthest outside of, if by more than the
+    /// tolerance.
     fn assign(&mut self, i: u32, faces: impl Iterator<Item = u32>) -> Assigned {
         let p = self.at(i);
         let mut best = (self.tolerance, NONE);
@@ -246,7 +252,8 @@ impl<'a> Builder<'a> {
         Assigned::To(face)
     }
 
-    /// Whether a point at a rounded distance is really outside: slivers have arbitrary rounded normals.
+    /// Whether a point at a rounded distance is really outside: slivers have arbitrary rounded
+    /// normals.
     fn is_outside(&self, face: u32, p: DVec3, distance: f64) -> bool {
         let triangle = &self.triangles[face as usize];
         if distance.abs() > triangle.doubt {
@@ -258,9 +265,9 @@ impl<'a> Builder<'a> {
 
     /// Assigns a point that lost its triangle.
     ///
-    /// In exact arithmetic one of the new triangles sees it if any triangle does. But it may be within the tolerance of
-    /// that one and far outside an older one (a corner of a box in the planes of its faces): then the triangles that see it are
-    /// searched from the rim on.
+    /// In exact arithmetic one of the new triangles sees it if any triangle does. But it may be
+    /// within the tolerance of that one and far outside an older one (a corner of a box in the
+    /// planes of its faces): then the triangles that see it are searched from the rim on.
     fn reassign(&mut self, i: u32, cone: &[u32]) {
         if !matches!(self.assign(i, cone.iter().copied()), Assigned::Near) {
             return;

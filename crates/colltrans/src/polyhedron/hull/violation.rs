@@ -6,10 +6,11 @@ use super::quickhull::Simplicial;
 use crate::plane::polygon_normal;
 use crate::topology::Topology;
 
-/// Finds the face that the ray from an inner point to a given point passes, by walking from face to face.
+/// Finds the face that the ray from an inner point to a given point passes, by walking from face to
+/// face.
 ///
-/// With the inner point as origin, faces are the points `n / o` of the polar polytope and the face sought is its
-/// support point, so a walk to ever better neighbours ends at it.
+/// With the inner point as origin, faces are the points `n / o` of the polar polytope and the face
+/// sought is its support point, so a walk to ever better neighbours ends at it.
 pub(in crate::polyhedron) struct Locator {
     center: DVec3,
     /// Unit normal and offset from the centre of each face.
@@ -58,8 +59,8 @@ impl Locator {
         Self { center, planes: faces.map(plane).collect(), neighbour_start, neighbours }
     }
 
-    /// How far a point is outside the face its ray passes and that face's neighbours (negative: inside). `near`: where the
-    /// walk starts, and where it ended.
+    /// How far a point is outside the face its ray passes and that face's neighbours (negative:
+    /// inside). `near`: where the walk starts, and where it ended.
     pub(super) fn outside(&self, point: DVec3, near: &mut usize) -> f64 {
         let ray = point - self.center;
         self.walk(ray, near);
@@ -67,7 +68,8 @@ impl Locator {
         self.around(*near).map(outside).fold(outside(*near), f64::max)
     }
 
-    /// An upper bound of the depth of a point below the faces, close to it for points near the surface.
+    /// An upper bound of the depth of a point below the faces, close to it for points near the
+    /// surface.
     pub(in crate::polyhedron) fn depth_bound(&self, point: DVec3, near: &mut usize) -> f64 {
         let ray = point - self.center;
         self.walk(ray, near);
@@ -108,7 +110,8 @@ impl Locator {
     }
 }
 
-/// The largest distance of a point outside a face plane, over the hull's vertices and the points `near` its surface.
+/// The largest distance of a point outside a face plane, over the hull's vertices and the points
+/// `near` its surface.
 pub(super) fn measure(
     points: &[DVec3],
     vertices: &[DVec3],

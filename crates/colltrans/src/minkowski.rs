@@ -234,6 +234,11 @@ impl Symmetric {
         )
     }
 
+    /// `v^T self v`.
+    pub(crate) fn square(&self, v: DVec3) -> f64 {
+        v.dot(self.apply(v))
+    }
+
     pub(crate) fn inverse(&self) -> Self {
         let xx = self.yy * self.zz - self.yz * self.yz;
         let xy = self.xz * self.yz - self.xy * self.zz;

@@ -25,6 +25,8 @@ use serde_json::{Value, json};
 const SOLVERS: [(&str, Solver); 3] =
     [("cta", Solver::Cta), ("portal", Solver::Portal), ("auto", Solver::Auto)];
 
+const USAGE: &str = "table [--quick] [--sizes 8,128,2000] [--json FILE] [--seed S]";
+
 /// Settings that one solver works through before the next takes its turn.
 const BLOCK: usize = 25;
 
@@ -56,6 +58,10 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     let sizes = vec![8, 32, 128, 512, 2_000, 10_000, 50_000, 200_000];
     let mut arguments = Arguments { sizes, quick: false, json: None, seed: 1 };
     while let Some(word) = words.next() {
+        if word == "--help" || word == "-h" {
+            println!("{USAGE}");
+            std::process::exit(0);
+        }
         if word == "--quick" {
             arguments.quick = true;
             continue;

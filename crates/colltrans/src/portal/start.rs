@@ -1,11 +1,12 @@
 //! A first guess of the contact normal: what it would be if both bodies were ellipsoids.
 //!
 //! Notation. `A`, `B` are the matrices of the bodies' inertia ellipsoids and `c` the difference of
-//! their centres, all in the shadow frame; `n = (a, 1)`. The difference of the ellipsoids has `f(a)
-//! = c.n - sqrt(n^T A n) - sqrt(n^T B n)`, whose maximum is sought: first with both replaced by the
-//! one ellipsoid `K = (1 + r) A + (1 + 1/r) B` that contains their sum (for any `r > 0`; `r^2 = tr
-//! B / tr A` makes its mean size least), which the line enters where a quadratic equation says;
-//! then by one Newton step on `f`.
+//! their centres, all in the shadow frame; `n = (a, 1)`. The difference of the ellipsoids has
+//! `f(a) = c.n - sqrt(n^T A n) - sqrt(n^T B n)`, whose maximum is sought: first with both replaced
+//! by one ellipsoid `K = (1 + r) A + (1 + 1/r) B`, which contains their sum for any `r > 0` and
+//! which the line enters where a quadratic equation says; then by one Newton step on `f`.
+//! `r^2 = tr B / tr A` makes the mean size of `K` least; `r^2 = n^T B n / n^T A n` makes it touch
+//! the sum along `n`, so `r` is fitted to the normal found until both agree.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -35,14 +36,29 @@ const LEAST_INCLINATION: f64 = 0.05;
 /// region it knows.
 const LONGEST_STEP: f64 = 0.5;
 
+/// The first ellipsoid is good enough for bodies of like shape, whose `r` would change by less than this
+/// share; flat ones across each other are fitted until it changes by less than the second, or this often.
+const LIKE: f64 = 0.5;
+const FITTED: f64 = 0.1;
+const MAX_FITS: usize = 12;
+
 impl Start {
     /// The guess from the inertia ellipsoids.
     pub(crate) fn from_ellipsoids(difference: &Difference) -> Self {
         let (center, [a, b]) = difference.ellipsoids();
-        let r =
+        let mut r =
             difference.setting.fixed.measure().radius / difference.setting.moving.measure().radius;
-        let k = a.combine(1.0 + r, &b, 1.0 + 1.0 / r);
-        let mut normal = entry_normal(&k.inverse(), center);
+        let mut normal = DVec3::Z;
+        let mut enough = LIKE;
+        for _ in 0..MAX_FITS {
+            let k = a.combine(1.0 + r, &b, 1.0 + 1.0 / r);
+            normal = entry_normal(&k.inverse(), center);
+            let fit = (b.square(normal) / a.square(normal)).sqrt();
+            if normal.z == 0.0 || (fit / r - 1.0).abs() < enough {
+                break;
+            }
+            (r, enough) = (fit, FITTED);
+        }
         let (shadow, slope_per_shadow) = response([&a, &b], normal);
         if normal.z > 0.0 {
             let step = slope_per_shadow * (center.truncate() - shadow);

@@ -15,6 +15,9 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut unreadable = Vec::new();
     for path in &arguments.meshes {
         match colltrans_mesh::read(path) {
+            Ok(mesh) if mesh.vertices.is_empty() => {
+                unreadable.push(format!("{}: holds no vertices", path.display()));
+            }
             Ok(mesh) => {
                 let text = describe(path, &mesh, arguments.convex_tolerance);
                 io::stdout()

@@ -4,6 +4,8 @@
 //! whose vertices lie on one face of the hull has none. Unlike a face's own plane, depth does not
 //! depend on the normals of slivers, which rounding makes arbitrary.
 
+use std::cell::OnceCell;
+
 use glam::DVec3;
 
 use super::hull::{self, Hull, Locator};
@@ -171,12 +173,18 @@ impl Surface {
 struct Depths<'a> {
     surface: &'a Surface,
     hull: &'a Hull,
+    /// What measures a depth, made when the first face is found off the hull: most meshes have none.
+    gauge: OnceCell<Gauge>,
+    /// For each vertex of the surface, its number in the hull, if it is one of its vertices.
+    in_hull: Vec<Option<u32>>,
+}
+
+/// The planes to measure from.
+struct Gauge {
     /// Unit normal, outwards, and offset of each face or edge.
     planes: Vec<(DVec3, f64)>,
     /// Neighbours of the faces, to walk along.
     locator: Locator,
-    /// For each vertex of the surface, its number in the hull, if it is one of its vertices.
-    in_hull: Vec<Option<u32>>,
 }
 
 impl<'a> Depths<'a> {
@@ -185,15 +193,21 @@ impl<'a> Depths<'a> {
         for (k, &v) in hull.vertices.iter().enumerate() {
             in_hull[v as usize] = Some(k as u32);
         }
-        let vertices: Vec<DVec3> =
-            hull.vertices.iter().map(|&v| surface.points[v as usize]).collect();
-        let locator = Locator::of_faces(&vertices, &hull.topology);
-        let planes = if hull.dimension == 2 {
-            edge_planes(&vertices, &hull.topology)
-        } else {
-            locator.planes_from_origin().collect()
-        };
-        Self { surface, hull, planes, locator, in_hull }
+        Self { surface, hull, gauge: OnceCell::new(), in_hull }
+    }
+
+    fn gauge(&self) -> &Gauge {
+        self.gauge.get_or_init(|| {
+            let (hull, points) = (self.hull, &self.surface.points);
+            let vertices: Vec<DVec3> = hull.vertices.iter().map(|&v| points[v as usize]).collect();
+            let locator = Locator::of_faces(&vertices, &hull.topology);
+            let planes = if hull.dimension == 2 {
+                edge_planes(&vertices, &hull.topology)
+            } else {
+                locator.planes_from_origin().collect()
+            };
+            Gauge { planes, locator }
+        })
     }
 
     /// Greatest depth of a face's corners, edge midpoints and centre, or any number up to `known`
@@ -218,7 +232,7 @@ impl<'a> Depths<'a> {
                 let points = corners.chain(topology.face(face).map(middle)).chain([center]);
                 points.fold(0.0, |worst, p| {
                     // An upper bound of the depth is enough where it changes nothing.
-                    let bound = self.locator.depth_bound(p, near);
+                    let bound = self.gauge().locator.depth_bound(p, near);
                     let depth = if bound <= worst.max(known) { bound } else { self.of_point(p) };
                     worst.max(depth)
                 })
@@ -227,7 +241,7 @@ impl<'a> Depths<'a> {
     }
 
     fn of_point(&self, p: DVec3) -> f64 {
-        self.planes.iter().map(|(n, o)| o - n.dot(p)).fold(f64::INFINITY, f64::min)
+        self.gauge().planes.iter().map(|(n, o)| o - n.dot(p)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether the faces at an edge of a flat surface look to opposite sides.

@@ -440,3 +440,20 @@ proptest! {
         prop_assert!(spread > 1e6 || body.hull_error() <= 1e-12 * size, "{:e} of {size:e}", body.hull_error());
     }
 }
+
+#[test]
+fn exactly_planar_caps_cost_no_more() {
+    let sides = 8_000;
+    let ring = |z: f64| {
+        (0..sides).map(move |k| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+            DVec3::new(angle.cos(), angle.sin(), z)
+        })
+    };
+    let prism: Vec<DVec3> = ring(0.0).chain(ring(1.0)).collect();
+    let start = std::time::Instant::now();
+    let body = ConvexPolyhedron::from_points(&prism).unwrap();
+    println!("prism with {sides} sides: {:?}", start.elapsed());
+    assert_eq!(body.face_count(), sides as usize + 2);
+    assert!(start.elapsed().as_secs_f64() < 5.0);
+}

@@ -1,11 +1,12 @@
 //! Quickhull on exact decisions.
 //!
-//! Invariant: the triangles are the boundary of the exact convex hull of the points inserted so
-//! far. A point is inserted if it lies more than the tolerance outside a triangle's plane; the
-//! triangles it sees, decided by exact orientations, are replaced by a cone from their rim to the
-//! point. A triangle whose plane contains the point counts as seen: then the triangles across the
-//! rim are strictly hidden, so no rim edge is collinear with the point and no degenerate triangle
-//! is ever made.
+//! Invariant: the triangles are the boundary of the exact convex hull of the points inserted so far.
+//! A point is inserted if it lies more than the tolerance outside a triangle's plane; the triangles
+//! it sees, decided by exact orientations, are replaced by a cone from their rim to the point. A
+//! triangle whose plane contains the point counts as hidden, so a planar cap is not torn down for
+//! each of its corners. A point collinear with a rim edge would lie in the plane of the triangle
+//! seen there and not see it, so no degenerate triangle is ever made; and what is seen is what a
+//! point moved slightly inwards sees, so it is one disk.
 //!
 //! Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", ACM TOMS 22(4), 1996, for
 //! the conflict lists.
@@ -291,7 +292,7 @@ impl<'a> Builder<'a> {
         self.near.push(i);
     }
 
-    /// Whether a point sees a triangle, or lies in its plane; exact.
+    /// Whether a point sees a triangle, strictly; exact.
     fn sees(&self, face: u32, p: DVec3) -> bool {
         let triangle = &self.triangles[face as usize];
         let distance = triangle.normal.dot(p - self.at(triangle.corners[0]));
@@ -299,7 +300,7 @@ impl<'a> Builder<'a> {
             return distance > 0.0;
         }
         let [a, b, c] = triangle.corners.map(|i| self.at(i));
-        side(a, b, c, p) >= 0.0
+        side(a, b, c, p) > 0.0
     }
 
     /// Inserts the farthest point of a triangle's list.

@@ -206,13 +206,18 @@ fn can_normalize(v: DVec2) -> bool {
 }
 
 /// The point of the edge's shadow nearest to the line, and the slope interpolated there.
-pub(super) fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
+fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
     let [from, to] = edge;
     let (a, b) = (from.point.shadow(), to.point.shadow());
-    let along = b - a;
+    let share = nearest_share([a, b]);
+    (a + (b - a) * share, from.slope + (to.slope - from.slope) * share)
+}
+
+/// Where on a segment the line passes nearest, from 0 at its start to 1 at its end.
+pub(super) fn nearest_share([from, to]: [DVec2; 2]) -> f64 {
+    let along = to - from;
     let square = along.length_squared();
-    let share = if square > 0.0 { (-a.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (a + along * share, from.slope + (to.slope - from.slope) * share)
+    if square > 0.0 { (-from.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The lateral normal along which the shadow of `M` keeps the largest distance from the line, from

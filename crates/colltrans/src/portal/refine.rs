@@ -8,7 +8,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::enclose::{Enclosure, Guide, OneSide, complete};
+use super::enclose::{Enclosure, Guide, OneSide, complete, nearest_share};
 use super::graze::{Overlap, overlap};
 use super::{Portal, Tangent};
 use crate::exact::accurate_det;
@@ -132,13 +132,6 @@ fn lowest_edge(difference: &Difference, portal: &Portal) -> [Tangent; 2] {
     let close = |k: &usize| passing[*k].0 <= nearest.max(difference.touching());
     let lowest = (0..3).filter(close).min_by(|&i, &j| passing[i].1.total_cmp(&passing[j].1));
     edges[lowest.unwrap_or(0)]
-}
-
-/// Where on a segment the line passes nearest, from 0 at its start to 1 at its end.
-fn nearest_share([from, to]: [DVec2; 2]) -> f64 {
-    let along = to - from;
-    let square = along.length_squared();
-    if square > 0.0 { (-from.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// How far a point lies below all three of the portal's along `normal`, times the normal's length.

@@ -1,8 +1,11 @@
 //! Bodies and settings for benchmarks, and the one other library that is measured beside
 //! `colltrans`.
 //!
-//! The data's way: [`shapes`] -> [`settings`] -> the solvers, and [`parry`] on the same settings.
+//! The data's way: [`shapes`] -> [`settings`], alone or in sequences ([`motion`]) -> the solvers,
+//! and [`parry`] on the same settings -> [`report`].
 
+pub mod motion;
 pub mod parry;
+pub mod report;
 pub mod settings;
 pub mod shapes;

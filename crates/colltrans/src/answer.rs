@@ -3,66 +3,91 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::certificate::{Certificate, Separation, distance_along, gap_tolerance};
+use crate::certificate::{Certificate, Separation, gap_tolerance};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
 use crate::outcome::{Contact, Feature, Grazing, Separated, Solver, Steps};
 use crate::polyhedron::ConvexPolyhedron;
-use crate::portal::{OneSide, Optimum};
+use crate::portal::{Met, OneSide, Optimum};
 use crate::pose::Pose;
 use crate::setting::VertexPair;
 
-pub(crate) fn contact(
-    difference: &Difference,
-    moving_pose: &Pose,
-    optimum: &Optimum,
-    solver: Solver,
-    steps: Steps,
-) -> Result<Contact, QueryError> {
-    let setting = difference.setting;
-    let certificate = certificate(difference, optimum);
-    if certificate.gap().is_nan() || certificate.gap() > certificate.tolerance {
-        let Certificate { lower, upper, tolerance, .. } = certificate;
-        return Err(QueryError::NotConverged { lower, upper, tolerance });
-    }
-    let normal = certificate.normal;
-    let (mut point_on_moving, mut point_on_fixed) = (DVec3::ZERO, setting.offset);
-    for (pair, weight) in certificate.pairs.iter().zip(certificate.weights) {
-        point_on_moving +=
-            setting.moving_matrix * setting.moving.vertices()[pair.moving as usize] * weight;
-        point_on_fixed +=
-            setting.fixed_matrix * setting.fixed.vertices()[pair.fixed as usize] * weight;
-    }
-    let VertexPair { moving, fixed } = optimum.lowest;
-    let noise = difference.noise;
-    Ok(Contact {
-        translation: certificate.upper,
-        normal,
-        point_on_moving: point_on_moving + moving_pose.translation(),
-        point_on_fixed: point_on_fixed + moving_pose.translation(),
-        moving_feature: feature(setting.moving, setting.moving_normal(normal), moving, noise),
-        fixed_feature: feature(setting.fixed, -setting.fixed_normal(normal), fixed, noise),
-        certificate,
-        solver,
-        steps,
-    })
+/// An optimum in the world: its certificate, checked, as all that is built from it needs.
+pub(crate) struct Proven<'a> {
+    pub(crate) difference: &'a Difference<'a>,
+    pub(crate) moving_pose: &'a Pose,
+    /// A pair that is lowest along the normal.
+    lowest: VertexPair,
+    certificate: Certificate,
+    /// The normal in the frames of the moving and of the fixed body.
+    normals: [DVec3; 2],
 }
 
-fn certificate(difference: &Difference, optimum: &Optimum) -> Certificate {
+impl<'a> Proven<'a> {
+    /// # Errors
+    /// Bounds that rounding alone does not explain.
+    #[inline]
+    pub(crate) fn new(
+        difference: &'a Difference,
+        moving_pose: &'a Pose,
+        optimum: &Optimum,
+    ) -> Result<Self, QueryError> {
+        let (certificate, normals) = bounds(difference, optimum);
+        if certificate.gap().is_nan() || certificate.gap() > certificate.tolerance {
+            let Certificate { lower, upper, tolerance, .. } = certificate;
+            return Err(QueryError::NotConverged { lower, upper, tolerance });
+        }
+        Ok(Self { difference, moving_pose, lowest: optimum.lowest, certificate, normals })
+    }
+
+    /// What a later query may start from.
+    #[inline]
+    pub(crate) fn met(&self) -> Met {
+        let Certificate { pairs, weights, .. } = self.certificate;
+        Met { pairs, weights, normals: self.normals }
+    }
+
+    #[inline]
+    pub(crate) fn contact(&self, solver: Solver, steps: Steps) -> Contact {
+        let Self { difference, certificate, normals: [outward_moving, inward_fixed], .. } = self;
+        let setting = difference.setting;
+        let [on_moving, on_fixed] = setting.weighted(&certificate.pairs, &certificate.weights);
+        let origin = self.moving_pose.translation();
+        let VertexPair { moving, fixed } = self.lowest;
+        let noise = difference.noise;
+        Contact {
+            translation: certificate.upper,
+            normal: certificate.normal,
+            point_on_moving: setting.moving_matrix * on_moving + origin,
+            point_on_fixed: setting.fixed_matrix * on_fixed + setting.offset + origin,
+            moving_feature: feature(setting.moving, *outward_moving, moving, noise),
+            fixed_feature: feature(setting.fixed, -*inward_fixed, fixed, noise),
+            certificate: *certificate,
+            solver,
+            steps,
+        }
+    }
+}
+
+/// The bounds, and the normal in the frames of the moving and of the fixed body.
+#[inline]
+fn bounds(difference: &Difference, optimum: &Optimum) -> (Certificate, [DVec3; 2]) {
     let setting = difference.setting;
     let normal = (difference.axes * optimum.normal).normalize();
-    let along = normal.dot(setting.direction);
-    let lower = distance_along(setting, normal, optimum.lowest) / along;
+    let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+    let [p, q] = setting.vertices(optimum.lowest);
+    let distance = (normals[1].dot(q) - normals[0].dot(p)) + normal.dot(setting.offset);
     let heights = optimum.portal.map(|point| point.height());
     let height: f64 = heights.iter().zip(optimum.weights).map(|(h, w)| h * w).sum();
-    Certificate {
+    let certificate = Certificate {
         normal,
-        lower,
+        lower: distance / normal.dot(setting.direction),
         pairs: optimum.portal.map(|point| point.pair),
         weights: optimum.weights,
         upper: height / setting.direction.length(),
-        tolerance: gap_tolerance(setting, normal, difference.widening),
-    }
+        tolerance: gap_tolerance(setting, normal, difference.noise, difference.widening),
+    };
+    (certificate, normals)
 }
 
 pub(crate) fn grazing(
@@ -89,30 +114,31 @@ pub(crate) fn separated(
 /// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body
 /// frame).
 fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
-    let at = body.vertices()[vertex as usize];
-    let in_plane =
-        |w: u32| outward.dot(at - body.vertices()[w as usize]) <= noise + body.hull_error();
+    let vertices = body.vertices();
+    let least = outward.dot(vertices[vertex as usize]) - (noise + body.hull_error());
+    let in_plane = |w: u32| outward.dot(vertices[w as usize]) >= least;
     let topology = body.topology();
     let neighbours = topology.neighbours(vertex);
     let outgoing = topology.outgoing(vertex);
     let (first, count) = body.plane_candidates(vertex, outward);
     let mut edge = None;
-    for i in (first..first + count).map(|i| i % neighbours.len()) {
-        if !in_plane(neighbours[i]) {
-            continue;
-        }
-        edge = edge.or(Some(neighbours[i]));
-        // The face between neighbour `i` and the next one is on the left of the half-edge to the
-        // next one.
-        let next = (i + 1) % neighbours.len();
-        if !outgoing.is_empty() && next != i && in_plane(neighbours[next]) {
-            let face = topology.half_edge(outgoing[next]).face;
-            // Of the two faces of a flat polygon, the one that looks there.
-            let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
-            if looks && spread(topology.face_vertices(face)).all(in_plane) {
-                return Feature::Face(face);
+    let mut i = first;
+    for _ in 0..count {
+        let next = if i + 1 == neighbours.len() { 0 } else { i + 1 };
+        if in_plane(neighbours[i]) {
+            edge = edge.or(Some(neighbours[i]));
+            // The face between neighbour `i` and the next one is on the left of the half-edge to
+            // the next one.
+            if next != i && !outgoing.is_empty() && in_plane(neighbours[next]) {
+                let face = topology.half_edge(outgoing[next]).face;
+                // Of the two faces of a flat polygon, the one that looks there.
+                let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
+                if looks && spread(topology.face_vertices(face)).all(in_plane) {
+                    return Feature::Face(face);
+                }
             }
         }
+        i = next;
     }
     edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
 }
@@ -120,7 +146,7 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
 /// Up to [`SAMPLES`] vertices, spread over a face: those near a vertex may lie in a plane that the
 /// others do not.
 fn spread(vertices: impl ExactSizeIterator<Item = u32>) -> impl Iterator<Item = u32> {
-    let stride = vertices.len().div_ceil(SAMPLES);
+    let stride = if vertices.len() <= SAMPLES { 1 } else { vertices.len().div_ceil(SAMPLES) };
     vertices.step_by(stride)
 }
 

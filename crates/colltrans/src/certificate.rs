@@ -114,20 +114,12 @@ pub enum CertificateError {
     },
 }
 
-/// `(min_Q n.q - max_P n.p)` for vertices where the extremes are taken.
-pub(crate) fn distance_along(setting: &Setting, normal: DVec3, pair: VertexPair) -> f64 {
-    let q = setting.fixed.vertices()[pair.fixed as usize];
-    let p = setting.moving.vertices()[pair.moving as usize];
-    (setting.fixed_normal(normal).dot(q) - setting.moving_normal(normal).dot(p))
-        + normal.dot(setting.offset)
-}
-
-/// The pair of vertices where `min_Q n.q - max_P n.p` is taken.
-fn extreme_pair(setting: &Setting, normal: DVec3) -> VertexPair {
-    VertexPair {
-        moving: setting.moving.support(setting.moving_normal(normal)),
-        fixed: setting.fixed.support(-setting.fixed_normal(normal)),
-    }
+/// `min_Q n.q - max_P n.p`.
+fn distance_along(setting: &Setting, normal: DVec3) -> f64 {
+    let (in_moving, in_fixed) = (setting.moving_normal(normal), setting.fixed_normal(normal));
+    let p = setting.moving.vertices()[setting.moving.support(in_moving) as usize];
+    let q = setting.fixed.vertices()[setting.fixed.support(-in_fixed) as usize];
+    (in_fixed.dot(q) - in_moving.dot(p)) + normal.dot(setting.offset)
 }
 
 /// Relative rounding error allowed in the length and the orthogonality of a stored normal.
@@ -143,10 +135,10 @@ const WIDEST_IN_NOISES: f64 = 33.0;
 
 /// What rounding, and a widening sideways, can make of `upper - lower` for a normal, in multiples
 /// of the direction.
-pub(crate) fn gap_tolerance(setting: &Setting, normal: DVec3, widening: f64) -> f64 {
+pub(crate) fn gap_tolerance(setting: &Setting, normal: DVec3, noise: f64, widening: f64) -> f64 {
     // The rectangle's corners are at most 1.3 half-sides off; seen from the other side, twice that.
-    let sideways = normal.cross(setting.unit).length() * 2.6 * widening;
-    let noise = Difference::noise_of(setting);
+    let sideways =
+        if widening == 0.0 { 0.0 } else { normal.cross(setting.unit).length() * 2.6 * widening };
     (GAP_IN_NOISES * noise + sideways) / normal.dot(setting.direction)
 }
 
@@ -198,11 +190,11 @@ impl Certificate {
         if (normal.length() - 1.0).abs() > NORMAL_NOISE || along.is_nan() || along <= 0.0 {
             return Err(CertificateError::Normal { normal });
         }
-        let lower = distance_along(&setting, normal, extreme_pair(&setting, normal)) / along;
+        let lower = distance_along(&setting, normal) / along;
         let upper = self.proven_upper(&setting)?;
         // What a certificate says of its own tolerance proves nothing: it is derived anew.
-        let widest = WIDEST_IN_NOISES * Difference::noise_of(&setting);
-        let tolerance = gap_tolerance(&setting, normal, widest);
+        let noise = Difference::noise_of(&setting);
+        let tolerance = gap_tolerance(&setting, normal, noise, WIDEST_IN_NOISES * noise);
         for (proven, claimed, holds) in [
             (lower, self.lower, self.lower <= lower + tolerance),
             (upper, self.upper, (self.upper - upper).abs() <= tolerance),
@@ -279,7 +271,7 @@ impl Separation {
         if !is_unit || normal.dot(setting.unit).abs() > NORMAL_NOISE {
             return Err(CertificateError::Normal { normal });
         }
-        let margin = distance_along(&setting, normal, extreme_pair(&setting, normal));
+        let margin = distance_along(&setting, normal);
         let tolerance = Difference::noise_of(&setting);
         let claimed = self.margin;
         if margin > 0.0 && claimed > 0.0 && claimed <= margin + tolerance {

@@ -203,6 +203,12 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// The half-side of a region focus is negative or not a number.
+    #[error("the half-side {half_side} of the region focus is negative or not a number")]
+    RegionFocus {
+        /// The half-side as given.
+        half_side: f64,
+    },
     /// No solver could close the gap between the bounds to rounding error.
     #[error(
         "the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}; \

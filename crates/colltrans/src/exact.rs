@@ -222,6 +222,10 @@ pub(crate) fn difference_error(a: f64, b: f64) -> f64 {
 /// `a.x b.y - a.y b.x` with an error relative to the result, not to its terms.
 pub(crate) fn accurate_det(a: DVec2, b: DVec2) -> f64 {
     let (p, q) = (a.x * b.y, a.y * b.x);
+    if (p - q).abs() > 0.25 * (p.abs() + q.abs()) {
+        // Little cancels: the roundings of both products are a few of the result's.
+        return p - q;
+    }
     (p - q) + (product_error(a.x, b.y, p) - product_error(a.y, b.x, q))
 }
 

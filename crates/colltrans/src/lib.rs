@@ -114,28 +114,31 @@ mod cta;
 mod error;
 mod exact;
 mod minkowski;
+mod options;
 mod outcome;
 mod plane;
 mod polyhedron;
 mod portal;
 mod pose;
 mod query;
+mod search;
 mod section;
 mod setting;
 mod topology;
+mod tracker;
 
 pub use certificate::{Certificate, CertificateError, Separation};
 pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
 pub use glam;
+pub use options::{Focus, Options, Region};
 pub use outcome::{
-    Clearance, Contact, ContactRange, Feature, Grazing, Outcome, Separated, Solver, Steps,
+    Clearance, Contact, ContactRange, Feature, Grazing, Outcome, Path, Separated, Solver, Steps,
 };
 pub use polyhedron::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
 pub use pose::Pose;
-pub use query::{
-    Options, cast, cast_with, clearance, contact_range, directional_depth, intersects,
-};
+pub use query::{cast, cast_with, clearance, contact_range, directional_depth, intersects};
 pub use setting::VertexPair;
+pub use tracker::Tracker;
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

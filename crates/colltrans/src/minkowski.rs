@@ -39,6 +39,10 @@ impl Point {
 /// parallel to an edge.
 const WIDENING_RATIO: f64 = 0.8;
 
+/// Cosine of the largest angle by which bodies turn against each other between queries that have
+/// something in common (measured).
+const TURNED: f64 = 0.94;
+
 /// `M` in the shadow frame: support points and orientations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Difference<'a> {
@@ -104,8 +108,8 @@ impl<'a> Difference<'a> {
     /// The point of `M` that is lowest along `normal` (shadow frame, any length).
     #[inline]
     pub(crate) fn support(&self, normal: DVec3) -> Point {
-        let moving = self.setting.moving.support(self.moving_axes * normal);
-        let fixed = self.setting.fixed.support(-(self.fixed_axes * normal));
+        let moving = self.setting.moving.support(self.in_moving(normal));
+        let fixed = self.setting.fixed.support(-self.in_fixed(normal));
         self.point(VertexPair { moving, fixed }, normal)
     }
 
@@ -116,9 +120,37 @@ impl<'a> Difference<'a> {
         reason = "a direction passed through memory stalls the scan: 7 %"
     )]
     pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
-        let moving = self.setting.moving.support_from(self.moving_axes * normal, near.moving);
-        let fixed = self.setting.fixed.support_from(-(self.fixed_axes * normal), near.fixed);
+        let moving = self.setting.moving.support_from(self.in_moving(normal), near.moving);
+        let fixed = self.setting.fixed.support_from(-self.in_fixed(normal), near.fixed);
         self.point(VertexPair { moving, fixed }, normal)
+    }
+
+    /// A normal of the shadow frame in the moving body's frame.
+    pub(crate) fn in_moving(&self, normal: DVec3) -> DVec3 {
+        self.moving_axes * normal
+    }
+
+    /// One normal of an earlier query, kept in the frames of the moving and of the fixed body, in
+    /// the shadow frame: what each body has made of it since. `None` if the bodies have turned so
+    /// far against each other that nothing follows from it.
+    pub(crate) fn turned(&self, [in_moving, in_fixed]: [DVec3; 2]) -> Option<[DVec3; 2]> {
+        let p = transposed(&self.moving_axes, in_moving);
+        let q = transposed(&self.fixed_axes, in_fixed);
+        (p.dot(q) > TURNED).then_some([p, q])
+    }
+
+    /// A normal of the shadow frame in the fixed body's frame.
+    pub(crate) fn in_fixed(&self, normal: DVec3) -> DVec3 {
+        self.fixed_axes * normal
+    }
+
+    /// The point of `M`, not widened, that a pair of vertices gives.
+    #[inline]
+    pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
+        let p = self.setting.moving.vertices()[pair.moving as usize];
+        let q = self.setting.fixed.vertices()[pair.fixed as usize];
+        let at = (transposed(&self.fixed_axes, q) - transposed(&self.moving_axes, p)) + self.offset;
+        Point { at, pair }
     }
 
     #[inline(always)]
@@ -127,15 +159,12 @@ impl<'a> Difference<'a> {
         reason = "a direction passed through memory stalls the scan: 7 %"
     )]
     fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
-        let p = self.setting.moving.vertices()[pair.moving as usize];
-        let q = self.setting.fixed.vertices()[pair.fixed as usize];
-        let mut at =
-            (transposed(&self.fixed_axes, q) - transposed(&self.moving_axes, p)) + self.offset;
+        let mut point = self.vertex(pair);
         if self.widening != 0.0 {
-            at.x -= self.widening.copysign(normal.x);
-            at.y -= (WIDENING_RATIO * self.widening).copysign(normal.y);
+            point.at.x -= self.widening.copysign(normal.x);
+            point.at.y -= (WIDENING_RATIO * self.widening).copysign(normal.y);
         }
-        Point { at, pair }
+        point
     }
 
     /// The corners that widening makes of a vertex, each lowest along one diagonal; four times the

@@ -20,6 +20,16 @@ pub enum Outcome {
     Separated(Separated),
 }
 
+impl Outcome {
+    /// The work done for it.
+    pub fn steps(&self) -> Steps {
+        match self {
+            Self::Contact(contact) | Self::Grazing(Grazing { contact, .. }) => contact.steps,
+            Self::Separated(separated) => separated.steps,
+        }
+    }
+}
+
 /// Where the bodies first meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
@@ -133,6 +143,31 @@ pub struct Steps {
     pub supports: u32,
     /// Portals visited.
     pub pivots: u32,
+    /// What the search began with.
+    pub path: Path,
+}
+
+impl Steps {
+    /// Counts another cast in; of both paths the longer one stands.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.planar_problems += other.planar_problems;
+        self.supports += other.supports;
+        self.pivots += other.pivots;
+        self.path = self.path.max(other.path);
+    }
+}
+
+/// What the search for an answer began with, from the least work to the most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Path {
+    /// The last answer's contact features or separating direction ([`Tracker`](crate::Tracker)
+    /// only).
+    Features,
+    /// The region around the last answer ([`Tracker`](crate::Tracker) only).
+    Region,
+    /// Nothing but the bodies.
+    #[default]
+    Scratch,
 }
 
 /// The answer of [`contact_range`](crate::contact_range): all translations at which the bodies

@@ -2,28 +2,13 @@
 
 use glam::DVec3;
 
-use crate::answer;
-use crate::cta::{self, CtaOptions, CtaStart, Guess};
 use crate::error::{MIN_MAGNITUDE, QueryError};
-use crate::minkowski::Difference;
-use crate::outcome::{
-    Clearance, Contact, ContactRange, Grazing, Outcome, Separated, Solver, Steps,
-};
+use crate::options::{Focus, Options};
+use crate::outcome::{Clearance, ContactRange, Grazing, Outcome};
 use crate::polyhedron::ConvexPolyhedron;
-use crate::portal::{self, Enclosure, OneSide, Overlap, Refined, Start};
 use crate::pose::Pose;
-use crate::setting::{Setting, VertexPair};
-
-/// Choices of a query; the default is right for most.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Options {
-    /// How the search is narrowed.
-    pub solver: Solver,
-    /// Sideways overlap (world units) up to which a contact counts as grazing. `0`, the default,
-    /// stands for the rounding error of the configuration, which is the least that is ever used:
-    /// eight noises, `256 u S` (see [the crate's introduction](crate#accuracy)).
-    pub graze_tolerance: f64,
-}
+use crate::search::{Trace, search};
+use crate::setting::Setting;
 
 /// How far `moving` can translate along `direction` before it touches `fixed`.
 ///
@@ -99,38 +84,9 @@ pub fn cast_with(
     direction: DVec3,
     options: &Options,
 ) -> Result<Outcome, QueryError> {
-    let tolerance = options.graze_tolerance;
-    if !tolerance.is_finite() || tolerance < 0.0 {
-        return Err(QueryError::GrazeTolerance { tolerance });
-    }
     let setting = Setting::new(moving, moving_pose, fixed, fixed_pose, direction)?;
-    let solver = match options.solver {
-        Solver::Auto => Solver::Portal,
-        solver => solver,
-    };
-    for turn_rad in LATERAL_TURNS_RAD {
-        let cast = Cast {
-            difference: Difference::new(&setting, turn_rad),
-            moving_pose,
-            graze_tolerance: tolerance,
-            solver,
-            steps: Steps::default(),
-        };
-        match cast.run() {
-            Err(QueryError::NotConverged { .. }) => {}
-            answer => return answer,
-        }
-    }
-    Err(QueryError::NotConverged {
-        lower: f64::NEG_INFINITY,
-        upper: f64::INFINITY,
-        tolerance: Difference::noise_of(&setting),
-    })
+    search(&setting, moving_pose, options, &Focus::NONE, &mut Trace::default())
 }
-
-/// Turns of the lateral axes, tried one after the other: ties that follow each other in a circle in
-/// one frame do not in another.
-const LATERAL_TURNS_RAD: [f64; 3] = [0.0, 0.7, 2.1];
 
 /// All translations along `direction` at which the bodies meet, both ends certified.
 ///
@@ -162,6 +118,14 @@ pub fn contact_range(
     options: &Options,
 ) -> Result<ContactRange, QueryError> {
     let run = |direction| cast_with(moving, moving_pose, fixed, fixed_pose, direction, options);
+    range_of(direction, run)
+}
+
+/// The contact range, from the casts along a direction and against it.
+pub(crate) fn range_of(
+    direction: DVec3,
+    mut run: impl FnMut(DVec3) -> Result<Outcome, QueryError>,
+) -> Result<ContactRange, QueryError> {
     // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
     Ok(match (run(direction)?, run(-direction)?) {
         (Outcome::Separated(separated), _) | (_, Outcome::Separated(separated)) => {
@@ -214,6 +178,14 @@ pub fn clearance(
     options: &Options,
 ) -> Result<Clearance, QueryError> {
     let run = |direction| cast_with(moving, moving_pose, fixed, fixed_pose, direction, options);
+    clearance_of(direction, run)
+}
+
+/// The clearance, from the casts along a direction and, if need be, against it.
+pub(crate) fn clearance_of(
+    direction: DVec3,
+    mut run: impl FnMut(DVec3) -> Result<Outcome, QueryError>,
+) -> Result<Clearance, QueryError> {
     let Outcome::Contact(contact) = run(direction)? else { return Ok(Clearance::Free) };
     if contact.translation >= -contact.certificate.tolerance {
         let distance = contact.translation.max(0.0);
@@ -306,123 +278,4 @@ pub fn directional_depth(
         Clearance::Overlapping { range } => -range[0],
         Clearance::Free | Clearance::Blocked { .. } => 0.0,
     })
-}
-
-/// One cast under way.
-struct Cast<'a> {
-    difference: Difference<'a>,
-    moving_pose: &'a Pose,
-    graze_tolerance: f64,
-    solver: Solver,
-    steps: Steps,
-}
-
-impl Cast<'_> {
-    fn run(mut self) -> Result<Outcome, QueryError> {
-        let start = self.start();
-        let noise = self.difference.noise;
-        match portal::enclose(&self.difference, &start, &mut self.steps) {
-            None => Err(self.not_converged()),
-            Some(Enclosure::Portal(first)) => self.contact_or_grazing(first, &start),
-            Some(Enclosure::OneSide(found)) if found.margin > noise => {
-                Ok(Outcome::Separated(self.separated(&found)))
-            }
-            Some(Enclosure::OneSide(found)) => {
-                let widest = portal::widest_margin(&self.difference, found, &mut self.steps);
-                if widest.margin > noise {
-                    return Ok(Outcome::Separated(self.separated(&widest)));
-                }
-                self.touching(&widest, &start).map(Outcome::Grazing)
-            }
-        }
-    }
-
-    /// The first guess of the contact normal.
-    fn start(&mut self) -> Start {
-        let setting = self.difference.setting;
-        let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
-        if self.solver != Solver::Cta || !solid {
-            return Start::from_ellipsoids(&self.difference);
-        }
-        let ellipsoids = Start::from_ellipsoids(&self.difference);
-        self.steps.supports += 1;
-        let support = self.difference.support(ellipsoids.normal);
-        let seems_apart = ellipsoids.normal.z == 0.0;
-        if seems_apart && ellipsoids.normal.dot(support.at) > 0.0 {
-            return ellipsoids.guided(ellipsoids.normal, support.pair);
-        }
-        let start = (!seems_apart).then(|| CtaStart {
-            normal: self.difference.axes * ellipsoids.normal,
-            supports: [support.pair.moving, support.pair.fixed],
-            touching: ellipsoids.touching(&self.difference),
-        });
-        let narrowed = cta::minimise(setting, &CtaOptions::new(start));
-        self.steps.planar_problems += narrowed.planar_problems;
-        let [moving, fixed] = narrowed.vertices;
-        let near = VertexPair { moving: moving[0], fixed: fixed[0] };
-        let in_shadow = |normal| self.difference.axes.transpose() * normal;
-        match narrowed.guess {
-            Guess::Contact { normal } => ellipsoids.guided(in_shadow(normal), near),
-            Guess::Separation { direction } => {
-                ellipsoids.guided(in_shadow(direction).with_z(0.0), near)
-            }
-            Guess::Nothing => ellipsoids,
-        }
-    }
-
-    fn contact_or_grazing(
-        mut self,
-        first: portal::Portal,
-        start: &Start,
-    ) -> Result<Outcome, QueryError> {
-        let optimum = match portal::refine(&self.difference, first, &mut self.steps) {
-            Some(Refined::Optimum(optimum)) => optimum,
-            Some(Refined::Rim(rim)) => return self.touching(&rim, start).map(Outcome::Grazing),
-            None => return Err(self.not_converged()),
-        };
-        let tolerance = self.graze_tolerance.max(self.difference.touching());
-        let overlap =
-            portal::overlap(&self.difference, &optimum.portal, tolerance, &mut self.steps);
-        let contact = self.contact(&optimum)?;
-        Ok(match overlap {
-            Overlap::Ample => Outcome::Contact(contact),
-            Overlap::Slight { inward, depth } => {
-                Outcome::Grazing(answer::grazing(&self.difference, inward, depth, contact))
-            }
-        })
-    }
-
-    /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
-    /// of the bodies widened sideways by a little more than that.
-    fn touching(mut self, rim: &OneSide, start: &Start) -> Result<Grazing, QueryError> {
-        self.difference = self.difference.widened(rim.margin);
-        let Some(Enclosure::Portal(first)) =
-            portal::enclose(&self.difference, start, &mut self.steps)
-        else {
-            return Err(self.not_converged());
-        };
-        let Some(Refined::Optimum(optimum)) =
-            portal::refine(&self.difference, first, &mut self.steps)
-        else {
-            return Err(self.not_converged());
-        };
-        let contact = self.contact(&optimum)?;
-        Ok(answer::grazing(&self.difference, rim.normal, -rim.margin, contact))
-    }
-
-    fn contact(&self, optimum: &portal::Optimum) -> Result<Contact, QueryError> {
-        answer::contact(&self.difference, self.moving_pose, optimum, self.solver, self.steps)
-    }
-
-    fn separated(&self, found: &OneSide) -> Separated {
-        answer::separated(&self.difference, found, self.solver, self.steps)
-    }
-
-    fn not_converged(&self) -> QueryError {
-        QueryError::NotConverged {
-            lower: f64::NEG_INFINITY,
-            upper: f64::INFINITY,
-            tolerance: self.difference.noise,
-        }
-    }
 }

@@ -74,6 +74,21 @@ impl<'a> Setting<'a> {
         self.moving.measure().reach + self.fixed.measure().reach + self.offset.length()
     }
 
+    /// A pair's vertices, in the frames of the moving and the fixed body.
+    pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
+        [self.moving.vertices()[pair.moving as usize], self.fixed.vertices()[pair.fixed as usize]]
+    }
+
+    /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
+    pub(crate) fn weighted(&self, pairs: &[VertexPair; 3], weights: &[f64; 3]) -> [DVec3; 2] {
+        let mut means = [DVec3::ZERO; 2];
+        for (pair, &weight) in pairs.iter().zip(weights) {
+            let [p, q] = self.vertices(*pair);
+            means = [means[0] + p * weight, means[1] + q * weight];
+        }
+        means
+    }
+
     /// A normal of the setting frame in the moving body's frame: `n.(R v) = (R^T n).v`.
     pub(crate) fn moving_normal(&self, normal: DVec3) -> DVec3 {
         self.moving_matrix.transpose() * normal

@@ -13,10 +13,11 @@
 use std::fs;
 use std::hint::black_box;
 use std::process::ExitCode;
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use colltrans::{ConvexPolyhedron, Outcome, Solver, Steps};
 use colltrans_bench::parry::{self, ParrySetting};
+use colltrans_bench::report::{clock_cost, date, machine, quantile};
 use colltrans_bench::settings::{Meeting, Setting};
 use colltrans_bench::shapes::Shape;
 use colltrans_oracle::settings::Rng;
@@ -170,7 +171,7 @@ impl Measured {
                 continue;
             };
             self.note(spent, clock);
-            let steps = steps(&outcome);
+            let steps = outcome.steps();
             self.steps.planar_problems += steps.planar_problems;
             self.steps.supports += steps.supports;
             self.steps.pivots += steps.pivots;
@@ -183,8 +184,7 @@ impl Measured {
     }
 
     fn quantile(&self, share: f64) -> f64 {
-        let last = self.nanoseconds.len().saturating_sub(1);
-        self.nanoseconds.get((last as f64 * share).round() as usize).copied().unwrap_or(f64::NAN)
+        quantile(&self.nanoseconds, share)
     }
 
     fn average(&self, count: u32) -> f64 {
@@ -360,14 +360,6 @@ fn print_header() {
     );
 }
 
-fn steps(outcome: &Outcome) -> Steps {
-    match outcome {
-        Outcome::Contact(contact) => contact.steps,
-        Outcome::Grazing(grazing) => grazing.contact.steps,
-        Outcome::Separated(separated) => separated.steps,
-    }
-}
-
 /// Whether parry's answer is ours, within what parry promises.
 fn agrees(setting: &Setting, bodies: &[ConvexPolyhedron], theirs: Option<f64>) -> bool {
     match (setting.cast(bodies, Solver::Portal), theirs) {
@@ -377,37 +369,4 @@ fn agrees(setting: &Setting, bodies: &[ConvexPolyhedron], theirs: Option<f64>) -
         (Ok(Outcome::Separated(_)), None) | (Ok(Outcome::Grazing(_)), _) => true,
         _ => false,
     }
-}
-
-/// The least time between two readings of the clock, in nanoseconds.
-fn clock_cost() -> f64 {
-    let once = |_| Instant::now().elapsed().as_nanos();
-    (0..64).map(once).min().unwrap_or(0) as f64
-}
-
-fn machine() -> Value {
-    let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model =
-        cpu.lines().find(|l| l.starts_with("model name")).and_then(|l| l.split(": ").nth(1));
-    json!({
-        "cpu": model,
-        "threads": std::thread::available_parallelism().map_or(1, usize::from),
-        "os": std::env::consts::OS,
-        "arch": std::env::consts::ARCH,
-    })
-}
-
-/// Today in UTC, `YYYY-MM-DD` (days to civil date after Howard Hinnant).
-fn date() -> String {
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-    let days = now.as_secs() / 86_400 + 719_468;
-    let (era, day_of_era) = (days / 146_097, days % 146_097);
-    let year_of_era =
-        (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted_month = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * shifted_month + 2) / 5 + 1;
-    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
-    let year = year_of_era + era * 400 + u64::from(month <= 2);
-    format!("{year}-{month:02}-{day:02}")
 }

@@ -38,7 +38,7 @@ pub(super) enum Progress {
 
 impl LowerBound {
     /// Over the rectangle from `low` to `high`, with a constant piece to begin with.
-    pub(super) fn new(low: DVec2, high: DVec2, floor: Piece) -> Self {
+    pub(super) fn new([low, high]: [DVec2; 2], floor: Piece) -> Self {
         let side = |value, gradient| Piece {
             bound: Affine { value, gradient },
             weight: 0.0,
@@ -60,6 +60,11 @@ impl LowerBound {
         };
         bound.inverse = bound.basis_matrix().inverse();
         bound
+    }
+
+    /// The pieces that were added.
+    pub(super) fn added(&self) -> &[Piece] {
+        &self.pieces[5..self.count]
     }
 
     /// Adds a piece, relative to the same origin as the rectangle.

@@ -10,12 +10,23 @@ use super::planar::{self, Near, Planar};
 use super::region::Region;
 use super::side::{Crossing, Side};
 use crate::polyhedron::ConvexPolyhedron;
-use crate::section::AxisPair;
+use crate::section::{AXIS_LENGTH, AxisPair};
 use crate::setting::Setting;
+
+/// What a minimisation starts from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum CtaStart {
+    /// Nothing: the centre of the levels.
+    Center,
+    /// A guess of the contact.
+    Contact(ContactGuess),
+    /// The solution of an earlier query.
+    Region(RegionFocus),
+}
 
 /// A guess of the contact.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct CtaStart {
+pub(crate) struct ContactGuess {
     /// Guess of the contact normal, in the setting frame, of any length; `normal . d > 0`.
     pub(crate) normal: DVec3,
     /// The support points of P along it and of Q against it, as vertices.
@@ -24,11 +35,20 @@ pub(crate) struct CtaStart {
     pub(crate) touching: [DVec3; 2],
 }
 
+/// The solution of an earlier query.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RegionFocus {
+    /// The points of contact, in the frames of P and of Q.
+    pub(crate) touching: [DVec3; 2],
+    /// Half-side `delta` of the square around it that is searched first, in units of length.
+    pub(crate) half_side: f64,
+}
+
 /// Choices of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CtaOptions {
-    /// Where to start; without it, at the centre of the levels.
-    pub(crate) start: Option<CtaStart>,
+    /// Where to start.
+    pub(crate) start: CtaStart,
     /// Planar problems at most (never more than [`MAX_STEPS`]).
     pub(crate) max_steps: u32,
     /// Stops when upper minus lower bound is at most this part of the extent of both bodies along
@@ -40,20 +60,17 @@ pub(crate) struct CtaOptions {
 /// problems save it few supports or none).
 const GAP: f64 = 0.2;
 
-/// Planar problems after a start, for the same reason.
-const STEPS_AFTER_START: u32 = 2;
+/// Planar problems after a guess, for the same reason.
+const STEPS_AFTER_GUESS: u32 = 2;
 
 impl CtaOptions {
-    /// From a start, or without one if there is none.
-    pub(crate) fn new(start: Option<CtaStart>) -> Self {
-        let max_steps = if start.is_some() { STEPS_AFTER_START } else { MAX_STEPS };
-        Self { start, max_steps, ..Self::default() }
-    }
-}
-
-impl Default for CtaOptions {
-    fn default() -> Self {
-        Self { start: None, max_steps: MAX_STEPS, gap: GAP }
+    /// As many steps as pay off from a start.
+    pub(crate) fn new(start: CtaStart) -> Self {
+        let max_steps = match start {
+            CtaStart::Contact(_) => STEPS_AFTER_GUESS,
+            CtaStart::Center | CtaStart::Region(_) => MAX_STEPS,
+        };
+        Self { start, max_steps, gap: GAP }
     }
 }
 
@@ -160,12 +177,21 @@ impl<'a> Query<'a> {
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
         let extent =
             2.0 * (half.x / self.frame.along[0].abs() + half.y / self.frame.along[1].abs());
-        let begin = if let Some(start) = &options.start {
-            self.begin(setting, start)
-        } else {
+        let nothing = || {
             let base = self.frame.base(origin.to_array());
             let least = base + self.sides[0].least_height() - extent;
-            Begin { floor: Piece::constant(least, DVec3::ZERO), at: origin, near: None }
+            Piece::constant(least, DVec3::ZERO)
+        };
+        let begin = match &options.start {
+            CtaStart::Center => Begin { floor: nothing(), at: origin, near: None, square: None },
+            CtaStart::Contact(guess) => self.begin(setting, guess),
+            CtaStart::Region(focus) => {
+                let at = self.inner_levels(focus.touching);
+                let center = at - origin;
+                let half = focus.half_side * AXIS_LENGTH;
+                let square = Some(Square { center, half });
+                Begin { floor: nothing(), at, near: None, square }
+            }
         };
         let gap = options.gap * extent;
         let at = begin.at - origin;
@@ -175,22 +201,25 @@ impl<'a> Query<'a> {
             .and_then(|near| planar::solve_near(&self.sides, levels, &near))
             .or_else(|| planar::solve(&self.sides, levels, f64::NEG_INFINITY));
         let Some(first) = first else { return Narrowed::nothing() };
-        if options.start.is_some()
-            && let Some(confirmed) = self.confirm(&begin, &first, gap)
-        {
+        let guessed = matches!(options.start, CtaStart::Contact(_));
+        if guessed && let Some(confirmed) = self.confirm(&begin, &first, gap) {
             return confirmed;
         }
+        let searched = begin.square.map_or([-half, half], |square| square.within(half));
         let mut search = Search {
             query: self,
             origin,
+            half,
             region: Region::rectangle(-half, half),
-            bound: LowerBound::new(-half, half, begin.floor),
+            square: begin.square,
+            floor: begin.floor,
+            bound: LowerBound::new(searched, begin.floor),
             upper: f64::INFINITY,
             best: None,
             last_separation: None,
             contradiction: None,
             planar_problems: 1,
-            begun: options.start.is_some(),
+            guessed,
         };
         if search.learn(at, levels, &first) {
             search.run(options.max_steps.min(MAX_STEPS), gap);
@@ -216,16 +245,13 @@ impl<'a> Query<'a> {
     }
 
     /// From the supporting plane of a start, at the levels of its touching points.
-    fn begin(&self, setting: &Setting, start: &CtaStart) -> Begin {
+    fn begin(&self, setting: &Setting, start: &ContactGuess) -> Begin {
         let normal = start.normal / start.normal.dot(setting.unit);
         let p = setting.moving_matrix * setting.moving.vertices()[start.supports[0] as usize];
         let q = setting.fixed_matrix * setting.fixed.vertices()[start.supports[1] as usize];
         let t = normal.dot(q + setting.offset - p) - self.constant;
-        let levels = [0, 1].map(|body| {
-            let [low, high] = self.sides[body].range();
-            let margin = MARGIN * (high - low);
-            self.sides[body].level_of(start.touching[body]).clamp(low + margin, high - margin)
-        });
+        let at = self.inner_levels(start.touching);
+        let levels = at.to_array();
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
         let edge = |body: usize| {
             self.sides[body].edge_near(start.supports[body], normals[body], levels[body])
@@ -234,7 +260,16 @@ impl<'a> Query<'a> {
         let in_section = normal - self.frame.axes[0];
         let right = usize::from(in_section.dot(self.frame.shadow[1]) > 0.0);
         let near = edge(0).zip(edge(1)).map(|(p, q)| Near { ups: [p, q], right });
-        Begin { floor: Piece::constant(t, normal), at: DVec2::from_array(levels), near }
+        Begin { floor: Piece::constant(t, normal), at, near, square: None }
+    }
+
+    /// The levels of two points in the bodies' frames, or the nearest where a section has an area.
+    fn inner_levels(&self, points: [DVec3; 2]) -> DVec2 {
+        DVec2::from_array([0, 1].map(|body| {
+            let [low, high] = self.sides[body].range();
+            let margin = MARGIN * (high - low);
+            self.sides[body].level_of(points[body]).clamp(low + margin, high - margin)
+        }))
     }
 }
 
@@ -245,6 +280,29 @@ struct Begin {
     at: DVec2,
     /// A guess of the edges that cross there.
     near: Option<Near>,
+    /// The levels to search first.
+    square: Option<Square>,
+}
+
+/// The paper's neighbourhood `N(p)` of a solution `p`; levels are relative to `origin`.
+#[derive(Debug, Clone, Copy)]
+struct Square {
+    center: DVec2,
+    half: f64,
+}
+
+impl Square {
+    /// Its part in the rectangle of all levels.
+    fn within(&self, half: DVec2) -> [DVec2; 2] {
+        [self.center - self.half, self.center + self.half].map(|corner| corner.clamp(-half, half))
+    }
+
+    /// The point `c*` where the way from `c` to the centre enters; `c` itself if that is inside.
+    fn entry(&self, c: DVec2) -> DVec2 {
+        let way = c - self.center;
+        let farther = way.abs().max_element();
+        if farther <= self.half { c } else { self.center + way * (self.half / farther) }
+    }
 }
 
 /// A search does not start nearer to the ends of the levels than this share of their range: a
@@ -255,7 +313,13 @@ const MARGIN: f64 = 0.005;
 struct Search<'q, 'a> {
     query: &'q Query<'a>,
     origin: DVec2,
+    /// Half the extent of the levels.
+    half: DVec2,
     region: Region,
+    /// The levels searched first, until cuts leave nothing of them on the way to the centroid.
+    square: Option<Square>,
+    floor: Piece,
+    /// Over the square while there is one, else over all levels.
     bound: LowerBound,
     upper: f64,
     /// Features of the best contact.
@@ -264,14 +328,14 @@ struct Search<'q, 'a> {
     contradiction: Option<DVec3>,
     planar_problems: u32,
     /// Whether the search began with a supporting plane of the bodies.
-    begun: bool,
+    guessed: bool,
 }
 
 impl Search<'_, '_> {
-    /// One planar problem after the other, at the centroid of what is left.
+    /// One planar problem after the other, at the centroid of what is left or on the way there.
     fn run(&mut self, max_steps: u32, gap: f64) {
         while self.planar_problems < max_steps && self.upper - self.bound.t > gap {
-            let Some(at) = self.region.centroid() else { break };
+            let Some(at) = self.next() else { break };
             let levels = (self.origin + at).to_array();
             let known = self.bound.below(at) - self.query.frame.base(levels);
             self.planar_problems += 1;
@@ -280,6 +344,25 @@ impl Search<'_, '_> {
                 break;
             }
         }
+    }
+
+    /// Where to cut next: at the centroid `c` if it is in the square; where the way to it leaves the
+    /// square if that point, `c*`, is still in the region; else at `c`, and without the square from
+    /// now on.
+    fn next(&mut self) -> Option<DVec2> {
+        let centroid = self.region.centroid()?;
+        let Some(square) = self.square else { return Some(centroid) };
+        let entry = square.entry(centroid);
+        if self.region.contains(entry) {
+            return Some(entry);
+        }
+        self.square = None;
+        let narrow = self.bound.clone();
+        self.bound = LowerBound::new([-self.half, self.half], self.floor);
+        for piece in narrow.added() {
+            self.bound.add(*piece);
+        }
+        Some(centroid)
     }
 
     /// Cuts the region and raises the bound; `false` if there is nothing more to learn.
@@ -313,7 +396,7 @@ impl Search<'_, '_> {
             (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, best),
             // Not all of the levels were searched, but every normal that the bounds combine is one
             // of a supporting plane.
-            (None, Some((features, _))) if self.begun && self.contradiction.is_none() => {
+            (None, Some((features, _))) if self.guessed && self.contradiction.is_none() => {
                 (Guess::Contact { normal: self.bound.normal() }, features)
             }
             (None, Some((features, normal))) => {

@@ -23,7 +23,7 @@ mod side;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use minimise::{CtaOptions, CtaStart, Guess, minimise};
+pub(crate) use minimise::{ContactGuess, CtaOptions, CtaStart, Guess, RegionFocus, minimise};
 
 /// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^40 < 2e-8` of the region
 /// by then.

@@ -53,6 +53,14 @@ impl Region {
         self.count += 1;
     }
 
+    /// Whether a point is inside or on the rim.
+    pub(super) fn contains(&self, point: DVec2) -> bool {
+        let corners = &self.corners[..self.count];
+        let next = corners.iter().cycle().skip(1);
+        self.count > 2
+            && corners.iter().zip(next).all(|(&a, &b)| (b - a).perp_dot(point - a) >= 0.0)
+    }
+
     /// The centroid; `None` if no area is left.
     pub(super) fn centroid(&self) -> Option<DVec2> {
         let corners = &self.corners[..self.count];
@@ -78,6 +86,7 @@ mod tests {
     fn cuts_halve_and_empty_a_square() {
         let mut region = Region::rectangle(DVec2::ZERO, DVec2::splat(2.0));
         assert_eq!(region.centroid(), Some(DVec2::ONE));
+        assert!(region.contains(DVec2::new(2.0, 0.5)) && !region.contains(DVec2::new(2.1, 0.5)));
         region.cut(DVec2::X, 1.0);
         assert_eq!(region.centroid(), Some(DVec2::new(0.5, 1.0)));
         region.cut(DVec2::ONE, 1.0);

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::minimise::Narrowed;
-use super::{CtaOptions, Guess, minimise};
+use super::{CtaOptions, CtaStart, Guess, minimise};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
 use crate::section::test_bodies::{Random, cone, cuboid, ellipsoid, prism};
@@ -79,7 +79,8 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
     Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
 }
 
-const EXACT: CtaOptions = CtaOptions { start: None, max_steps: super::MAX_STEPS, gap: 1e-10 };
+const EXACT: CtaOptions =
+    CtaOptions { start: CtaStart::Center, max_steps: super::MAX_STEPS, gap: 1e-10 };
 
 /// Compares with brute force to `tolerance`; returns the result.
 fn check(
@@ -302,12 +303,13 @@ fn figures() {
         };
         let options = |gap: f64| CtaOptions { gap, ..EXACT };
         let (coarse, fine) = (steps(&options(1e-2 / 4.0)), steps(&options(1e-9 / 4.0)));
-        let default = steps(&CtaOptions::default());
+        let default = steps(&CtaOptions::new(CtaStart::Center));
         let mut times: Vec<(f64, u32)> = settings
             .iter()
             .map(|setting| {
                 let begin = std::time::Instant::now();
-                let narrowed = std::hint::black_box(minimise(setting, &CtaOptions::default()));
+                let narrowed =
+                    std::hint::black_box(minimise(setting, &CtaOptions::new(CtaStart::Center)));
                 (begin.elapsed().as_nanos() as f64, narrowed.planar_problems)
             })
             .collect();
@@ -466,7 +468,7 @@ fn profile() {
         );
     }
     for max_steps in [0, 1, 2, 4, 64] {
-        let options = CtaOptions { max_steps, ..CtaOptions::default() };
+        let options = CtaOptions { max_steps, ..CtaOptions::new(CtaStart::Center) };
         let mut problems = 0;
         let mut best = f64::INFINITY;
         for _ in 0..rounds {

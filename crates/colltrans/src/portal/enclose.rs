@@ -11,7 +11,7 @@
 use glam::{DVec2, DVec3};
 
 use super::start::steep;
-use super::{Portal, Start, Tangent, normal_of};
+use super::{Portal, Start, normal_of};
 use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
@@ -35,6 +35,13 @@ pub(crate) struct OneSide {
     pub(crate) margin: f64,
     /// The support point that gives it.
     pub(crate) point: Point,
+}
+
+/// A point of `M` and the slope along which it was found lowest.
+#[derive(Debug, Clone, Copy)]
+struct Tangent {
+    point: Point,
+    slope: DVec2,
 }
 
 /// How far beyond the line the model aims, in multiples of the distance to it, try by try.
@@ -66,11 +73,13 @@ pub(crate) fn enclose(
 /// that a narrow portal left behind. `None` if rounding makes the search run in a circle.
 pub(super) fn complete(
     difference: &Difference,
-    edge: [Tangent; 2],
+    edge: [Point; 2],
     guide: Guide,
     steps: &mut Steps,
 ) -> Option<Enclosure> {
-    Search { difference, guide, steps }.close(edge)
+    // Slopes are interpolated only where a start guides the search.
+    let tangents = edge.map(|point| Tangent { point, slope: DVec2::ZERO });
+    Search { difference, guide, steps }.close(tangents)
 }
 
 /// Which normals are tried before the lateral one.
@@ -112,7 +121,7 @@ impl Search<'_> {
             } else if !difference.is_left(&third.point, &from.point) {
                 edge = [from, third];
             } else {
-                return Some(Enclosure::Portal([from, to, third]));
+                return Some(Enclosure::Portal([from, to, third].map(|t| t.point)));
             }
         }
         None

@@ -11,6 +11,7 @@
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
 mod enclose;
+mod follow;
 mod graze;
 mod refine;
 mod start;
@@ -18,21 +19,15 @@ mod start;
 use glam::{DVec2, DVec3};
 
 pub(crate) use enclose::{Enclosure, OneSide, enclose, widest_margin};
+pub(crate) use follow::{Followed, Met, follow};
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use refine::{Optimum, Refined, refine};
 pub(crate) use start::Start;
 
 use crate::minkowski::Point;
 
-/// A point of `M` and the slope along which it was found lowest.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Tangent {
-    pub(crate) point: Point,
-    pub(crate) slope: DVec2,
-}
-
-/// Three tangents whose shadows, counter-clockwise, contain the line.
-pub(crate) type Portal = [Tangent; 3];
+/// Three points of `M` whose shadows, counter-clockwise, contain the line.
+pub(crate) type Portal = [Point; 3];
 
 /// `(a, 1)`.
 fn normal_of(slope: DVec2) -> DVec3 {

@@ -8,9 +8,9 @@
 
 use glam::{DVec2, DVec3};
 
+use super::Portal;
 use super::enclose::{Enclosure, Guide, OneSide, complete, nearest_share};
 use super::graze::{Overlap, overlap};
-use super::{Portal, Tangent};
 use crate::exact::accurate_det;
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
@@ -63,16 +63,14 @@ pub(crate) fn refine(
             continue;
         };
         steps.supports += 1;
-        let point = difference.support_from(plane, portal[newest].point.pair);
+        let point = difference.support_from(plane, portal[newest].pair);
         let rounding = if round < LONG { difference.noise } else { difference.touching() };
         if depth_below(&portal, plane, &point) <= rounding * plane.length() {
             let weights = weights(&portal);
-            let portal = portal.map(|t| t.point);
             let optimum = Optimum { normal: plane, lowest: point.pair, portal, weights };
             return Some(Refined::Optimum(optimum));
         }
-        let slope = plane.truncate() / plane.z;
-        newest = exchange(difference, &mut portal, Tangent { point, slope });
+        newest = exchange(difference, &mut portal, point);
     }
     None
 }
@@ -82,11 +80,11 @@ pub(crate) fn refine(
 /// none.
 fn widen(difference: &Difference, portal: &Portal, steps: &mut Steps) -> Option<Enclosure> {
     let edge = lowest_edge(difference, portal);
-    let [from, to] = edge.map(|t| t.point);
-    let low = if from.height() <= to.height() { edge[0] } else { edge[1] };
+    let [from, to] = edge;
+    let low = if from.height() <= to.height() { from } else { to };
     let far = farthest(difference, low, steps);
     let long = from.shadow().distance(to.shadow()) > difference.touching();
-    let stars = difference.corners(&low.point).map(|point| [Tangent { point, ..low }, far]);
+    let stars = difference.corners(&low).map(|corner| [corner, far]);
     for edge in long.then_some(edge).into_iter().chain(stars) {
         for guide in [Guide::Tilt, Guide::Lateral] {
             match complete(difference, edge, guide, steps)? {
@@ -96,35 +94,31 @@ fn widen(difference: &Difference, portal: &Portal, steps: &mut Steps) -> Option<
         }
     }
     // Only narrow portals contain a line that passes the rim.
-    let points = portal.map(|t| t.point);
-    match overlap(difference, &points, difference.touching(), steps) {
+    match overlap(difference, portal, difference.touching(), steps) {
         Overlap::Slight { inward, depth } => {
-            Some(Enclosure::OneSide(OneSide { normal: inward, margin: -depth, point: low.point }))
+            Some(Enclosure::OneSide(OneSide { normal: inward, margin: -depth, point: low }))
         }
         Overlap::Ample => None,
     }
 }
 
 /// A point of `M` whose shadow is far from that of another.
-fn farthest(difference: &Difference, from: Tangent, steps: &mut Steps) -> Tangent {
+fn farthest(difference: &Difference, from: Point, steps: &mut Steps) -> Point {
     let candidates = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(|lateral| {
         steps.supports += 1;
         difference.support(lateral.extend(0.0))
     });
-    let distance = |p: &Point| p.shadow().distance_squared(from.point.shadow());
-    let point = candidates
-        .into_iter()
-        .fold(from.point, |far, p| if distance(&p) > distance(&far) { p } else { far });
-    Tangent { point, slope: from.slope }
+    let distance = |p: &Point| p.shadow().distance_squared(from.shadow());
+    candidates.into_iter().fold(from, |far, p| if distance(&p) > distance(&far) { p } else { far })
 }
 
 /// Of the edges of a narrow portal near which the line passes, the one it passes lowest.
-fn lowest_edge(difference: &Difference, portal: &Portal) -> [Tangent; 2] {
+fn lowest_edge(difference: &Difference, portal: &Portal) -> [Point; 2] {
     let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]]);
     let passing = edges.map(|edge| {
-        let shadows = edge.map(|t| t.point.shadow());
+        let shadows = edge.map(|p| p.shadow());
         let share = nearest_share(shadows);
-        let [from, to] = edge.map(|t| t.point.height());
+        let [from, to] = edge.map(|p| p.height());
         let near = shadows[0] + (shadows[1] - shadows[0]) * share;
         (near.length(), from + (to - from) * share)
     });
@@ -136,13 +130,13 @@ fn lowest_edge(difference: &Difference, portal: &Portal) -> [Tangent; 2] {
 
 /// How far a point lies below all three of the portal's along `normal`, times the normal's length.
 fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
-    let depth = |t: &Tangent| normal.dot(t.point.at - point.at);
+    let depth = |corner: &Point| normal.dot(corner.at - point.at);
     depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
 }
 
 /// Replaces the one point whose exchange keeps the line inside, and says which.
-fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize {
-    let left = [0, 1, 2].map(|i| difference.is_left(&portal[i].point, &new.point));
+fn exchange(difference: &Difference, portal: &mut Portal, new: Point) -> usize {
+    let left = [0, 1, 2].map(|i| difference.is_left(&portal[i], &new));
     // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the
     // sides change.
     for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
@@ -153,7 +147,7 @@ fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize
     }
     // All on one side: the shadows coincide, and the new point takes the place of the one it lies
     // under.
-    let distances = portal.map(|t| -t.point.shadow().distance_squared(new.point.shadow()));
+    let distances = portal.map(|p| -p.shadow().distance_squared(new.shadow()));
     let same = largest(distances);
     portal[same] = new;
     same
@@ -162,10 +156,10 @@ fn exchange(difference: &Difference, portal: &mut Portal, new: Tangent) -> usize
 /// The upward normal of the plane through the three points; `None` if the portal is too narrow to
 /// have one.
 fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
-    let [a, b, c] = portal.map(|t| t.point.shadow());
+    let [a, b, c] = portal.map(|p| p.shadow());
     let longest = (b - a).length_squared().max((c - b).length_squared());
     let longest = longest.max((a - c).length_squared());
-    let normal = triangle_normal(portal.map(|t| t.point.at));
+    let normal = triangle_normal(portal.map(|p| p.at));
     let least = difference.touching();
     let wide = normal.z > 0.0 && normal.z * normal.z > least * least * longest;
     wide.then_some(normal)
@@ -176,7 +170,7 @@ fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
 /// From determinants without cancellation, so that narrow portals have accurate ones; if the line
 /// is outside in the rounded coordinates, those of the nearest point of the rim.
 fn weights(portal: &Portal) -> [f64; 3] {
-    let shadows = portal.map(|t| t.point.shadow());
+    let shadows = portal.map(|p| p.shadow());
     let [a, b, c] = shadows;
     let parts = [accurate_det(b, c), accurate_det(c, a), accurate_det(a, b)];
     let sum = parts[0] + parts[1] + parts[2];

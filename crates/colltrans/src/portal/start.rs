@@ -59,9 +59,11 @@ impl Start {
             }
             (r, enough) = (fit, FITTED);
         }
-        let (shadow, slope_per_shadow) = response([&a, &b], normal);
+        let sloped = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
+        let [(shadow_a, hessian_a), (shadow_b, hessian_b)] = [a, b].map(|k| response(&k, sloped));
+        let slope_per_shadow = (hessian_a + hessian_b).inverse();
         if normal.z > 0.0 {
-            let step = slope_per_shadow * (center.truncate() - shadow);
+            let step = slope_per_shadow * (center.truncate() - shadow_a - shadow_b);
             if step.length_squared() < LONGEST_STEP * LONGEST_STEP * normal.length_squared() {
                 normal += step.extend(0.0);
             }
@@ -120,18 +122,24 @@ pub(super) fn steep(lateral: DVec2) -> DVec2 {
     lateral.normalize_or_zero() / LEAST_INCLINATION
 }
 
-/// Gradient of the ellipsoids' support functions in the lateral components of `normal`, and the
-/// inverse of their Hessian.
-fn response(ellipsoids: [&Symmetric; 2], normal: DVec3) -> (DVec2, DMat2) {
-    let n = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
-    let (mut gradient, mut hessian) = (DVec2::ZERO, DMat2::ZERO);
-    for k in ellipsoids {
-        let kn = k.apply(n);
-        let inverse_length = 1.0 / n.dot(kn).sqrt();
-        let g = kn.truncate() * inverse_length;
-        let lateral = DMat2::from_cols(DVec2::new(k.xx, k.xy), DVec2::new(k.xy, k.yy));
-        gradient += g;
-        hessian += (lateral - DMat2::from_cols(g * g.x, g * g.y)) * inverse_length;
-    }
-    (gradient, hessian.inverse())
+/// Where the line meets `M`, from where it met before: the slope that brings the point of contact
+/// back to the line.
+///
+/// Before, P touched along slope `a_P` and Q along `a_Q` (equal then, and turned with the bodies
+/// since), at points of contact whose difference has the shadow `s` now. With the Hessians `A`, `B`
+/// of the ellipsoids' support functions the shadow at slope `a` is `s - A (a - a_P) - B (a - a_Q)`.
+pub(super) fn continued(difference: &Difference, shadow: DVec2, slopes: [DVec2; 2]) -> DVec2 {
+    let (_, ellipsoids) = difference.ellipsoids();
+    let n = ((slopes[0] + slopes[1]) * 0.5).extend(1.0);
+    let [a, b] = ellipsoids.map(|k| response(&k, n).1);
+    (a + b).inverse() * (shadow + a * slopes[0] + b * slopes[1])
+}
+
+/// Gradient and Hessian of an ellipsoid's support function in the lateral components of a normal.
+fn response(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
+    let kn = k.apply(normal);
+    let inverse_length = 1.0 / normal.dot(kn).sqrt();
+    let g = kn.truncate() * inverse_length;
+    let lateral = DMat2::from_cols(DVec2::new(k.xx, k.xy), DVec2::new(k.xy, k.yy));
+    (g, (lateral - DMat2::from_cols(g * g.x, g * g.y)) * inverse_length)
 }

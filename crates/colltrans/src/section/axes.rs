@@ -17,6 +17,9 @@ pub(crate) const AXES: [DVec3; 4] = [
     DVec3::new(-1.0, -1.0, 1.0),
 ];
 
+/// The length of a section axis: levels are this many times as far apart as their planes.
+pub(crate) const AXIS_LENGTH: f64 = 1.732_050_807_568_877_2;
+
 /// One section axis of each body, by index into [`AXES`] and in the setting frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AxisPair {

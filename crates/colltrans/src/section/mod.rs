@@ -21,7 +21,7 @@ mod walk;
 use glam::DVec3;
 
 use crate::topology::Topology;
-pub(crate) use axes::{AXES, AxisPair};
+pub(crate) use axes::{AXES, AXIS_LENGTH, AxisPair};
 pub(crate) use snapshots::{AxisSections, SectionForm, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};
 

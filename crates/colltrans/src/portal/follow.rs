@@ -1,0 +1,240 @@
+//! Feature focus: from the portal of an earlier query to one around the line of today's (the
+//! paper's future work, section V-F).
+//!
+//! Notation. The three pairs of vertices still give points of `M`, wherever the bodies are now; the
+//! *shift* is where the old point of contact, the same weights over these pairs, has its shadow. It
+//! was on the line, so the shift is what poses and direction have changed.
+//!
+//! Where the line has left the triangle, it went over an edge; on the other side lies the next face
+//! of `M`. That face is found as in gift wrapping: among the neighbours of the edge's vertices, the
+//! one that a plane turning about the edge meets first. If the line is many faces away, the shift
+//! and the curvature of the bodies' inertia ellipsoids tell the slope where to continue, at a
+//! vertex of `M` and the face beside it.
+//!
+//! All this guesses: the old triangle need not be a face of `M` any more. The result is three points
+//! of `M` around the line, whatever way led there; refinement does not ask.
+
+use glam::{DVec2, DVec3};
+
+use super::start::continued;
+use super::{Portal, normal_of};
+use crate::minkowski::{Difference, Point};
+use crate::outcome::Steps;
+use crate::plane::triangle_normal;
+use crate::polyhedron::ConvexPolyhedron;
+use crate::setting::VertexPair;
+
+/// What became of an old portal.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Followed {
+    /// A portal around the line.
+    Portal(Portal),
+    /// Nothing of `M` seems to lie beyond an edge: its outward normal in the shadow plane (any
+    /// length), and a pair of vertices there.
+    Rim { outward: DVec2, near: VertexPair },
+    /// The line is too far away.
+    Lost,
+}
+
+/// Faces of `M` crossed before a start from scratch is the shorter way (measured).
+const CROSSINGS: usize = 20;
+
+/// A line this many widths of the triangle beyond an edge is not reached face by face (measured).
+const FAR: f64 = 1.2;
+
+/// A shift longer than this share of both bodies' radii leaves nothing to follow (measured).
+const LOST: f64 = 0.1;
+
+/// A vertex with more neighbours than this is not looked around.
+const MOST_NEIGHBOURS: usize = 32;
+
+/// Where the line met `M` in an earlier query.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Met {
+    /// The portal.
+    pub(crate) pairs: [VertexPair; 3],
+    /// The weights of the contact in it.
+    pub(crate) weights: [f64; 3],
+    /// The contact normal, in the frames of the moving and of the fixed body.
+    pub(crate) normals: [DVec3; 2],
+}
+
+/// Follows the line from where it met `M` before.
+pub(crate) fn follow(difference: &Difference, met: &Met, steps: &mut Steps) -> Followed {
+    let mut portal = met.pairs.map(|pair| difference.vertex(pair));
+    let [a, b, c] = portal.map(|p| p.shadow());
+    if (b - a).perp_dot(c - a) < 0.0 {
+        portal.swap(0, 1);
+    }
+    let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
+    let shift = a * met.weights[0] + b * met.weights[1] + c * met.weights[2];
+    let Some(slopes) = slopes(difference, met, shift) else { return Followed::Lost };
+    if edge.distance() > FAR * edge.width() {
+        let slope = continued(difference, shift, slopes);
+        match jump(difference, slope, met.pairs[0], steps) {
+            Some(there) => portal = there,
+            None => return Followed::Lost,
+        }
+    }
+    for _ in 0..CROSSINGS {
+        let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
+        steps.pivots += 1;
+        let Some(tilt) = edge.tilt() else { return Followed::Lost };
+        match first_met(difference, &edge.from, &tilt) {
+            Neighbour::Met(point) => portal = [edge.to, edge.from, point],
+            Neighbour::None => {
+                return Followed::Rim { outward: tilt.outward, near: edge.from.pair };
+            }
+            Neighbour::TooMany => return Followed::Lost,
+        }
+    }
+    Followed::Lost
+}
+
+/// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has
+/// changed that there is nothing to follow.
+fn slopes(difference: &Difference, met: &Met, shift: DVec2) -> Option<[DVec2; 2]> {
+    let setting = difference.setting;
+    let size = setting.moving.measure().radius + setting.fixed.measure().radius;
+    let [p, q] = difference.turned(met.normals)?;
+    let near = shift.length_squared() < LOST * LOST * size * size && p.z.min(q.z) > 0.0;
+    near.then(|| [p, q].map(|n| n.truncate() / n.z))
+}
+
+/// A directed edge of a portal with the third corner on its left and the line on its right.
+struct Edge {
+    from: Point,
+    to: Point,
+    third: Point,
+}
+
+/// An edge of the portal over which the line has left it.
+fn crossed(difference: &Difference, portal: &Portal) -> Option<Edge> {
+    [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+        .into_iter()
+        .find(|&(i, j, _)| !difference.is_left(&portal[i], &portal[j]))
+        .map(|(i, j, k)| Edge { from: portal[i], to: portal[j], third: portal[k] })
+}
+
+impl Edge {
+    /// From the edge away from the triangle, as long as the edge.
+    fn outward(&self) -> DVec2 {
+        -(self.to.shadow() - self.from.shadow()).perp()
+    }
+
+    /// How wide the triangle is over the edge, times the edge's length.
+    fn width(&self) -> f64 {
+        self.outward().dot(self.from.shadow() - self.third.shadow())
+    }
+
+    /// How far the line is beyond the edge, times the edge's length.
+    fn distance(&self) -> f64 {
+        -self.outward().dot(self.from.shadow())
+    }
+
+    /// The turn of the triangle's plane about the edge; `None` if the plane stands upright.
+    fn tilt(&self) -> Option<Tilt> {
+        let normal = triangle_normal([self.from.at, self.to.at, self.third.at]);
+        (normal.z > 0.0).then_some(Tilt { normal, outward: self.outward() })
+    }
+}
+
+/// A plane that turns downwards on one side.
+struct Tilt {
+    /// Its normal (shadow frame, any length).
+    normal: DVec3,
+    /// Away from the axis of the turn, in the shadow plane, any length.
+    outward: DVec2,
+}
+
+/// What a turning plane meets first.
+enum Neighbour {
+    Met(Point),
+    None,
+    TooMany,
+}
+
+/// Of the neighbours of a vertex of `M` on the axis of the turn, the one with the least rise over
+/// its run.
+fn first_met(difference: &Difference, vertex: &Point, tilt: &Tilt) -> Neighbour {
+    // A neighbour closer to the axis than this is not beyond it.
+    let least = difference.touching() * tilt.outward.length();
+    let mut first = First { pair: None, rise: f64::INFINITY, run: 1.0, least };
+    let VertexPair { moving, fixed } = vertex.pair;
+    let setting = difference.setting;
+    let (normal, outward) = (tilt.normal, tilt.outward.extend(0.0));
+    let (up, out) = (-difference.in_moving(normal), -difference.in_moving(outward));
+    let few = first.look(setting.moving, moving, up, out, |moving| VertexPair { moving, fixed });
+    let (up, out) = (difference.in_fixed(normal), difference.in_fixed(outward));
+    let few =
+        few && first.look(setting.fixed, fixed, up, out, |fixed| VertexPair { moving, fixed });
+    match first.pair {
+        _ if !few => Neighbour::TooMany,
+        Some(pair) => Neighbour::Met(difference.vertex(pair)),
+        None => Neighbour::None,
+    }
+}
+
+struct First {
+    pair: Option<VertexPair>,
+    rise: f64,
+    run: f64,
+    /// Least run.
+    least: f64,
+}
+
+impl First {
+    /// Looks at the neighbours of one body's vertex; `up` and `out` measure rise and run in its
+    /// frame. `false` if there are too many.
+    #[inline]
+    fn look(
+        &mut self,
+        body: &ConvexPolyhedron,
+        vertex: u32,
+        up: DVec3,
+        out: DVec3,
+        pair: impl Fn(u32) -> VertexPair,
+    ) -> bool {
+        let here = body.vertices()[vertex as usize];
+        let neighbours = body.neighbours(vertex);
+        if neighbours.len() > MOST_NEIGHBOURS {
+            return false;
+        }
+        for &w in neighbours {
+            let edge = body.vertices()[w as usize] - here;
+            let (rise, run) = (up.dot(edge), out.dot(edge));
+            if run > self.least && rise * self.run < self.rise * run {
+                (self.pair, self.rise, self.run) = (Some(pair(w)), rise, run);
+            }
+        }
+        true
+    }
+}
+
+/// The face of `M` at the support point along a slope, on the side of the line.
+fn jump(
+    difference: &Difference,
+    slope: DVec2,
+    near: VertexPair,
+    steps: &mut Steps,
+) -> Option<Portal> {
+    if !slope.is_finite() {
+        return None;
+    }
+    let normal = normal_of(slope);
+    steps.supports += 1;
+    let vertex = difference.support_from(normal, near);
+    let toward_line = Tilt { normal, outward: -vertex.shadow() };
+    let Neighbour::Met(second) = first_met(difference, &vertex, &toward_line) else { return None };
+    // The plane after the turn, which contains both.
+    let edge = second.at - vertex.at;
+    let turn = normal.dot(edge) / toward_line.outward.dot(edge.truncate());
+    let normal = normal_of(slope - toward_line.outward * turn);
+    let line_is_left = difference.is_left(&vertex, &second);
+    let left = edge.truncate().perp();
+    let outward = if line_is_left { left } else { -left };
+    let Neighbour::Met(third) = first_met(difference, &vertex, &Tilt { normal, outward }) else {
+        return None;
+    };
+    Some(if line_is_left { [vertex, second, third] } else { [second, vertex, third] })
+}

@@ -1,0 +1,284 @@
+//! One cast: from a setting, and what is left of the one before, to an outcome.
+//!
+//! The way: *features* (the portal or the separating direction of the last answer, if there is one)
+//! -> *narrowing* (a guess of the normal, from ellipsoids or by the collision translation
+//! algorithm, which may confine itself to the *region* of the last solution) -> a first portal ->
+//! the lowest face. The first two only save work: whatever they propose passes through the same
+//! enclosure and refinement, so a wrong proposal costs time and nothing else.
+
+use glam::{DVec2, DVec3};
+
+use crate::answer::{self, Proven};
+use crate::cta::{self, ContactGuess, CtaOptions, CtaStart, Guess, RegionFocus};
+use crate::error::QueryError;
+use crate::minkowski::Difference;
+use crate::options::{Focus, Options, Region};
+use crate::outcome::{Grazing, Outcome, Path, Separated, Solver, Steps};
+use crate::portal::{self, Enclosure, Followed, Met, OneSide, Overlap, Portal, Refined, Start};
+use crate::pose::Pose;
+use crate::setting::{Setting, VertexPair};
+
+/// What a query leaves to the next one: the features it ended with.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) enum Trace {
+    /// Nothing yet.
+    #[default]
+    Nothing,
+    /// The bodies met.
+    Contact(Met),
+    /// They passed each other, or grazed.
+    Apart {
+        /// The separating direction, in the frames of the moving and of the fixed body.
+        normals: [DVec3; 2],
+        /// A pair of vertices extreme along it.
+        pair: VertexPair,
+    },
+}
+
+/// Casts, starting from `trace` as far as `focus` allows, and leaves the new trace there.
+pub(crate) fn search(
+    setting: &Setting,
+    moving_pose: &Pose,
+    options: &Options,
+    focus: &Focus,
+    trace: &mut Trace,
+) -> Result<Outcome, QueryError> {
+    options.check()?;
+    let solver = match options.solver {
+        Solver::Auto => Solver::Portal,
+        solver => solver,
+    };
+    let last = std::mem::take(trace);
+    let search = |turn_rad| Search {
+        difference: Difference::new(setting, turn_rad),
+        moving_pose,
+        graze_tolerance: options.graze_tolerance,
+        solver,
+        steps: Steps::default(),
+    };
+    let answer = search(0.0).run(focus, &last, trace);
+    if let Err(QueryError::NotConverged { .. }) = answer {
+        return again(|turn_rad| search(turn_rad).run(&Focus::NONE, &Trace::Nothing, trace));
+    }
+    answer
+}
+
+/// Tries other turns of the lateral axes.
+#[cold]
+fn again(mut run: impl FnMut(f64) -> Result<Outcome, QueryError>) -> Result<Outcome, QueryError> {
+    let [first, second] = OTHER_TURNS_RAD;
+    match run(first) {
+        Err(QueryError::NotConverged { .. }) => run(second),
+        answer => answer,
+    }
+}
+
+/// Turns of the lateral axes, tried from scratch when a search finds no end: ties that follow each
+/// other in a circle in one frame do not in another.
+const OTHER_TURNS_RAD: [f64; 2] = [0.7, 2.1];
+
+/// One cast under way.
+struct Search<'a> {
+    difference: Difference<'a>,
+    moving_pose: &'a Pose,
+    graze_tolerance: f64,
+    solver: Solver,
+    steps: Steps,
+}
+
+impl Search<'_> {
+    fn run(
+        &mut self,
+        focus: &Focus,
+        last: &Trace,
+        next: &mut Trace,
+    ) -> Result<Outcome, QueryError> {
+        let followed = if focus.features { self.follow(last) } else { None };
+        let enclosure = match followed {
+            Some(enclosure) => {
+                self.steps.path = Path::Features;
+                Some(enclosure)
+            }
+            None => {
+                let start = self.start(focus.region, last);
+                portal::enclose(&self.difference, &start, &mut self.steps)
+            }
+        };
+        let noise = self.difference.noise;
+        match enclosure {
+            None => Err(self.not_converged()),
+            Some(Enclosure::Portal(first)) => self.contact_or_grazing(first, next),
+            Some(Enclosure::OneSide(found)) if found.margin > noise => {
+                Ok(Outcome::Separated(self.separated(&found, next)))
+            }
+            Some(Enclosure::OneSide(found)) => {
+                let widest = portal::widest_margin(&self.difference, found, &mut self.steps);
+                if widest.margin > noise {
+                    return Ok(Outcome::Separated(self.separated(&widest, next)));
+                }
+                self.touching(&widest, next).map(Outcome::Grazing)
+            }
+        }
+    }
+
+    /// Feature focus: a portal, or a separating direction, from those of the last answer.
+    fn follow(&mut self, last: &Trace) -> Option<Enclosure> {
+        match last {
+            Trace::Nothing => None,
+            Trace::Contact(met) => match portal::follow(&self.difference, met, &mut self.steps) {
+                Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
+                Followed::Rim { outward, near } => self.one_side(outward, near),
+                Followed::Lost => None,
+            },
+            Trace::Apart { normals, pair } => {
+                let [p, q] = self.difference.turned(*normals)?;
+                self.one_side((p + q).truncate(), *pair)
+            }
+        }
+    }
+
+    /// Whether all of `M` lies beyond a lateral direction.
+    fn one_side(&mut self, lateral: DVec2, near: VertexPair) -> Option<Enclosure> {
+        let normal = lateral.try_normalize()?;
+        let least = -self.difference.touching();
+        if normal.dot(self.difference.vertex(near).shadow()) < least {
+            return None;
+        }
+        self.steps.supports += 1;
+        let point = self.difference.support_from(normal.extend(0.0), near);
+        let margin = normal.dot(point.shadow());
+        (margin >= least).then_some(Enclosure::OneSide(OneSide { normal, margin, point }))
+    }
+
+    /// The first guess of the contact normal.
+    fn start(&mut self, region: Region, last: &Trace) -> Start {
+        let ellipsoids = Start::from_ellipsoids(&self.difference);
+        let setting = self.difference.setting;
+        let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
+        if self.solver != Solver::Cta || !solid {
+            return ellipsoids;
+        }
+        let start = if let Some(focus) = self.region(region, last) {
+            self.steps.path = Path::Region;
+            CtaStart::Region(focus)
+        } else {
+            self.steps.supports += 1;
+            let support = self.difference.support(ellipsoids.normal);
+            let seems_apart = ellipsoids.normal.z == 0.0;
+            if seems_apart && ellipsoids.normal.dot(support.at) > 0.0 {
+                return ellipsoids.guided(ellipsoids.normal, support.pair);
+            }
+            if seems_apart {
+                CtaStart::Center
+            } else {
+                CtaStart::Contact(ContactGuess {
+                    normal: self.difference.axes * ellipsoids.normal,
+                    supports: [support.pair.moving, support.pair.fixed],
+                    touching: ellipsoids.touching(&self.difference),
+                })
+            }
+        };
+        let narrowed = cta::minimise(setting, &CtaOptions::new(start));
+        self.steps.planar_problems += narrowed.planar_problems;
+        let [moving, fixed] = narrowed.vertices;
+        let near = VertexPair { moving: moving[0], fixed: fixed[0] };
+        let in_shadow = |normal| self.difference.axes.transpose() * normal;
+        match narrowed.guess {
+            Guess::Contact { normal } => ellipsoids.guided(in_shadow(normal), near),
+            Guess::Separation { direction } => {
+                ellipsoids.guided(in_shadow(direction).with_z(0.0), near)
+            }
+            Guess::Nothing => ellipsoids,
+        }
+    }
+
+    /// Region focus: the last contact points, and the half-side of the square around them.
+    fn region(&self, region: Region, last: &Trace) -> Option<RegionFocus> {
+        let setting = self.difference.setting;
+        let touching = match last {
+            Trace::Nothing => return None,
+            Trace::Contact(met) => setting.weighted(&met.pairs, &met.weights),
+            Trace::Apart { pair, .. } => setting.vertices(*pair),
+        };
+        let half_side = match region {
+            Region::Everywhere => return None,
+            Region::Fixed(delta) => delta,
+            Region::Automatic => self.displacement(touching),
+        };
+        Some(RegionFocus { touching, half_side })
+    }
+
+    /// How far two points, in the frames of the moving and of the fixed body, are apart sideways:
+    /// for those that met in an earlier query, what poses and direction have changed since.
+    fn displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
+        let setting = self.difference.setting;
+        let apart = setting.fixed_matrix * q + setting.offset - setting.moving_matrix * p;
+        apart.reject_from_normalized(setting.unit).length()
+    }
+
+    fn contact_or_grazing(
+        &mut self,
+        first: Portal,
+        next: &mut Trace,
+    ) -> Result<Outcome, QueryError> {
+        let optimum = match portal::refine(&self.difference, first, &mut self.steps) {
+            Some(Refined::Optimum(optimum)) => optimum,
+            Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
+            None => return Err(self.not_converged()),
+        };
+        let tolerance = self.graze_tolerance.max(self.difference.touching());
+        let overlap =
+            portal::overlap(&self.difference, &optimum.portal, tolerance, &mut self.steps);
+        let proven = Proven::new(&self.difference, self.moving_pose, &optimum)?;
+        *next = Trace::Contact(proven.met());
+        Ok(match overlap {
+            Overlap::Ample => Outcome::Contact(proven.contact(self.solver, self.steps)),
+            Overlap::Slight { inward, depth } => {
+                let contact = proven.contact(self.solver, self.steps);
+                Outcome::Grazing(answer::grazing(&self.difference, inward, depth, contact))
+            }
+        })
+    }
+
+    /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
+    /// of the bodies widened sideways by a little more than that.
+    fn touching(&mut self, rim: &OneSide, next: &mut Trace) -> Result<Grazing, QueryError> {
+        self.difference = self.difference.widened(rim.margin);
+        let start = Start::from_ellipsoids(&self.difference);
+        let Some(Enclosure::Portal(first)) =
+            portal::enclose(&self.difference, &start, &mut self.steps)
+        else {
+            return Err(self.not_converged());
+        };
+        let Some(Refined::Optimum(optimum)) =
+            portal::refine(&self.difference, first, &mut self.steps)
+        else {
+            return Err(self.not_converged());
+        };
+        let proven = Proven::new(&self.difference, self.moving_pose, &optimum)?;
+        let contact = proven.contact(self.solver, self.steps);
+        let grazing = answer::grazing(&self.difference, rim.normal, -rim.margin, contact);
+        *next = self.apart(grazing.separating_direction, rim);
+        Ok(grazing)
+    }
+
+    fn separated(&self, found: &OneSide, next: &mut Trace) -> Separated {
+        let separated = answer::separated(&self.difference, found, self.solver, self.steps);
+        *next = self.apart(separated.certificate.normal, found);
+        separated
+    }
+
+    fn apart(&self, normal: DVec3, found: &OneSide) -> Trace {
+        let setting = self.difference.setting;
+        let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+        Trace::Apart { normals, pair: found.point.pair }
+    }
+
+    fn not_converged(&self) -> QueryError {
+        QueryError::NotConverged {
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            tolerance: self.difference.noise,
+        }
+    }
+}

@@ -55,19 +55,20 @@ fn middle(body: &ConvexPolyhedron) -> DVec3 {
     body.vertices().iter().sum::<DVec3>() / body.vertices().len() as f64
 }
 
-/// `count` settings about a random one in which the bodies meet, each `delta` diameters from the
-/// next.
+/// `count` settings about a random one in which the bodies meet, or do not, each `delta` diameters
+/// from the next.
 ///
 /// # Panics
 /// If there are no bodies, or their vertices are out of range.
 pub fn sequence(
     bodies: &[ConvexPolyhedron],
+    meeting: Meeting,
     motion: Motion,
     delta: f64,
     count: usize,
     rng: &mut Rng,
 ) -> Vec<Setting> {
-    let middle_setting = Setting::draw(bodies, Meeting::Colliding, rng);
+    let middle_setting = Setting::draw(bodies, meeting, rng);
     let body = &bodies[middle_setting.moving];
     let (center, diameter, axis) = (middle(body), diameter(body), rng.direction());
     let start = middle_setting.moving_pose;

@@ -14,8 +14,11 @@ use crate::report;
 pub(crate) fn run(arguments: &CastArguments) -> Result<(), Failure> {
     let moving = body::load_or_fail(&arguments.moving, arguments.body)?;
     let fixed = body::load_or_fail(&arguments.fixed, arguments.body)?;
-    let options =
-        Options { solver: arguments.solver.into(), graze_tolerance: arguments.graze_tolerance };
+    let options = Options {
+        solver: arguments.solver.into(),
+        graze_tolerance: arguments.graze_tolerance,
+        ..Options::default()
+    };
     let answer = contact_range(
         &moving,
         &arguments.moving_pose,

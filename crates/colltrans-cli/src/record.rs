@@ -136,7 +136,8 @@ impl FeatureRecord {
 
 impl StepCounts {
     fn of(steps: Steps) -> Self {
-        let Steps { planar_problems, supports, pivots } = steps;
+        // One-off queries start from scratch.
+        let Steps { planar_problems, supports, pivots, path: _ } = steps;
         Self { planar_problems, supports, pivots }
     }
 }

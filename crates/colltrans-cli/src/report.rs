@@ -108,6 +108,7 @@ fn feature(feature: &FeatureRecord) -> String {
 }
 
 fn work(solver: &str, steps: Steps) -> String {
-    let Steps { planar_problems, supports, pivots } = steps;
+    // One-off queries start from scratch.
+    let Steps { planar_problems, supports, pivots, path: _ } = steps;
     format!("{solver}: {planar_problems} planar problems, {supports} supports, {pivots} pivots")
 }

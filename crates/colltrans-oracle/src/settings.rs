@@ -147,7 +147,8 @@ impl Setting {
     /// # Errors
     /// As [`colltrans::cast_with`].
     pub fn cast(&self, bodies: &Bodies, solver: Solver) -> Result<Outcome, QueryError> {
-        let options = Options { solver, graze_tolerance: self.graze_tolerance };
+        let options =
+            Options { solver, graze_tolerance: self.graze_tolerance, ..Options::default() };
         colltrans::cast_with(
             &bodies.moving,
             &self.moving_pose,

@@ -113,6 +113,7 @@ pub(crate) fn separated(
 
 /// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body
 /// frame).
+#[inline]
 fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
     let vertices = body.vertices();
     let least = outward.dot(vertices[vertex as usize]) - (noise + body.hull_error());
@@ -133,7 +134,7 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
                 let face = topology.half_edge(outgoing[next]).face;
                 // Of the two faces of a flat polygon, the one that looks there.
                 let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
-                if looks && spread(topology.face_vertices(face)).all(in_plane) {
+                if looks && spread(topology.face_vertices(face), in_plane) {
                     return Feature::Face(face);
                 }
             }
@@ -143,11 +144,17 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
     edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
 }
 
-/// Up to [`SAMPLES`] vertices, spread over a face: those near a vertex may lie in a plane that the
-/// others do not.
-fn spread(vertices: impl ExactSizeIterator<Item = u32>) -> impl Iterator<Item = u32> {
-    let stride = if vertices.len() <= SAMPLES { 1 } else { vertices.len().div_ceil(SAMPLES) };
-    vertices.step_by(stride)
+/// Whether something holds for up to [`SAMPLES`] vertices, spread over a face: those near a vertex
+/// may lie in a plane that the others do not.
+fn spread(
+    mut vertices: impl ExactSizeIterator<Item = u32>,
+    holds: impl FnMut(u32) -> bool,
+) -> bool {
+    if vertices.len() <= SAMPLES {
+        return vertices.all(holds);
+    }
+    let stride = vertices.len().div_ceil(SAMPLES);
+    vertices.step_by(stride).all(holds)
 }
 
 /// How many vertices of a face must lie in the contact plane for the face to do.

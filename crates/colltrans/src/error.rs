@@ -203,6 +203,12 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// The gap at which narrowing ends is negative or not a number.
+    #[error("the gap {gap} at which narrowing ends is negative or not a number")]
+    NarrowingGap {
+        /// The gap as given.
+        gap: f64,
+    },
     /// The half-side of a region focus is negative or not a number.
     #[error("the half-side {half_side} of the region focus is negative or not a number")]
     RegionFocus {

@@ -130,7 +130,7 @@ mod tracker;
 pub use certificate::{Certificate, CertificateError, Separation};
 pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
 pub use glam;
-pub use options::{Focus, Options, Region};
+pub use options::{Focus, Narrowing, Options, Region, Start};
 pub use outcome::{
     Clearance, Contact, ContactRange, Feature, Grazing, Outcome, Path, Separated, Solver, Steps,
 };

@@ -43,6 +43,9 @@ const WIDENING_RATIO: f64 = 0.8;
 /// something in common (measured).
 const TURNED: f64 = 0.94;
 
+/// Largest displacement between such queries, as a share of both bodies' radii (measured).
+const NEAR: f64 = 0.1;
+
 /// `M` in the shadow frame: support points and orientations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Difference<'a> {
@@ -65,6 +68,7 @@ pub(crate) struct Difference<'a> {
 
 impl<'a> Difference<'a> {
     /// With the lateral axes turned by an angle (0: along the world's axes where the direction is).
+    #[inline]
     pub(crate) fn new(setting: &'a Setting<'a>, turn_rad: f64) -> Self {
         let mut e1 = setting.unit.any_orthonormal_vector();
         if turn_rad != 0.0 {
@@ -139,6 +143,13 @@ impl<'a> Difference<'a> {
         (p.dot(q) > TURNED).then_some([p, q])
     }
 
+    /// Whether points that met in an earlier query, and are a lateral distance apart now, are still
+    /// near each other as bodies of this size go.
+    pub(crate) fn is_near(&self, apart: f64) -> bool {
+        let size = self.setting.moving.measure().radius + self.setting.fixed.measure().radius;
+        apart < NEAR * size
+    }
+
     /// A normal of the shadow frame in the fixed body's frame.
     pub(crate) fn in_fixed(&self, normal: DVec3) -> DVec3 {
         self.fixed_axes * normal
@@ -192,6 +203,7 @@ impl<'a> Difference<'a> {
     /// Exact: a rounded determinant decides where its error allows, whole numbers otherwise. Where
     /// the line meets the segment's carrier it is moved, in thought, by `(eps, eps^2)`: so it is
     /// never *on* a segment, and three consistent answers always mean a triangle that contains it.
+    #[inline]
     pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
         let (a, b) = (from.shadow(), to.shadow());
         let det = a.perp_dot(b);

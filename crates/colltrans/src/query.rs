@@ -68,7 +68,7 @@ pub fn cast(
 /// };
 /// assert!(matches!(slide(&Options::default())?, Outcome::Contact(_)));
 /// let Outcome::Grazing(grazing) =
-///     slide(&Options { graze_tolerance: 0.01, solver: Solver::Cta })?
+///     slide(&Options { graze_tolerance: 0.01, ..Options::default() })?
 /// else {
 ///     unreachable!("they overlap by less than tolerated")
 /// };

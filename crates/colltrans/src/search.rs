@@ -12,7 +12,7 @@ use crate::answer::{self, Proven};
 use crate::cta::{self, ContactGuess, CtaOptions, CtaStart, Guess, RegionFocus};
 use crate::error::QueryError;
 use crate::minkowski::Difference;
-use crate::options::{Focus, Options, Region};
+use crate::options::{self, Focus, Narrowing, Options, Region};
 use crate::outcome::{Grazing, Outcome, Path, Separated, Solver, Steps};
 use crate::portal::{self, Enclosure, Followed, Met, OneSide, Overlap, Portal, Refined, Start};
 use crate::pose::Pose;
@@ -36,6 +36,7 @@ pub(crate) enum Trace {
 }
 
 /// Casts, starting from `trace` as far as `focus` allows, and leaves the new trace there.
+#[inline]
 pub(crate) fn search(
     setting: &Setting,
     moving_pose: &Pose,
@@ -54,6 +55,7 @@ pub(crate) fn search(
         moving_pose,
         graze_tolerance: options.graze_tolerance,
         solver,
+        narrowing: options.narrowing,
         steps: Steps::default(),
     };
     let answer = search(0.0).run(focus, &last, trace);
@@ -83,6 +85,7 @@ struct Search<'a> {
     moving_pose: &'a Pose,
     graze_tolerance: f64,
     solver: Solver,
+    narrowing: Narrowing,
     steps: Steps,
 }
 
@@ -94,15 +97,12 @@ impl Search<'_> {
         next: &mut Trace,
     ) -> Result<Outcome, QueryError> {
         let followed = if focus.features { self.follow(last) } else { None };
-        let enclosure = match followed {
-            Some(enclosure) => {
-                self.steps.path = Path::Features;
-                Some(enclosure)
-            }
-            None => {
-                let start = self.start(focus.region, last);
-                portal::enclose(&self.difference, &start, &mut self.steps)
-            }
+        let enclosure = if followed.is_some() {
+            self.steps.path = Path::Features;
+            followed
+        } else {
+            let start = self.start(focus.region, last);
+            portal::enclose(&self.difference, &start, &mut self.steps)
         };
         let noise = self.difference.noise;
         match enclosure {
@@ -161,6 +161,8 @@ impl Search<'_> {
         let start = if let Some(focus) = self.region(region, last) {
             self.steps.path = Path::Region;
             CtaStart::Region(focus)
+        } else if self.narrowing.start == options::Start::Center {
+            CtaStart::Center
         } else {
             self.steps.supports += 1;
             let support = self.difference.support(ellipsoids.normal);
@@ -178,7 +180,7 @@ impl Search<'_> {
                 })
             }
         };
-        let narrowed = cta::minimise(setting, &CtaOptions::new(start));
+        let narrowed = cta::minimise(setting, &CtaOptions::new(start, self.narrowing.gap));
         self.steps.planar_problems += narrowed.planar_problems;
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair { moving: moving[0], fixed: fixed[0] };
@@ -195,25 +197,21 @@ impl Search<'_> {
     /// Region focus: the last contact points, and the half-side of the square around them.
     fn region(&self, region: Region, last: &Trace) -> Option<RegionFocus> {
         let setting = self.difference.setting;
-        let touching = match last {
+        let (touching, normals) = match last {
             Trace::Nothing => return None,
-            Trace::Contact(met) => setting.weighted(&met.pairs, &met.weights),
-            Trace::Apart { pair, .. } => setting.vertices(*pair),
+            Trace::Contact(met) => (setting.weighted(&met.pairs, &met.weights), met.normals),
+            Trace::Apart { pair, normals } => (setting.vertices(*pair), *normals),
         };
         let half_side = match region {
             Region::Everywhere => return None,
             Region::Fixed(delta) => delta,
-            Region::Automatic => self.displacement(touching),
+            Region::Automatic => {
+                self.difference.turned(normals)?;
+                setting.displacement(touching)
+            }
         };
-        Some(RegionFocus { touching, half_side })
-    }
-
-    /// How far two points, in the frames of the moving and of the fixed body, are apart sideways:
-    /// for those that met in an earlier query, what poses and direction have changed since.
-    fn displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
-        let setting = self.difference.setting;
-        let apart = setting.fixed_matrix * q + setting.offset - setting.moving_matrix * p;
-        apart.reject_from_normalized(setting.unit).length()
+        let small = region != Region::Automatic || self.difference.is_near(half_side);
+        small.then_some(RegionFocus { touching, half_side })
     }
 
     fn contact_or_grazing(

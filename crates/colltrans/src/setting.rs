@@ -42,6 +42,7 @@ pub(crate) struct Setting<'a> {
 }
 
 impl<'a> Setting<'a> {
+    #[inline]
     pub(crate) fn new(
         moving: &'a ConvexPolyhedron,
         moving_pose: &Pose,
@@ -70,16 +71,19 @@ impl<'a> Setting<'a> {
     }
 
     /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
+    #[inline]
     pub(crate) fn scale(&self) -> f64 {
         self.moving.measure().reach + self.fixed.measure().reach + self.offset.length()
     }
 
     /// A pair's vertices, in the frames of the moving and the fixed body.
+    #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
         [self.moving.vertices()[pair.moving as usize], self.fixed.vertices()[pair.fixed as usize]]
     }
 
     /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
+    #[inline]
     pub(crate) fn weighted(&self, pairs: &[VertexPair; 3], weights: &[f64; 3]) -> [DVec3; 2] {
         let mut means = [DVec3::ZERO; 2];
         for (pair, &weight) in pairs.iter().zip(weights) {
@@ -89,12 +93,21 @@ impl<'a> Setting<'a> {
         means
     }
 
+    /// How far two points, in the frames of the moving and of the fixed body, are apart sideways:
+    /// for those that met in an earlier query, what poses and direction have changed since.
+    pub(crate) fn displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
+        let apart = self.fixed_matrix * q + self.offset - self.moving_matrix * p;
+        apart.reject_from_normalized(self.unit).length()
+    }
+
     /// A normal of the setting frame in the moving body's frame: `n.(R v) = (R^T n).v`.
+    #[inline]
     pub(crate) fn moving_normal(&self, normal: DVec3) -> DVec3 {
         self.moving_matrix.transpose() * normal
     }
 
     /// A normal of the setting frame in the fixed body's frame.
+    #[inline]
     pub(crate) fn fixed_normal(&self, normal: DVec3) -> DVec3 {
         self.fixed_matrix.transpose() * normal
     }

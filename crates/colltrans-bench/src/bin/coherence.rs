@@ -114,13 +114,16 @@ fn run(arguments: &Arguments) -> ExitCode {
         };
         let sequences = if arguments.quick { 12 } else { 60 };
         print_header();
-        for delta in DELTAS {
-            let sequences: Vec<_> = (0..sequences)
-                .map(|k| sequence(&bodies, Motion::ALL[k % 3], delta, LENGTH, &mut rng))
-                .collect();
-            rows.push(measure(&format!("{:.2} %", 100.0 * delta), n, &bodies, &sequences));
-        }
         for meeting in [Meeting::Colliding, Meeting::Separated] {
+            for delta in DELTAS {
+                let sequences: Vec<_> = (0..sequences)
+                    .map(|k| {
+                        sequence(&bodies, meeting, Motion::ALL[k % 3], delta, LENGTH, &mut rng)
+                    })
+                    .collect();
+                let name = format!("{:.2} %, {}", 100.0 * delta, meeting.name());
+                rows.push(measure(&name, n, &bodies, &sequences));
+            }
             let unrelated: Vec<_> =
                 (0..sequences).map(|_| unrelated(&bodies, meeting, &mut rng)).collect();
             rows.push(measure(&format!("random, {}", meeting.name()), n, &bodies, &unrelated));

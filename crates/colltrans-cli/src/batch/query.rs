@@ -110,8 +110,11 @@ impl Desk {
         let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
         let fixed_pose = query.fixed_pose.pose().map_err(|e| format!("fixed_pose: {e}"))?;
         let direction = DVec3::from_array(query.direction);
-        let options =
-            Options { solver: query.solver.into(), graze_tolerance: query.graze_tolerance };
+        let options = Options {
+            solver: query.solver.into(),
+            graze_tolerance: query.graze_tolerance,
+            ..Options::default()
+        };
         let answer = contact_range(&moving, &moving_pose, &fixed, &fixed_pose, direction, &options)
             .map_err(|e| e.to_string())?;
         Ok(Record::of_answer(&answer, &moving, &fixed))

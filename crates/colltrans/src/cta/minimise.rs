@@ -56,21 +56,17 @@ pub(crate) struct CtaOptions {
     pub(crate) gap: f64,
 }
 
-/// Where the remaining work is done faster by portal refinement (measured: from here on more planar
-/// problems save it few supports or none).
-const GAP: f64 = 0.2;
-
-/// Planar problems after a guess, for the same reason.
+/// Planar problems after a guess: from there portal refinement is faster (measured).
 const STEPS_AFTER_GUESS: u32 = 2;
 
 impl CtaOptions {
     /// As many steps as pay off from a start.
-    pub(crate) fn new(start: CtaStart) -> Self {
+    pub(crate) fn new(start: CtaStart, gap: f64) -> Self {
         let max_steps = match start {
             CtaStart::Contact(_) => STEPS_AFTER_GUESS,
             CtaStart::Center | CtaStart::Region(_) => MAX_STEPS,
         };
-        Self { start, max_steps, gap: GAP }
+        Self { start, max_steps, gap }
     }
 }
 

@@ -303,13 +303,15 @@ fn figures() {
         };
         let options = |gap: f64| CtaOptions { gap, ..EXACT };
         let (coarse, fine) = (steps(&options(1e-2 / 4.0)), steps(&options(1e-9 / 4.0)));
-        let default = steps(&CtaOptions::new(CtaStart::Center));
+        let default = steps(&CtaOptions::new(CtaStart::Center, 0.2));
         let mut times: Vec<(f64, u32)> = settings
             .iter()
             .map(|setting| {
                 let begin = std::time::Instant::now();
-                let narrowed =
-                    std::hint::black_box(minimise(setting, &CtaOptions::new(CtaStart::Center)));
+                let narrowed = std::hint::black_box(minimise(
+                    setting,
+                    &CtaOptions::new(CtaStart::Center, 0.2),
+                ));
                 (begin.elapsed().as_nanos() as f64, narrowed.planar_problems)
             })
             .collect();
@@ -468,7 +470,7 @@ fn profile() {
         );
     }
     for max_steps in [0, 1, 2, 4, 64] {
-        let options = CtaOptions { max_steps, ..CtaOptions::new(CtaStart::Center) };
+        let options = CtaOptions { max_steps, ..CtaOptions::new(CtaStart::Center, 0.2) };
         let mut problems = 0;
         let mut best = f64::INFINITY;
         for _ in 0..rounds {

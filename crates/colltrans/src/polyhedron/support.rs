@@ -145,13 +145,17 @@ impl SupportIndex {
         for steps in 0..limit {
             let here = vertices[at as usize];
             let neighbours = topology.neighbours(at);
-            let best = if neighbours.len() <= FAN {
+            let (best, gain) = if neighbours.len() <= FAN {
                 steepest(vertices, neighbours, here, direction)
             } else {
-                neighbours[self.steepest_in_fan(vertices, topology, at, direction)]
+                let best = neighbours[self.steepest_in_fan(vertices, topology, at, direction)];
+                (best, direction.dot(vertices[best as usize] - here))
             };
+            if gain <= 0.0 {
+                return (at, steps);
+            }
             let edge = vertices[best as usize] - here;
-            if direction.dot(edge) <= GAIN_NOISE * direction.abs().dot(edge.abs()) {
+            if gain <= GAIN_NOISE * direction.abs().dot(edge.abs()) {
                 return (at, steps);
             }
             at = best;
@@ -183,6 +187,7 @@ impl SupportIndex {
     /// Candidates for neighbours in the supporting plane at `vertex`: positions of consecutive
     /// neighbours, as first position and count, that contain all of them if the vertex has few, and
     /// the three steepest if it has many.
+    #[inline]
     pub(crate) fn plane_candidates(
         &self,
         vertices: &[DVec3],
@@ -391,9 +396,9 @@ fn scan(groups: &[Group], direction: DVec3) -> u32 {
     pick(low, high).1 as u32
 }
 
-/// The steepest neighbour.
+/// The steepest neighbour and what it gains.
 #[inline]
-fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec3) -> u32 {
+fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec3) -> (u32, f64) {
     let (mut best, mut gain) = (u32::MAX, f64::NEG_INFINITY);
     for &w in neighbours {
         let along = direction.dot(vertices[w as usize] - here);
@@ -401,7 +406,7 @@ fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec
             (best, gain) = (w, along);
         }
     }
-    best
+    (best, gain)
 }
 
 /// Where a function on a cycle with one maximum and one minimum is greatest.

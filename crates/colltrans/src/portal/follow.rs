@@ -42,9 +42,6 @@ const CROSSINGS: usize = 20;
 /// A line this many widths of the triangle beyond an edge is not reached face by face (measured).
 const FAR: f64 = 1.2;
 
-/// A shift longer than this share of both bodies' radii leaves nothing to follow (measured).
-const LOST: f64 = 0.1;
-
 /// A vertex with more neighbours than this is not looked around.
 const MOST_NEIGHBOURS: usize = 32;
 
@@ -60,6 +57,7 @@ pub(crate) struct Met {
 }
 
 /// Follows the line from where it met `M` before.
+#[inline]
 pub(crate) fn follow(difference: &Difference, met: &Met, steps: &mut Steps) -> Followed {
     let mut portal = met.pairs.map(|pair| difference.vertex(pair));
     let [a, b, c] = portal.map(|p| p.shadow());
@@ -94,10 +92,8 @@ pub(crate) fn follow(difference: &Difference, met: &Met, steps: &mut Steps) -> F
 /// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has
 /// changed that there is nothing to follow.
 fn slopes(difference: &Difference, met: &Met, shift: DVec2) -> Option<[DVec2; 2]> {
-    let setting = difference.setting;
-    let size = setting.moving.measure().radius + setting.fixed.measure().radius;
     let [p, q] = difference.turned(met.normals)?;
-    let near = shift.length_squared() < LOST * LOST * size * size && p.z.min(q.z) > 0.0;
+    let near = difference.is_near(shift.length()) && p.z.min(q.z) > 0.0;
     near.then(|| [p, q].map(|n| n.truncate() / n.z))
 }
 
@@ -109,6 +105,7 @@ struct Edge {
 }
 
 /// An edge of the portal over which the line has left it.
+#[inline]
 fn crossed(difference: &Difference, portal: &Portal) -> Option<Edge> {
     [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
         .into_iter()

@@ -31,6 +31,7 @@ pub(crate) enum Overlap {
 const MAX_CORNERS: usize = 64;
 
 /// Compares the overlap with `tolerance`, from a portal around the line.
+#[inline]
 pub(crate) fn overlap(
     difference: &Difference,
     portal: &[Point; 3],
@@ -109,6 +110,7 @@ fn hull(points: &mut [Point]) -> usize {
 }
 
 /// Whether all edges of the portal are farther from the line than `tolerance`.
+#[inline]
 fn is_ample(portal: &[Point; 3], tolerance: f64) -> bool {
     [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
         let (a, b) = (portal[i].shadow(), portal[j].shadow());

@@ -47,6 +47,7 @@ pub(crate) enum Refined {
 }
 
 /// Follows portals down to the optimum. `None` if rounding makes them run in a circle.
+#[inline]
 pub(crate) fn refine(
     difference: &Difference,
     mut portal: Portal,
@@ -129,6 +130,7 @@ fn lowest_edge(difference: &Difference, portal: &Portal) -> [Point; 2] {
 }
 
 /// How far a point lies below all three of the portal's along `normal`, times the normal's length.
+#[inline]
 fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
     let depth = |corner: &Point| normal.dot(corner.at - point.at);
     depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
@@ -155,6 +157,7 @@ fn exchange(difference: &Difference, portal: &mut Portal, new: Point) -> usize {
 
 /// The upward normal of the plane through the three points; `None` if the portal is too narrow to
 /// have one.
+#[inline]
 fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
     let [a, b, c] = portal.map(|p| p.shadow());
     let longest = (b - a).length_squared().max((c - b).length_squared());
@@ -169,6 +172,7 @@ fn plane_normal(difference: &Difference, portal: &Portal) -> Option<DVec3> {
 ///
 /// From determinants without cancellation, so that narrow portals have accurate ones; if the line
 /// is outside in the rounded coordinates, those of the nearest point of the rim.
+#[inline]
 fn weights(portal: &Portal) -> [f64; 3] {
     let shadows = portal.map(|p| p.shadow());
     let [a, b, c] = shadows;

@@ -15,7 +15,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use colltrans::{
-    ConvexPolyhedron, Focus, Options, Outcome, Path, QueryError, Region, Solver, Steps, Tracker,
+    ConvexPolyhedron, Focus, Narrowing, Options, Outcome, Path, QueryError, Region, Solver, Start,
+    Steps, Tracker, cast_with,
 };
 use colltrans_bench::motion::{Motion, orbit, sequence};
 use colltrans_bench::report::{clock_cost, date, machine, quantile};
@@ -41,19 +42,26 @@ struct Contestant {
     name: &'static str,
     solver: Solver,
     focus: Focus,
+    narrowing: Narrowing,
 }
 
-const CONTESTANTS: [Contestant; 5] = [
-    Contestant { name: "scratch", solver: Solver::Auto, focus: Focus::NONE },
-    Contestant { name: "tracker", solver: Solver::Auto, focus: FEATURES },
-    Contestant { name: "cta", solver: Solver::Cta, focus: Focus::NONE },
-    Contestant { name: "cta tracker", solver: Solver::Cta, focus: BOTH },
-    Contestant { name: "cta region", solver: Solver::Cta, focus: REGION },
+const CONTESTANTS: [Contestant; 6] = [
+    Contestant { name: "scratch", solver: Solver::Auto, focus: Focus::NONE, narrowing: SHIPPED },
+    Contestant { name: "tracker", solver: Solver::Auto, focus: BOTH, narrowing: SHIPPED },
+    Contestant { name: "cta", solver: Solver::Cta, focus: Focus::NONE, narrowing: SHIPPED },
+    Contestant { name: "cta tracker", solver: Solver::Cta, focus: BOTH, narrowing: SHIPPED },
+    Contestant { name: "paper", solver: Solver::Cta, focus: Focus::NONE, narrowing: PAPER },
+    Contestant { name: "paper region", solver: Solver::Cta, focus: REGION, narrowing: PAPER },
 ];
 
-const FEATURES: Focus = Focus { features: true, region: Region::Everywhere };
 const REGION: Focus = Focus { features: false, region: Region::Automatic };
 const BOTH: Focus = Focus { features: true, region: Region::Automatic };
+
+/// What a user gets.
+const SHIPPED: Narrowing = Narrowing { start: Start::Ellipsoids, gap: 0.2 };
+
+/// The paper's: from the centre of the levels, most of the way by planar problems.
+const PAPER: Narrowing = Narrowing { start: Start::Center, gap: 0.01 };
 
 struct Arguments {
     sizes: Vec<usize>,
@@ -176,19 +184,20 @@ impl Measured {
     ) -> Vec<Result<Outcome, QueryError>> {
         let Some(first) = sequence.first() else { return Vec::new() };
         let clock = clock_cost();
-        let options = Options { solver: contestant.solver, ..Options::default() };
-        let mut tracker = Tracker::new(&bodies[first.moving], &bodies[first.fixed])
-            .with_focus(contestant.focus)
-            .expect("a focus");
+        let Contestant { solver, narrowing, .. } = *contestant;
+        let options = Options { solver, narrowing, ..Options::default() };
+        let (moving, fixed) = (&bodies[first.moving], &bodies[first.fixed]);
+        let mut tracker =
+            Tracker::new(moving, fixed).with_focus(contestant.focus).expect("a focus");
         let mut outcomes = Vec::with_capacity(sequence.len());
         for setting in sequence {
             let started = Instant::now();
-            let outcome = if contestant.focus == Focus::NONE {
-                black_box(black_box(setting).cast(bodies, contestant.solver))
+            let Setting { moving_pose: p, fixed_pose: q, direction: d, .. } = black_box(setting);
+            let outcome = black_box(if contestant.focus == Focus::NONE {
+                cast_with(moving, p, fixed, q, *d, &options)
             } else {
-                let Setting { moving_pose, fixed_pose, direction, .. } = black_box(setting);
-                black_box(tracker.cast_with(moving_pose, fixed_pose, *direction, &options))
-            };
+                tracker.cast_with(p, q, *d, &options)
+            });
             let spent = started.elapsed().as_nanos() as f64 - clock;
             self.note(spent.max(0.0), &outcome);
             outcomes.push(outcome);

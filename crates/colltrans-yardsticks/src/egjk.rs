@@ -1,0 +1,1 @@
+//! Enhanced GJK (Cameron 1997).

@@ -1,0 +1,1 @@
+//! GJK ray cast (van den Bergen 2004).

@@ -106,14 +106,12 @@ impl Nearest {
         Self { point: points[i], weights }
     }
 
-    /// The foot, if the signed parts all have the sign of their sum.
-    fn inside<const N: usize>(point: DVec3, corners: [usize; N], parts: [f64; N]) -> Option<Self> {
-        let whole: f64 = parts.iter().sum();
+    fn at<const N: usize>(point: DVec3, corners: [usize; N], of_corners: [f64; N]) -> Self {
         let mut weights = [0.0; 4];
-        for (corner, part) in corners.into_iter().zip(parts) {
-            weights[corner] = part / whole;
+        for (corner, weight) in corners.into_iter().zip(of_corners) {
+            weights[corner] = weight;
         }
-        corners.iter().all(|&i| weights[i] > 0.0).then_some(Self { point, weights })
+        Self { point, weights }
     }
 
     fn nearer(self, other: Self) -> Self {
@@ -128,15 +126,17 @@ fn segment(points: &[DVec3; 4], [a, b]: [usize; 2]) -> Nearest {
         let foot = points[a] - edge * (points[a].dot(edge) / square);
         let foot = foot - edge * (foot.dot(edge) / square);
         let axis = edge.abs().max_position();
-        let parts = [points[b][axis] - foot[axis], foot[axis] - points[a][axis]];
-        if let Some(inside) = Nearest::inside(foot, [a, b], parts) {
-            return inside;
+        let to = [points[a] - foot, points[b] - foot];
+        let slope = edge / square;
+        if let Ok(weights) = inside(to, [to[1][axis], -to[0][axis]], [-slope, slope]) {
+            return Nearest::at(foot, [a, b], weights);
         }
     }
     Nearest::vertex(points, a).nearer(Nearest::vertex(points, b))
 }
 
 fn triangle(points: &[DVec3; 4], [a, b, c]: [usize; 3]) -> Nearest {
+    let sides = [[b, c], [c, a], [a, b]];
     let normal = (points[b] - points[a]).cross(points[c] - points[a]);
     let square = normal.length_squared();
     let mut signs = [0.0; 3];
@@ -145,27 +145,55 @@ fn triangle(points: &[DVec3; 4], [a, b, c]: [usize; 3]) -> Nearest {
         let axis = normal.abs().max_position();
         let to = [a, b, c].map(|i| points[i] - foot);
         let parts = [to[1].cross(to[2])[axis], to[2].cross(to[0])[axis], to[0].cross(to[1])[axis]];
-        if let Some(inside) = Nearest::inside(foot, [a, b, c], parts) {
-            return inside;
+        let slopes = sides.map(|[i, j]| normal.cross(points[j] - points[i]) / square);
+        match inside(to, parts, slopes) {
+            Ok(weights) => return Nearest::at(foot, [a, b, c], weights),
+            Err(found) => signs = found,
         }
-        signs = parts.map(|part| part * normal[axis]);
     }
-    let sides = [[b, c], [c, a], [a, b]];
     nearest_beyond(sides, signs, |side| segment(points, side))
 }
 
 fn tetrahedron(points: &[DVec3; 4]) -> Nearest {
+    let [a, b, c, d] = *points;
     // The volume over a face is taken from a corner of it, not from the origin: far away, that
     // would cost digits.
-    let [a, b, c, d] = *points;
-    let over = |p: DVec3, q: DVec3, r: DVec3| p.dot((q - p).cross(r - p));
-    let parts = [over(b, c, d), -over(a, c, d), over(a, b, d), -over(a, b, c)];
-    if let Some(inside) = Nearest::inside(DVec3::ZERO, [0, 1, 2, 3], parts) {
-        return inside;
+    let normal = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p);
+    let normals = [normal(b, c, d), normal(a, d, c), normal(a, b, d), normal(a, c, b)];
+    let parts = [b.dot(normals[0]), a.dot(normals[1]), a.dot(normals[2]), a.dot(normals[3])];
+    let whole = (b - a).dot(normal(a, c, d));
+    match inside(*points, parts, normals.map(|n| -n / whole)) {
+        Ok(weights) => Nearest { point: DVec3::ZERO, weights },
+        Err(signs) => {
+            let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+            nearest_beyond(faces, signs, |face| triangle(points, face))
+        }
     }
-    let whole = (b - a).dot((c - a).cross(d - a));
-    let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
-    nearest_beyond(faces, parts.map(|part| part * whole), |face| triangle(points, face))
+}
+
+/// The weights of the foot, from which the corners are seen at `corners`, if all are positive; else
+/// their signs, up to rounding.
+///
+/// First they are what `parts` has of their sum. In a thin simplex that misses the foot by more
+/// than a rounding error, or misses that it is outside, so one step of Newton follows: a weight is
+/// a linear function, with the gradient `slopes`.
+fn inside<const N: usize>(
+    corners: [DVec3; N],
+    parts: [f64; N],
+    slopes: [DVec3; N],
+) -> Result<[f64; N], [f64; N]> {
+    let whole: f64 = parts.iter().sum();
+    let mut weights = parts.map(|part| part / whole);
+    if weights.iter().all(|weight| *weight > 0.0) {
+        let missed: DVec3 = corners.iter().zip(weights).map(|(p, weight)| *p * weight).sum();
+        for (weight, slope) in weights.iter_mut().zip(slopes) {
+            *weight -= missed.dot(slope);
+        }
+        if weights.iter().all(|weight| *weight > 0.0) {
+            return Ok(weights);
+        }
+    }
+    Err(weights)
 }
 
 /// The nearest over all faces whose opposite corner has a weight of the wrong sign, or over all if

@@ -53,9 +53,10 @@ pub struct Steps {
     /// Vertices whose neighbours were looked at while climbing.
     pub climbed: u32,
     /// Upper minus lower bound of the distance, in world units: the answer's error is at most this
-    /// plus the rounding error of a coordinate, `32 u S`.
+    /// plus twice the rounding error of a point, `32 u S`.
     ///
-    /// At most that error itself if the bounds met; more if rounding stalled the search.
+    /// Nearly always no larger than one such error, and often 0; larger where the simplex is so
+    /// thin that rounding stalls the search.
     pub gap: f64,
 }
 

@@ -175,8 +175,8 @@ fn tetrahedron(points: &[DVec3; 4]) -> Nearest {
 /// their signs, up to rounding.
 ///
 /// First they are what `parts` has of their sum. In a thin simplex that misses the foot by more
-/// than a rounding error, or misses that it is outside, so one step of Newton follows: a weight is
-/// a linear function, with the gradient `slopes`.
+/// than a rounding error, or misses that it is outside, so steps of Newton follow: a weight is a
+/// linear function, with the gradient `slopes`.
 fn inside<const N: usize>(
     corners: [DVec3; N],
     parts: [f64; N],
@@ -184,17 +184,23 @@ fn inside<const N: usize>(
 ) -> Result<[f64; N], [f64; N]> {
     let whole: f64 = parts.iter().sum();
     let mut weights = parts.map(|part| part / whole);
-    if weights.iter().all(|weight| *weight > 0.0) {
-        let missed: DVec3 = corners.iter().zip(weights).map(|(p, weight)| *p * weight).sum();
-        for (weight, slope) in weights.iter_mut().zip(slopes) {
-            *weight -= missed.dot(slope);
+    let positive = |weights: &[f64; N]| weights.iter().all(|weight| *weight > 0.0);
+    for _ in 0..NEWTON_STEPS {
+        if !positive(&weights) {
+            return Err(weights);
         }
-        if weights.iter().all(|weight| *weight > 0.0) {
-            return Ok(weights);
+        let missed: DVec3 = corners.iter().zip(weights).map(|(p, weight)| *p * weight).sum();
+        for (weight, slope) in weights.iter_mut().zip(&slopes) {
+            *weight -= missed.dot(*slope);
         }
     }
-    Err(weights)
+    let sum: f64 = weights.iter().sum();
+    if positive(&weights) { Ok(weights.map(|weight| weight / sum)) } else { Err(weights) }
 }
+
+/// The slopes of a simplex that is flat up to rounding are wrong in their first digit: the second
+/// step takes what the first one left.
+const NEWTON_STEPS: u32 = 2;
 
 /// The nearest over all faces whose opposite corner has a weight of the wrong sign, or over all if
 /// rounding leaves none.

@@ -15,19 +15,16 @@
 //! The nearest point of the simplex is found by signed volumes (`simplex`).
 
 mod climb;
+mod difference;
 mod simplex;
 
-use colltrans::{ConvexPolyhedron, Pose, VertexPair};
+use colltrans::{ConvexPolyhedron, Pose};
 use glam::DVec3;
 
 use crate::placed::Relative;
 use crate::proximity::Proximity;
-pub(crate) use climb::climb;
+pub(crate) use difference::Difference;
 pub(crate) use simplex::{Corner, Simplex};
-
-/// Rounding error of a point of `M` in units of `S`: `32 u`, as in `colltrans`. The gap that is
-/// aimed at, and the distance below which bodies touch.
-pub(crate) const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// Iterations after which a query returns what it has; some tens are usual.
 const MAX_ITERATIONS: u32 = 1000;
@@ -37,11 +34,6 @@ const MAX_ITERATIONS: u32 = 1000;
 /// that an `f64` shows, but the next support points need it. So `|v|` must be allowed to stay as it
 /// is for a while: as long as it takes to walk over a face.
 const PATIENCE: u32 = 30;
-
-/// The largest distance of a vertex from the origin of the body frame.
-pub(crate) fn reach(body: &ConvexPolyhedron) -> f64 {
-    body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
-}
 
 /// Work done by one query, and what it proved.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -79,12 +71,7 @@ pub struct Steps {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Egjk<'a> {
-    moving: &'a ConvexPolyhedron,
-    fixed: &'a ConvexPolyhedron,
-    /// Reach of the moving body plus that of the fixed one.
-    reach: f64,
-    /// Where the last support points were found.
-    seed: VertexPair,
+    difference: Difference<'a>,
     /// The simplex of the last answer.
     simplex: Simplex,
 }
@@ -123,18 +110,13 @@ impl Bounds {
 impl<'a> Egjk<'a> {
     /// Two bodies, seeds at their first vertices. Takes `O(n)`.
     pub fn new(moving: &'a ConvexPolyhedron, fixed: &'a ConvexPolyhedron) -> Self {
-        Self {
-            moving,
-            fixed,
-            reach: reach(moving) + reach(fixed),
-            seed: VertexPair::default(),
-            simplex: Simplex::new(Corner::default()),
-        }
+        let simplex = Simplex::new(Corner::default());
+        Self { difference: Difference::new(moving, fixed), simplex }
     }
 
     /// Forgets what the last query left behind: the next one starts from scratch.
     pub fn reset(&mut self) {
-        self.seed = VertexPair::default();
+        self.difference.reset();
         self.simplex = Simplex::new(Corner::default());
     }
 
@@ -144,11 +126,11 @@ impl<'a> Egjk<'a> {
     /// nearest points are one point of both.
     pub fn distance(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> Proximity<Steps> {
         let relative = Relative::new(moving_pose, fixed_pose);
-        let noise = NOISE * (self.reach + relative.translation.length());
+        let noise = Difference::NOISE * self.difference.size(&relative);
         let mut steps = Steps::default();
         let mut simplex = self.simplex;
         for corner in simplex.corners_mut() {
-            *corner = self.corner(&relative, corner.pair);
+            *corner = self.difference.corner(&relative, corner.pair);
         }
         let mut best = Bounds { upper: f64::INFINITY, lower: 0.0, simplex, idle: 0 };
         while steps.iterations < MAX_ITERATIONS {
@@ -159,7 +141,8 @@ impl<'a> Egjk<'a> {
             if upper <= noise {
                 break;
             }
-            let lowest = self.lowest(&relative, nearest, &mut steps);
+            steps.supports += 1;
+            let lowest = self.difference.lowest(&relative, nearest, &mut steps.climbed);
             best.take_lower(nearest.dot(lowest.point) / upper);
             if best.gap() <= noise || best.idle > PATIENCE || simplex.contains(lowest.pair) {
                 break;
@@ -168,7 +151,7 @@ impl<'a> Egjk<'a> {
         }
         steps.gap = best.gap();
         self.simplex = best.simplex;
-        let [on_moving, on_fixed] = nearest_points(self.moving, self.fixed, &best.simplex);
+        let [on_moving, on_fixed] = self.difference.nearest_points(&best.simplex);
         Proximity {
             distance: if best.upper <= noise { 0.0 } else { best.upper },
             on_moving: moving_pose.transform_point(on_moving),
@@ -176,35 +159,4 @@ impl<'a> Egjk<'a> {
             steps,
         }
     }
-
-    /// The corner of a vertex pair.
-    fn corner(&self, relative: &Relative, pair: VertexPair) -> Corner {
-        let p = relative.point(self.moving.vertices()[pair.moving as usize]);
-        Corner { pair, point: self.fixed.vertices()[pair.fixed as usize] - p }
-    }
-
-    /// The lowest point of `M` along a direction.
-    fn lowest(&mut self, relative: &Relative, direction: DVec3, steps: &mut Steps) -> Corner {
-        steps.supports += 1;
-        let climbed = &mut steps.climbed;
-        self.seed = VertexPair {
-            moving: climb(self.moving, relative.to_moving(direction), self.seed.moving, climbed),
-            fixed: climb(self.fixed, -direction, self.seed.fixed, climbed),
-        };
-        self.corner(relative, self.seed)
-    }
-}
-
-/// The points of either body (its own frame) that the weights of a simplex stand for.
-pub(crate) fn nearest_points(
-    moving: &ConvexPolyhedron,
-    fixed: &ConvexPolyhedron,
-    simplex: &Simplex,
-) -> [DVec3; 2] {
-    let mut points = [DVec3::ZERO; 2];
-    for (pair, weight) in simplex.weighted_pairs() {
-        points[0] += moving.vertices()[pair.moving as usize] * weight;
-        points[1] += fixed.vertices()[pair.fixed as usize] * weight;
-    }
-    points
 }

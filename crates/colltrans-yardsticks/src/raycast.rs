@@ -1,6 +1,5 @@
 //! GJK ray cast: van den Bergen, "Ray casting against general convex objects with application to
-//! continuous collision detection", 2004, algorithm 1 and section 5. The linear cast that physics
-//! engines ship.
+//! continuous collision detection", 2004. The linear cast that physics engines ship.
 //!
 //! Notation. In the fixed body's frame, `M = {q - p}` is the Minkowski difference, `d` the
 //! direction, and `x = t d` the tip of the ray, which starts at the origin: the moving body, moved
@@ -9,20 +8,21 @@
 //! of both bodies plus the distance of their frames.
 //!
 //! Invariant. `t` is a lower bound of the collision translation: it is raised only as far as a
-//! plane below all of `M`, through `w` with normal `v`, which `x` has not yet crossed. The *hit* is
-//! declared when `|v| <= tolerance * S`, so `x` is that close to `M`; how much `t` lacks then
-//! depends on how steeply the ray comes in, and no bound of it is known. An exact ray that misses
-//! `M` ends with a plane that it moves away from.
+//! plane below all of `M`, through `w` with normal `v`, which `x` has not yet crossed. A *hit* is
+//! declared when `|v|` is no larger than the tolerance `e`. As `x` is then within `e` of `M`, which
+//! lies beyond its contact plane, `t` lacks at most `e / n . d`; but the contact normal `n` is not
+//! known. A ray that misses `M` ends with a plane that it moves away from.
 //!
 //! Where that fails, as published:
 //!
-//! - *Rays that graze.* A ray that passes `M` by less than the tolerance is a hit, and one that
-//!   comes in at a small angle `a` hits early by up to `tolerance S / sin a`.
-//! - *A start within the tolerance of `M`* is a contact even if the motion leads away.
-//! - *Rounding.* Below a tolerance of about `1e-12` planes turn with rounding errors as `|v|`
-//!   becomes smaller; `t` may then be raised beyond the collision, or stop short
-//!   ([`RayCastAnswer::Exhausted`]).
-//! - *The normal* is that of the last plane that raised `t`, not of the face that is hit.
+//! - *Rays that graze.* A ray that passes `M` by less than `e` is a hit, or a miss. One that comes
+//!   in at a small angle hits early by a multiple of `e`.
+//! - *A start within `e` of `M`* is a contact even if the motion leads away.
+//! - *The normal* is that of the last plane that raised `t`, not of the face that is hit: off by
+//!   some thousandths of a radian on round bodies with thousands of vertices.
+//! - *Rounding.* `t` is never raised by less than a rounding error for long, but nothing proves
+//!   that: the iterations are bounded, and running out of them is an answer of its own. With `e`
+//!   at `1e-12 S`, rounding may take a thin simplex for one that contains `x`.
 //!
 //! One thing is added: as all of `M` is within `S` of the origin, `t |d| > S` is a miss, proven.
 
@@ -35,10 +35,11 @@ use crate::placed::Relative;
 /// When a ray cast stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// The distance at which the bodies count as touching, in units of the size `S`. The default is
-    /// `1e-6`. Physics engines use about `1e-4` to `1e-3` of theirs.
+    /// The distance at which the bodies count as touching, in units of the size `S`; no less than
+    /// the rounding error, `32 u`. The default is `1e-6`.
     pub tolerance: f64,
-    /// Iterations after which the cast gives up. The default is 64, as in physics engines.
+    /// Iterations after which the cast gives up. The default is 64, which is what Bullet allows in
+    /// double precision.
     pub max_iterations: u32,
 }
 

@@ -12,8 +12,8 @@
 //! - A weight of the wrong sign: the origin lies beyond the face without that corner. The nearest
 //!   point is the nearest of those faces' nearest points, each found in the same way.
 //!
-//! That stays true when a simplex is flat up to rounding and the sign of the whole is a matter of
-//! chance: either sign leads to one of two sets of faces that cover the same area.
+//! Where rounding leaves the sign of a weight open, the face is looked at; where it leaves that of
+//! the whole open, all faces are: a simplex that is flat up to rounding is covered by them.
 //!
 //! Directions matter more than lengths here: a nearest point of length `|v|`, off by `u S`, has a
 //! direction off by `u S / |v|`, and so would be the bound of GJK that rests on it. The foot on a
@@ -128,7 +128,7 @@ fn segment(points: &[DVec3; 4], [a, b]: [usize; 2]) -> Nearest {
         let axis = edge.abs().max_position();
         let to = [points[a] - foot, points[b] - foot];
         let slope = edge / square;
-        if let Ok(weights) = inside(to, [to[1][axis], -to[0][axis]], [-slope, slope]) {
+        if let Some(weights) = inside(to, [to[1][axis], -to[0][axis]], [-slope, slope]) {
             return Nearest::at(foot, [a, b], weights);
         }
     }
@@ -139,19 +139,19 @@ fn triangle(points: &[DVec3; 4], [a, b, c]: [usize; 3]) -> Nearest {
     let sides = [[b, c], [c, a], [a, b]];
     let normal = (points[b] - points[a]).cross(points[c] - points[a]);
     let square = normal.length_squared();
-    let mut signs = [0.0; 3];
+    let mut beyond = [true; 3];
     if square > 0.0 {
         let foot = normal * (points[a].dot(normal) / square);
         let axis = normal.abs().max_position();
         let to = [a, b, c].map(|i| points[i] - foot);
         let parts = [to[1].cross(to[2])[axis], to[2].cross(to[0])[axis], to[0].cross(to[1])[axis]];
         let slopes = sides.map(|[i, j]| normal.cross(points[j] - points[i]) / square);
-        match inside(to, parts, slopes) {
-            Ok(weights) => return Nearest::at(foot, [a, b, c], weights),
-            Err(found) => signs = found,
+        if let Some(weights) = inside(to, parts, slopes) {
+            return Nearest::at(foot, [a, b, c], weights);
         }
+        beyond = may_be_beyond(parts, normal[axis], VOLUME_ERROR * longest_square(&to));
     }
-    nearest_beyond(sides, signs, |side| segment(points, side))
+    nearest_of_faces(sides, beyond, |side| segment(points, side))
 }
 
 fn tetrahedron(points: &[DVec3; 4]) -> Nearest {
@@ -161,18 +161,43 @@ fn tetrahedron(points: &[DVec3; 4]) -> Nearest {
     let normal = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p);
     let normals = [normal(b, c, d), normal(a, d, c), normal(a, b, d), normal(a, c, b)];
     let parts = [b.dot(normals[0]), a.dot(normals[1]), a.dot(normals[2]), a.dot(normals[3])];
-    let whole = (b - a).dot(normal(a, c, d));
-    match inside(*points, parts, normals.map(|n| -n / whole)) {
-        Ok(weights) => Nearest { point: DVec3::ZERO, weights },
-        Err(signs) => {
-            let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
-            nearest_beyond(faces, signs, |face| triangle(points, face))
-        }
+    let whole = (a - b).dot(normals[1]);
+    let longest = longest_square(points).sqrt();
+    if let Some(weights) = inside(*points, parts, normals.map(|n| -n / whole))
+        // Else so flat that the weights are made of rounding errors.
+        && combination(points, weights).length() <= RESIDUAL * longest
+    {
+        return Nearest { point: DVec3::ZERO, weights };
     }
+    let edges = longest_square(&[b - a, c - a, d - a]);
+    let beyond = may_be_beyond(parts, whole, VOLUME_ERROR * longest * edges);
+    let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+    nearest_of_faces(faces, beyond, |face| triangle(points, face))
 }
 
-/// The weights of the foot, from which the corners are seen at `corners`, if all are positive; else
-/// their signs, up to rounding.
+/// Bounds the rounding error of a signed area or volume: in units of the square of the longest
+/// vector, or of that of the longest edge from one corner times the longest corner. (Two edges from
+/// another corner are up to twice as long each.)
+const VOLUME_ERROR: f64 = 16.0 * f64::EPSILON;
+
+/// What a sum of four products may miss by rounding, in units of the longest vector.
+const RESIDUAL: f64 = 4.0 * f64::EPSILON;
+
+fn longest_square(vectors: &[DVec3]) -> f64 {
+    vectors.iter().map(|v| v.length_squared()).fold(0.0, f64::max)
+}
+
+fn combination(points: &[DVec3], weights: impl IntoIterator<Item = f64>) -> DVec3 {
+    points.iter().zip(weights).map(|(p, weight)| *p * weight).sum()
+}
+
+/// Beyond which faces, opposite to the corners, the origin may lie, signs being wrong up to
+/// `error`. One face more costs time only.
+fn may_be_beyond<const N: usize>(parts: [f64; N], whole: f64, error: f64) -> [bool; N] {
+    parts.map(|part| whole.abs() <= error || part * whole.signum() <= error)
+}
+
+/// The weights of the foot, from which the corners are seen at `corners`, if all are positive.
 ///
 /// First they are what `parts` has of their sum. In a thin simplex that misses the foot by more
 /// than a rounding error, or misses that it is outside, so steps of Newton follow: a weight is a
@@ -181,37 +206,88 @@ fn inside<const N: usize>(
     corners: [DVec3; N],
     parts: [f64; N],
     slopes: [DVec3; N],
-) -> Result<[f64; N], [f64; N]> {
+) -> Option<[f64; N]> {
     let whole: f64 = parts.iter().sum();
     let mut weights = parts.map(|part| part / whole);
     let positive = |weights: &[f64; N]| weights.iter().all(|weight| *weight > 0.0);
     for _ in 0..NEWTON_STEPS {
         if !positive(&weights) {
-            return Err(weights);
+            return None;
         }
-        let missed: DVec3 = corners.iter().zip(weights).map(|(p, weight)| *p * weight).sum();
+        let missed = combination(&corners, weights);
         for (weight, slope) in weights.iter_mut().zip(&slopes) {
             *weight -= missed.dot(*slope);
         }
     }
     let sum: f64 = weights.iter().sum();
-    if positive(&weights) { Ok(weights.map(|weight| weight / sum)) } else { Err(weights) }
+    positive(&weights).then(|| weights.map(|weight| weight / sum))
 }
 
 /// The slopes of a simplex that is flat up to rounding are wrong in their first digit: the second
 /// step takes what the first one left.
 const NEWTON_STEPS: u32 = 2;
 
-/// The nearest over all faces whose opposite corner has a weight of the wrong sign, or over all if
-/// rounding leaves none.
-fn nearest_beyond<F: Copy, const N: usize>(
+/// The nearest over the faces that are wanted, or over all if none is.
+fn nearest_of_faces<F: Copy, const N: usize>(
     faces: [F; N],
-    signs: [f64; N],
+    wanted: [bool; N],
     nearest_of: impl Fn(F) -> Nearest,
 ) -> Nearest {
-    let beyond = |all: bool| {
-        let wanted = faces.into_iter().zip(signs).filter(move |(_, sign)| all || *sign <= 0.0);
-        wanted.map(|(face, _)| nearest_of(face)).reduce(Nearest::nearer)
-    };
-    beyond(false).or_else(|| beyond(true)).expect("a simplex has faces")
+    let none = wanted == [false; N];
+    let chosen = faces.into_iter().zip(wanted).filter(|(_, wanted)| none || *wanted);
+    let nearest = chosen.map(|(face, _)| nearest_of(face)).reduce(Nearest::nearer);
+    nearest.expect("a simplex has faces")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use colltrans_oracle::distance::distance;
+    use colltrans_oracle::exact::Vector;
+    use colltrans_oracle::settings::Rng;
+
+    /// Up to four points: in general position, on a grid (so often in a plane, on a line or equal),
+    /// nearly in a plane, or far away and close to each other.
+    fn corners(rng: &mut Rng) -> Vec<DVec3> {
+        let n = rng.int(1, 4);
+        let thin = rng.pick(&[1e-3, 1e-9, 1e-15, 1e-18]);
+        let (shift, turn) = (rng.vector(), rng.rotation());
+        let kind = rng.int(0, 3);
+        (0..n)
+            .map(|_| match kind {
+                0 => rng.vector(),
+                1 => rng.grid(-1, 1),
+                2 => turn * (rng.vector() * DVec3::new(1.0, 1.0, thin)) + shift * thin,
+                _ => shift * 1e3 + rng.vector(),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn nearest_points_of_simplices_in_every_position() {
+        let mut rng = Rng::new(1);
+        let mut inside = 0;
+        for case in 0..20_000 {
+            let points = corners(&mut rng);
+            let corner = |&point: &DVec3| Corner { point, ..Corner::default() };
+            let mut simplex = Simplex::new(corner(&points[0]));
+            points[1..].iter().for_each(|point| simplex.push(corner(point)));
+            let found = simplex.reduce(DVec3::ZERO);
+
+            let exact: Vec<Vector> = points.iter().map(|p| Vector::new(*p)).collect();
+            let truth = distance(&[Vector::new(DVec3::ZERO)], &exact).to_f64();
+            let size = points.iter().map(|p| p.length()).fold(0.0, f64::max);
+            let error = (found.length() - truth).abs() / size.max(f64::MIN_POSITIVE);
+            assert!(error <= 16.0 * f64::EPSILON, "case {case}: {points:?} {error:e}");
+            let weights = &simplex.weights[..simplex.len];
+            let sum: f64 = weights.iter().sum();
+            assert!((sum - 1.0).abs() <= 4.0 * f64::EPSILON && weights.iter().all(|w| *w > 0.0));
+            let combined: DVec3 =
+                simplex.corners().iter().zip(weights).map(|(c, w)| c.point * *w).sum();
+            let off = combined.distance(found) / size.max(f64::MIN_POSITIVE);
+            assert!(off <= 16.0 * f64::EPSILON, "case {case}: {points:?} {off:e}");
+            inside += u32::from(simplex.len == 4);
+        }
+        assert!(inside > 20, "{inside}");
+    }
 }

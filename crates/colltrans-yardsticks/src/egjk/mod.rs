@@ -10,6 +10,10 @@
 //! beyond the plane through `w` with normal `v`, so `v . w / |v|` is a lower one. The *gap* between
 //! the best of both bounds the error of the answer, whatever rounding did to `v` itself.
 //!
+//! The search ends when the gap is a rounding error of a point of `M`, or when rounding stalls it.
+//! Measured on more than 200,000 tied, touching, thin and coherent settings: stalled 9 times, on
+//! bodies a thousand times as long as thick or more, with gaps up to `2.9e-13 S`.
+//!
 //! Cameron's enhancement: a support point is found by climbing from vertex to vertex (`climb`),
 //! starting where the last one was found, and the simplex is carried over from query to query.
 //! The nearest point of the simplex is found by signed volumes (`simplex`).
@@ -123,7 +127,8 @@ impl<'a> Egjk<'a> {
     /// Distance and nearest points of the placed bodies, to within [`Steps::gap`].
     ///
     /// A distance below the rounding error `32 u S` is returned as 0. If the bodies overlap, both
-    /// nearest points are one point of both.
+    /// nearest points are one point of both, up to rounding. Where almost parallel faces or edges
+    /// are nearest, many pairs of points have the same distance up to rounding; the answer is one.
     pub fn distance(&mut self, moving_pose: &Pose, fixed_pose: &Pose) -> Proximity<Steps> {
         let relative = Relative::new(moving_pose, fixed_pose);
         let noise = Difference::NOISE * self.difference.size(&relative);

@@ -1,4 +1,4 @@
-//! Support points by hill climbing over the edges (Cameron 1997, section 4).
+//! Support points by hill climbing over the edges (Cameron 1997).
 //!
 //! Notation. `d` is the direction, `x_v` the position of vertex `v`; climbing goes from a vertex to
 //! the neighbour with the largest gain `d . (x_w - x_v)` as long as there is one.

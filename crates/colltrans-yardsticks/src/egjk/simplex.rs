@@ -1,6 +1,6 @@
 //! The simplex of GJK and its point nearest to a given one, by signed volumes (Montanari,
 //! Petrinic, Barbieri, "Improving the GJK algorithm for faster and more reliable distance queries
-//! between two convex objects", ACM Transactions on Graphics 36(3), 2017, sections 4 and 5).
+//! between convex objects", ACM Transactions on Graphics 36(3), 2017).
 //!
 //! Notation. `a, b, c, d` are corners, relative to the given point, which is thus the origin; its
 //! *foot* is its projection onto the plane or the line of some of them. The weights of the foot are
@@ -12,12 +12,15 @@
 //! - A weight of the wrong sign: the origin lies beyond the face without that corner. The nearest
 //!   point is the nearest of those faces' nearest points, each found in the same way.
 //!
-//! Where rounding leaves the sign of a weight open, the face is looked at; where it leaves that of
-//! the whole open, all faces are: a simplex that is flat up to rounding is covered by them.
+//! Three things are added, for accuracy:
 //!
-//! Directions matter more than lengths here: a nearest point of length `|v|`, off by `u S`, has a
-//! direction off by `u S / |v|`, and so would be the bound of GJK that rests on it. The foot on a
-//! plane is therefore a multiple of the normal, and that on a line is made orthogonal to it twice.
+//! - Where rounding leaves the sign of a weight open, the face is looked at; where it leaves that
+//!   of the whole open, all faces are: a simplex that is flat up to rounding is covered by them.
+//! - In thin simplices the weights are corrected by Newton's method.
+//! - Directions matter more than lengths: a nearest point of length `|v|`, off by `u S`, has a
+//!   direction off by `u S / |v|`, and so would be the bound of GJK that rests on it. The foot on a
+//!   plane is therefore a multiple of the normal, and that on a line is made orthogonal to it
+//!   twice.
 
 use colltrans::VertexPair;
 use glam::DVec3;

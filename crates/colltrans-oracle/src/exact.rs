@@ -201,6 +201,18 @@ impl Ratio {
         scale(n / d, i - j)
     }
 
+    /// The nearest `f64` of the square root, up to a few rounding errors, however small or large
+    /// the number itself is.
+    ///
+    /// # Panics
+    /// If the number is negative.
+    pub fn sqrt_to_f64(&self) -> f64 {
+        assert!(!self.is_negative(), "no square root");
+        let ((n, i), (d, j)) = (self.numerator.leading(), self.denominator.leading());
+        let odd = (i - j).rem_euclid(2);
+        scale((n / d * f64::from(1 + odd)).sqrt(), (i - j - odd) / 2)
+    }
+
     /// `self - other`, exactly.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
@@ -343,6 +355,17 @@ mod tests {
         assert_eq!(third.to_f64(), 1.0 / 3.0);
         assert!(third.minus(&Ratio::from_f64(1.0 / 3.0)).is_within(1e-16));
         assert!(!third.minus(&Ratio::from_f64(1.0 / 3.0)).is_within(1e-18));
+    }
+
+    #[test]
+    fn square_roots_of_numbers_that_no_f64_holds() {
+        for x in [3e-200, 1e-300, 7.0, 1e200, 5e-320, 0.0] {
+            let x = Ratio::from_f64(x);
+            let root = x.times(&x).sqrt_to_f64();
+            assert!((root - x.to_f64()).abs() <= 2.0 * f64::EPSILON * root, "{root}");
+        }
+        let two = Ratio::new(Dyadic::new(-1.0), Dyadic::new(-0.5));
+        assert!((two.sqrt_to_f64() - 2.0_f64.sqrt()).abs() <= f64::EPSILON);
     }
 
     #[test]

@@ -3,9 +3,11 @@
 //!
 //! The data's way: [`settings`] -> the library -> [`check`], which reads the answer against the
 //! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
-//! ([`simplex`]) and the exact sideways overlap ([`shadow`]).
+//! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
+//! judged by [`distance`].
 
 pub mod check;
+pub mod distance;
 pub mod exact;
 pub mod fuzz;
 pub mod scene;

@@ -1,0 +1,1 @@
+//! Vertices, edges and faces with their neighbours.

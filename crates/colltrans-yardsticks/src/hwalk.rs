@@ -1,0 +1,1 @@
+//! H-Walk (Guibas, Hsu, Zhang 1999).

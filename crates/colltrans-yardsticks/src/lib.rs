@@ -1,0 +1,24 @@
+//! The algorithms that `colltrans` is measured against, each as it was published, on the same
+//! bodies.
+//!
+//! | module | algorithm | question |
+//! |---|---|---|
+//! | [`egjk`] | enhanced GJK (Cameron 1997) | distance |
+//! | [`pqp`] | swept sphere and oriented box trees (Larsen, Gottschalk, Lin, Manocha 1999) | distance, tolerance, intersection |
+//! | [`hwalk`] | H-Walk (Guibas, Hsu, Zhang 1999) | distance |
+//! | [`vclip`] | V-Clip (Mirtich 1998) | distance |
+//! | [`raycast`] | GJK ray cast (van den Bergen 2004) | collision translation |
+//!
+//! Frames and units are those of `colltrans`: bodies are placed by a [`Pose`](colltrans::Pose),
+//! points of answers are in the world.
+
+pub mod egjk;
+mod features;
+pub mod hwalk;
+mod placed;
+pub mod pqp;
+mod proximity;
+pub mod raycast;
+pub mod vclip;
+
+pub use proximity::Proximity;

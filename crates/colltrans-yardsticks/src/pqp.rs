@@ -1,0 +1,1 @@
+//! PQP (Larsen, Gottschalk, Lin, Manocha 1999).

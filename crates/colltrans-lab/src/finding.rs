@@ -1,0 +1,88 @@
+//! What an experiment found: figures and tables from data, and the claims they support or refute.
+
+/// The result of an experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// The figures, in the paper's form; more than one where the paper shows several plots.
+    pub figures: Vec<Figure>,
+    /// Tables.
+    pub tables: Vec<Table>,
+    /// The claims put to the test.
+    pub claims: Vec<Claim>,
+}
+
+/// A plot and its data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Name of its files, such as `figure-12-far`.
+    pub id: String,
+    /// Caption.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Measured curves.
+    pub series: Vec<Series>,
+    /// Curves to compare with, such as `log n`, drawn thin.
+    pub references: Vec<Series>,
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// What and in which unit.
+    pub label: String,
+    /// Logarithmic.
+    pub log: bool,
+}
+
+/// A curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend.
+    pub name: String,
+    /// Its points, ascending in `x`.
+    pub points: Vec<Point>,
+}
+
+/// A measured value with its spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Place on the horizontal axis.
+    pub x: f64,
+    /// The value: a median or a mean, as the figure's title says.
+    pub y: f64,
+    /// Lower end of the spread (quartile, or mean minus a standard deviation).
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// From how many measurements.
+    pub count: usize,
+}
+
+/// A table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Name of its file.
+    pub id: String,
+    /// Caption.
+    pub title: String,
+    /// Heads of the columns.
+    pub columns: Vec<String>,
+    /// Cells, row by row.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// Something the paper says, held against the data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// What is claimed.
+    pub statement: String,
+    /// What was measured.
+    pub measured: String,
+    /// Whether it holds, computed from the data.
+    pub holds: bool,
+    /// Why it does not hold here, as far as the data of this run tell.
+    pub why: Option<String>,
+}

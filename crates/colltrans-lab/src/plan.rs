@@ -1,0 +1,27 @@
+//! How much to measure.
+
+/// The scale of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Bodies of a few hundred vertices, a few queries: for tests, in seconds.
+    Tiny,
+    /// All sizes, few queries: under five minutes on two cores for everything.
+    Quick,
+    /// All sizes, many queries: under an hour.
+    Full,
+}
+
+/// What an experiment is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Plan {
+    /// How much.
+    pub scale: Scale,
+    /// Everything random is drawn from it; the same seed draws the same bodies and settings.
+    pub seed: u64,
+}
+
+/// Told how far an experiment is.
+pub trait Progress {
+    /// `done` of `all` parts (shares of the expected time, not counts), and what is going on.
+    fn at(&mut self, done: f64, all: f64, doing: &str);
+}

@@ -120,6 +120,10 @@ mod plane;
 mod polyhedron;
 mod portal;
 mod pose;
+#[cfg(feature = "profile")]
+pub mod profile;
+#[cfg(not(feature = "profile"))]
+mod profile;
 mod query;
 mod search;
 mod section;

@@ -16,6 +16,7 @@ use crate::options::{self, Focus, Narrowing, Options, Region};
 use crate::outcome::{Grazing, Outcome, Path, Separated, Solver, Steps};
 use crate::portal::{self, Enclosure, Followed, Met, OneSide, Overlap, Portal, Refined, Start};
 use crate::pose::Pose;
+use crate::profile::{Phase, lap};
 use crate::setting::{Setting, VertexPair};
 
 /// What a query leaves to the next one: the features it ended with.
@@ -59,6 +60,7 @@ pub(crate) fn search(
         steps: Steps::default(),
     };
     let answer = search(0.0).run(focus, &last, trace);
+    lap(Phase::Answer);
     if let Err(QueryError::NotConverged { .. }) = answer {
         return again(|turn_rad| search(turn_rad).run(&Focus::NONE, &Trace::Nothing, trace));
     }
@@ -102,8 +104,10 @@ impl Search<'_> {
             followed
         } else {
             let start = self.start(focus.region, last);
+            lap(Phase::Setup);
             portal::enclose(&self.difference, &start, &mut self.steps)
         };
+        lap(Phase::Finish);
         let noise = self.difference.noise;
         match enclosure {
             None => Err(self.not_converged()),
@@ -180,6 +184,7 @@ impl Search<'_> {
                 })
             }
         };
+        lap(Phase::Setup);
         let narrowed = cta::minimise(setting, &CtaOptions::new(start, self.narrowing.gap));
         self.steps.planar_problems += narrowed.planar_problems;
         let [moving, fixed] = narrowed.vertices;
@@ -227,6 +232,7 @@ impl Search<'_> {
         let tolerance = self.graze_tolerance.max(self.difference.touching());
         let overlap =
             portal::overlap(&self.difference, &optimum.portal, tolerance, &mut self.steps);
+        lap(Phase::Finish);
         let proven = Proven::new(&self.difference, self.moving_pose, &optimum)?;
         *next = Trace::Contact(proven.met());
         Ok(match overlap {

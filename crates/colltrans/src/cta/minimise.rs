@@ -10,6 +10,7 @@ use super::planar::{self, Near, Planar};
 use super::region::Region;
 use super::side::{Crossing, Side};
 use crate::polyhedron::ConvexPolyhedron;
+use crate::profile::{Phase, lap};
 use crate::section::{AXIS_LENGTH, AxisPair};
 use crate::setting::Setting;
 
@@ -122,6 +123,7 @@ impl Narrowed {
 /// Narrows the search for the contact of two bodies of dimension 3.
 pub(crate) fn minimise(setting: &Setting, options: &CtaOptions) -> Narrowed {
     let query = Query::new(setting);
+    lap(Phase::Setup);
     query.minimise(setting, options)
 }
 
@@ -196,6 +198,7 @@ impl<'a> Query<'a> {
             .near
             .and_then(|near| planar::solve_near(&self.sides, levels, &near))
             .or_else(|| planar::solve(&self.sides, levels, f64::NEG_INFINITY));
+        lap(Phase::Planar);
         let Some(first) = first else { return Narrowed::nothing() };
         let guessed = matches!(options.start, CtaStart::Contact(_));
         if guessed && let Some(confirmed) = self.confirm(&begin, &first, gap) {
@@ -332,10 +335,13 @@ impl Search<'_, '_> {
     fn run(&mut self, max_steps: u32, gap: f64) {
         while self.planar_problems < max_steps && self.upper - self.bound.t > gap {
             let Some(at) = self.next() else { break };
+            lap(Phase::Region);
             let levels = (self.origin + at).to_array();
             let known = self.bound.below(at) - self.query.frame.base(levels);
             self.planar_problems += 1;
+            lap(Phase::Bound);
             let answer = planar::solve(&self.query.sides, levels, known);
+            lap(Phase::Planar);
             if !answer.is_some_and(|answer| self.learn(at, levels, &answer)) {
                 break;
             }
@@ -379,11 +385,15 @@ impl Search<'_, '_> {
         } else {
             self.last_separation = Some((answer.features(), local.normal));
         }
+        lap(Phase::Cell);
         self.region.cut(bound.gradient, limit - bound.value);
+        lap(Phase::Region);
         if let Progress::Contradiction(normal) = self.bound.add(Piece { bound, ..local }) {
             self.contradiction = Some(normal);
+            lap(Phase::Bound);
             return false;
         }
+        lap(Phase::Bound);
         true
     }
 

@@ -1,8 +1,9 @@
-//! A few rows of the table under criterion: `cargo bench -p colltrans-bench`.
+//! A few rows of the tables under criterion: `cargo bench -p colltrans-bench`.
 
 use std::hint::black_box;
 
-use colltrans::Solver;
+use colltrans::{Solver, Tracker};
+use colltrans_bench::motion::{Motion, sequence};
 use colltrans_bench::parry::{self, ParrySetting};
 use colltrans_bench::settings::{Meeting, Setting};
 use colltrans_bench::shapes::Shape;
@@ -47,5 +48,30 @@ fn cast(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, cast);
+/// A sequence over and over, from scratch and tracked.
+fn track(criterion: &mut Criterion) {
+    for (n, delta) in [(200, 0.01), (2_000, 0.01), (2_000, 0.0013), (20_000, 0.0013)] {
+        let mut rng = Rng::new(1);
+        let bodies: Vec<_> =
+            (0..4).map(|_| Shape::Ellipsoid.draw(n, &mut rng).expect("a body")).collect();
+        let settings = sequence(&bodies, Meeting::Colliding, Motion::Screw, delta, 1_000, &mut rng);
+        let Some(&Setting { moving, fixed, .. }) = settings.first() else { continue };
+        let mut tracker = Tracker::new(&bodies[moving], &bodies[fixed]);
+        let mut group = criterion.benchmark_group(format!("sequence {n} {}%", 100.0 * delta));
+        // Forwards and back, so that there is no jump.
+        let mut cycle = settings.iter().chain(settings.iter().rev()).cycle();
+        group.bench_function("tracker", |bencher| {
+            bencher.iter(|| {
+                let setting = black_box(cycle.next().expect("endless"));
+                tracker.cast(&setting.moving_pose, &setting.fixed_pose, setting.direction)
+            });
+        });
+        group.bench_function("scratch", |bencher| {
+            bencher.iter(|| black_box(cycle.next().expect("endless")).cast(&bodies, Solver::Auto));
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, cast, track);
 criterion_main!(benches);

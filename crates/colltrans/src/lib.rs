@@ -71,6 +71,7 @@
 //! | [`clearance`] | how far can one move from where it is? |
 //! | [`directional_depth`] | how far must one go back until the overlap ends? |
 //! | [`intersects`] | do they meet where they are? |
+//! | [`Tracker`] | the same again, after a small change of pose or direction |
 //!
 //! An [`Outcome`] is a [`Contact`], [`Separated`] or [`Grazing`]. The bodies' *shadows*, their
 //! projections along the direction, decide: disjoint shadows are a separation, overlapping
@@ -105,8 +106,8 @@
 //!
 //! The modules, each using only those before it: `error`, `pose`, `exact` and `plane`
 //! (arithmetic); `topology`, `section` and `polyhedron` (bodies); `setting` and `minkowski` (two
-//! bodies and a direction); `certificate` and `outcome` (answers); `cta` and `portal` (solvers);
-//! `answer` and `query`.
+//! bodies and a direction); `options`, `certificate` and `outcome` (choices and answers); `cta` and
+//! `portal` (solvers); `answer`, `search` (one cast), `query` and `tracker`.
 
 mod answer;
 mod certificate;

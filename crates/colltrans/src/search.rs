@@ -111,7 +111,7 @@ impl Search<'_> {
         let noise = self.difference.noise;
         match enclosure {
             None => Err(self.not_converged()),
-            Some(Enclosure::Portal(first)) => self.contact_or_grazing(first, next),
+            Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
             Some(Enclosure::OneSide(found)) if found.margin > noise => {
                 Ok(Outcome::Separated(self.separated(&found, next)))
             }
@@ -221,24 +221,25 @@ impl Search<'_> {
 
     fn contact_or_grazing(
         &mut self,
-        first: Portal,
+        portal: &mut Portal,
         next: &mut Trace,
     ) -> Result<Outcome, QueryError> {
-        let optimum = match portal::refine(&self.difference, first, &mut self.steps) {
+        let optimum = match portal::refine(&self.difference, portal, &mut self.steps) {
             Some(Refined::Optimum(optimum)) => optimum,
             Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
             None => return Err(self.not_converged()),
         };
         let tolerance = self.graze_tolerance.max(self.difference.touching());
-        let overlap =
-            portal::overlap(&self.difference, &optimum.portal, tolerance, &mut self.steps);
+        let overlap = portal::overlap(&self.difference, portal, tolerance, &mut self.steps);
         lap(Phase::Finish);
-        let proven = Proven::new(&self.difference, self.moving_pose, &optimum)?;
+        let proven = Proven::new(&self.difference, portal, &optimum)?;
         *next = Trace::Contact(proven.met());
         Ok(match overlap {
-            Overlap::Ample => Outcome::Contact(proven.contact(self.solver, self.steps)),
+            Overlap::Ample => {
+                Outcome::Contact(proven.contact(self.moving_pose, self.solver, self.steps))
+            }
             Overlap::Slight { inward, depth } => {
-                let contact = proven.contact(self.solver, self.steps);
+                let contact = proven.contact(self.moving_pose, self.solver, self.steps);
                 Outcome::Grazing(answer::grazing(&self.difference, inward, depth, contact))
             }
         })
@@ -249,18 +250,18 @@ impl Search<'_> {
     fn touching(&mut self, rim: &OneSide, next: &mut Trace) -> Result<Grazing, QueryError> {
         self.difference = self.difference.widened(rim.margin);
         let start = Start::from_ellipsoids(&self.difference);
-        let Some(Enclosure::Portal(first)) =
+        let Some(Enclosure::Portal(mut portal)) =
             portal::enclose(&self.difference, &start, &mut self.steps)
         else {
             return Err(self.not_converged());
         };
         let Some(Refined::Optimum(optimum)) =
-            portal::refine(&self.difference, first, &mut self.steps)
+            portal::refine(&self.difference, &mut portal, &mut self.steps)
         else {
             return Err(self.not_converged());
         };
-        let proven = Proven::new(&self.difference, self.moving_pose, &optimum)?;
-        let contact = proven.contact(self.solver, self.steps);
+        let proven = Proven::new(&self.difference, &portal, &optimum)?;
+        let contact = proven.contact(self.moving_pose, self.solver, self.steps);
         let grazing = answer::grazing(&self.difference, rim.normal, -rim.margin, contact);
         *next = self.apart(grazing.separating_direction, rim);
         Ok(grazing)

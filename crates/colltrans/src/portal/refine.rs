@@ -24,9 +24,7 @@ pub(crate) struct Optimum {
     pub(crate) normal: DVec3,
     /// A pair that is lowest along `normal`.
     pub(crate) lowest: VertexPair,
-    /// Three of its points around the line.
-    pub(crate) portal: [Point; 3],
-    /// Their barycentric weights at the line.
+    /// Barycentric weights of the line in the portal that was reached.
     pub(crate) weights: [f64; 3],
 }
 
@@ -46,19 +44,20 @@ pub(crate) enum Refined {
     Rim(OneSide),
 }
 
-/// Follows portals down to the optimum. `None` if rounding makes them run in a circle.
+/// Follows portals down to the optimum, and leaves the last one in place of the first. `None` if
+/// rounding makes them run in a circle.
 #[inline]
 pub(crate) fn refine(
     difference: &Difference,
-    mut portal: Portal,
+    portal: &mut Portal,
     steps: &mut Steps,
 ) -> Option<Refined> {
     let mut newest = 2;
     for round in 0..MAX_PORTALS {
         steps.pivots += 1;
-        let Some(plane) = plane_normal(difference, &portal) else {
-            match widen(difference, &portal, steps)? {
-                Enclosure::Portal(wide) => portal = wide,
+        let Some(plane) = plane_normal(difference, portal) else {
+            match widen(difference, portal, steps)? {
+                Enclosure::Portal(wide) => *portal = wide,
                 Enclosure::OneSide(rim) => return Some(Refined::Rim(rim)),
             }
             continue;
@@ -66,12 +65,11 @@ pub(crate) fn refine(
         steps.supports += 1;
         let point = difference.support_from(plane, portal[newest].pair);
         let rounding = if round < LONG { difference.noise } else { difference.touching() };
-        if depth_below(&portal, plane, &point) <= rounding * plane.length() {
-            let weights = weights(&portal);
-            let optimum = Optimum { normal: plane, lowest: point.pair, portal, weights };
-            return Some(Refined::Optimum(optimum));
+        if depth_below(portal, plane, &point) <= rounding * plane.length() {
+            let weights = weights(portal);
+            return Some(Refined::Optimum(Optimum { normal: plane, lowest: point.pair, weights }));
         }
-        newest = exchange(difference, &mut portal, point);
+        newest = exchange(difference, portal, point);
     }
     None
 }

@@ -46,14 +46,18 @@ const FAR: f64 = 1.2;
 const MOST_NEIGHBOURS: usize = 32;
 
 /// Where the line met `M` in an earlier query.
+///
+/// In this order in memory: behind the tag of an enum, fields of eight bytes are written once if they
+/// come first, and twice if not.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub(crate) struct Met {
-    /// The portal.
-    pub(crate) pairs: [VertexPair; 3],
-    /// The weights of the contact in it.
-    pub(crate) weights: [f64; 3],
     /// The contact normal, in the frames of the moving and of the fixed body.
     pub(crate) normals: [DVec3; 2],
+    /// The weights of the contact in the portal.
+    pub(crate) weights: [f64; 3],
+    /// The portal.
+    pub(crate) pairs: [VertexPair; 3],
 }
 
 /// Follows the line from where it met `M` before.

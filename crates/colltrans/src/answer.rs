@@ -61,7 +61,8 @@ impl<'a> Proven<'a> {
         Met { pairs: self.portal.each_ref().map(|p| p.pair), weights, normals: self.normals }
     }
 
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "built where it is to stay: 5 %")]
     pub(crate) fn contact(&self, moving_pose: &Pose, solver: Solver, steps: Steps) -> Contact {
         let setting = self.difference.setting;
         let pairs = self.portal.each_ref().map(|p| p.pair);

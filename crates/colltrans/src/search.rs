@@ -234,15 +234,16 @@ impl Search<'_> {
         lap(Phase::Finish);
         let proven = Proven::new(&self.difference, portal, &optimum)?;
         *next = Trace::Contact(proven.met());
-        Ok(match overlap {
+        match overlap {
             Overlap::Ample => {
-                Outcome::Contact(proven.contact(self.moving_pose, self.solver, self.steps))
+                Ok(Outcome::Contact(proven.contact(self.moving_pose, self.solver, self.steps)))
             }
             Overlap::Slight { inward, depth } => {
                 let contact = proven.contact(self.moving_pose, self.solver, self.steps);
-                Outcome::Grazing(answer::grazing(&self.difference, inward, depth, contact))
+                let grazing = answer::grazing(&self.difference, inward, depth, contact);
+                Ok(Outcome::Grazing(grazing))
             }
-        })
+        }
     }
 
     /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact

@@ -84,7 +84,8 @@ impl<'a> Setting<'a> {
     }
 
     /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory they stall their reader: 1 %")]
     pub(crate) fn weighted(&self, pairs: &[VertexPair; 3], weights: &[f64; 3]) -> [DVec3; 2] {
         let mut means = [DVec3::ZERO; 2];
         for (pair, &weight) in pairs.iter().zip(weights) {

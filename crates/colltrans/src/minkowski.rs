@@ -156,7 +156,8 @@ impl<'a> Difference<'a> {
     }
 
     /// The point of `M`, not widened, that a pair of vertices gives.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 3 %")]
     pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
         let p = self.setting.moving.vertices()[pair.moving as usize];
         let q = self.setting.fixed.vertices()[pair.fixed as usize];

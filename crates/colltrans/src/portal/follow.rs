@@ -63,7 +63,8 @@ pub(crate) struct Met {
 /// Follows the line from where it met `M` before.
 #[inline]
 pub(crate) fn follow(difference: &Difference, met: &Met, steps: &mut Steps) -> Followed {
-    let mut portal = met.pairs.map(|pair| difference.vertex(pair));
+    let [a, b, c] = met.pairs;
+    let mut portal = [difference.vertex(a), difference.vertex(b), difference.vertex(c)];
     let [a, b, c] = portal.map(|p| p.shadow());
     if (b - a).perp_dot(c - a) < 0.0 {
         portal.swap(0, 1);

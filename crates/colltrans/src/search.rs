@@ -162,27 +162,9 @@ impl Search<'_> {
         if self.solver != Solver::Cta || !solid {
             return ellipsoids;
         }
-        let start = if let Some(focus) = self.region(region, last) {
-            self.steps.path = Path::Region;
-            CtaStart::Region(focus)
-        } else if self.narrowing.start == options::Start::Center {
-            CtaStart::Center
-        } else {
-            self.steps.supports += 1;
-            let support = self.difference.support(ellipsoids.normal);
-            let seems_apart = ellipsoids.normal.z == 0.0;
-            if seems_apart && ellipsoids.normal.dot(support.at) > 0.0 {
-                return ellipsoids.guided(ellipsoids.normal, support.pair);
-            }
-            if seems_apart {
-                CtaStart::Center
-            } else {
-                CtaStart::Contact(ContactGuess {
-                    normal: self.difference.axes * ellipsoids.normal,
-                    supports: [support.pair.moving, support.pair.fixed],
-                    touching: ellipsoids.touching(&self.difference),
-                })
-            }
+        let start = match self.cta_start(&ellipsoids, region, last) {
+            Ok(start) => start,
+            Err(apart) => return apart,
         };
         lap(Phase::Setup);
         let narrowed = cta::minimise(setting, &CtaOptions::new(start, self.narrowing.gap));
@@ -197,6 +179,39 @@ impl Search<'_> {
             }
             Guess::Nothing => ellipsoids,
         }
+    }
+
+    /// Where the minimisation starts; an error, and the better start, if the bodies seem to pass each
+    /// other.
+    fn cta_start(
+        &mut self,
+        ellipsoids: &Start,
+        region: Region,
+        last: &Trace,
+    ) -> Result<CtaStart, Start> {
+        if let Some(focus) = self.region(region, last) {
+            self.steps.path = Path::Region;
+            return Ok(CtaStart::Region(focus));
+        }
+        if self.narrowing.start == options::Start::Center {
+            return Ok(CtaStart::Center);
+        }
+        let normal = ellipsoids.normal;
+        self.steps.supports += 1;
+        let support = self.difference.support(normal);
+        if normal.z == 0.0 {
+            let apart = normal.dot(support.at) > 0.0;
+            return if apart {
+                Err(ellipsoids.guided(normal, support.pair))
+            } else {
+                Ok(CtaStart::Center)
+            };
+        }
+        Ok(CtaStart::Contact(ContactGuess {
+            normal: self.difference.axes * normal,
+            supports: [support.pair.moving, support.pair.fixed],
+            touching: ellipsoids.touching(&self.difference),
+        }))
     }
 
     /// Region focus: the last contact points, and the half-side of the square around them.
@@ -215,8 +230,8 @@ impl Search<'_> {
                 setting.displacement(touching)
             }
         };
-        let small = region != Region::Automatic || self.difference.is_near(half_side);
-        small.then_some(RegionFocus { touching, half_side })
+        let worth = region != Region::Automatic || self.difference.is_near(half_side);
+        worth.then_some(RegionFocus { touching, half_side })
     }
 
     fn contact_or_grazing(

@@ -88,8 +88,8 @@ impl Start {
     }
 
     /// With a normal (shadow frame) and a pair that another solver found.
-    pub(crate) fn guided(self, normal: DVec3, near: VertexPair) -> Self {
-        Self { normal: tempered(normal), near: Some(near), ..self }
+    pub(crate) fn guided(&self, normal: DVec3, near: VertexPair) -> Self {
+        Self { normal: tempered(normal), near: Some(near), ..*self }
     }
 }
 

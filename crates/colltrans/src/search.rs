@@ -164,7 +164,7 @@ impl Search<'_> {
         }
         let start = match self.cta_start(&ellipsoids, region, last) {
             Ok(start) => start,
-            Err(apart) => return apart,
+            Err(extreme) => return ellipsoids.guided(ellipsoids.normal, extreme),
         };
         lap(Phase::Setup);
         let narrowed = cta::minimise(setting, &CtaOptions::new(start, self.narrowing.gap));
@@ -181,14 +181,14 @@ impl Search<'_> {
         }
     }
 
-    /// Where the minimisation starts; an error, and the better start, if the bodies seem to pass each
-    /// other.
+    /// Where the minimisation starts; an error, with the pair extreme along it, if the ellipsoids'
+    /// normal already separates the bodies.
     fn cta_start(
         &mut self,
         ellipsoids: &Start,
         region: Region,
         last: &Trace,
-    ) -> Result<CtaStart, Start> {
+    ) -> Result<CtaStart, VertexPair> {
         if let Some(focus) = self.region(region, last) {
             self.steps.path = Path::Region;
             return Ok(CtaStart::Region(focus));
@@ -201,11 +201,7 @@ impl Search<'_> {
         let support = self.difference.support(normal);
         if normal.z == 0.0 {
             let apart = normal.dot(support.at) > 0.0;
-            return if apart {
-                Err(ellipsoids.guided(normal, support.pair))
-            } else {
-                Ok(CtaStart::Center)
-            };
+            return if apart { Err(support.pair) } else { Ok(CtaStart::Center) };
         }
         Ok(CtaStart::Contact(ContactGuess {
             normal: self.difference.axes * normal,

@@ -2,8 +2,10 @@
 //! `colltrans`.
 //!
 //! The data's way: [`shapes`] -> [`settings`], alone or in sequences ([`motion`]) -> the solvers,
-//! and [`parry`] on the same settings -> [`report`].
+//! and [`parry`] on the same settings -> [`report`]. [`arguments`] is
+//! the command line of both programs.
 
+pub mod arguments;
 pub mod motion;
 pub mod parry;
 pub mod report;

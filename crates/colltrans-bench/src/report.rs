@@ -1,9 +1,12 @@
 //! What every report of measurements needs: the clock's own cost, the machine and the date.
 
 use std::fs;
+use std::process::ExitCode;
 use std::time::{Instant, SystemTime};
 
 use serde_json::{Value, json};
+
+use crate::arguments::Arguments;
 
 /// The least time between two readings of the clock, in nanoseconds.
 pub fn clock_cost() -> f64 {
@@ -11,8 +14,21 @@ pub fn clock_cost() -> f64 {
     (0..64).map(once).min().unwrap_or(0) as f64
 }
 
-/// The machine, for reports.
-pub fn machine() -> Value {
+/// Writes the rows with what they were measured on, if a file was named.
+pub fn write(arguments: &Arguments, rows: Vec<Value>) -> ExitCode {
+    let Some(path) = &arguments.json else { return ExitCode::SUCCESS };
+    let report =
+        json!({ "date": date(), "machine": machine(), "seed": arguments.seed, "rows": rows });
+    match fs::write(path, format!("{report:#}\n")) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{path}: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn machine() -> Value {
     let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model =
         cpu.lines().find(|l| l.starts_with("model name")).and_then(|l| l.split(": ").nth(1));
@@ -25,7 +41,7 @@ pub fn machine() -> Value {
 }
 
 /// Today in UTC, `YYYY-MM-DD` (days to civil date after Howard Hinnant).
-pub fn date() -> String {
+fn date() -> String {
     let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
     let days = now.as_secs() / 86_400 + 719_468;
     let (era, day_of_era) = (days / 146_097, days % 146_097);

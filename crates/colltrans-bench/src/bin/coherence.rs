@@ -9,7 +9,6 @@
 //! changes from sequence to sequence. A query is timed alone, with the clock's own cost taken off.
 
 use std::f64::consts::PI;
-use std::fs;
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -18,8 +17,9 @@ use colltrans::{
     ConvexPolyhedron, Focus, Narrowing, Options, Outcome, Path, QueryError, Region, Solver, Start,
     Steps, Tracker, cast_with,
 };
+use colltrans_bench::arguments::{self, Arguments};
 use colltrans_bench::motion::{Motion, orbit, sequence};
-use colltrans_bench::report::{clock_cost, date, machine, quantile};
+use colltrans_bench::report::{self, clock_cost, quantile};
 use colltrans_bench::settings::{Meeting, Setting};
 use colltrans_bench::shapes::Shape;
 use colltrans_oracle::settings::Rng;
@@ -63,47 +63,8 @@ const SHIPPED: Narrowing = Narrowing { start: Start::Ellipsoids, gap: 0.2 };
 /// The paper's: from the centre of the levels, most of the way by planar problems.
 const PAPER: Narrowing = Narrowing { start: Start::Center, gap: 0.01 };
 
-struct Arguments {
-    sizes: Vec<usize>,
-    quick: bool,
-    json: Option<String>,
-    seed: u64,
-}
-
 fn main() -> ExitCode {
-    match parse(std::env::args().skip(1)) {
-        Ok(arguments) => run(&arguments),
-        Err(message) => {
-            eprintln!("{message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
-    let sizes = vec![200, 2_000, 20_000, 200_000];
-    let mut arguments = Arguments { sizes, quick: false, json: None, seed: 1 };
-    while let Some(word) = words.next() {
-        if word == "--help" || word == "-h" {
-            println!("{USAGE}");
-            std::process::exit(0);
-        }
-        if word == "--quick" {
-            arguments.quick = true;
-            continue;
-        }
-        let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
-        let number = |text: &str| text.parse().map_err(|_| format!("{text} is not a number"));
-        match word.as_str() {
-            "--sizes" => {
-                arguments.sizes = value.split(',').map(number).collect::<Result<_, _>>()?;
-            }
-            "--seed" => arguments.seed = number(&value)? as u64,
-            "--json" => arguments.json = Some(value),
-            _ => return Err(format!("unknown option {word}")),
-        }
-    }
-    Ok(arguments)
+    arguments::start(USAGE, &[200, 2_000, 20_000, 200_000], run)
 }
 
 fn run(arguments: &Arguments) -> ExitCode {
@@ -142,15 +103,7 @@ fn run(arguments: &Arguments) -> ExitCode {
             rows.push(measure(&format!("orbit {alpha} deg"), n, &sphere, &orbits));
         }
     }
-    let report =
-        json!({ "date": date(), "machine": machine(), "seed": arguments.seed, "rows": rows });
-    if let Some(path) = &arguments.json
-        && let Err(error) = fs::write(path, format!("{report:#}\n"))
-    {
-        eprintln!("{path}: {error}");
-        return ExitCode::FAILURE;
-    }
-    ExitCode::SUCCESS
+    report::write(arguments, rows)
 }
 
 /// Settings of one pair of bodies that have nothing else in common.

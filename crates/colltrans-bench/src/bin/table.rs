@@ -10,14 +10,14 @@
 //! program that does many different queries does, and a disturbance of the machine hits all of
 //! them.
 
-use std::fs;
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use colltrans::{ConvexPolyhedron, Outcome, Solver, Steps};
+use colltrans_bench::arguments::{self, Arguments};
 use colltrans_bench::parry::{self, ParrySetting};
-use colltrans_bench::report::{clock_cost, date, machine, quantile};
+use colltrans_bench::report::{self, clock_cost, quantile};
 use colltrans_bench::settings::{Meeting, Setting};
 use colltrans_bench::shapes::Shape;
 use colltrans_oracle::settings::Rng;
@@ -38,47 +38,9 @@ const CONTESTANTS: usize = SOLVERS.len() + 1;
 /// about as much.
 const AGREEMENT: f64 = 1e-4;
 
-struct Arguments {
-    sizes: Vec<usize>,
-    quick: bool,
-    json: Option<String>,
-    seed: u64,
-}
-
 fn main() -> ExitCode {
-    match parse(std::env::args().skip(1)) {
-        Ok(arguments) => run(&arguments),
-        Err(message) => {
-            eprintln!("{message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
-    let sizes = vec![8, 32, 128, 512, 2_000, 10_000, 50_000, 200_000];
-    let mut arguments = Arguments { sizes, quick: false, json: None, seed: 1 };
-    while let Some(word) = words.next() {
-        if word == "--help" || word == "-h" {
-            println!("{USAGE}");
-            std::process::exit(0);
-        }
-        if word == "--quick" {
-            arguments.quick = true;
-            continue;
-        }
-        let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
-        let number = |text: &str| text.parse().map_err(|_| format!("{text} is not a number"));
-        match word.as_str() {
-            "--sizes" => {
-                arguments.sizes = value.split(',').map(number).collect::<Result<_, _>>()?;
-            }
-            "--seed" => arguments.seed = number(&value)? as u64,
-            "--json" => arguments.json = Some(value),
-            _ => return Err(format!("unknown option {word}")),
-        }
-    }
-    Ok(arguments)
+    let sizes = [8, 32, 128, 512, 2_000, 10_000, 50_000, 200_000];
+    arguments::start(USAGE, &sizes, run)
 }
 
 fn run(arguments: &Arguments) -> ExitCode {
@@ -101,15 +63,7 @@ fn run(arguments: &Arguments) -> ExitCode {
             }
         }
     }
-    let report =
-        json!({ "date": date(), "machine": machine(), "seed": arguments.seed, "rows": rows });
-    if let Some(path) = &arguments.json
-        && let Err(error) = fs::write(path, format!("{report:#}\n"))
-    {
-        eprintln!("{path}: {error}");
-        return ExitCode::FAILURE;
-    }
-    ExitCode::SUCCESS
+    report::write(arguments, rows)
 }
 
 /// Which shapes in which sizes: all sizes of ellipsoids; of the others one in two.

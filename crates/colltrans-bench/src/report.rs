@@ -15,7 +15,7 @@ pub fn clock_cost() -> f64 {
 }
 
 /// Writes the rows with what they were measured on, if a file was named.
-pub fn write(arguments: &Arguments, rows: Vec<Value>) -> ExitCode {
+pub fn write(arguments: &Arguments, rows: &[Value]) -> ExitCode {
     let Some(path) = &arguments.json else { return ExitCode::SUCCESS };
     let report =
         json!({ "date": date(), "machine": machine(), "seed": arguments.seed, "rows": rows });

@@ -103,7 +103,7 @@ fn run(arguments: &Arguments) -> ExitCode {
             rows.push(measure(&format!("orbit {alpha} deg"), n, &sphere, &orbits));
         }
     }
-    report::write(arguments, rows)
+    report::write(arguments, &rows)
 }
 
 /// Settings of one pair of bodies that have nothing else in common.

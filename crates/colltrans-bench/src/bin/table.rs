@@ -63,7 +63,7 @@ fn run(arguments: &Arguments) -> ExitCode {
             }
         }
     }
-    report::write(arguments, rows)
+    report::write(arguments, &rows)
 }
 
 /// Which shapes in which sizes: all sizes of ellipsoids; of the others one in two.

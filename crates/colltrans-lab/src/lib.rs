@@ -8,6 +8,7 @@
 //! measured, by `timing`) -> [`finding`] (figures, tables, claims with verdicts) -> `draw`, `csv`,
 //! `report` (what a reader sees).
 
+pub mod draw;
 pub mod finding;
 pub mod plan;
 

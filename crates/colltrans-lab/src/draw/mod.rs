@@ -208,13 +208,13 @@ fn literally(text: &str) -> String {
 /// The scene as SVG that scales, with the same bytes each time: the plotting crate numbers clipping
 /// paths over the whole life of the process.
 fn svg(figure: &Figure, scene: &Scene) -> String {
-    let mut svg = SvgBackend::new().with_pretty(true).render_scene(scene);
     const NUMBERED: &str = "kuva-clip-";
+    let mut svg = SvgBackend::new().with_pretty(true).render_scene(scene);
     if let Some(at) = svg.find(NUMBERED) {
         let digits = svg[at + NUMBERED.len()..].bytes().take_while(u8::is_ascii_digit).count();
         let id = svg[at..at + NUMBERED.len() + digits].to_owned();
         svg = svg.replace(&id, &format!("{}-clip", figure.id));
     }
-    let size = format!(r#"<svg viewBox="0 0 {} {}" role="img" "#, scene.width, scene.height);
-    svg.replacen("<svg ", &size, 1)
+    let scalable = format!(r#"<svg viewBox="0 0 {} {}" "#, scene.width, scene.height);
+    svg.replacen("<svg ", &scalable, 1)
 }

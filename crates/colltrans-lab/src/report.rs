@@ -33,6 +33,9 @@ pub fn html(report: &Report) -> String {
     page
 }
 
+/// What is to be said of such a build.
+pub(crate) const UNOPTIMISED: &str = "This is an unoptimised build: its times mean nothing.";
+
 /// A verdict in words.
 pub(crate) fn verdict(holds: bool) -> &'static str {
     if holds { "holds" } else { "does not hold" }
@@ -81,8 +84,7 @@ fn write_state(page: &mut String, report: &Report) -> fmt::Result {
         writeln!(page, "<p class=\"warning\">{state}</p>")?;
     }
     if !report.provenance.is_optimised {
-        let build = "This is an unoptimised build: its times mean nothing.";
-        writeln!(page, "<p class=\"warning\">{build}</p>")?;
+        writeln!(page, "<p class=\"warning\">{UNOPTIMISED}</p>")?;
     }
     Ok(())
 }

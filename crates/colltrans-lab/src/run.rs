@@ -35,6 +35,8 @@ pub struct Done {
 pub struct Summary {
     /// The experiments, in the order in which they were run.
     pub done: Vec<Done>,
+    /// Where the numbers come from.
+    pub provenance: Provenance,
     /// The report.
     pub report: PathBuf,
     /// How long everything took.
@@ -81,7 +83,7 @@ pub fn run(
         done.push(Done { experiment, finding, pictures, wall });
         write_report(&done)?;
     }
-    Ok(Summary { done, report: path, wall: start.elapsed() })
+    Ok(Summary { done, wall: start.elapsed(), report: path, provenance })
 }
 
 fn write_finding(finding: &Finding, directory: &Path) -> Result<Vec<Picture>, LabError> {
@@ -131,6 +133,9 @@ impl fmt::Display for Summary {
                 writeln!(f, "  {verdict:13}  {}", claim.statement)?;
                 writeln!(f, "  {:13}  measured: {}", "", claim.measured)?;
             }
+        }
+        if !self.provenance.is_optimised {
+            writeln!(f, "{}", report::UNOPTIMISED)?;
         }
         let verdicts = report::count(&self.done);
         writeln!(f, "{verdicts}, {}. Report: {}", for_people(self.wall), self.report.display())

@@ -30,7 +30,15 @@ pub(super) enum Spread {
     UpTo(f64),
 }
 
+/// Curves with more points than this have a band instead of bars: bars would be a hatching.
+const MOST_BARS: usize = 24;
+
 impl Curve<'_> {
+    /// Whether it is drawn without marks, its spread as a band.
+    pub(super) fn is_dense(&self) -> bool {
+        self.marks().count() > MOST_BARS
+    }
+
     pub(super) fn marks(&self) -> impl Iterator<Item = Mark> {
         self.stretches.iter().flatten().copied()
     }

@@ -1,6 +1,6 @@
 //! Figures as pictures.
 //!
-//! [`curve`] sorts out what can be drawn, [`axis`] how much of the axes is shown; here the plotting
+//! `curve` sorts out what can be drawn, `axis` how much of the axes is shown; here the plotting
 //! crate is told to draw it. Everything in a picture is computed from the [`Figure`]: the same
 //! figure gives the same bytes.
 
@@ -34,11 +34,9 @@ pub struct Picture {
 
 /// Pixels of the SVG.
 const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 460.0;
+const HEIGHT: f64 = 500.0;
 /// Pixels of the PNG for each of the SVG.
 const PNG_SCALE: f32 = 2.0;
-/// Series with more points than this have a band instead of bars: bars would be a hatching.
-const MOST_BARS: usize = 24;
 
 /// Colours that people with any colour vision can tell apart (Okabe and Ito), and shapes.
 const COLOURS: [&str; 7] =
@@ -88,7 +86,8 @@ fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: 
     }
     for (curve, (&colour, &shape)) in measured.iter().zip(styles()) {
         add_measured(&mut plots, curve, colour, shape, y.0);
-        legend.push(entry(curve, colour, LegendShape::Marker(shape), None));
+        let sign = if curve.is_dense() { LegendShape::Line } else { LegendShape::Marker(shape) };
+        legend.push(entry(curve, colour, sign, None));
     }
     for (curve, &(grey, dash)) in references.iter().zip(GREYS.iter().cycle()) {
         legend.push(entry(curve, grey, LegendShape::Line, Some(dash)));
@@ -134,7 +133,7 @@ fn add_measured(
     shape: MarkerShape,
     bottom: f64,
 ) {
-    let with_bars = curve.marks().count() <= MOST_BARS;
+    let is_dense = curve.is_dense();
     for stretch in &curve.stretches {
         let points = || stretch.iter().map(|mark| (mark.x, mark.y));
         let (low, high): (Vec<f64>, Vec<f64>) = stretch
@@ -145,19 +144,19 @@ fn add_measured(
                 Spread::UpTo(high) => (bottom, high),
             })
             .unzip();
-        if with_bars {
-            plots.push(line(points(), colour, 1.5).into());
-            let mut dots =
-                ScatterPlot::new().with_data(points()).with_color(colour).with_marker(shape);
-            for ((dot, low), high) in dots.data.iter_mut().zip(low).zip(high) {
-                dot.y_err = (low < high).then_some((dot.y - low, high - dot.y));
-            }
-            plots.push(dots.with_size(3.5).into());
-        } else {
+        if is_dense && stretch.len() > 1 {
             let x = points().map(|(x, _)| x);
             plots.push(BandPlot::new(x, low, high).with_color(colour).with_opacity(0.2).into());
             plots.push(line(points(), colour, 1.5).into());
+            continue;
         }
+        let dots = ScatterPlot::new().with_data(points()).with_color(colour).with_marker(shape);
+        let mut dots = dots.with_size(3.5);
+        for ((dot, low), high) in dots.data.iter_mut().zip(low).zip(high) {
+            dot.y_err = (low < high).then_some((dot.y - low, high - dot.y));
+        }
+        plots.push(line(points(), colour, 1.5).into());
+        plots.push(dots.into());
     }
 }
 

@@ -50,8 +50,9 @@ const SHAPES: [MarkerShape; 7] = [
     MarkerShape::Pentagon,
     MarkerShape::Star,
 ];
-/// Greys and dashes of curves to compare with.
-const GREYS: [(&str, &str); 3] = [("#444444", "7 4"), ("#888888", "2 3"), ("#666666", "9 3 2 3")];
+/// Greys and dashes of curves to compare with. In PNG the dashes have pixels for their unit: short
+/// ones would flow together.
+const GREYS: [(&str, &str); 3] = [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "14 5 3 5")];
 
 /// Draws a figure.
 ///

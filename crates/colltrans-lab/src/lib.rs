@@ -5,14 +5,28 @@
 //! section V reports nine figures (11 to 19) and a table; each is an [`Experiment`] here.
 //!
 //! The data's way: [`plan`] (how much) -> `shapes`, `settings` (what on) -> `experiments` (what is
-//! measured, by `timing`) -> [`finding`] (figures, tables, claims with verdicts) -> `draw`, `csv`,
-//! `report` (what a reader sees).
+//! measured, by `timing`) -> [`finding`] (figures, tables, claims with verdicts) -> [`draw`],
+//! [`csv`], [`report`] (what a reader sees). [`run()`] goes all the way and writes the files.
 
+pub mod csv;
+pub mod draw;
+mod error;
 pub mod finding;
 pub mod plan;
+pub mod provenance;
+pub mod report;
+mod run;
 
 use finding::Finding;
 use plan::{Plan, Progress};
+
+pub use error::LabError;
+pub use run::{Done, Summary, run};
+
+/// All experiments, in the paper's order.
+pub fn experiments() -> &'static [Experiment] {
+    &[]
+}
 
 /// One figure or table of the paper.
 #[derive(Debug, Clone, Copy)]
@@ -23,4 +37,11 @@ pub struct Experiment {
     pub title: &'static str,
     /// Runs it.
     pub run: fn(&Plan, &mut dyn Progress) -> Finding,
+}
+
+impl Experiment {
+    /// The id for people: `Figure 12`.
+    pub fn name(&self) -> String {
+        self.id.replacen("figure-", "Figure ", 1).replacen("table-", "Table ", 1)
+    }
 }

@@ -1,0 +1,192 @@
+//! The nearest points of two features, and how near the bodies can be at most.
+//!
+//! Notation. `p`, `q` points of the moving and the fixed body in the fixed body's frame; `n` a unit
+//! vector. For every `n` the slab between the supporting planes,
+//! `w(n) = min_Q n . q - max_P n . p`, is a lower bound of the distance; for the nearest points and
+//! `n` along `q - p` it is the distance. The difference is the *gap*: what the answer can be wrong
+//! by, whatever walk led to it.
+//!
+//! Close to contact `q - p` is known to a few units in the last place of the *size* and its
+//! direction to as little as that allows; the features give better ones: the face's normal, what is
+//! orthogonal to the edges.
+
+use glam::DVec3;
+
+use super::segment::{at, foot, nearest_of_segments};
+use super::walk::{Pair, Scene};
+use crate::features::{Feature, HalfEdge, Shell};
+
+/// Rounding of a coordinate of a difference of two points, in units of `2^-53` times the size: as
+/// derived at the head of `colltrans`' `minkowski`.
+const NOISE: f64 = 32.0;
+
+/// Nearest points of a pair of features, in the fixed body's frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearest {
+    pub(crate) on_moving: DVec3,
+    pub(crate) on_fixed: DVec3,
+    pub(crate) distance: f64,
+    /// Unit vector from the moving to the fixed point.
+    normal: DVec3,
+}
+
+impl Scene<'_> {
+    /// The nearest points of two features that a walk ended with.
+    pub(crate) fn nearest(&self, pair: Pair) -> Nearest {
+        use Feature::{Edge, Face, Vertex};
+        let [from_moving, from_fixed] = &self.views;
+        let (moving, fixed) = (from_moving.own, from_fixed.own);
+        let seen = |h: u32| {
+            let HalfEdge { origin, target, .. } = moving.half_edge(h);
+            [from_fixed.seen(origin), from_fixed.seen(target)]
+        };
+        match pair {
+            [Vertex(v), Vertex(w)] => {
+                let (p, q) = (from_fixed.seen(v), fixed.vertex(w));
+                Nearest::new(p, q, q - p)
+            }
+            [Vertex(v), Edge(h)] => {
+                let (p, edge) = (from_fixed.seen(v), fixed.ends(h));
+                let share = foot(p, edge);
+                let q = at(edge, share);
+                Nearest::new(p, q, across(q - p, edge, share))
+            }
+            [Edge(h), Vertex(w)] => {
+                let (edge, q) = (seen(h), fixed.vertex(w));
+                let share = foot(q, edge);
+                let p = at(edge, share);
+                Nearest::new(p, q, across(q - p, edge, share))
+            }
+            [Edge(g), Edge(h)] => {
+                let (first, second) = (seen(g), fixed.ends(h));
+                let near = nearest_of_segments(first, second);
+                let apart = near.second - near.first;
+                let crossing = near.share > 0.0 && near.share < 1.0;
+                let normal = if crossing { across_both(apart, first, second) } else { apart };
+                Nearest::new(near.first, near.second, normal)
+            }
+            [Vertex(v), Face(f)] => {
+                let (p, normal) = (from_fixed.seen(v), fixed.normal(f));
+                Nearest::new(p, p - normal * fixed.height(f, p), -normal)
+            }
+            [Face(f), Vertex(w)] => {
+                let normal = from_fixed.rotation * moving.normal(f);
+                let (q, height) = (fixed.vertex(w), moving.height(f, from_moving.seen(w)));
+                Nearest::new(q - normal * height, q, normal)
+            }
+            // No walk ends here.
+            [a, b] => {
+                let vertices = [moving.some_vertex(a), fixed.some_vertex(b)].map(Vertex);
+                self.nearest(vertices)
+            }
+        }
+    }
+
+    /// What the distance may be less than that of these points. `pair` is where to look for
+    /// supporting planes first.
+    pub(crate) fn gap(&self, near: &Nearest, pair: Pair) -> f64 {
+        let gap = near.distance - self.width(near.normal, pair).max(0.0);
+        if gap <= self.rounding() {
+            return gap.max(0.0);
+        }
+        // A tie: the normal is at the border of what the features allow, and rounded beyond it.
+        let widths = self.normals_around(pair).into_iter().map(|n| self.width(n, pair));
+        (near.distance - widths.fold(near.distance - gap, f64::max)).max(0.0)
+    }
+
+    /// A gap that rounding explains: a few noises of the coordinates.
+    pub(crate) fn rounding(&self) -> f64 {
+        let size = self.views.iter().map(|view| view.own.reach()).sum::<f64>()
+            + self.views[1].translation.length();
+        4.0 * NOISE * (f64::EPSILON / 2.0) * size
+    }
+
+    /// The vertices on the supporting planes across `q - p`: a pair that is nearer, if there is
+    /// one.
+    pub(crate) fn supports(&self, near: &Nearest, pair: Pair) -> Pair {
+        let [from_moving, from_fixed] = &self.views;
+        let along = from_moving.rotation * near.normal;
+        [
+            from_moving.own.support(along, from_moving.own.some_vertex(pair[0])),
+            from_fixed.own.support(-near.normal, from_fixed.own.some_vertex(pair[1])),
+        ]
+        .map(Feature::Vertex)
+    }
+
+    /// `w(n)`.
+    fn width(&self, normal: DVec3, pair: Pair) -> f64 {
+        let [from_moving, from_fixed] = &self.views;
+        let [p, q] = [
+            from_moving.own.support(
+                from_moving.rotation * normal,
+                from_moving.own.some_vertex(pair[0]),
+            ),
+            from_fixed.own.support(-normal, from_fixed.own.some_vertex(pair[1])),
+        ];
+        normal.dot(from_fixed.own.vertex(q) - from_fixed.seen(p))
+    }
+
+    /// Normals of the faces and of the pairs of edges around two features, from the moving to the
+    /// fixed body; both signs of the latter.
+    fn normals_around(&self, pair: Pair) -> Vec<DVec3> {
+        let [from_moving, from_fixed] = &self.views;
+        let (moving, fixed) = (from_moving.own, from_fixed.own);
+        let to_fixed = |n: DVec3| from_fixed.rotation * n;
+        let [moving_edges, fixed_edges] = [around(moving, pair[0]), around(fixed, pair[1])];
+        let faces = |shell: &Shell, edges: &[u32]| {
+            edges.iter().map(|&h| shell.normal(shell.half_edge(h).face)).collect::<Vec<_>>()
+        };
+        let mut normals: Vec<DVec3> = faces(fixed, &fixed_edges).iter().map(|n| -*n).collect();
+        normals.extend(faces(moving, &moving_edges).into_iter().map(to_fixed));
+        let along = |[a, b]: [DVec3; 2]| (b - a).normalize_or_zero();
+        for &g in &moving_edges {
+            let first = to_fixed(along(moving.ends(g)));
+            for &h in &fixed_edges {
+                let normal = first.cross(along(fixed.ends(h))).normalize_or_zero();
+                normals.extend([normal, -normal]);
+            }
+        }
+        normals
+    }
+}
+
+impl Nearest {
+    fn new(p: DVec3, q: DVec3, normal: DVec3) -> Self {
+        Self {
+            on_moving: p,
+            on_fixed: q,
+            distance: p.distance(q),
+            normal: normal.normalize_or_zero(),
+        }
+    }
+}
+
+/// `apart` without what rounding left of it along an edge, if it ends at an inner point of the edge.
+fn across(apart: DVec3, [a, b]: [DVec3; 2], share: f64) -> DVec3 {
+    if share <= 0.0 || share >= 1.0 {
+        return apart;
+    }
+    let along = (b - a).normalize_or_zero();
+    apart - along * apart.dot(along)
+}
+
+/// The common normal of two edges, unless they are so nearly parallel that `apart` says it better.
+fn across_both(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
+    let normal = (b - a).normalize_or_zero().cross((d - c).normalize_or_zero());
+    let length = apart.length();
+    if normal.length() * length < f64::EPSILON.sqrt() * a.distance(b).max(c.distance(d)).max(length)
+    {
+        return across(apart, [a, b], 0.5);
+    }
+    normal * normal.dot(apart).signum()
+}
+
+/// The half-edges that leave the vertices of a feature.
+fn around(shell: &Shell, feature: Feature) -> Vec<u32> {
+    let vertices: Vec<u32> = match feature {
+        Feature::Vertex(v) => vec![v],
+        Feature::Edge(h) => vec![shell.half_edge(h).origin, shell.half_edge(h).target],
+        Feature::Face(f) => shell.boundary(f).map(|h| shell.half_edge(h).origin).collect(),
+    };
+    vertices.into_iter().flat_map(|v| shell.outgoing(v).iter().copied()).collect()
+}

@@ -90,7 +90,8 @@ impl Scene<'_> {
             return gap.max(0.0);
         }
         // A tie: the normal is at the border of what the features allow, and rounded beyond it.
-        let widths = self.normals_around(pair).into_iter().map(|n| self.width(n, pair));
+        let normals = self.normals_around(near.normal, pair).into_iter();
+        let widths = normals.map(|n| self.width(n, pair));
         (near.distance - widths.fold(near.distance - gap, f64::max)).max(0.0)
     }
 
@@ -126,24 +127,24 @@ impl Scene<'_> {
         normal.dot(from_fixed.own.vertex(q) - from_fixed.seen(p))
     }
 
-    /// Normals of the faces and of the pairs of edges around two features, from the moving to the
-    /// fixed body; both signs of the latter.
-    fn normals_around(&self, pair: Pair) -> Vec<DVec3> {
+    /// Unit vectors that two features may have meant by `normal`: across one edge around them, or
+    /// across one of each body, or along a face's normal; with both signs where the edges do not
+    /// say which.
+    fn normals_around(&self, normal: DVec3, pair: Pair) -> Vec<DVec3> {
         let [from_moving, from_fixed] = &self.views;
-        let (moving, fixed) = (from_moving.own, from_fixed.own);
         let to_fixed = |n: DVec3| from_fixed.rotation * n;
-        let [moving_edges, fixed_edges] = [around(moving, pair[0]), around(fixed, pair[1])];
-        let faces = |shell: &Shell, edges: &[u32]| {
-            edges.iter().map(|&h| shell.normal(shell.half_edge(h).face)).collect::<Vec<_>>()
-        };
-        let mut normals: Vec<DVec3> = faces(fixed, &fixed_edges).iter().map(|n| -*n).collect();
-        normals.extend(faces(moving, &moving_edges).into_iter().map(to_fixed));
-        let along = |[a, b]: [DVec3; 2]| (b - a).normalize_or_zero();
-        for &g in &moving_edges {
-            let first = to_fixed(along(moving.ends(g)));
-            for &h in &fixed_edges {
-                let normal = first.cross(along(fixed.ends(h))).normalize_or_zero();
-                normals.extend([normal, -normal]);
+        let [moving, fixed] = [around(from_moving.own, pair[0]), around(from_fixed.own, pair[1])];
+        let moving = moving.into_iter().map(|(along, n)| (to_fixed(along), to_fixed(n)));
+        let moving: Vec<(DVec3, DVec3)> = moving.collect();
+        let mut normals: Vec<DVec3> = moving.iter().map(|(_, n)| *n).collect();
+        normals.extend(fixed.iter().map(|(_, n)| -*n));
+        for (along, _) in moving.iter().chain(&fixed) {
+            normals.push((normal - along * normal.dot(*along)).normalize_or_zero());
+        }
+        for (first, _) in &moving {
+            for (second, _) in &fixed {
+                let across = first.cross(*second).normalize_or_zero();
+                normals.extend([across, -across]);
             }
         }
         normals
@@ -181,12 +182,17 @@ fn across_both(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
     normal * normal.dot(apart).signum()
 }
 
-/// The half-edges that leave the vertices of a feature.
-fn around(shell: &Shell, feature: Feature) -> Vec<u32> {
+/// The edges that leave the vertices of a feature: unit vector, normal of the face on the left.
+fn around(shell: &Shell, feature: Feature) -> Vec<(DVec3, DVec3)> {
     let vertices: Vec<u32> = match feature {
         Feature::Vertex(v) => vec![v],
         Feature::Edge(h) => vec![shell.half_edge(h).origin, shell.half_edge(h).target],
         Feature::Face(f) => shell.boundary(f).map(|h| shell.half_edge(h).origin).collect(),
     };
-    vertices.into_iter().flat_map(|v| shell.outgoing(v).iter().copied()).collect()
+    let edges = vertices.into_iter().flat_map(|v| shell.outgoing(v));
+    let described = edges.map(|&h| {
+        let [a, b] = shell.ends(h);
+        ((b - a).normalize_or_zero(), shell.normal(shell.half_edge(h).face))
+    });
+    described.collect()
 }

@@ -28,7 +28,7 @@ impl Relative {
     }
 
     /// A direction of the fixed body's frame in the moving body's.
-    pub(crate) fn to_moving(&self, in_fixed: DVec3) -> DVec3 {
+    pub(crate) fn to_moving(self, in_fixed: DVec3) -> DVec3 {
         self.rotation.transpose() * in_fixed
     }
 }

@@ -1,1 +1,0 @@
-//! Enhanced GJK (Cameron 1997).

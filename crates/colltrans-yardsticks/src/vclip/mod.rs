@@ -20,6 +20,7 @@ use glam::DVec3;
 pub use crate::features::{NotSolid, Shell};
 use crate::features::Feature;
 use crate::proximity::Proximity;
+use proof::Slab;
 use walk::{End, Pair, Scene, Work};
 
 /// How often a walk whose answer is not proven starts again, from where the supporting planes touch.
@@ -147,7 +148,7 @@ pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Wo
             scene.settle_in_circle(pair);
         }
         let near = scene.nearest(*pair);
-        let gap = scene.gap(&near, *pair);
+        let Slab { gap, supports } = scene.slab(&near, *pair);
         let settled = Settled {
             on_moving: near.on_moving,
             on_fixed: near.on_fixed,
@@ -162,7 +163,7 @@ pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Wo
         if best.is_none_or(|(other, _)| settled.distance < other.distance) {
             best = Some((settled, *pair));
         }
-        *pair = scene.supports(&near, *pair);
+        *pair = supports;
         end = scene.walk(pair, scene.patience(), work);
     }
     let (settled, kept) = best.expect("at least one walk");

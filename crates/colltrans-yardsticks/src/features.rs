@@ -92,9 +92,12 @@ impl Shell {
         for face in faces.clone() {
             let corners = body.face_vertices(face);
             let next = corners.clone().cycle().skip(1);
-            half_edges.extend(
-                corners.zip(next).map(|(origin, target)| HalfEdge { origin, target, twin: 0, face }),
-            );
+            half_edges.extend(corners.zip(next).map(|(origin, target)| HalfEdge {
+                origin,
+                target,
+                twin: 0,
+                face,
+            }));
             face_start.push(half_edges.len() as u32);
         }
         let (vertex_start, outgoing) = group_by_origin(body.vertices().len(), &half_edges);
@@ -154,10 +157,6 @@ impl Shell {
         self.normals[face as usize]
     }
 
-    pub(crate) fn normals(&self) -> &[DVec3] {
-        &self.normals
-    }
-
     /// The half-edges that leave a vertex.
     pub(crate) fn outgoing(&self, v: u32) -> &[u32] {
         let v = v as usize;
@@ -185,6 +184,15 @@ impl Shell {
             Feature::Vertex(v) => v,
             Feature::Edge(h) => self.half_edge(h).origin,
             Feature::Face(f) => self.half_edge(self.face_start[f as usize]).origin,
+        }
+    }
+
+    /// The vertices of a feature.
+    pub(crate) fn vertices_of(&self, feature: Feature) -> Vec<u32> {
+        match feature {
+            Feature::Vertex(v) => vec![v],
+            Feature::Edge(h) => vec![self.half_edge(h).origin, self.half_edge(h).target],
+            Feature::Face(f) => self.boundary(f).map(|h| self.half_edge(h).origin).collect(),
         }
     }
 

@@ -179,12 +179,7 @@ fn across_both(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
 
 /// The edges that leave the vertices of a feature: unit vector, normal of the face on the left.
 fn around(shell: &Shell, feature: Feature) -> Vec<(DVec3, DVec3)> {
-    let vertices: Vec<u32> = match feature {
-        Feature::Vertex(v) => vec![v],
-        Feature::Edge(h) => vec![shell.half_edge(h).origin, shell.half_edge(h).target],
-        Feature::Face(f) => shell.boundary(f).map(|h| shell.half_edge(h).origin).collect(),
-    };
-    let edges = vertices.into_iter().flat_map(|v| shell.outgoing(v));
+    let edges = shell.vertices_of(feature).into_iter().flat_map(|v| shell.outgoing(v));
     let described = edges.map(|&h| {
         let [a, b] = shell.ends(h);
         ((b - a).normalize_or_zero(), shell.normal(shell.half_edge(h).face))

@@ -10,7 +10,7 @@
 //! planes across it ([`proof`]); [`Steps::gap`] is what that leaves open.
 
 pub(crate) mod proof;
-mod segment;
+
 mod view;
 pub(crate) mod walk;
 

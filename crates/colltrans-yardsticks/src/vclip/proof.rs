@@ -12,9 +12,9 @@
 
 use glam::DVec3;
 
-use super::segment::{at, foot, nearest_of_segments};
 use super::walk::{Pair, Scene};
 use crate::features::{Feature, HalfEdge, Shell};
+use crate::segment::{at, foot, nearest_of_segments};
 
 /// Rounding of a coordinate of a difference of two points, in units of `2^-53` times the size: as
 /// derived at the head of `colltrans`' `minkowski`.

@@ -10,8 +10,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::segment::nearest_of_segments;
 use crate::features::{Feature, HalfEdge, Shell};
+use crate::segment::nearest_of_segments;
 
 /// A body, and the other one as seen from its frame: `x_own = R x_other + t`.
 #[derive(Debug, Clone, Copy)]

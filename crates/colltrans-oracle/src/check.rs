@@ -57,6 +57,19 @@ pub struct Proof {
     pub residual_in_noises: f64,
 }
 
+impl Proof {
+    /// The larger numbers of both.
+    #[must_use]
+    pub fn worse(&self, other: &Self) -> Self {
+        Self {
+            exact: self.exact && other.exact,
+            gap_over_size: self.gap_over_size.max(other.gap_over_size),
+            gap_over_tolerance: self.gap_over_tolerance.max(other.gap_over_tolerance),
+            residual_in_noises: self.residual_in_noises.max(other.residual_in_noises),
+        }
+    }
+}
+
 /// Why an answer is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Objection(pub String);
@@ -386,6 +399,39 @@ impl Judge<'_> {
         let proof = self.check_contact(&grazing.contact, GRAZING_RESIDUAL_ROUNDINGS)?;
         // The residual has just bounded the overlap from below.
         Ok(Proof { exact: true, ..proof })
+    }
+}
+
+/// Compares two answers to the same question: outcomes of one kind, and translations within
+/// both tolerances.
+///
+/// # Errors
+/// How they differ. At the rim of the shadow both may still be admissible: that is for
+/// [`Judge::compare_with_oracle`] to say of each.
+pub fn same(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
+    let (a, b) = match (first, second) {
+        (Outcome::Separated(_), Outcome::Separated(_)) => return Ok(()),
+        (Outcome::Contact(a), Outcome::Contact(b)) => (a, b),
+        (Outcome::Grazing(a), Outcome::Grazing(b)) => (&a.contact, &b.contact),
+        _ => return Err(Objection(format!("{} and {}", kind(first), kind(second)))),
+    };
+    let (error, tolerance) =
+        ((a.translation - b.translation).abs(), a.certificate.tolerance + b.certificate.tolerance);
+    require!(
+        error <= tolerance,
+        "translations {:e} and {:e}, {error:e} apart (tolerated: {tolerance:e})",
+        a.translation,
+        b.translation
+    );
+    Ok(())
+}
+
+/// The name of an outcome.
+pub fn kind(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Outcome::Contact(_) => "contact",
+        Outcome::Grazing(_) => "grazing",
+        Outcome::Separated(_) => "separated",
     }
 }
 

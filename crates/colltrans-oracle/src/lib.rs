@@ -9,6 +9,8 @@ pub mod check;
 pub mod exact;
 pub mod fuzz;
 pub mod scene;
+pub mod sequences;
 pub mod settings;
 pub mod shadow;
 pub mod simplex;
+pub mod tracked;

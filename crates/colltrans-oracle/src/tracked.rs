@@ -133,21 +133,43 @@ fn judge_tracked(
 ) -> Result<Agreement, Objection> {
     let answer = answer.as_ref().map_err(|e| Objection(format!("tracked: {e}")))?;
     let one_off = one_off.as_ref().map_err(|e| Objection(format!("one-off: {e}")))?;
+    let judged = judge_answer(judge, setting, answer, one_off, with_oracle);
+    judged.map_err(|objection| match judge_alone(judge, setting, one_off, true) {
+        Ok(_) => objection,
+        Err(same) => Objection(format!("{objection}; the one-off answer: {same}")),
+    })
+}
+
+/// Everything that an answer says, by itself.
+fn judge_alone(
+    judge: &Judge,
+    setting: &Setting,
+    answer: &Outcome,
+    with_oracle: bool,
+) -> Result<Proof, Objection> {
     let proof = judge.check(answer)?;
     verify(judge, setting, answer)?;
-    let rounding_decides = match same(answer, one_off) {
-        Ok(()) => false,
-        Err(difference) => {
-            let both = judge.compare_with_oracle(answer).and_then(|()| {
-                judge.compare_with_oracle(one_off).map_err(|e| Objection(format!("one-off: {e}")))
-            });
-            both.map_err(|e| Objection(format!("{difference}; {e}")))?;
-            true
-        }
-    };
     if with_oracle || !proof.exact {
         judge.compare_with_oracle(answer)?;
     }
+    Ok(proof)
+}
+
+fn judge_answer(
+    judge: &Judge,
+    setting: &Setting,
+    answer: &Outcome,
+    one_off: &Outcome,
+    with_oracle: bool,
+) -> Result<Agreement, Objection> {
+    let difference = same(answer, one_off).err();
+    let rounding_decides = difference.is_some();
+    let judged = judge_alone(judge, setting, answer, with_oracle || rounding_decides);
+    let proof = match (judged, difference) {
+        (Ok(proof), Some(_)) => judge.compare_with_oracle(one_off).map(|()| proof),
+        (Err(objection), Some(difference)) => Err(Objection(format!("{difference}; {objection}"))),
+        (judged, None) => judged,
+    }?;
     Ok(Agreement { path: answer.steps().path, proof, rounding_decides })
 }
 

@@ -152,8 +152,11 @@ impl Judge<'_> {
                     "grazing, but the shadows overlap by {is:e} (grazing up to {border:e})"
                 );
                 match truth {
-                    Some(truth) if is > slack => self.agrees(&grazing.contact, &truth),
-                    _ => Ok(()),
+                    Some(truth) if overlap.exceeds(self.scene.touching + slack) => {
+                        self.agrees(&grazing.contact, &truth)
+                    }
+                    Some(truth) => Self::not_later(&grazing.contact, &truth),
+                    None => Ok(()),
                 }
             }
         }
@@ -170,6 +173,22 @@ impl Judge<'_> {
             contact.translation,
             truth.to_f64(),
             error.to_f64()
+        );
+        Ok(())
+    }
+
+    /// The value is the true one, or less, within the tolerance that the certificate states: the
+    /// bodies may have been widened sideways, and widened bodies meet earlier, how much earlier is
+    /// for the slope of their faces at the rim to say.
+    fn not_later(contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
+        let tolerance = contact.certificate.tolerance;
+        let late = Ratio::from_f64(contact.translation).minus(truth);
+        require!(
+            late.is_within(tolerance) || contact.translation < truth.to_f64(),
+            "translation {:e} of widened bodies is {:e} later than the true one (tolerated: \
+             {tolerance:e})",
+            contact.translation,
+            late.to_f64()
         );
         Ok(())
     }

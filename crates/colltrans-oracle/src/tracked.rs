@@ -92,13 +92,16 @@ impl<'a> Lanes<'a> {
     /// exactly; they are solved again by the oracle if `with_oracle`, and where outcome and value
     /// are not proven by the certificate alone.
     ///
-    /// The setting has to be one that a query accepts.
+    /// A setting whose direction one-off queries refuse has to be refused alike.
     pub fn ask(&mut self, setting: &Setting, with_oracle: bool) -> Vec<Finding> {
         let bodies = self.bodies;
-        let judge = setting.judge(bodies);
         let from_scratch = [Solver::Auto, Solver::Cta].map(|solver| setting.cast(bodies, solver));
         let asked = self.asked;
         self.asked += 1;
+        if let Err(QueryError::Direction { .. }) = from_scratch[0] {
+            return self.refused(setting, &from_scratch[0]);
+        }
+        let judge = setting.judge(bodies);
         let find = |(lane, tracker): &mut (Lane, Tracker)| {
             let solver = lane.solvers[asked % lane.solvers.len()];
             let answer = track(tracker, setting, solver);
@@ -108,6 +111,22 @@ impl<'a> Lanes<'a> {
             Finding { lane: lane.name, solver, answer, verdict }
         };
         self.trackers.iter_mut().map(find).collect()
+    }
+
+    /// What is wrong where a query is to be refused: lanes that answer it.
+    fn refused(
+        &mut self,
+        setting: &Setting,
+        refusal: &Result<Outcome, QueryError>,
+    ) -> Vec<Finding> {
+        let ask = |(lane, tracker): &mut (Lane, Tracker)| {
+            let solver = lane.solvers[0];
+            let answer = track(tracker, setting, solver);
+            let verdict = Err(Objection(format!("{answer:?}, one-off: {refusal:?}")));
+            let differs = format!("{answer:?}") != format!("{refusal:?}");
+            differs.then_some(Finding { lane: lane.name, solver, answer, verdict })
+        };
+        self.trackers.iter_mut().filter_map(ask).collect()
     }
 }
 

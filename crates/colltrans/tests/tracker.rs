@@ -8,6 +8,7 @@ use colltrans::{
 use colltrans_oracle::check::same;
 use colltrans_oracle::sequences::Walk;
 use colltrans_oracle::settings::{Bodies, FAMILIES, Rng, Setting, cuboid};
+use colltrans_oracle::shadow::sideways_overlap;
 use colltrans_oracle::tracked::{Lanes, track, without_steps};
 use proptest::prelude::*;
 
@@ -26,7 +27,7 @@ fn every_family_against_one_off_queries() {
             let bodies = walk.setting.bodies().expect("a body");
             let mut lanes = Lanes::new(&bodies);
             while walk.step < STEPS {
-                for finding in lanes.ask(&walk.setting, walk.step % ORACLE_EVERY == 0) {
+                for finding in lanes.ask(&walk.setting, walk.step.is_multiple_of(ORACLE_EVERY)) {
                     queries += 1;
                     match finding.verdict {
                         Ok(agreement) => features += u32::from(agreement.path == Path::Features),
@@ -65,40 +66,37 @@ fn ranges_agree(setting: &Setting, bodies: &Bodies, a: &ContactRange, b: &Contac
     alike || ends.iter().all(|ends| admissible(ends))
 }
 
+/// Clearances that agree within both casts' tolerances, or differ where rounding decides: at a
+/// distance of 0, and where the shadows overlap by no more than what grazes.
 fn clearances_agree(setting: &Setting, bodies: &Bodies, a: &Clearance, b: &Clearance) -> bool {
-    let noise = setting.judge(bodies).scene.noise;
-    // Both casts' tolerances, at any inclination that occurs: taken from one-off casts.
-    let tolerance: f64 = [1.0, -1.0]
-        .into_iter()
-        .filter_map(|sign| {
-            let aimed = Setting { direction: setting.direction * sign, ..setting.clone() };
-            match aimed.cast(bodies, Solver::Auto) {
-                Ok(Outcome::Contact(contact)) => Some(contact.certificate.tolerance),
-                _ => None,
-            }
-        })
-        .sum::<f64>()
-        + noise / setting.direction.length();
-    let close = |s: f64, t: f64| (s - t).abs() <= 2.0 * tolerance;
-    // Whether bodies touch, overlap or are past each other is for rounding to say at the ends.
-    let reach = |c: &Clearance| match c {
+    let scene = setting.judge(bodies).scene;
+    let tolerance = 2.0
+        * (tolerance_of(setting, 1.0, bodies) + tolerance_of(setting, -1.0, bodies))
+        + scene.noise / setting.direction.length();
+    let close = |s: f64, t: f64| (s - t).abs() <= tolerance;
+    let range = |c: &Clearance| match c {
         Clearance::Free => None,
         Clearance::Blocked { distance, .. } => Some([*distance; 2]),
         Clearance::Overlapping { range } => Some(*range),
     };
-    match (reach(a), reach(b)) {
-        (Some(a), Some(b)) => close(a[0], b[0]) && (close(a[1], b[1]) || close(a[0], 0.0)),
+    match (range(a), range(b)) {
         (None, None) => true,
-        (Some([enter, exit]), None) | (None, Some([enter, exit])) => {
-            let kind = setting.cast(bodies, Solver::Auto);
-            let free_by_rounding =
-                colltrans_oracle::shadow::sideways_overlap(&setting.judge(bodies).scene);
-            let border = setting.graze_tolerance.max(8.0 * noise);
-            kind.is_ok()
-                && (close(enter, 0.0)
-                    || close(exit, 0.0)
-                    || !free_by_rounding.exceeds(border + 2.0 * noise))
+        (Some([enter, exit]), Some([other, end])) => {
+            close(enter, other) && (close(exit, end) || close(enter, 0.0))
         }
+        (Some([enter, exit]), None) | (None, Some([enter, exit])) => {
+            let border = setting.graze_tolerance.max(scene.touching) + 2.0 * scene.noise;
+            close(enter, 0.0) || close(exit, 0.0) || !sideways_overlap(&scene).exceeds(border)
+        }
+    }
+}
+
+/// The tolerance of the contact along the direction or against it, if there is one.
+fn tolerance_of(setting: &Setting, sign: f64, bodies: &Bodies) -> f64 {
+    let aimed = Setting { direction: setting.direction * sign, ..setting.clone() };
+    match aimed.cast(bodies, Solver::Auto) {
+        Ok(Outcome::Contact(contact)) => contact.certificate.tolerance,
+        _ => 0.0,
     }
 }
 
@@ -115,9 +113,9 @@ fn ranges_and_clearances_are_those_of_one_off_queries() {
                 let (m, f, d) = (&s.moving_pose, &s.fixed_pose, s.direction);
                 let solver = if seed % 2 == 0 { Solver::Auto } else { Solver::Cta };
                 let options = Options { solver, graze_tolerance: s.graze_tolerance };
-                let d = if walk.step % 3 == 0 { -d } else { d };
+                let d = if walk.step.is_multiple_of(3) { -d } else { d };
                 let aimed = Setting { direction: d, ..s.clone() };
-                if walk.step % 2 == 0 {
+                if walk.step.is_multiple_of(2) {
                     let found = tracker.contact_range(m, f, d, &options).expect("a range");
                     let one_off = colltrans::contact_range(moving, m, fixed, f, d, &options);
                     let one_off = one_off.expect("a range");
@@ -341,10 +339,10 @@ fn the_same_sequence_gives_the_same_bits() {
             let mut walk = Walk::new(family, 9);
             let bodies = walk.setting.bodies().expect("a body");
             let mut tracker = Tracker::new(&bodies.moving, &bodies.fixed);
-            let mut answers = String::new();
+            let mut answers = Vec::new();
             while walk.step < 60 {
                 let solver = if walk.step % 4 < 2 { Solver::Auto } else { Solver::Cta };
-                answers += &format!("{:?}", track(&mut tracker, &walk.setting, solver));
+                answers.push(format!("{:?}", track(&mut tracker, &walk.setting, solver)));
                 walk.advance();
             }
             answers

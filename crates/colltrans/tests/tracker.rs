@@ -388,6 +388,29 @@ fn steps_are_those_of_all_casts() {
     }
 }
 
+/// What the cast against the direction left is there for the next one that looks that way.
+#[test]
+fn both_ends_of_a_range_are_followed() {
+    let setting = above(cone(12), cuboid(DVec3::ONE));
+    let bodies = setting.bodies().expect("bodies");
+    let mut tracker = Tracker::new(&bodies.moving, &bodies.fixed);
+    let (m, f, d) = (&setting.moving_pose, &setting.fixed_pose, setting.direction);
+    let options = Options::default();
+    tracker.contact_range(m, f, d, &options).expect("a range");
+    assert_eq!(tracker.steps().path, Path::Scratch);
+    let [once, back] = [d, -d].map(|d| {
+        tracker.contact_range(m, f, d, &options).expect("a range");
+        tracker.steps()
+    });
+    assert_eq!([once.path, back.path], [Path::Features; 2]);
+    // Both ends are where they were: no face is crossed on the way there.
+    assert!(once.supports <= 8 && back.supports <= 8, "{once:?} {back:?}");
+    for direction in [d, -d, -d, d] {
+        let outcome = tracker.cast(m, f, direction).expect("an answer");
+        assert_eq!(outcome.steps().path, Path::Features);
+    }
+}
+
 #[test]
 fn a_tracker_is_small() {
     let size = size_of::<Tracker>();

@@ -140,15 +140,11 @@ pub(crate) fn replay(family: &str, seed: u64) -> bool {
     tally.disagreements.is_empty()
 }
 
-fn print_answers(setting: &Setting, bodies: &Bodies) {
+/// What one-off queries answer, and what the oracle says.
+pub(crate) fn print_answers(setting: &Setting, bodies: &Bodies) {
     for solver in SOLVERS {
         println!("{solver:?}: {:#?}", setting.cast(bodies, solver));
     }
-    print_truth(setting, bodies);
-}
-
-/// What the oracle says.
-pub(crate) fn print_truth(setting: &Setting, bodies: &Bodies) {
     let scene = setting.judge(bodies).scene;
     println!("noise {:e}", scene.noise);
     println!("overlap {:e}", colltrans_oracle::shadow::sideways_overlap(&scene).to_f64());

@@ -8,7 +8,7 @@ use colltrans_oracle::check::Proof;
 use colltrans_oracle::sequences::Walk;
 use colltrans_oracle::tracked::{Finding, Lanes};
 
-use crate::casts::print_truth;
+use crate::casts::print_answers;
 use crate::print;
 
 /// Steps of a sequence, with the first setting.
@@ -169,7 +169,7 @@ pub(crate) fn replay(family: &str, seed: u64, step: u32) -> bool {
         println!("{finding:#?}");
         tally.note(&walk, &finding);
     }
-    print_truth(&walk.setting, &bodies);
+    print_answers(&walk.setting, &bodies);
     print(family, &tally);
     tally.disagreements.is_empty()
 }

@@ -57,6 +57,19 @@ pub struct Proof {
     pub residual_in_noises: f64,
 }
 
+impl Proof {
+    /// The larger numbers of both.
+    #[must_use]
+    pub fn worse(&self, other: &Self) -> Self {
+        Self {
+            exact: self.exact && other.exact,
+            gap_over_size: self.gap_over_size.max(other.gap_over_size),
+            gap_over_tolerance: self.gap_over_tolerance.max(other.gap_over_tolerance),
+            residual_in_noises: self.residual_in_noises.max(other.residual_in_noises),
+        }
+    }
+}
+
 /// Why an answer is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Objection(pub String);
@@ -139,8 +152,11 @@ impl Judge<'_> {
                     "grazing, but the shadows overlap by {is:e} (grazing up to {border:e})"
                 );
                 match truth {
-                    Some(truth) if is > slack => self.agrees(&grazing.contact, &truth),
-                    _ => Ok(()),
+                    Some(truth) if overlap.exceeds(self.scene.touching + slack) => {
+                        self.agrees(&grazing.contact, &truth)
+                    }
+                    Some(truth) => Self::not_later(&grazing.contact, &truth),
+                    None => Ok(()),
                 }
             }
         }
@@ -157,6 +173,22 @@ impl Judge<'_> {
             contact.translation,
             truth.to_f64(),
             error.to_f64()
+        );
+        Ok(())
+    }
+
+    /// The value is the true one, or less, within the tolerance that the certificate states: the
+    /// bodies may have been widened sideways, and widened bodies meet earlier, how much earlier is
+    /// for the slope of their faces at the rim to say.
+    fn not_later(contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
+        let tolerance = contact.certificate.tolerance;
+        let late = Ratio::from_f64(contact.translation).minus(truth);
+        require!(
+            late.is_within(tolerance) || contact.translation < truth.to_f64(),
+            "translation {:e} of widened bodies is {:e} later than the true one (tolerated: \
+             {tolerance:e})",
+            contact.translation,
+            late.to_f64()
         );
         Ok(())
     }
@@ -386,6 +418,39 @@ impl Judge<'_> {
         let proof = self.check_contact(&grazing.contact, GRAZING_RESIDUAL_ROUNDINGS)?;
         // The residual has just bounded the overlap from below.
         Ok(Proof { exact: true, ..proof })
+    }
+}
+
+/// Compares two answers to the same question: outcomes of one kind, and translations within
+/// both tolerances.
+///
+/// # Errors
+/// How they differ. At the rim of the shadow both may still be admissible: that is for
+/// [`Judge::compare_with_oracle`] to say of each.
+pub fn same(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
+    let (a, b) = match (first, second) {
+        (Outcome::Separated(_), Outcome::Separated(_)) => return Ok(()),
+        (Outcome::Contact(a), Outcome::Contact(b)) => (a, b),
+        (Outcome::Grazing(a), Outcome::Grazing(b)) => (&a.contact, &b.contact),
+        _ => return Err(Objection(format!("{} and {}", kind(first), kind(second)))),
+    };
+    let (error, tolerance) =
+        ((a.translation - b.translation).abs(), a.certificate.tolerance + b.certificate.tolerance);
+    require!(
+        error <= tolerance,
+        "translations {:e} and {:e}, {error:e} apart (tolerated: {tolerance:e})",
+        a.translation,
+        b.translation
+    );
+    Ok(())
+}
+
+/// The name of an outcome.
+pub fn kind(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Outcome::Contact(_) => "contact",
+        Outcome::Grazing(_) => "grazing",
+        Outcome::Separated(_) => "separated",
     }
 }
 

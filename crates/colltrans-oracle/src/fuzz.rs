@@ -5,17 +5,19 @@
 //! which reaches every special value and magnitude, or as small whole numbers, which reaches every
 //! tie.
 
-use colltrans::{ConvexPolyhedron, Options, Pose, Solver};
+use colltrans::{ConvexPolyhedron, Pose, PoseError, Solver};
 use glam::{DQuat, DVec3};
 
-use crate::check::Judge;
 use crate::exact::Vector;
-use crate::scene::Scene;
+use crate::settings::{Bodies, Setting};
+use crate::tracked::{Finding, Lanes};
 
 /// Points of a body: more would only make a run slower.
 const MOST_POINTS: usize = 64;
 /// Points of a body that is judged in exact arithmetic.
 const MOST_JUDGED: usize = 10;
+/// Settings of a sequence.
+const MOST_STEPS: usize = 24;
 
 /// Bytes, read one number after the other; zeros after the end.
 #[derive(Debug, Clone)]
@@ -108,37 +110,98 @@ pub fn from_mesh(bytes: &[u8]) {
     check_surface(&body);
 }
 
-/// A cast is refused, or its answer is approved by the exact judge, and both solvers say the same.
+/// A cast is refused, or its answer is approved by the exact judge, whatever the solver.
 ///
 /// # Panics
 /// If an answer is wrong.
 pub fn cast(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
-    let turned = reader.byte();
-    let mut body = || ConvexPolyhedron::from_points(&reader.points(MOST_JUDGED));
-    let (Ok(moving), Ok(fixed)) = (body(), body()) else { return };
-    let mut pose = |is_turned: bool| {
-        let rotation = if is_turned { reader.rotation() } else { DQuat::IDENTITY };
-        Pose::new(rotation, reader.vector())
-    };
-    let (Ok(moving_pose), Ok(fixed_pose)) = (pose(turned & 1 == 1), pose(turned & 2 == 2)) else {
-        return;
-    };
-    let direction = reader.vector();
+    let Some((setting, bodies)) = read_setting(&mut reader) else { return };
     for solver in [Solver::Cta, Solver::Portal, Solver::Auto] {
-        let options = Options { solver, ..Options::default() };
-        let answer =
-            colltrans::cast_with(&moving, &moving_pose, &fixed, &fixed_pose, direction, &options);
-        let outcome = match answer {
+        let outcome = match setting.cast(&bodies, solver) {
             Ok(outcome) => outcome,
             Err(colltrans::QueryError::Direction { .. }) => return,
             Err(error) => panic!("{solver:?}: {error}"),
         };
-        let scene = Scene::of_bodies((&moving, &moving_pose), (&fixed, &fixed_pose), direction);
-        let judge = Judge { scene, moving: &moving, fixed: &fixed, graze_tolerance: 0.0 };
+        let judge = setting.judge(&bodies);
         judge.check(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
         judge.compare_with_oracle(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
     }
+}
+
+/// Trackers with every focus and solver give the answers of one-off casts along a sequence of
+/// changes of poses, direction and graze tolerance.
+///
+/// # Panics
+/// If an answer is wrong, or one way of asking is refused and the other is not.
+pub fn track(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let Some((mut setting, bodies)) = read_setting(&mut reader) else { return };
+    let mut lanes = Lanes::new(&bodies);
+    for _ in 0..MOST_STEPS {
+        for finding in lanes.ask(&setting, true) {
+            let Finding { lane, solver, verdict, .. } = finding;
+            verdict.unwrap_or_else(|e| panic!("{lane} ({solver:?}): {e}\n{}", setting.dump()));
+        }
+        if reader.is_empty() {
+            break;
+        }
+        change(&mut setting, &mut reader);
+    }
+}
+
+/// Two bodies, their poses and a direction; the first byte says which body is turned.
+fn read_setting(reader: &mut Reader) -> Option<(Setting, Bodies)> {
+    let turned = reader.byte();
+    let (moving, fixed) = (reader.points(MOST_JUDGED), reader.points(MOST_JUDGED));
+    let mut pose = |is_turned: bool| {
+        let rotation = if is_turned { reader.rotation() } else { DQuat::IDENTITY };
+        Pose::new(rotation, reader.vector()).ok()
+    };
+    let (moving_pose, fixed_pose) = (pose(turned & 1 == 1)?, pose(turned & 2 == 2)?);
+    let direction = reader.vector();
+    let setting = Setting {
+        family: "fuzz",
+        seed: 0,
+        moving,
+        fixed,
+        moving_pose,
+        fixed_pose,
+        direction,
+        graze_tolerance: 0.0,
+    };
+    let bodies = setting.bodies().ok()?;
+    Some((setting, bodies))
+}
+
+/// One change of a setting; a pose that is out of range stays as it was.
+fn change(setting: &mut Setting, reader: &mut Reader) {
+    match reader.byte() % 8 {
+        0 => setting.direction = reader.vector(),
+        1 => setting.direction = -setting.direction,
+        2 => setting.direction += reader.vector() * 2.0_f64.powi(-20),
+        3 => {
+            let rotation = reader.rotation();
+            replace(&mut setting.moving_pose, Pose::new(rotation, reader.vector()));
+        }
+        4 => {
+            let rotation = reader.rotation();
+            replace(&mut setting.fixed_pose, Pose::new(rotation, reader.vector()));
+        }
+        5 => {
+            let moved = setting.moving_pose.translated(reader.vector());
+            replace(&mut setting.moving_pose, moved);
+        }
+        6 => {
+            let moved = setting.moving_pose.translated(reader.vector() * 2.0_f64.powi(-10));
+            replace(&mut setting.moving_pose, moved);
+        }
+        _ => setting.graze_tolerance = f64::from(reader.byte()) / 16.0,
+    }
+}
+
+fn replace(pose: &mut Pose, by: Result<Pose, PoseError>) {
+    *pose = by.unwrap_or(*pose);
 }
 
 /// The surface is a sphere: Euler's formula, and every edge in two faces.

@@ -11,6 +11,8 @@ pub mod distance;
 pub mod exact;
 pub mod fuzz;
 pub mod scene;
+pub mod sequences;
 pub mod settings;
 pub mod shadow;
 pub mod simplex;
+pub mod tracked;

@@ -1,6 +1,7 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is.
 
-use colltrans::Solver;
+use colltrans::{Focus, Options, Region, Solver, Tracker};
+use colltrans_oracle::sequences::Walk;
 use colltrans_oracle::settings::{FAMILIES, setting};
 
 #[test]
@@ -16,6 +17,43 @@ fn queries_allocate_nothing() {
                 });
                 assert!(answer.is_some_and(|a| a.is_ok()), "{family}:{seed} {solver:?}");
                 assert_eq!(count.count_total, 0, "{family}:{seed} {solver:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tracked_queries_allocate_nothing() {
+    let foci = [
+        Focus::default(),
+        Focus { features: false, region: Region::Automatic },
+        Focus { features: false, region: Region::Fixed(0.1) },
+    ];
+    for (family, ..) in FAMILIES {
+        for seed in 0..4 {
+            for (focus, solver) in foci.into_iter().zip([Solver::Auto, Solver::Cta, Solver::Cta]) {
+                let mut walk = Walk::new(family, seed);
+                let bodies = walk.setting.bodies().expect("a body");
+                let tracker = Tracker::new(&bodies.moving, &bodies.fixed);
+                let mut tracker = tracker.with_focus(focus).expect("a focus");
+                while walk.step < 40 {
+                    let s = &walk.setting;
+                    let (m, f, d) = (&s.moving_pose, &s.fixed_pose, s.direction);
+                    let options = Options {
+                        solver,
+                        graze_tolerance: s.graze_tolerance,
+                        ..Options::default()
+                    };
+                    let mut answered = false;
+                    let count = allocation_counter::measure(|| {
+                        answered = tracker.cast_with(m, f, d, &options).is_ok()
+                            && tracker.contact_range(m, f, d, &options).is_ok()
+                            && tracker.clearance(m, f, d, &options).is_ok();
+                    });
+                    assert!(answered, "{walk} {solver:?}");
+                    assert_eq!(count.count_total, 0, "{walk} {solver:?}");
+                    walk.advance();
+                }
             }
         }
     }

@@ -35,3 +35,8 @@ fn from_mesh_corpus() {
 fn cast_corpus() {
     replay("cast", fuzz::cast, 8);
 }
+
+#[test]
+fn track_corpus() {
+    replay("track", fuzz::track, 24);
+}

@@ -333,6 +333,9 @@ impl Judge<'_> {
         let moved = p.plus(&self.scene.direction.times(&Dyadic::new(translation)));
         let miss = q.minus(&moved).to_f64().length();
         require!(miss <= tolerance, "the witness points miss each other by {miss:e}");
+        // The points are those of the upper bound, the plane is that of the lower one.
+        let gap = contact.certificate.gap().max(0.0);
+        let off_plane = tolerance + gap * normal.dot(self.scene.direction.to_f64());
         let normal = Vector::new(normal);
         let below = |points: &[Vector], sign: f64, at: &Vector| {
             let n = normal.times(&Dyadic::new(sign));
@@ -344,7 +347,7 @@ impl Judge<'_> {
         {
             let depth = below(points, sign, at).abs();
             require!(
-                depth <= tolerance,
+                depth <= off_plane,
                 "the witness point on the {body} body is {depth:e} off its contact plane"
             );
         }

@@ -19,7 +19,10 @@ const LONGEST_RUN: i64 = 8;
 /// Seeds of a walk's other configurations: far from those that walks begin with.
 const OTHER_SEEDS: u64 = 1 << 60;
 
-/// What a change leaves as it is not: where the bodies are, and the direction.
+/// Corners of a shadow nearer to each other than this share of it are one.
+const SAME: f64 = 1e-9;
+
+/// Where the bodies are, and the direction.
 #[derive(Debug, Clone, Copy)]
 struct Configuration {
     moving: Pose,
@@ -278,9 +281,12 @@ fn rim_displacement(setting: &Setting, toward: DVec3, along: f64, overlap: f64) 
     let shadows = || fixed.iter().flat_map(|q| moving.iter().map(move |p| *q - *p));
     let farther = |a: DVec3, b: DVec3| if b.dot(toward) > a.dot(toward) { b } else { a };
     let Some(corner) = shadows().reduce(farther) else { return DVec3::ZERO };
+    // Other pairs that give the same corner do so up to rounding only.
+    let size = shadows().map(|s| s.distance(corner)).fold(0.0, f64::max);
+    let others = shadows().filter(|s| s.distance(corner) > SAME * size);
     // Gift wrapping: all the others are on one side of the way to the next.
     let side = |a: DVec3, b: DVec3| (a - corner).cross(b - corner).dot(unit);
-    let next = shadows().fold(corner, |a, b| if a == corner || side(a, b) < 0.0 { b } else { a });
+    let next = others.reduce(|a, b| if side(a, b) < 0.0 { b } else { a }).unwrap_or(corner);
     let inward = unit.cross(next - corner).normalize_or_zero();
     corner.lerp(next, along) + inward * overlap
 }

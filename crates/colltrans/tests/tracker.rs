@@ -149,7 +149,7 @@ fn any_body() -> impl Strategy<Value = Vec<DVec3>> {
         1 => prop::collection::vec(vector.clone().prop_map(|v| v.with_z(0.0)), 3..8),
         1 => prop::collection::vec(vector.clone(), 1..3),
         2 => vector.prop_map(|v| cuboid(v.abs() + 0.1)),
-        1 => (3..50_u32).prop_map(cone),
+        1 => (3..40_u32).prop_map(cone),
     ]
 }
 
@@ -189,7 +189,7 @@ fn step(setting: &mut Setting, rng: &mut Rng, exponent: f64) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn walks_of_any_bodies(

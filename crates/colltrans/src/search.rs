@@ -51,35 +51,54 @@ pub(crate) fn search(
         solver => solver,
     };
     let last = std::mem::take(trace);
-    let search = |turn_rad| Search {
+    let search = |turn_rad, steps| Search {
         difference: Difference::new(setting, turn_rad),
         moving_pose,
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
-        steps: Steps::default(),
+        steps,
     };
-    let answer = search(0.0).run(focus, &last, trace);
+    let mut first = search(0.0, Steps::default());
+    let answer = first.run(focus, &last, trace);
     lap(Phase::Answer);
     if let Err(QueryError::NotConverged { .. }) = answer {
-        return again(|turn_rad| search(turn_rad).run(&Focus::NONE, &Trace::Nothing, trace));
+        let turns_rad: &[f64] =
+            if first.steps.path == Path::Scratch { &OTHER_TURNS_RAD } else { &ALL_TURNS_RAD };
+        return again(first.steps, turns_rad, |turn_rad, steps| {
+            let mut next = search(turn_rad, *steps);
+            let answer = next.run(&Focus::NONE, &Trace::Nothing, trace);
+            *steps = next.steps;
+            answer
+        });
     }
     answer
 }
 
-/// Tries other turns of the lateral axes.
+/// Tries turns of the lateral axes from scratch until there is an answer.
 #[cold]
-fn again(mut run: impl FnMut(f64) -> Result<Outcome, QueryError>) -> Result<Outcome, QueryError> {
-    let [first, second] = OTHER_TURNS_RAD;
-    match run(first) {
-        Err(QueryError::NotConverged { .. }) => run(second),
-        answer => answer,
+fn again(
+    steps: Steps,
+    turns_rad: &[f64],
+    mut run: impl FnMut(f64, &mut Steps) -> Result<Outcome, QueryError>,
+) -> Result<Outcome, QueryError> {
+    let mut steps = Steps { path: Path::Scratch, ..steps };
+    let mut answer = run(turns_rad[0], &mut steps);
+    for &turn_rad in &turns_rad[1..] {
+        let Err(QueryError::NotConverged { .. }) = answer else { break };
+        answer = run(turn_rad, &mut steps);
     }
+    answer
 }
 
-/// Turns of the lateral axes, tried from scratch when a search finds no end: ties that follow each
-/// other in a circle in one frame do not in another.
+/// Turns of the lateral axes: ties that follow each other in a circle in one frame do not in
+/// another.
+const ALL_TURNS_RAD: [f64; 3] = [0.0, 0.7, 2.1];
 const OTHER_TURNS_RAD: [f64; 2] = [0.7, 2.1];
+
+/// A followed portal that is this many exchanges from the lowest face was a bad place to start, or
+/// one where ties follow each other.
+const MOST_AFTER_FOLLOWING: usize = 30;
 
 /// One cast under way.
 struct Search<'a> {
@@ -235,7 +254,11 @@ impl Search<'_> {
         portal: &mut Portal,
         next: &mut Trace,
     ) -> Result<Outcome, QueryError> {
-        let optimum = match portal::refine(&self.difference, portal, &mut self.steps) {
+        let most = match self.steps.path {
+            Path::Features => MOST_AFTER_FOLLOWING,
+            Path::Region | Path::Scratch => portal::MAX_PORTALS,
+        };
+        let optimum = match portal::refine(&self.difference, portal, most, &mut self.steps) {
             Some(Refined::Optimum(optimum)) => optimum,
             Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
             None => return Err(self.not_converged()),
@@ -268,7 +291,7 @@ impl Search<'_> {
             return Err(self.not_converged());
         };
         let Some(Refined::Optimum(optimum)) =
-            portal::refine(&self.difference, &mut portal, &mut self.steps)
+            portal::refine(&self.difference, &mut portal, portal::MAX_PORTALS, &mut self.steps)
         else {
             return Err(self.not_converged());
         };

@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use crate::error::QueryError;
+use crate::error::{QueryError, in_exact_range};
 use crate::options::{Focus, Options, Region};
 use crate::outcome::{Clearance, ContactRange, Outcome, Path, Steps};
 use crate::polyhedron::ConvexPolyhedron;
@@ -162,7 +162,10 @@ impl<'a> Tracker<'a> {
         if direction.dot(self.direction) < 0.0 {
             self.traces.swap(0, 1);
         }
-        self.direction = direction;
+        // A direction that is about to be refused leaves no trace.
+        if in_exact_range(direction) && direction != DVec3::ZERO {
+            self.direction = direction;
+        }
     }
 
     /// One cast of a query.

@@ -33,7 +33,7 @@ pub(crate) struct Optimum {
 const LONG: usize = 200;
 
 /// Bound on the number of portals; reaching it is reported, never hidden.
-const MAX_PORTALS: usize = 10_000;
+pub(crate) const MAX_PORTALS: usize = 10_000;
 
 /// What following portals ends with.
 #[derive(Debug, Clone, Copy)]
@@ -45,15 +45,16 @@ pub(crate) enum Refined {
 }
 
 /// Follows portals down to the optimum, and leaves the last one in place of the first. `None` if
-/// rounding makes them run in a circle.
+/// there are more than `most`, for one because rounding makes them run in a circle.
 #[inline]
 pub(crate) fn refine(
     difference: &Difference,
     portal: &mut Portal,
+    most: usize,
     steps: &mut Steps,
 ) -> Option<Refined> {
     let mut newest = 2;
-    for round in 0..MAX_PORTALS {
+    for round in 0..most {
         steps.pivots += 1;
         let Some(plane) = plane_normal(difference, portal) else {
             match widen(difference, portal, steps)? {

@@ -42,25 +42,19 @@ fn main() -> ExitCode {
         }
     };
     if let Some(case) = &arguments.case {
-        return match replay(case) {
-            Some(clean) => exit_code(clean),
-            None => {
-                eprintln!("a case is FAMILY:SEED or FAMILY:SEED:STEP");
-                ExitCode::from(2)
-            }
+        let Some(clean) = replay(case) else {
+            eprintln!("a case is FAMILY:SEED or FAMILY:SEED:STEP");
+            return ExitCode::from(2);
         };
+        return exit_code(clean);
     }
-    exit_code(match arguments.sequences {
-        Some(queries) => {
-            let sequences = queries.div_ceil(sequences::QUERIES);
-            run(&arguments, sequences, sequences::examine)
-        }
-        None => {
-            let every = (arguments.settings / arguments.lp.max(1)).max(1);
-            run(&arguments, arguments.settings, |name, seed, tally| {
-                casts::examine(name, seed, every, tally);
-            })
-        }
+    exit_code(if let Some(queries) = arguments.sequences {
+        run(&arguments, queries.div_ceil(sequences::QUERIES), sequences::examine)
+    } else {
+        let every = (arguments.settings / arguments.lp.max(1)).max(1);
+        run(&arguments, arguments.settings, |name, seed, tally| {
+            casts::examine(name, seed, every, tally);
+        })
     })
 }
 

@@ -5,14 +5,22 @@
 //! section V reports nine figures (11 to 19) and a table; each is an [`Experiment`] here.
 //!
 //! The data's way: [`plan`] (how much) -> `shapes`, `settings` (what on) -> `experiments` (what is
-//! measured, by `timing`) -> [`finding`] (figures, tables, claims with verdicts) -> `draw`, `csv`,
-//! `report` (what a reader sees).
+//! measured, by `contestants` and `timing`) -> [`finding`] (figures, tables, claims with verdicts)
+//! -> `draw`, `csv`, `report` (what a reader sees).
 
+mod contestants;
+mod experiments;
 pub mod finding;
 pub mod plan;
+mod random;
+mod settings;
+mod shapes;
+mod timing;
 
 use finding::Finding;
 use plan::{Plan, Progress};
+
+pub use experiments::experiments;
 
 /// One figure or table of the paper.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,8 @@
 //!
 //! The data's way: [`args`] -> [`body`] (mesh file to polyhedron) -> the library's query ->
 //! [`record`] (what is said about the answer) -> [`report`] (for people), JSON, or [`picture`].
-//! [`batch`] does the same for every line of a file, [`info`] looks at one mesh.
+//! [`batch`] does the same for every line of a file, [`info`] looks at one mesh, [`lab`] runs the
+//! paper's experiments.
 
 mod args;
 mod batch;
@@ -10,6 +11,7 @@ mod body;
 mod cast;
 mod failure;
 mod info;
+mod lab;
 mod picture;
 mod record;
 mod report;
@@ -29,6 +31,7 @@ fn main() -> ExitCode {
         Command::Cast(arguments) => cast::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
+        Command::Lab(arguments) => lab::run(&arguments.what),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -6,13 +6,20 @@
 //!
 //! The data's way: [`plan`] (how much) -> `shapes`, `settings` (what on) -> `experiments` (what is
 //! measured, by `contestants` and `timing`) -> [`finding`] (figures, tables, claims with verdicts)
-//! -> `draw`, `csv`, `report` (what a reader sees).
+//! -> [`draw`], [`csv`], [`report`] (what a reader sees). [`run()`] goes all the way and writes the
+//! files.
 
 mod contestants;
+pub mod csv;
+pub mod draw;
+mod error;
 mod experiments;
 pub mod finding;
 pub mod plan;
+pub mod provenance;
 mod random;
+pub mod report;
+mod run;
 mod settings;
 mod shapes;
 mod timing;
@@ -20,7 +27,9 @@ mod timing;
 use finding::Finding;
 use plan::{Plan, Progress};
 
+pub use error::LabError;
 pub use experiments::experiments;
+pub use run::{Done, Summary, run};
 
 /// One figure or table of the paper.
 #[derive(Debug, Clone, Copy)]
@@ -31,4 +40,11 @@ pub struct Experiment {
     pub title: &'static str,
     /// Runs it.
     pub run: fn(&Plan, &mut dyn Progress) -> Finding,
+}
+
+impl Experiment {
+    /// The id for people: `Figure 12`.
+    pub fn name(&self) -> String {
+        self.id.replacen("figure-", "Figure ", 1).replacen("table-", "Table ", 1)
+    }
 }

@@ -11,6 +11,17 @@ pub enum Scale {
     Full,
 }
 
+impl Scale {
+    /// Its name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tiny => "tiny",
+            Self::Quick => "quick",
+            Self::Full => "full",
+        }
+    }
+}
+
 /// What an experiment is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan {

@@ -1,6 +1,6 @@
 //! Where the time of a query goes (the paper, table I).
 //!
-//! Code that ends a phase calls [`lap`]: the time since the last lap belongs to that phase. Without
+//! Code that ends a phase calls `lap`: the time since the last lap belongs to that phase. Without
 //! the feature `profile` that is nothing at all.
 
 /// A part of a query's work, in the order of the data.

@@ -13,7 +13,8 @@ use crate::setting::Setting;
 /// How far `moving` can translate along `direction` before it touches `fixed`.
 ///
 /// The poses place both bodies in the world; `direction` is a vector of the world of any length,
-/// and translations are in multiples of it. See [`Contact::translation`] for negative answers, and
+/// and translations are in multiples of it. See
+/// [`Contact::translation`](crate::Contact::translation) for negative answers, and
 /// [`clearance`] for "from here on". Takes `O(log n)` steps in practice and allocates nothing.
 ///
 /// # Errors

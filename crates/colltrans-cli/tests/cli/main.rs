@@ -3,5 +3,6 @@
 mod batch;
 mod cast;
 mod example_parts;
+mod lab;
 mod picture;
 mod support;

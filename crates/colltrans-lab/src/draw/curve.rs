@@ -1,0 +1,143 @@
+//! What of a series can be drawn, and what has to be said about the rest.
+
+use super::axis::has_place;
+use crate::finding::{Figure, Point, Series};
+
+/// The drawable part of a series.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Curve<'f> {
+    pub(super) name: &'f str,
+    /// Stretches of neighbouring points; between them are points that cannot be drawn.
+    pub(super) stretches: Vec<Vec<Mark>>,
+}
+
+/// A point that has a place in the plot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mark {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) spread: Spread,
+}
+
+/// The spread of a mark as it can be drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Spread {
+    /// There is none, or none that makes sense.
+    None,
+    /// From where to where.
+    Between(f64, f64),
+    /// Its lower end lies below everything on a logarithmic axis.
+    UpTo(f64),
+}
+
+/// Curves with more points than this have a band instead of bars: bars would be a hatching.
+const MOST_BARS: usize = 24;
+
+impl Curve<'_> {
+    /// Whether it is drawn without marks, its spread as a band.
+    pub(super) fn is_dense(&self) -> bool {
+        self.marks().count() > MOST_BARS
+    }
+
+    pub(super) fn marks(&self) -> impl Iterator<Item = Mark> {
+        self.stretches.iter().flatten().copied()
+    }
+}
+
+/// What went wrong with points, counted.
+#[derive(Debug, Default)]
+struct Trouble {
+    no_place: usize,
+    alone: usize,
+    no_spread: usize,
+    cut_spread: usize,
+}
+
+/// Measured curves, and sentences about what they lack.
+pub(super) fn measured(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
+    sort_out(figure, &figure.series, |_, _| ())
+}
+
+/// Curves to compare with: they have no spreads, and a point alone is nothing to compare with.
+pub(super) fn references(figure: &Figure) -> (Vec<Curve<'_>>, Vec<String>) {
+    sort_out(figure, &figure.references, |curve, trouble| {
+        *trouble = Trouble { no_place: trouble.no_place, ..Trouble::default() };
+        trouble.alone = curve.stretches.iter().filter(|stretch| stretch.len() == 1).count();
+        curve.stretches.retain(|stretch| stretch.len() > 1);
+        curve.stretches.iter_mut().flatten().for_each(|mark| mark.spread = Spread::None);
+    })
+}
+
+fn sort_out<'f>(
+    figure: &Figure,
+    all: &'f [Series],
+    adapt: impl Fn(&mut Curve, &mut Trouble),
+) -> (Vec<Curve<'f>>, Vec<String>) {
+    let (mut curves, mut sentences) = (Vec::new(), Vec::new());
+    for series in all {
+        let mut trouble = Trouble::default();
+        let mut curve = curve(figure, series, &mut trouble);
+        adapt(&mut curve, &mut trouble);
+        sentences.extend(trouble.sentences(figure, series));
+        curves.push(curve);
+    }
+    (curves, sentences)
+}
+
+fn curve<'f>(figure: &Figure, series: &'f Series, trouble: &mut Trouble) -> Curve<'f> {
+    let mut stretches = vec![Vec::new()];
+    for point in &series.points {
+        match (mark(figure, point, trouble), stretches.last_mut()) {
+            (Some(mark), Some(stretch)) => stretch.push(mark),
+            _ => stretches.push(Vec::new()),
+        }
+    }
+    stretches.retain(|stretch| !stretch.is_empty());
+    Curve { name: &series.name, stretches }
+}
+
+fn mark(figure: &Figure, point: &Point, trouble: &mut Trouble) -> Option<Mark> {
+    let &Point { x, y, low, high, .. } = point;
+    if !has_place(&figure.x, x) || !has_place(&figure.y, y) {
+        trouble.no_place += 1;
+        return None;
+    }
+    let spread = if low == y && high == y {
+        Spread::None
+    } else if !(low <= y && y <= high && has_place(&figure.y, high)) {
+        trouble.no_spread += 1;
+        Spread::None
+    } else if has_place(&figure.y, low) {
+        Spread::Between(low, high)
+    } else {
+        trouble.cut_spread += 1;
+        Spread::UpTo(high)
+    };
+    Some(Mark { x, y, spread })
+}
+
+impl Trouble {
+    fn sentences(&self, figure: &Figure, series: &Series) -> Vec<String> {
+        let (name, all) = (&series.name, series.points.len());
+        let place = if figure.x.log || figure.y.log {
+            "not a finite number, or not positive on a logarithmic axis"
+        } else {
+            "not a finite number"
+        };
+        let kinds = [
+            (self.no_place, format!("not drawn: {place}")),
+            (self.alone, "not drawn: a point alone is no curve".into()),
+            (self.no_spread, "without spread: what is given does not enclose the value".into()),
+            (self.cut_spread, "with a spread that is cut: it goes below the axis".into()),
+        ];
+        let mut sentences: Vec<String> = kinds
+            .into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| format!("{name}: {count} of {all} points {what}."))
+            .collect();
+        if all == 0 {
+            sentences.push(format!("{name}: no points."));
+        }
+        sentences
+    }
+}

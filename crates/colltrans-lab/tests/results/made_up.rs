@@ -1,0 +1,82 @@
+//! Findings that nobody found.
+
+use colltrans_lab::Experiment;
+use colltrans_lab::finding::{Axis, Claim, Figure, Finding, Point, Series, Table};
+use colltrans_lab::plan::{Plan, Progress};
+
+/// A series through `f` at sizes from 20 to 200,000 with a spread around it.
+pub(crate) fn series(name: &str, f: impl Fn(f64) -> f64) -> Series {
+    let sizes = [20.0, 50.0, 100.0, 200.0, 500.0, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 2e5];
+    let points = sizes.map(|x| {
+        let y = f(x);
+        Point { x, y, low: 0.7 * y, high: 1.4 * y, count: 100 }
+    });
+    Series { name: name.into(), points: points.to_vec() }
+}
+
+/// A figure with everything a figure can have.
+pub(crate) fn figure(id: &str) -> Figure {
+    Figure {
+        id: id.into(),
+        title: "Time per query against the number of vertices of bodies that are far from each \
+                other (median; bars from quartile to quartile)"
+            .into(),
+        x: Axis { label: "vertices of each body".into(), log: true },
+        y: Axis { label: "time per query, µs".into(), log: true },
+        series: vec![
+            series("a < b & \"c\"", |n| 1.5 * n.ln()),
+            series("costs $5 or $6", |n| 6.0 * n.ln() + 0.01 * n),
+            series("linear", |n| 0.5 * n.powf(0.9)),
+        ],
+        references: vec![series("log n", f64::ln), series("√n", f64::sqrt)],
+    }
+}
+
+pub(crate) fn finding(id: &str) -> Finding {
+    let claim = |statement: &str, holds: bool, why: Option<&str>| Claim {
+        statement: statement.into(),
+        measured: "exponent 0.12 (0.10 to 0.14)".into(),
+        holds,
+        why: why.map(Into::into),
+    };
+    let cells = |cells: [&str; 3]| cells.map(String::from).to_vec();
+    Finding {
+        figures: vec![figure(id), figure(&format!("{id}-near"))],
+        tables: vec![Table {
+            id: format!("{id}-table"),
+            title: "Times, <all> of them".into(),
+            columns: cells(["body", "vertices", "time, µs"]),
+            rows: vec![cells(["ball, round", "20", "1.5"]), cells(["needle", "1,000", "2.5"])],
+        }],
+        claims: vec![
+            claim("Time grows like log n & not faster", true, None),
+            claim("It is faster than the others", false, Some("caches hold <64 vertices")),
+        ],
+    }
+}
+
+fn measure(id: &str, progress: &mut dyn Progress) -> Finding {
+    progress.at(1.0, 4.0, "bodies");
+    progress.at(4.0, 4.0, "queries");
+    finding(id)
+}
+
+pub(crate) fn experiments() -> [Experiment; 2] {
+    [
+        Experiment {
+            id: "figure-12",
+            title: "time against <size>",
+            run: |_: &Plan, progress| measure("figure-12", progress),
+        },
+        Experiment {
+            id: "table-1",
+            title: "bodies",
+            run: |plan: &Plan, progress| {
+                let mut finding = measure("table-1", progress);
+                finding.figures.clear();
+                finding.tables[0].rows.push(vec![plan.seed.to_string(); 3]);
+                finding
+            },
+        },
+    ]
+}

@@ -1,0 +1,118 @@
+//! A run and the folder it leaves.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use colltrans_lab::plan::{Plan, Progress, Scale};
+use colltrans_lab::{LabError, Summary, run};
+
+use crate::made_up::experiments;
+
+const PLAN: Plan = Plan { scale: Scale::Tiny, seed: 31 };
+
+#[derive(Default)]
+struct Heard(Vec<(f64, f64, String)>);
+
+impl Progress for Heard {
+    fn at(&mut self, done: f64, all: f64, doing: &str) {
+        self.0.push((done, all, doing.to_owned()));
+    }
+}
+
+fn run_in(folder: &Path) -> Result<Summary, LabError> {
+    run(&experiments(), &PLAN, &mut Heard::default(), folder)
+}
+
+#[test]
+fn the_folder_holds_everything() {
+    let folder = tempfile::tempdir().unwrap();
+    let results = folder.path().join("not/yet/there");
+    let mut heard = Heard::default();
+    let summary = run(&experiments(), &PLAN, &mut heard, &results).unwrap();
+    let files: BTreeSet<String> = std::fs::read_dir(&results)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let expected = [
+        "figure-12-near.csv",
+        "figure-12-near.png",
+        "figure-12-near.svg",
+        "figure-12-table.csv",
+        "figure-12.csv",
+        "figure-12.png",
+        "figure-12.svg",
+        "report.html",
+        "table-1-table.csv",
+    ];
+    assert_eq!(files, expected.map(String::from).into());
+    assert_eq!(summary.report, results.join("report.html"));
+    let report = std::fs::read_to_string(&summary.report).unwrap();
+    assert!(report.contains("Figure 12") && report.contains("Table 1"));
+    assert!(!report.contains("were finished when"), "the last report is complete");
+    let table = std::fs::read_to_string(results.join("table-1-table.csv")).unwrap();
+    assert!(table.ends_with("31,31,31\n"), "the plan reaches the experiments");
+    let parts: Vec<_> = heard.0.iter().map(|(done, all, what)| (*done, *all, &**what)).collect();
+    let expected = [
+        (0.25, 2.0, "Figure 12, bodies"),
+        (1.0, 2.0, "Figure 12, queries"),
+        (1.25, 2.0, "Table 1, bodies"),
+        (2.0, 2.0, "Table 1, queries"),
+    ];
+    assert_eq!(parts, expected);
+}
+
+#[test]
+fn the_summary_lists_the_claims() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = run_in(folder.path()).unwrap().to_string();
+    assert!(
+        text.starts_with("Figure 12: time against <size>\n  holds          Time grows"),
+        "{text}"
+    );
+    assert!(text.contains("\n  does not hold  It is faster than the others\n"), "{text}");
+    assert!(text.lines().last().unwrap().starts_with("2 of 4 claims hold, "), "{text}");
+}
+
+#[test]
+fn data_and_pictures_are_the_same_each_time() {
+    let [one, two] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    run_in(one.path()).unwrap();
+    run_in(two.path()).unwrap();
+    for name in ["figure-12.csv", "figure-12.svg", "figure-12.png", "figure-12-table.csv"] {
+        let [a, b] = [&one, &two].map(|folder| std::fs::read(folder.path().join(name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+}
+
+#[test]
+fn folders_that_cannot_be_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let error = run_in(&file.join("results")).unwrap_err();
+    assert!(matches!(&error, LabError::Folder { path, .. } if *path == file.join("results")));
+    assert!(error.to_string().contains("file/results: the folder cannot be made: "), "{error}");
+}
+
+#[test]
+fn files_that_cannot_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("figure-12.svg")).unwrap();
+    let error = run_in(folder.path()).unwrap_err();
+    let path = folder.path().join("figure-12.svg");
+    assert!(matches!(&error, LabError::Write { path: at, .. } if *at == path), "{error}");
+    let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(report.contains("0 of 2 experiments were finished"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn full_disks() {
+    let folder = tempfile::tempdir().unwrap();
+    std::os::unix::fs::symlink("/dev/full", folder.path().join("report.html")).unwrap();
+    let LabError::Write { path, source } = run_in(folder.path()).unwrap_err() else {
+        panic!("not about writing")
+    };
+    assert!(path.ends_with("report.html"));
+    assert_eq!(source.kind(), std::io::ErrorKind::StorageFull);
+}

@@ -17,9 +17,9 @@ impl Random {
     pub(crate) fn new(seed: u64, purpose: &[u64]) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         // Horner's rule with an odd multiplier: different short lists give different streams.
-        let stream = purpose.iter().fold(1, |sum: u64, part| {
-            sum.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(*part)
-        });
+        let stream = purpose
+            .iter()
+            .fold(1, |sum: u64, part| sum.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(*part));
         generator.set_stream(stream);
         Self(generator)
     }
@@ -64,7 +64,8 @@ mod tests {
     fn streams_are_reproducible_and_differ() {
         let draw = |seed, purpose: &[u64]| Random::new(seed, purpose).0.next_u64();
         assert_eq!(draw(1, &[11, 200]), draw(1, &[11, 200]));
-        let others = [draw(2, &[11, 200]), draw(1, &[11, 800]), draw(1, &[12, 200]), draw(1, &[11])];
+        let others =
+            [draw(2, &[11, 200]), draw(1, &[11, 800]), draw(1, &[12, 200]), draw(1, &[11])];
         assert!(others.iter().all(|other| *other != draw(1, &[11, 200])));
     }
 

@@ -86,7 +86,11 @@ fn ring_sphere(around: u32, rings: u32, twist: f64) -> Vec<DVec3> {
             let steps = f64::from(k) + twist * f64::from(ring % 2);
             let angle_rad = TAU * steps / f64::from(around);
             let (sin, cos) = angle_rad.sin_cos();
-            vertices.push(DVec3::new(polar_rad.sin() * cos, polar_rad.sin() * sin, polar_rad.cos()));
+            vertices.push(DVec3::new(
+                polar_rad.sin() * cos,
+                polar_rad.sin() * sin,
+                polar_rad.cos(),
+            ));
         }
     }
     vertices.push(DVec3::NEG_Z);

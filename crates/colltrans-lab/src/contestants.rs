@@ -12,14 +12,11 @@ use crate::shapes::Bodies;
 /// An algorithm and its choices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Who {
-    /// The paper's algorithm from scratch: from the centre of the levels, most of the way by planar
-    /// problems, down to a gap between upper and lower bound of [`PAPER_GAP`]; portal refinement
-    /// has only to find the last feature.
-    Cta,
-    /// The same, but down to [`END_GAP`]: portal refinement has nothing left to do but to confirm.
-    CtaToTheEnd,
-    /// The paper's incremental algorithm: `Cta` that starts from the region of the last solution.
-    CtaRegion(Region),
+    /// The paper's algorithm from scratch: from the centre of the levels.
+    Cta(Until),
+    /// The paper's incremental algorithm: from the region of the last solution, a fixed half-side
+    /// being in diameters.
+    CtaRegion(Region, Until),
     /// What `colltrans` does by default from scratch: portal refinement.
     Portal,
     /// What `colltrans` does by default from query to query: feature focus.
@@ -34,12 +31,33 @@ pub(crate) enum Who {
     RayCast,
 }
 
-/// The gap at which [`Who::Cta`] hands over, as a share of the bodies' extent along the direction.
+/// How far the collision translation algorithm goes before portal refinement takes over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Until {
+    /// Most of the way: down to [`PAPER_GAP`]. Portal refinement finds the last feature.
+    Near,
+    /// All the way: down to [`END_GAP`]. Portal refinement has nothing left but to confirm.
+    End,
+}
+
+/// The gap between upper and lower bound at which the collision translation algorithm hands over,
+/// as a share of the bodies' extent along the direction.
 pub(crate) const PAPER_GAP: f64 = 1e-2;
 
-/// The gap at which [`Who::CtaToTheEnd`] does: what separates the two best features of large
-/// bodies and more, but not yet rounding.
+/// Less than what tells the best features of large bodies apart, more than rounding.
 const END_GAP: f64 = 1e-9;
+
+impl Until {
+    /// The paper's minimisation, down to here.
+    pub(crate) fn options(self) -> Options {
+        let gap = match self {
+            Self::Near => PAPER_GAP,
+            Self::End => END_GAP,
+        };
+        let narrowing = Narrowing { start: Start::Center, gap };
+        Options { solver: Solver::Cta, narrowing, ..Options::default() }
+    }
+}
 
 /// What a contestant said.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,10 +97,10 @@ impl Who {
     /// Its name in legends.
     pub(crate) fn name(self) -> String {
         match self {
-            Self::Cta => "CTA".into(),
-            Self::CtaToTheEnd => "CTA to the end".into(),
-            Self::CtaRegion(Region::Fixed(delta)) => format!("CTA, region {delta}"),
-            Self::CtaRegion(_) => "CTA, region focus".into(),
+            Self::Cta(Until::Near) => "CTA".into(),
+            Self::Cta(Until::End) => "CTA to the end".into(),
+            Self::CtaRegion(_, Until::Near) => "CTA, region focus".into(),
+            Self::CtaRegion(_, Until::End) => "CTA to the end, region focus".into(),
             Self::Portal => "portal refinement".into(),
             Self::Tracker => "feature focus".into(),
             Self::Egjk => "EGJK".into(),
@@ -96,15 +114,14 @@ impl Who {
     pub(crate) fn enter(self, bodies: &Bodies) -> Box<dyn Contestant + '_> {
         let [moving, fixed] = &bodies.pair;
         match self {
-            Self::Cta => Box::new(Scratch { bodies, options: paper(PAPER_GAP) }),
-            Self::CtaToTheEnd => Box::new(Scratch { bodies, options: paper(END_GAP) }),
+            Self::Cta(until) => Box::new(Scratch { bodies, options: until.options() }),
             Self::Portal => Box::new(Scratch { bodies, options: Options::default() }),
-            Self::CtaRegion(region) => {
+            Self::CtaRegion(region, until) => {
                 let region = match region {
                     Region::Fixed(delta) => Region::Fixed(delta * bodies.diameter),
                     region => region,
                 };
-                Box::new(Tracked::new(bodies, Focus { features: false, region }, paper(PAPER_GAP)))
+                Box::new(Tracked::new(bodies, Focus { features: false, region }, until.options()))
             }
             Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
             Self::Egjk => Box::new(Egjk::new(moving, fixed)),
@@ -119,12 +136,6 @@ impl Who {
             Self::RayCast => Box::new(RayCast::new(moving, fixed)),
         }
     }
-}
-
-/// The paper's minimisation, down to a gap.
-pub(crate) fn paper(gap: f64) -> Options {
-    let narrowing = Narrowing { start: Start::Center, gap };
-    Options { solver: Solver::Cta, narrowing, ..Options::default() }
 }
 
 /// Casts that know nothing of each other.

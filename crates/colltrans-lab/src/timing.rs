@@ -20,7 +20,7 @@ impl Stopwatch {
     }
 
     /// The result of a call and the nanoseconds it took: at least 1, so that ratios exist.
-    pub(crate) fn time<T>(&self, call: impl FnOnce() -> T) -> (T, f64) {
+    pub(crate) fn time<T>(self, call: impl FnOnce() -> T) -> (T, f64) {
         let started = Instant::now();
         let result = black_box(call());
         let spent = started.elapsed().as_nanos() as f64 - self.cost;

@@ -7,7 +7,7 @@ use super::{
     shares, thousands, time,
 };
 use crate::Experiment;
-use crate::contestants::{Who, Work};
+use crate::contestants::{Until, Who, Work};
 use crate::finding::{Claim, Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
@@ -24,7 +24,7 @@ pub(super) const FIGURE_19: Experiment = Experiment {
 };
 
 const INCREMENTAL: [Who; 4] =
-    [Who::CtaRegion(Region::Automatic), Who::Egjk, Who::Tracker, Who::HWalk(16)];
+    [Who::CtaRegion(Region::Automatic, Until::Near), Who::Egjk, Who::Tracker, Who::HWalk(16)];
 const EGJK: usize = 1;
 const TRACKER: usize = 2;
 
@@ -179,7 +179,8 @@ fn beside_walk(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 }
 
 fn sweep(plan: &Plan, n: usize) -> Sweeps {
-    let mut who: Vec<_> = HALF_SIDES.map(|h| Who::CtaRegion(Region::Fixed(h))).to_vec();
+    let mut who: Vec<_> =
+        HALF_SIDES.map(|h| Who::CtaRegion(Region::Fixed(h), Until::Near)).to_vec();
     who.extend(PATIENCES.map(Who::HWalk));
     let results: Vec<_> = ALPHAS_DEG
         .iter()

@@ -6,7 +6,7 @@ use super::{
     Coherence, Parts, Race, Results, axis, claim, reference, series, share, shares, thousands,
 };
 use crate::Experiment;
-use crate::contestants::{PAPER_GAP, Who};
+use crate::contestants::{PAPER_GAP, Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point, Series};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
@@ -25,10 +25,19 @@ pub(super) const FIGURE_14: Experiment = Experiment {
     run: average,
 };
 
-const WHO: [Who; 3] = [Who::Cta, Who::CtaRegion(Region::Automatic), Who::Tracker];
-const CTA: usize = 0;
-const REGION: usize = 1;
-const TRACKER: usize = 2;
+const WHO: [Who; 5] = [
+    Who::Cta(Until::Near),
+    Who::Cta(Until::End),
+    Who::CtaRegion(Region::Automatic, Until::Near),
+    Who::CtaRegion(Region::Automatic, Until::End),
+    Who::Tracker,
+];
+const SCRATCH: [usize; 2] = [0, 1];
+const REGION: [usize; 2] = [2, 3];
+const TRACKER: usize = 4;
+
+/// Names of both ways to count: see [`Until`].
+const UNTIL: [&str; 2] = ["CTA", "CTA to the end"];
 
 /// Pairs of configurations that differ by `delta`: the second is measured, after the first.
 fn measure(plan: &Plan, figure: u64, n: usize, delta: f64, blocks: usize) -> Results {
@@ -65,23 +74,32 @@ fn single(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let figure = Figure {
         id: "figure-13".into(),
         title: format!(
-            "Steps of single queries, share of all queries, {} vertices, CTA to a gap of {PAPER_GAP} \
-             (feature focus counts portals)",
+            "Steps of single queries, share of all queries, {} vertices. CTA ends at a gap of \
+             {PAPER_GAP}, or goes to the end; feature focus counts portals",
             thousands(n as f64)
         ),
         x: axis("steps", false),
         y: axis("queries (%)", false),
-        series: vec![
-            histogram("CTA from scratch".into(), &steps(&results[0], CTA)),
-            histogram("CTA, change of 1 % D".into(), &steps(&results[0], REGION)),
-            histogram("CTA, change of 0.25 % D".into(), &steps(&results[1], REGION)),
-            histogram("feature focus, 1 % D".into(), &steps(&results[0], TRACKER)),
-            histogram("feature focus, 0.25 % D".into(), &steps(&results[1], TRACKER)),
-        ],
+        series: histograms(&results),
         references: Vec::new(),
     };
     let claims = vec![one_step(&results)];
     Finding { figures: vec![figure], tables: Vec::new(), claims }
+}
+
+fn histograms(results: &[Results; 2]) -> Vec<Series> {
+    let mut series = Vec::new();
+    for (until, name) in UNTIL.iter().enumerate() {
+        let scratch = steps(&results[0], SCRATCH[until]);
+        series.push(histogram(format!("{name}, from scratch"), &scratch));
+        for (delta, results) in CHANGES.iter().zip(results) {
+            let name = format!("{name}, change of {} % D", 100.0 * delta);
+            series.push(histogram(name, &steps(results, REGION[until])));
+        }
+    }
+    let name = format!("feature focus, change of {} % D", 100.0 * CHANGES[0]);
+    series.push(histogram(name, &steps(&results[0], TRACKER)));
+    series
 }
 
 /// The share of values at each number of steps, in per cent.
@@ -96,32 +114,33 @@ fn histogram(name: String, values: &[f64]) -> Series {
 }
 
 fn one_step(results: &[Results; 2]) -> Claim {
-    let share = |results: &Results| {
-        let steps = steps(results, REGION);
-        steps.iter().filter(|s| **s <= 1.0).count() as f64 / steps.len() as f64
+    let share = |results: &Results, who: usize| {
+        let steps = steps(results, who);
+        100.0 * steps.iter().filter(|s| **s <= 1.0).count() as f64 / steps.len() as f64
     };
-    let shares = results.each_ref().map(share);
-    let means = results.each_ref().map(|r| mean_and_deviation(&steps(r, REGION))[0]);
-    let least = results.each_ref().map(|r| steps(r, REGION).into_iter().fold(f64::NAN, f64::min));
-    claim(
-        "With initialisation single queries need no more than one step, at a change of 1 % and of \
-         0.25 % of the diameter.",
+    let mean = |results: &Results, who: usize| mean_and_deviation(&steps(results, who))[0];
+    let shares = results.each_ref().map(|r| share(r, REGION[0]));
+    let text = |until: usize| {
+        let [one, quarter] = results;
         format!(
-            "One step: {:.1} % of the queries at 1 %, {:.1} % at 0.25 %. On average {:.1} and {:.1} \
-             steps, from scratch {:.1}.",
-            100.0 * shares[0],
-            100.0 * shares[1],
-            means[0],
-            means[1],
-            mean_and_deviation(&steps(&results[0], CTA))[0]
-        ),
+            "{:.1} % of the queries take one step at 1 %, {:.1} % at 0.25 %; on average {:.1} and \
+             {:.1} steps, from scratch {:.1}",
+            share(one, REGION[until]),
+            share(quarter, REGION[until]),
+            mean(one, REGION[until]),
+            mean(quarter, REGION[until]),
+            mean(one, SCRATCH[until])
+        )
+    };
+    claim(
+        "With initialisation single queries take no more than one step, at a change of 1 % and of \
+         0.25 % of the diameter.",
+        format!("To a gap of {PAPER_GAP}, for the verdict: {}. To the end: {}.", text(0), text(1)),
         shares.iter().all(|share| *share > 0.0),
         || {
             format!(
-                "The fewest steps are {:.0} and {:.0}. A step ends the minimisation only if upper and \
-                 lower bound meet to within {PAPER_GAP} of the bodies' extent, and one linear piece \
-                 bounds all of the square from below by its gradient times the square's side.",
-                least[0], least[1]
+                "No query ended after one step at one of the changes. A step ends the minimisation \
+                 only if both bounds meet to within {PAPER_GAP} of the bodies' extent."
             )
         },
     )
@@ -133,105 +152,108 @@ const DELTAS: [f64; 7] = [0.000_625, 0.001_25, 0.002_5, 0.005, 0.01, 0.02, 0.05]
 fn average(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let sizes: Vec<_> = plan.sizes().iter().copied().filter(|n| *n < 100_000).collect();
     let mut parts = Parts::new(progress, shares(&sizes));
-    let mut curves = Vec::new();
-    for &n in &sizes {
-        parts.begin(share(n), &format!("{} vertices", thousands(n as f64)));
-        let blocks = plan.by_scale(20, 250, 2_000);
-        let results = DELTAS.map(|delta| measure(plan, 14, n, delta, blocks));
-        curves.push(Curve::new(n, &results));
-    }
-    let mut series: Vec<_> = curves
+    let curves: Vec<_> = sizes
         .iter()
-        .map(|c| series(format!("CTA, {} vertices", thousands(c.n)), c.region.clone()))
-        .collect();
-    if let Some(last) = curves.last() {
-        let name = format!("feature focus (portals), {} vertices", thousands(last.n));
-        series.push(super::series(name, last.tracker.clone()));
-    }
-    let references = curves
-        .iter()
-        .map(|c| {
-            let name = format!("from scratch, {} vertices", thousands(c.n));
-            reference(&name, DELTAS.iter().map(|d| 100.0 * d), |_| c.scratch)
+        .map(|&n| {
+            parts.begin(share(n), &format!("{} vertices", thousands(n as f64)));
+            let blocks = plan.by_scale(20, 500, 3_000);
+            Curves::new(n, &DELTAS.map(|delta| measure(plan, 14, n, delta, blocks)))
         })
         .collect();
-    let figure = Figure {
-        id: "figure-14".into(),
-        title: format!(
-            "Steps with initialisation, CTA to a gap of {PAPER_GAP}, mean and standard deviation"
-        ),
-        x: axis("change of the configuration (% D)", true),
-        y: axis("steps", false),
-        series,
-        references,
-    };
-    Finding { figures: vec![figure], tables: Vec::new(), claims: vec![fewer(&curves)] }
+    let ids = ["figure-14", "figure-14-end"];
+    let figures = (0..2).map(|until| figure(ids[until], until, &curves)).collect();
+    let claims = (0..2).map(|until| fewer(until, &curves)).collect();
+    Finding { figures, tables: Vec::new(), claims }
 }
 
 /// Steps against the change, at one size.
-struct Curve {
+struct Curves {
     n: f64,
-    region: Vec<Point>,
+    /// By [`UNTIL`].
+    region: [Vec<Point>; 2],
     tracker: Vec<Point>,
-    /// Steps from scratch, on average over all.
-    scratch: f64,
+    /// Steps from scratch, on average over all changes.
+    scratch: [f64; 2],
 }
 
-impl Curve {
+impl Curves {
     fn new(n: usize, results: &[Results]) -> Self {
         let points = |who: usize| {
             let point = |(delta, r): (&f64, &Results)| mean_point(100.0 * delta, &steps(r, who));
             DELTAS.iter().zip(results).map(point).collect()
         };
-        let scratch: Vec<_> = results.iter().flat_map(|r| steps(r, CTA)).collect();
+        let scratch = |who: usize| {
+            let all: Vec<_> = results.iter().flat_map(|r| steps(r, who)).collect();
+            mean_and_deviation(&all)[0]
+        };
         Self {
             n: n as f64,
-            region: points(REGION),
+            region: REGION.map(points),
             tracker: points(TRACKER),
-            scratch: mean_and_deviation(&scratch)[0],
+            scratch: SCRATCH.map(scratch),
         }
     }
 }
 
-/// Whether at every size the least change takes the fewest steps, and no change up to 1 % takes
-/// more than from scratch.
-fn fewer(curves: &[Curve]) -> Claim {
-    let at = |c: &Curve, delta: f64| {
-        c.region.iter().find(|p| p.x == 100.0 * delta).map_or(f64::NAN, |p| p.y)
+fn figure(id: &str, until: usize, curves: &[Curves]) -> Figure {
+    let at_size = |what: &str, c: &Curves| format!("{what}, {} vertices", thousands(c.n));
+    let mut lines: Vec<_> =
+        curves.iter().map(|c| series(at_size(UNTIL[until], c), c.region[until].clone())).collect();
+    let tracker = |c: &Curves| series(at_size("feature focus (portals)", c), c.tracker.clone());
+    lines.extend(curves.last().map(tracker));
+    let scratch = |c: &Curves| {
+        let at = DELTAS.iter().map(|delta| 100.0 * delta);
+        reference(&at_size("from scratch", c), at, |_| c.scratch[until])
     };
-    let falls = |c: &Curve| {
-        let least = at(c, DELTAS[0]);
-        c.region[1..].iter().all(|p| least <= p.y) && at(c, 0.01) < c.scratch
+    let ends = ["down to a gap of 0.01", "to the end"];
+    Figure {
+        id: id.into(),
+        title: format!(
+            "Steps with initialisation, CTA {}, mean and standard deviation",
+            ends[until]
+        ),
+        x: axis("change of the configuration (% D)", true),
+        y: axis("steps", false),
+        series: lines,
+        references: curves.first().into_iter().chain(curves.last()).map(scratch).collect(),
+    }
+}
+
+/// Whether steps nowhere rise by more than chance when the change becomes smaller, at the smallest
+/// change are fewer than at the largest, and up to a change of 1 % fewer than from scratch.
+fn fewer(until: usize, curves: &[Curves]) -> Claim {
+    let falls = |c: &Curves| {
+        let points = &c.region[until];
+        let rises = points.windows(2).any(|w| w[0].y > w[1].y + 3.0 * standard_error(&w[0]));
+        let fewer = |p: &Point| p.x > 1.0 || p.y < c.scratch[until];
+        let ends = [points.first(), points.last()].map(|p| p.map_or(f64::NAN, |p| p.y));
+        !rises && ends[0] < ends[1] && points.iter().all(fewer)
     };
     let text: Vec<_> = curves
         .iter()
         .map(|c| {
-            format!(
-                "{} vertices: {:.1} at {} %, {:.1} at 1 %, {:.1} at {} %, {:.1} from scratch",
-                thousands(c.n),
-                at(c, DELTAS[0]),
-                100.0 * DELTAS[0],
-                at(c, 0.01),
-                at(c, DELTAS[6]),
-                100.0 * DELTAS[6],
-                c.scratch
-            )
+            let steps: Vec<_> =
+                c.region[until].iter().map(|p| format!("{:.2} at {} %", p.y, p.x)).collect();
+            let n = thousands(c.n);
+            format!("{n} vertices: {}, {:.2} from scratch", steps.join(", "), c.scratch[until])
         })
         .collect();
-    claim(
-        "Average steps fall with the change of the configuration, at every size, and stay below \
-         those from scratch.",
-        format!("{}.", text.join("; ")),
-        curves.iter().all(falls),
-        || {
-            let failing: Vec<_> =
-                curves.iter().filter(|c| !falls(c)).map(|c| thousands(c.n)).collect();
-            format!(
-                "Not at {} vertices. From scratch, steps to a gap of {PAPER_GAP} depend little on \
-                 the size; a square around the last solution saves the first halvings of the region \
-                 and costs extra steps where the solution has left it.",
-                failing.join(", ")
-            )
-        },
-    )
+    let statement = format!(
+        "Average steps of {} fall with the change of the configuration, at every size, and stay \
+         below those from scratch.",
+        UNTIL[until]
+    );
+    claim(&statement, format!("{}.", text.join("; ")), curves.iter().all(falls), || {
+        let not: Vec<_> = curves.iter().filter(|c| !falls(c)).map(|c| thousands(c.n)).collect();
+        format!(
+            "Not at {} vertices: beyond three standard errors, steps rise somewhere when the change \
+             falls, or exceed those from scratch.",
+            not.join(", ")
+        )
+    })
+}
+
+/// Of a mean, whose spread is the standard deviation.
+fn standard_error(mean: &Point) -> f64 {
+    (mean.high - mean.y) / (mean.count as f64).sqrt()
 }

@@ -135,7 +135,7 @@ impl Race<'_> {
                 }
             }
         }
-        Results { vertices, diameter, lanes }
+        Results { vertices, lanes, diameter }
     }
 
     fn bodies(&self, which: u64) -> Arc<Bodies> {

@@ -6,7 +6,7 @@ use super::{
     reference, series, share, shares, thousands, time,
 };
 use crate::Experiment;
-use crate::contestants::Who;
+use crate::contestants::{Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
@@ -26,7 +26,7 @@ pub(super) const FIGURE_17: Experiment = Experiment {
 };
 
 const WHO: [Who; 6] =
-    [Who::Cta, Who::Egjk, Who::Pqp, Who::Portal, Who::RayCast, Who::HWalk(PATIENCE)];
+    [Who::Cta(Until::Near), Who::Egjk, Who::Pqp, Who::Portal, Who::RayCast, Who::HWalk(PATIENCE)];
 const CTA: usize = 0;
 const EGJK: usize = 1;
 const PQP: usize = 2;

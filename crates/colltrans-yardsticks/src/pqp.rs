@@ -1,1 +1,0 @@
-//! PQP (Larsen, Gottschalk, Lin, Manocha 1999).

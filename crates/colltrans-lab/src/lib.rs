@@ -5,28 +5,31 @@
 //! section V reports nine figures (11 to 19) and a table; each is an [`Experiment`] here.
 //!
 //! The data's way: [`plan`] (how much) -> `shapes`, `settings` (what on) -> `experiments` (what is
-//! measured, by `timing`) -> [`finding`] (figures, tables, claims with verdicts) -> [`draw`],
-//! [`csv`], [`report`] (what a reader sees). [`run()`] goes all the way and writes the files.
+//! measured, by `contestants` and `timing`) -> [`finding`] (figures, tables, claims with verdicts)
+//! -> [`draw`], [`csv`], [`report`] (what a reader sees). [`run()`] goes all the way and writes the
+//! files.
 
+mod contestants;
 pub mod csv;
 pub mod draw;
 mod error;
+mod experiments;
 pub mod finding;
 pub mod plan;
 pub mod provenance;
+mod random;
 pub mod report;
 mod run;
+mod settings;
+mod shapes;
+mod timing;
 
 use finding::Finding;
 use plan::{Plan, Progress};
 
 pub use error::LabError;
+pub use experiments::experiments;
 pub use run::{Done, Summary, run};
-
-/// All experiments, in the paper's order.
-pub fn experiments() -> &'static [Experiment] {
-    &[]
-}
 
 /// One figure or table of the paper.
 #[derive(Debug, Clone, Copy)]

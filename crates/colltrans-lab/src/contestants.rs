@@ -1,0 +1,251 @@
+//! Who is measured: every algorithm behind the same three words.
+
+use colltrans::{Focus, Narrowing, Options, Outcome, Region, Solver, Start, Tracker, cast_with};
+use colltrans_yardsticks::egjk::Egjk;
+use colltrans_yardsticks::hwalk::HWalk;
+use colltrans_yardsticks::pqp::Pqp;
+use colltrans_yardsticks::raycast::{RayCast, RayCastAnswer};
+
+use crate::settings::Setting;
+use crate::shapes::Bodies;
+
+/// An algorithm and its choices.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Who {
+    /// The paper's algorithm from scratch: from the centre of the levels.
+    Cta(Until),
+    /// The paper's incremental algorithm: from the region of the last solution, a fixed half-side
+    /// being in diameters.
+    CtaRegion(Region, Until),
+    /// What `colltrans` does by default from scratch: portal refinement.
+    Portal,
+    /// What `colltrans` does by default from query to query: feature focus.
+    Tracker,
+    /// Distance by enhanced GJK.
+    Egjk,
+    /// Distance by swept sphere trees over triangles.
+    Pqp,
+    /// Distance by H-Walk with this patience: the steps on a layer before it goes to a coarser one.
+    HWalk(u32),
+    /// Collision translation by GJK ray cast, to `1e-6` of the size: not exact.
+    RayCast,
+}
+
+/// How far the collision translation algorithm goes before portal refinement takes over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Until {
+    /// Most of the way: down to [`PAPER_GAP`]. Portal refinement finds the last feature.
+    Near,
+    /// All the way: down to [`END_GAP`]. Portal refinement has nothing left but to confirm.
+    End,
+}
+
+/// The gap between upper and lower bound at which the collision translation algorithm hands over,
+/// as a share of the bodies' extent along the direction.
+pub(crate) const PAPER_GAP: f64 = 1e-2;
+
+/// Less than what tells the best features of large bodies apart, more than rounding.
+const END_GAP: f64 = 1e-9;
+
+impl Until {
+    /// The paper's minimisation, down to here.
+    pub(crate) fn options(self) -> Options {
+        let gap = match self {
+            Self::Near => PAPER_GAP,
+            Self::End => END_GAP,
+        };
+        let narrowing = Narrowing { start: Start::Center, gap };
+        Options { solver: Solver::Cta, narrowing, ..Options::default() }
+    }
+}
+
+/// What a contestant said.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Answer {
+    /// The bodies meet after this translation.
+    Meet(f64),
+    /// The bodies meet, and come within a tolerance of each other at a known translation.
+    MeetNearly,
+    /// They do not meet.
+    Pass,
+    /// How far they are apart.
+    Distance(f64),
+    /// None.
+    Failed,
+}
+
+/// The answer to one query and the work it took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Work {
+    pub(crate) answer: Answer,
+    /// The algorithm's own steps: planar problems of the collision translation algorithm, portals,
+    /// simplices, pairs of bounding volumes or features.
+    pub(crate) steps: u32,
+    /// Portals visited and supporting planes computed after the collision translation algorithm.
+    pub(crate) finish: [u32; 2],
+}
+
+/// An algorithm at work on two bodies.
+pub(crate) trait Contestant {
+    /// The next query starts from scratch.
+    fn forget(&mut self);
+    /// A query; it may start from the one before.
+    fn ask(&mut self, setting: &Setting) -> Work;
+}
+
+impl Who {
+    /// Its name in legends.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Cta(Until::Near) => "CTA".into(),
+            Self::Cta(Until::End) => "CTA to the end".into(),
+            Self::CtaRegion(_, Until::Near) => "CTA, region focus".into(),
+            Self::CtaRegion(_, Until::End) => "CTA to the end, region focus".into(),
+            Self::Portal => "portal refinement".into(),
+            Self::Tracker => "feature focus".into(),
+            Self::Egjk => "EGJK".into(),
+            Self::Pqp => "PQP".into(),
+            Self::HWalk(patience) => format!("H-Walk, patience {patience}"),
+            Self::RayCast => "GJK ray cast".into(),
+        }
+    }
+
+    /// Takes the field. What is made of the bodies beforehand is made here.
+    pub(crate) fn enter(self, bodies: &Bodies) -> Box<dyn Contestant + '_> {
+        let [moving, fixed] = &bodies.pair;
+        match self {
+            Self::Cta(until) => Box::new(Scratch { bodies, options: until.options() }),
+            Self::Portal => Box::new(Scratch { bodies, options: Options::default() }),
+            Self::CtaRegion(region, until) => {
+                let region = match region {
+                    Region::Fixed(delta) => Region::Fixed(delta * bodies.diameter),
+                    region => region,
+                };
+                Box::new(Tracked::new(bodies, Focus { features: false, region }, until.options()))
+            }
+            Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
+            Self::Egjk => Box::new(Egjk::new(moving, fixed)),
+            Self::Pqp => {
+                let [moving, fixed] = bodies.soups();
+                Box::new(Pqp::new(moving, fixed))
+            }
+            Self::HWalk(patience) => {
+                let [moving, fixed] = bodies.hierarchies();
+                Box::new(HWalk::new(moving, fixed).with_patience(patience))
+            }
+            Self::RayCast => Box::new(RayCast::new(moving, fixed)),
+        }
+    }
+}
+
+/// Casts that know nothing of each other.
+struct Scratch<'a> {
+    bodies: &'a Bodies,
+    options: Options,
+}
+
+impl Contestant for Scratch<'_> {
+    fn forget(&mut self) {}
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let [moving, fixed] = &self.bodies.pair;
+        let Setting { moving: p, fixed: q, direction } = setting;
+        work(&cast_with(moving, p, fixed, q, *direction, &self.options))
+    }
+}
+
+/// Casts that start from the one before.
+struct Tracked<'a> {
+    tracker: Tracker<'a>,
+    options: Options,
+}
+
+impl<'a> Tracked<'a> {
+    fn new(bodies: &'a Bodies, focus: Focus, options: Options) -> Self {
+        let [moving, fixed] = &bodies.pair;
+        let tracker =
+            Tracker::new(moving, fixed).with_focus(focus).expect("half-sides are positive");
+        Self { tracker, options }
+    }
+}
+
+impl Contestant for Tracked<'_> {
+    fn forget(&mut self) {
+        self.tracker.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let Setting { moving: p, fixed: q, direction } = setting;
+        work(&self.tracker.cast_with(p, q, *direction, &self.options))
+    }
+}
+
+fn work<E>(outcome: &Result<Outcome, E>) -> Work {
+    let Ok(outcome) = outcome else {
+        return Work { answer: Answer::Failed, steps: 0, finish: [0; 2] };
+    };
+    let answer = match outcome {
+        Outcome::Contact(contact) => Answer::Meet(contact.translation),
+        Outcome::Grazing(_) | Outcome::Separated(_) => Answer::Pass,
+    };
+    let steps = outcome.steps();
+    if steps.planar_problems == 0 {
+        return Work { answer, steps: steps.pivots, finish: [0, steps.supports] };
+    }
+    Work { answer, steps: steps.planar_problems, finish: [steps.pivots, steps.supports] }
+}
+
+impl Contestant for Egjk<'_> {
+    fn forget(&mut self) {
+        self.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let found = self.distance(&setting.moving, &setting.fixed);
+        let answer = Answer::Distance(found.distance);
+        Work { answer, steps: found.steps.iterations, finish: [0; 2] }
+    }
+}
+
+impl Contestant for RayCast<'_> {
+    fn forget(&mut self) {
+        self.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let (answer, steps) = match self.cast(&setting.moving, &setting.fixed, setting.direction) {
+            RayCastAnswer::Hit { steps, .. } | RayCastAnswer::InContact { steps, .. } => {
+                (Answer::MeetNearly, steps)
+            }
+            RayCastAnswer::Miss { steps } => (Answer::Pass, steps),
+            RayCastAnswer::Exhausted { steps, .. } => (Answer::Failed, steps),
+        };
+        Work { answer, steps: steps.iterations, finish: [0; 2] }
+    }
+}
+
+impl Contestant for Pqp<'_> {
+    fn forget(&mut self) {
+        self.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let found = self.distance(&setting.moving, &setting.fixed);
+        Work {
+            answer: Answer::Distance(found.distance),
+            steps: found.steps.volume_tests,
+            finish: [0; 2],
+        }
+    }
+}
+
+impl Contestant for HWalk<'_> {
+    fn forget(&mut self) {
+        self.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let found = self.distance(&setting.moving, &setting.fixed);
+        Work { answer: Answer::Distance(found.distance), steps: found.steps.pairs, finish: [0; 2] }
+    }
+}

@@ -1,0 +1,211 @@
+//! The paper's bodies: vertices on ellipsoids in a regular arrangement (section V), built once per
+//! run.
+//!
+//! Notation. A body has `rings` parallels with `around` vertices each, between two poles. On a unit
+//! sphere a meridian's edges have the length `pi / rings`, and those of the parallels, on average
+//! over all rings, `4 / around`; the *stretch* of the faces is the second over the first.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread;
+
+use colltrans::ConvexPolyhedron;
+use colltrans_yardsticks::hwalk::Hierarchy;
+use colltrans_yardsticks::pqp::Soup;
+use glam::DVec3;
+
+use crate::random::Random;
+
+/// A kind of body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    /// Ellipsoids with nearly all faces trapezoids, as long as wide on average.
+    Balanced,
+    /// Ellipsoids with nearly all faces trapezoids, [`THIN`] times as long as wide (less below a
+    /// thousand or so vertices: no fewer than [`FEWEST_AROUND`] meridians).
+    Thin,
+    /// As `Balanced`, but every other ring turned by half a step: all faces are triangles.
+    Triangles,
+    /// Two equal unit spheres with balanced faces.
+    Spheres,
+}
+
+/// The stretch of thin faces.
+const THIN: f64 = 100.0;
+
+/// With fewer meridians a body is a prism more than an ellipsoid.
+const FEWEST_AROUND: f64 = 8.0;
+
+impl Kind {
+    /// Its name in legends.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Balanced => "balanced",
+            Self::Thin => "thin",
+            Self::Triangles => "triangles",
+            Self::Spheres => "spheres",
+        }
+    }
+
+    /// Vertices around and rings of a body with about `n` vertices.
+    fn arrangement(self, n: usize) -> [u32; 2] {
+        let stretch = if self == Self::Thin { THIN } else { 1.0 };
+        let inner = n.saturating_sub(2) as f64;
+        let fewest = if self == Self::Thin { FEWEST_AROUND } else { 3.0 };
+        let around = (inner * 4.0 / (PI * stretch)).sqrt().round().max(fewest);
+        [around as u32, (inner / around).round().max(1.0) as u32]
+    }
+
+    fn build(self, n: usize, random: &mut Random) -> ConvexPolyhedron {
+        let semi_axes = match self {
+            Self::Spheres => DVec3::ONE,
+            _ => DVec3::from_array([0; 3].map(|_| random.range(0.6, 1.4))),
+        };
+        let [around, rings] = self.arrangement(n);
+        let twist = if self == Self::Triangles { 0.5 } else { 0.0 };
+        let vertices: Vec<_> =
+            ring_sphere(around, rings, twist).into_iter().map(|v| v * semi_axes).collect();
+        let built = if self == Self::Triangles {
+            ConvexPolyhedron::from_points(&vertices)
+        } else {
+            // The corners of a trapezoid are rounded: it is flat to a few units in the last place.
+            let faces = trapezoids(around, rings);
+            ConvexPolyhedron::from_mesh(&vertices, &faces, 64.0 * f64::EPSILON)
+        };
+        built.expect("points of an ellipsoid, and its faces, make a convex body")
+    }
+}
+
+/// The poles and rings of a unit sphere; odd rings are turned by `twist` steps.
+fn ring_sphere(around: u32, rings: u32, twist: f64) -> Vec<DVec3> {
+    let mut vertices = vec![DVec3::Z];
+    for ring in 1..=rings {
+        let polar_rad = PI * f64::from(ring) / f64::from(rings + 1);
+        for k in 0..around {
+            let steps = f64::from(k) + twist * f64::from(ring % 2);
+            let angle_rad = TAU * steps / f64::from(around);
+            let (sin, cos) = angle_rad.sin_cos();
+            vertices.push(DVec3::new(
+                polar_rad.sin() * cos,
+                polar_rad.sin() * sin,
+                polar_rad.cos(),
+            ));
+        }
+    }
+    vertices.push(DVec3::NEG_Z);
+    vertices
+}
+
+/// The faces of a ring sphere without twist.
+fn trapezoids(around: u32, rings: u32) -> Vec<Vec<u32>> {
+    let at = |ring: u32, k: u32| 1 + ring * around + k % around;
+    let south = rings * around + 1;
+    let mut faces = Vec::new();
+    for k in 0..around {
+        faces.push(vec![0, at(0, k), at(0, k + 1)]);
+        for ring in 1..rings {
+            faces.push(vec![at(ring - 1, k), at(ring, k), at(ring, k + 1), at(ring - 1, k + 1)]);
+        }
+        faces.push(vec![at(rings - 1, k), south, at(rings - 1, k + 1)]);
+    }
+    faces
+}
+
+/// A moving and a fixed body, with what the contestants make of them before any query.
+#[derive(Debug)]
+pub(crate) struct Bodies {
+    /// The moving and the fixed one.
+    pub(crate) pair: [ConvexPolyhedron; 2],
+    /// `D`: the mean of both diameters, a diameter being twice the largest distance of a vertex
+    /// from the centre.
+    pub(crate) diameter: f64,
+    soups: OnceLock<[Soup; 2]>,
+    hierarchies: OnceLock<[Hierarchy; 2]>,
+}
+
+impl Bodies {
+    /// The bodies triangulated, with bounding volumes.
+    pub(crate) fn soups(&self) -> &[Soup; 2] {
+        self.soups.get_or_init(|| both(|i| Soup::of_polyhedron(&self.pair[i])))
+    }
+
+    /// The bodies in layers.
+    pub(crate) fn hierarchies(&self) -> &[Hierarchy; 2] {
+        self.hierarchies.get_or_init(|| both(|i| Hierarchy::new(&self.pair[i]).expect("the bodies of the lab are solids")))
+    }
+
+    /// Vertices of a body, on average.
+    pub(crate) fn vertices(&self) -> f64 {
+        self.pair.iter().map(|body| body.vertices().len() as f64).sum::<f64>() / 2.0
+    }
+}
+
+/// Two things of the same kind, made at the same time.
+fn both<T: Send>(make: impl Fn(usize) -> T + Sync) -> [T; 2] {
+    thread::scope(|scope| {
+        let other = scope.spawn(|| make(1));
+        let first = make(0);
+        // A panic of `make` goes on here.
+        [first, other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))]
+    })
+}
+
+/// What tells the bodies of a run from each other: seed, kind, size, and which pair.
+type Key = (u64, Kind, usize, u64);
+
+/// All bodies of the run: figures share them, and large ones take seconds.
+static BUILT: Mutex<BTreeMap<Key, Arc<Bodies>>> = Mutex::new(BTreeMap::new());
+
+/// The `which`-th pair of bodies of a kind with about `n` vertices.
+pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies> {
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    let build = || {
+        let pair = both(|i| {
+            let mut random = Random::new(seed, &[kind as u64, n as u64, which, i as u64]);
+            kind.build(n, &mut random)
+        });
+        let diameter = pair.iter().map(radius).sum();
+        Arc::new(Bodies { pair, diameter, soups: OnceLock::new(), hierarchies: OnceLock::new() })
+    };
+    Arc::clone(built.entry((seed, kind, n, which)).or_insert_with(build))
+}
+
+/// The largest distance of a vertex from the centre, which is the origin.
+fn radius(body: &ConvexPolyhedron) -> f64 {
+    body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bodies_have_the_vertices_and_faces_asked_for() {
+        for kind in [Kind::Balanced, Kind::Thin, Kind::Triangles, Kind::Spheres] {
+            for n in [50, 200, 800, 3_200] {
+                let bodies = bodies(7, kind, n, 0);
+                assert!((bodies.vertices() / n as f64 - 1.0).abs() < 0.06, "{kind:?} {n}");
+                for body in &bodies.pair {
+                    let corners = |f: usize| body.face_vertices(f as u32).count();
+                    let triangles = (0..body.face_count()).filter(|f| corners(*f) == 3).count();
+                    let [around, _] = kind.arrangement(n);
+                    let expected = match kind {
+                        Kind::Triangles => body.face_count(),
+                        _ => 2 * around as usize,
+                    };
+                    assert_eq!(triangles, expected, "{kind:?} {n}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn thin_faces_are_thin_and_balanced_ones_are_not() {
+        for (kind, n, expected) in [(Kind::Balanced, 12_800, 1.0), (Kind::Thin, 12_800, 100.0)] {
+            let [around, rings] = kind.arrangement(n).map(f64::from);
+            let stretch = (4.0 / around) / (PI / rings);
+            assert!((stretch / expected - 1.0).abs() < 0.1, "{kind:?}: {stretch}");
+        }
+    }
+}

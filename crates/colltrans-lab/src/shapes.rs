@@ -132,7 +132,9 @@ impl Bodies {
 
     /// The bodies in layers.
     pub(crate) fn hierarchies(&self) -> &[Hierarchy; 2] {
-        self.hierarchies.get_or_init(|| both(|i| Hierarchy::new(&self.pair[i]).expect("the bodies of the lab are solids")))
+        self.hierarchies.get_or_init(|| {
+            both(|i| Hierarchy::new(&self.pair[i]).expect("the bodies of the lab are solids"))
+        })
     }
 
     /// Vertices of a body, on average.

@@ -69,7 +69,7 @@ fn single(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let mut parts = Parts::new(progress, 2.0);
     let results = CHANGES.map(|delta| {
         parts.begin(1.0, &format!("change of {} % D", 100.0 * delta));
-        measure(plan, 13, n, delta, plan.by_scale(20, 1_500, 10_000))
+        measure(plan, 13, n, delta, plan.by_scale(20, 4_000, 20_000))
     });
     let figure = Figure {
         id: "figure-13".into(),

@@ -117,9 +117,9 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
             p.part("portal refinement") + p.part("answer") + p.part("lower bound")
         });
         if middle > 0.5 {
-            "More than half: what is done besides is cheaper here than in the paper, and finding the \
-             crossing edges of a section, which waits for memory in large bodies, counts as part of \
-             the planar problem."
+            "More than half. Here a planar problem includes finding the edges of both sections, and \
+             its part grows with the bodies as that finds less and less of them in the processor's \
+             caches (figure 11); what a step does besides touches no body at all."
                 .into()
         } else {
             format!(

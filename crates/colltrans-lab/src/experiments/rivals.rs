@@ -51,8 +51,9 @@ impl Field {
                 n: *n,
                 who: &WHO,
                 coherence: Coherence::Scratch,
-                length: plan.by_scale(5, 10, 20),
-                blocks: plan.by_scale(2, 20, 60),
+                // Long blocks: an algorithm in use finds its bodies in the caches.
+                length: plan.by_scale(5, 60, 100),
+                blocks: plan.by_scale(2, 6, 30),
             };
             race.run(0, |bodies, count, random| {
                 (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()

@@ -65,8 +65,8 @@ fn measure(plan: &Plan, n: usize, purpose: u64, meeting: Meeting) -> Results {
         n,
         who: &WHO,
         coherence: Coherence::Scratch,
-        length: plan.by_scale(5, 20, 20),
-        blocks: plan.by_scale(2, 25, 120),
+        length: plan.by_scale(5, 60, 100),
+        blocks: plan.by_scale(2, 8, 40),
     };
     race.run(purpose, |bodies, count, random| {
         (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()

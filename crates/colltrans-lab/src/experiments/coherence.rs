@@ -84,7 +84,7 @@ fn sequences(plan: &Plan, n: usize, delta: f64) -> Results {
         who: &INCREMENTAL,
         coherence: Coherence::Blocks,
         length: 51,
-        blocks: plan.by_scale(2, 40, 240),
+        blocks: plan.by_scale(2, 120, 600),
     };
     race.run((delta * 1e6) as u64, |bodies, count, random| {
         Setting::sequence(bodies, Meeting::Colliding, delta, count, random)
@@ -202,7 +202,7 @@ fn sweep(plan: &Plan, n: usize) -> Sweeps {
                 who: &who,
                 coherence: Coherence::Blocks,
                 length: plan.by_scale(10, 101, 101),
-                blocks: plan.by_scale(3, 40, 300),
+                blocks: plan.by_scale(3, 80, 600),
             };
             race.run((alpha * 1e3) as u64, |bodies, count, random| {
                 Setting::orbit(bodies, *alpha, count, random)

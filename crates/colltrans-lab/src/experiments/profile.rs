@@ -43,7 +43,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 fn measure(plan: &Plan, n: usize) -> Profiled {
     let bodies = bodies(plan.seed, Kind::Balanced, n, 0);
     let mut random = Random::new(plan.seed, &[1, n as u64]);
-    let queries: usize = plan.by_scale(20, 1_000, 5_000);
+    let queries: usize = plan.by_scale(20, 1_500, 10_000);
     let settings: Vec<_> =
         (0..queries).map(|_| Setting::draw(&bodies, Meeting::Colliding, &mut random)).collect();
     let [moving, fixed] = &bodies.pair;

@@ -2,7 +2,7 @@
 
 use super::{
     Coherence, Parts, Race, Results, about, against_size, axis, claim, listed, reference, series,
-    share, shares, thousands,
+    share, shares, thousands, time,
 };
 use crate::Experiment;
 use crate::contestants::{PAPER_GAP, Until, Who};

@@ -23,8 +23,8 @@ pub(super) const FIGURE_19: Experiment = Experiment {
     run: beside_walk,
 };
 
-const INCREMENTAL: [Who; 4] =
-    [Who::CtaRegion(Region::Automatic, Until::Near), Who::Egjk, Who::Tracker, Who::HWalk(16)];
+const INCREMENTAL: [Who; 3] =
+    [Who::CtaRegion(Region::Automatic, Until::Near), Who::Egjk, Who::Tracker];
 const EGJK: usize = 1;
 const TRACKER: usize = 2;
 

@@ -246,8 +246,8 @@ fn fewer(until: usize, curves: &[Curves]) -> Claim {
     claim(&statement, format!("{}.", text.join("; ")), curves.iter().all(falls), || {
         let not: Vec<_> = curves.iter().filter(|c| !falls(c)).map(|c| thousands(c.n)).collect();
         format!(
-            "Not at {} vertices: beyond three standard errors, steps rise somewhere when the change \
-             falls, or exceed those from scratch.",
+            "Not at {} vertices: beyond three standard errors, steps rise somewhere when the \
+             change falls, or exceed those from scratch.",
             not.join(", ")
         )
     })

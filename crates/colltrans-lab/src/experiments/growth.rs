@@ -177,8 +177,8 @@ fn steps_grow(balanced: &Grown) -> Claim {
         "The number of minimisation steps grows no faster than log n.",
         format!(
             "Steps to the end on average: {}. Steps over log n change by a factor {rise:.2} from \
-             the smallest to the largest bodies; at most 1.1 is taken as \"no faster\". To a gap of \
-             {PAPER_GAP} it is {} steps.",
+             the smallest to the largest bodies; at most 1.1 is taken as \"no faster\". To a gap \
+             of {PAPER_GAP} it is {} steps.",
             listed(&points, 1),
             listed(&balanced.steps(CTA), 1),
         ),
@@ -207,8 +207,8 @@ fn few_steps(balanced: &Grown, who: usize) -> Claim {
         "At 200,000 faces a query takes fewer than 15 steps on average when planar problems alone \
          find the last feature."
     } else {
-        "At 200,000 faces a query takes fewer than 15 steps on average when portal refinement finds \
-         the last feature."
+        "At 200,000 faces a query takes fewer than 15 steps on average when portal refinement \
+         finds the last feature."
     };
     claim(
         statement,
@@ -223,8 +223,8 @@ fn few_steps(balanced: &Grown, who: usize) -> Claim {
             format!(
                 "After {near:.1} planar problems the bounds are within {PAPER_GAP} of the bodies' \
                  extent, at any size; the others look for the last of many small features, more of \
-                 them the more features there are. When portal refinement does that instead, a query \
-                 takes {:.0} us in place of {:.0} us.",
+                 them the more features there are. When portal refinement does that instead, a \
+                 query takes {:.0} us in place of {:.0} us.",
                 at(CTA),
                 at(TO_THE_END)
             )
@@ -241,8 +241,9 @@ fn time_grows(balanced: &Grown) -> Claim {
     claim(
         "The time of a query grows no faster than log^2 n.",
         format!(
-            "Median times of CTA in us: {}. They fit (log n)^k best with k = {all:.2}; less than 2.5 \
-             is taken as log^2. When the same query is asked again at once: {}, k = {again:.2}.",
+            "Median times of CTA in us: {}. They fit (log n)^k best with k = {all:.2}; less than \
+             2.5 is taken as log^2. When the same query is asked again at once: {}, k = \
+             {again:.2}.",
             listed(&points, 1),
             listed(&balanced.again, 1)
         ),
@@ -286,9 +287,9 @@ fn thin_costs(cost: &[Point], balanced: &Grown, thin: &Grown) -> Claim {
             let steps = [balanced, thin].map(|grown| middle(&grown.steps(CTA)));
             let calm = middle(&again);
             format!(
-                "It is not the steps: {:.1} on balanced and {:.1} on thin faces in the middle of all \
-                 sizes. With all that a query needs in the processor's caches its time is {calm:.2} \
-                 times that on balanced faces{}.",
+                "It is not the steps: {:.1} on balanced and {:.1} on thin faces in the middle of \
+                 all sizes. With all that a query needs in the processor's caches its time is \
+                 {calm:.2} times that on balanced faces{}.",
                 steps[0],
                 steps[1],
                 if calm < typical - 0.2 {

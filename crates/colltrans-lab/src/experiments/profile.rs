@@ -117,14 +117,14 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
             p.part("portal refinement") + p.part("answer") + p.part("lower bound")
         });
         if middle > 0.5 {
-            "More than half. Here a planar problem includes finding the edges of both sections, and \
-             its part grows with the bodies as that finds less and less of them in the processor's \
-             caches (figure 11); what a step does besides touches no body at all."
+            "More than half. Here a planar problem includes finding the edges of both sections, \
+             and its part grows with the bodies as that finds less and less of them in the \
+             processor's caches (figure 11); what a step does besides touches no body at all."
                 .into()
         } else {
             format!(
-                "Less than half: a proven lower bound, portal refinement and the certificate, which \
-                 the paper does not have, take {:.0} % of the query.",
+                "Less than half: a proven lower bound, portal refinement and the certificate, \
+                 which the paper does not have, take {:.0} % of the query.",
                 100.0 * rest
             )
         }
@@ -140,7 +140,8 @@ fn region(profiled: &[Profiled]) -> Claim {
         most < 0.05,
         || {
             "The region is cut and its centroid computed at every step, a few dozen operations, \
-             while planar problems have become cheap: a part that was small beside them is no longer."
+             while planar problems have become cheap: a part that was small beside them is no \
+             longer."
                 .into()
         },
     )

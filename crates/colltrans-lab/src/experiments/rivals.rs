@@ -122,9 +122,10 @@ impl Field {
             large / small
         };
         format!(
-            "Median times {}. From the smallest to the largest bodies EGJK's time grows by a factor \
-             of {:.0}, its iterations only from {least:.1} to {most:.1}: what grows is the climbing \
-             to support points. CTA's grows by {:.0}, for reasons that figure 11 tells apart.",
+            "Median times {}. From the smallest to the largest bodies EGJK's time grows by a \
+             factor of {:.0}, its iterations only from {least:.1} to {most:.1}: what grows is the \
+             climbing to support points. CTA's grows by {:.0}, for reasons that figure 11 tells \
+             apart.",
             self.times(&[CTA, EGJK]),
             growth(EGJK),
             growth(CTA)

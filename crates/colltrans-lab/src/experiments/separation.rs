@@ -124,8 +124,8 @@ fn why(all: &[Measured]) -> String {
         GAPS.iter().zip(&m.passing).map(|(gap, r)| format!("{} at {gap} D", each(r))).collect();
     format!(
         "It is not the number of steps alone. At {} vertices a collision takes as many planar \
-         problems as this, down to a gap of {PAPER_GAP}, where portal refinement takes over: {}, all \
-         the rest of the query shared out among them. A separation: {}.",
+         problems as this, down to a gap of {PAPER_GAP}, where portal refinement takes over: {}, \
+         all the rest of the query shared out among them. A separation: {}.",
         thousands(m.colliding.vertices),
         each(&m.colliding),
         passing.join("; ")

@@ -231,11 +231,8 @@ impl Contestant for Pqp<'_> {
 
     fn ask(&mut self, setting: &Setting) -> Work {
         let found = self.distance(&setting.moving, &setting.fixed);
-        Work {
-            answer: Answer::Distance(found.distance),
-            steps: found.steps.volume_tests,
-            finish: [0; 2],
-        }
+        let steps = found.steps.volume_tests;
+        Work { answer: Answer::Distance(found.distance), steps, finish: [0; 2] }
     }
 }
 

@@ -1,5 +1,5 @@
-//! Random numbers: `ChaCha8`, whose output is fixed by its definition, seeded by the plan's seed, on
-//! a stream of its own for every purpose. So what one experiment draws does not depend on whether
+//! Random numbers: `ChaCha8`, whose output is fixed by its definition, seeded by the plan's seed,
+//! on a stream of its own for every purpose. So what one experiment draws does not depend on whether
 //! another one ran.
 
 use std::f64::consts::TAU;

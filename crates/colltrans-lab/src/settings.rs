@@ -59,8 +59,8 @@ impl Setting {
         Self { moving: pose(turn_p, DVec3::ZERO), fixed: pose(turn_q, offset), direction }
     }
 
-    /// `count` settings about a random one, each `delta` diameters from the next: the moving body is
-    /// displaced, or turns about its centre, or half of either as a screw does.
+    /// `count` settings about a random one, each `delta` diameters from the next: the moving body
+    /// is displaced, or turns about its centre, or half of either as a screw does.
     pub(crate) fn sequence(
         bodies: &Bodies,
         meeting: Meeting,

@@ -69,7 +69,7 @@ fn single(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let mut parts = Parts::new(progress, 2.0);
     let results = CHANGES.map(|delta| {
         parts.begin(1.0, &format!("change of {} % D", 100.0 * delta));
-        measure(plan, 13, n, delta, plan.by_scale(20, 1_500, 10_000))
+        measure(plan, 13, n, delta, plan.by_scale(20, 4_000, 40_000))
     });
     let figure = Figure {
         id: "figure-13".into(),
@@ -156,7 +156,7 @@ fn average(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         .iter()
         .map(|&n| {
             parts.begin(share(n), &format!("{} vertices", thousands(n as f64)));
-            let blocks = plan.by_scale(20, 500, 3_000);
+            let blocks = plan.by_scale(20, 1_000, 10_000);
             Curves::new(n, &DELTAS.map(|delta| measure(plan, 14, n, delta, blocks)))
         })
         .collect();
@@ -246,8 +246,8 @@ fn fewer(until: usize, curves: &[Curves]) -> Claim {
     claim(&statement, format!("{}.", text.join("; ")), curves.iter().all(falls), || {
         let not: Vec<_> = curves.iter().filter(|c| !falls(c)).map(|c| thousands(c.n)).collect();
         format!(
-            "Not at {} vertices: beyond three standard errors, steps rise somewhere when the change \
-             falls, or exceed those from scratch.",
+            "Not at {} vertices: beyond three standard errors, steps rise somewhere when the \
+             change falls, or exceed those from scratch.",
             not.join(", ")
         )
     })

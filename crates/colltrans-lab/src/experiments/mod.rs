@@ -1,14 +1,15 @@
 //! The experiments, one file per family, and what they have in common: sizes, races, figures.
 //!
-//! A *race*: on the same blocks of settings of the same bodies every contestant takes its turn, block
-//! by block, the order rotating; each query is timed alone.
+//! A *race*: on the same blocks of settings of the same bodies every contestant takes its turn,
+//! block by block, the order rotating; each query is timed alone.
 
-mod coherence;
 mod focus;
 mod growth;
+mod incremental;
 mod profile;
 mod rivals;
 mod separation;
+mod variable;
 
 use std::sync::Arc;
 
@@ -35,8 +36,8 @@ const EXPERIMENTS: [Experiment; 10] = [
     rivals::FIGURE_15,
     rivals::FIGURE_16,
     rivals::FIGURE_17,
-    coherence::FIGURE_18,
-    coherence::FIGURE_19,
+    incremental::FIGURE_18,
+    variable::FIGURE_19,
 ];
 
 /// What is told apart by scale.

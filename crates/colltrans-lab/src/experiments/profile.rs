@@ -43,7 +43,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 fn measure(plan: &Plan, n: usize) -> Profiled {
     let bodies = bodies(plan.seed, Kind::Balanced, n, 0);
     let mut random = Random::new(plan.seed, &[1, n as u64]);
-    let queries: usize = plan.by_scale(20, 1_000, 5_000);
+    let queries: usize = plan.by_scale(20, 1_500, 10_000);
     let settings: Vec<_> =
         (0..queries).map(|_| Setting::draw(&bodies, Meeting::Colliding, &mut random)).collect();
     let [moving, fixed] = &bodies.pair;
@@ -117,14 +117,14 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
             p.part("portal refinement") + p.part("answer") + p.part("lower bound")
         });
         if middle > 0.5 {
-            "More than half: what is done besides is cheaper here than in the paper, and finding the \
-             crossing edges of a section, which waits for memory in large bodies, counts as part of \
-             the planar problem."
+            "More than half. Here a planar problem includes finding the edges of both sections, \
+             and its part grows with the bodies as that finds less and less of them in the \
+             processor's caches (figure 11); what a step does besides touches no body at all."
                 .into()
         } else {
             format!(
-                "Less than half: a proven lower bound, portal refinement and the certificate, which \
-                 the paper does not have, take {:.0} % of the query.",
+                "Less than half: a proven lower bound, portal refinement and the certificate, \
+                 which the paper does not have, take {:.0} % of the query.",
                 100.0 * rest
             )
         }
@@ -140,7 +140,8 @@ fn region(profiled: &[Profiled]) -> Claim {
         most < 0.05,
         || {
             "The region is cut and its centroid computed at every step, a few dozen operations, \
-             while planar problems have become cheap: a part that was small beside them is no longer."
+             while planar problems have become cheap: a part that was small beside them is no \
+             longer."
                 .into()
         },
     )

@@ -7,7 +7,7 @@
 //! Soups are surfaces, as published: of two bodies, one inside the other, the distance of the
 //! surfaces is found, which is not 0.
 //!
-//! The data's way: [`mod@triangle`] and [`mod@volume`] -> [`tree`] -> the queries here, each a walk
+//! The data's way: `triangle` and `volume` -> `tree` -> the queries here, each a walk
 //! over pairs of nodes, the nearer pair of children first, cutting off what the bound of a pair
 //! excludes. A distance query starts from the nearest triangles of the last one.
 

@@ -3,11 +3,11 @@
 //! B. Mirtich, "V-Clip: fast and robust polyhedral collision detection", ACM Transactions on
 //! Graphics 17(3), 1998. Two features are closest if each has its nearest point in the other's
 //! Voronoi region. A walk starts from the closest features of the last query and exchanges one
-//! feature at a time for a neighbour that is nearer ([`walk`], [`view`]).
+//! feature at a time for a neighbour that is nearer (`walk`, `view`).
 //!
 //! As published, apart from its end: the walk decides on rounded numbers and can go in circles
 //! among tied features, which is noticed, and every answer is measured against the supporting
-//! planes across it ([`proof`]); [`Steps::gap`] is what that leaves open.
+//! planes across it (`proof`); [`Steps::gap`] is what that leaves open.
 
 pub(crate) mod proof;
 

@@ -1,141 +1,21 @@
-//! Figures 18 and 19: from query to query.
+//! Figure 19: variable coherence, and what a wrong parameter costs, beside H-Walk.
 
 use colltrans::Region;
 
-use super::{
-    Coherence, Parts, Race, Results, about, axis, claim, extremes, reference, series, share,
-    shares, thousands, time,
-};
+use super::{Coherence, Parts, Race, Results, axis, claim, series, share, shares, thousands, time};
 use crate::Experiment;
 use crate::contestants::{Until, Who, Work};
-use crate::finding::{Claim, Figure, Finding, Point, Table};
+use crate::finding::{Claim, Figure, Finding, Table};
 use crate::plan::{Plan, Progress};
-use crate::settings::{Meeting, Setting};
+use crate::settings::Setting;
 use crate::shapes::Kind;
-use crate::timing::{mean_and_deviation, mean_point, median, median_point, without_disturbed};
-
-pub(super) const FIGURE_18: Experiment =
-    Experiment { id: "figure-18", title: "incremental queries beside EGJK", run: beside_egjk };
+use crate::timing::{mean_and_deviation, mean_point, without_disturbed};
 
 pub(super) const FIGURE_19: Experiment = Experiment {
     id: "figure-19",
     title: "variable coherence and wrong parameters, beside H-Walk",
-    run: beside_walk,
+    run,
 };
-
-const INCREMENTAL: [Who; 4] =
-    [Who::CtaRegion(Region::Automatic, Until::Near), Who::Egjk, Who::Tracker, Who::HWalk(16)];
-const EGJK: usize = 1;
-const TRACKER: usize = 2;
-
-/// Changes from query to query, in diameters.
-const DELTAS: [f64; 6] = [0.000_625, 0.001_25, 0.002_5, 0.005, 0.01, 0.02];
-
-/// Medians of `time / time(EGJK)` against the change, at one size.
-struct Incremental {
-    n: f64,
-    region: Vec<Point>,
-    tracker: Vec<Point>,
-    /// Median times of region focus, EGJK and feature focus at the smallest change.
-    times: [f64; 3],
-}
-
-fn beside_egjk(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let sizes: Vec<_> = plan.sizes().iter().copied().filter(|n| *n < 100_000).collect();
-    let mut parts = Parts::new(progress, shares(&sizes));
-    let measured: Vec<_> = sizes
-        .iter()
-        .map(|&n| {
-            parts.begin(share(n), &format!("{} vertices", thousands(n as f64)));
-            let results = DELTAS.map(|delta| sequences(plan, n, delta));
-            let points = |who: usize| {
-                let point = |(delta, r): (&f64, &Results)| {
-                    median_point(100.0 * delta, &r.ratios(who, EGJK))
-                };
-                DELTAS.iter().zip(&results).map(point).collect()
-            };
-            let times = [0, EGJK, TRACKER].map(|who| median(&results[0].times(who)));
-            Incremental { n: n as f64, region: points(0), tracker: points(TRACKER), times }
-        })
-        .collect();
-    let name = |what: &str, m: &Incremental| format!("{what}, {} vertices", thousands(m.n));
-    let mut lines: Vec<_> =
-        measured.iter().map(|m| series(name("CTA", m), m.region.clone())).collect();
-    let ends = measured.first().into_iter().chain(measured.last());
-    lines.extend(ends.map(|m| series(name("feature focus", m), m.tracker.clone())));
-    let figure = Figure {
-        id: "figure-18".into(),
-        title: "Incremental queries: time over the time of EGJK, median and quartiles".into(),
-        x: axis("change from query to query (% D)", true),
-        y: axis("time / time(EGJK)", true),
-        series: lines,
-        references: vec![reference("EGJK", DELTAS.iter().map(|d| 100.0 * d), |_| 1.0)],
-    };
-    Finding { figures: vec![figure], tables: Vec::new(), claims: vec![falls_to_two(&measured)] }
-}
-
-fn sequences(plan: &Plan, n: usize, delta: f64) -> Results {
-    let race = Race {
-        plan,
-        figure: 18,
-        kind: Kind::Balanced,
-        n,
-        who: &INCREMENTAL,
-        coherence: Coherence::Blocks,
-        length: 51,
-        blocks: plan.by_scale(2, 15, 120),
-    };
-    race.run((delta * 1e6) as u64, |bodies, count, random| {
-        Setting::sequence(bodies, Meeting::Colliding, delta, count, random)
-    })
-}
-
-/// The paper's 10 and 2, each give or take a quarter, in the middle of all sizes at the ends of the
-/// range of changes.
-fn falls_to_two(measured: &[Incremental]) -> Claim {
-    let middle_at = |k: usize| {
-        let points: Vec<_> = measured.iter().map(|m| m.region[k]).collect();
-        super::middle(&points)
-    };
-    let [small, large] = [middle_at(0), middle_at(DELTAS.len() - 1)];
-    let text: Vec<_> = measured
-        .iter()
-        .map(|m| {
-            let [low, high] = extremes(&m.region);
-            format!("{low:.1} to {high:.1} at {} vertices", thousands(m.n))
-        })
-        .collect();
-    let tracker: Vec<_> = measured.iter().map(|m| m.tracker[0]).collect();
-    claim(
-        "Incremental: time(CTA)/time(EGJK) falls from 10 to 2 as the change from query to query \
-         falls.",
-        format!(
-            "In the middle of all sizes {large:.1} at {} %, {small:.1} at {} %; {}. Feature focus \
-             instead of the paper's: {:.2} at {} %.",
-            100.0 * DELTAS[DELTAS.len() - 1],
-            100.0 * DELTAS[0],
-            text.join(", "),
-            super::middle(&tracker),
-            100.0 * DELTAS[0],
-        ),
-        small < large && about(large, 10.0) && about(small, 2.0),
-        || {
-            let last = measured.last().map_or(String::new(), |m| {
-                let [region, egjk, tracker] = m.times.map(time);
-                format!(
-                    "At {} vertices and the smallest change CTA takes {region}, EGJK {egjk}, \
-                     feature focus {tracker}.",
-                    thousands(m.n)
-                )
-            });
-            format!(
-                "{last} A query with region focus solves one planar problem at least, and frames, \
-                 portal refinement and certificate cost as much as ever; EGJK has only to confirm a \
-                 simplex, with support points a step away."
-            )
-        },
-    )
-}
 
 /// Degrees per step of the orbits, from high to low coherence.
 const ALPHAS_DEG: [f64; 3] = [0.25, 2.0, 15.0];
@@ -164,7 +44,7 @@ struct Sweeps {
     walk: Sweep,
 }
 
-fn beside_walk(plan: &Plan, progress: &mut dyn Progress) -> Finding {
+fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let sizes = plan.by_scale([50, 200], [800, 3_200], [800, 3_200]);
     let mut parts = Parts::new(progress, shares(&sizes));
     let sweeps = sizes.map(|n| {
@@ -193,7 +73,7 @@ fn sweep(plan: &Plan, n: usize) -> Sweeps {
                 who: &who,
                 coherence: Coherence::Blocks,
                 length: plan.by_scale(10, 101, 101),
-                blocks: plan.by_scale(3, 40, 300),
+                blocks: plan.by_scale(3, 80, 600),
             };
             race.run((alpha * 1e3) as u64, |bodies, count, random| {
                 Setting::orbit(bodies, *alpha, count, random)
@@ -297,15 +177,15 @@ fn worsens(((sweeps, cta), walk): ((&Sweeps, f64), f64)) -> Claim {
     let n = thousands(sweeps.n);
     claim(
         &format!(
-            "Variable coherence, {n} vertices: a wrong parameter worsens CTA by {:.0} % and H-Walk by \
-             {:.0} %; CTA suffers less.",
+            "Variable coherence, {n} vertices: a wrong parameter worsens CTA by {:.0} % and H-Walk \
+             by {:.0} %; CTA suffers less.",
             100.0 * cta,
             100.0 * walk
         ),
         format!(
             "With the best parameter for {} degrees a step used at {} degrees, or the other way \
-             round, whichever is worse: CTA {:.0} %, H-Walk {:.0} % more counted steps; {:.0} % and \
-             {:.0} % more time.",
+             round, whichever is worse: CTA {:.0} %, H-Walk {:.0} % more counted steps; {:.0} % \
+             and {:.0} % more time.",
             ALPHAS_DEG[0],
             ALPHAS_DEG[2],
             100.0 * own,
@@ -316,9 +196,9 @@ fn worsens(((sweeps, cta), walk): ((&Sweeps, f64), f64)) -> Claim {
         own < rival && own <= cta * 1.25,
         || {
             format!(
-                "The best half-side is {} D at high and {} D at low coherence, the best patience {} \
-                 and {} steps. Portal refinement, which ends our queries, costs the same whatever \
-                 the half-side; planar problems alone are what it changes.",
+                "The best half-side is {} D at high and {} D at low coherence, the best patience \
+                 {} and {} steps. Portal refinement, which ends our queries, costs the same \
+                 whatever the half-side; planar problems alone are what it changes.",
                 ours.parameters[ours.best(&ours.steps, 0)],
                 ours.parameters[ours.best(&ours.steps, 2)],
                 theirs.parameters[theirs.best(&theirs.steps, 0)],
@@ -345,8 +225,8 @@ fn disperses(sweeps: &[Sweeps; 2], coherence: usize, [cta, walk]: [f64; 2]) -> C
     let level = if coherence == 0 { "high" } else { "low" };
     claim(
         &format!(
-            "Variable coherence, {level}: the cost of single queries disperses by {:.0} % for CTA and \
-             by {:.0} % for H-Walk; CTA's does far less.",
+            "Variable coherence, {level}: the cost of single queries disperses by {:.0} % for CTA \
+             and by {:.0} % for H-Walk; CTA's does far less.",
             100.0 * cta,
             100.0 * walk
         ),

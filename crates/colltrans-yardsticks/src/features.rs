@@ -4,7 +4,7 @@
 //! outside; half-edge `h` runs from `origin` to `target` with `face` on its left, `twin` is the
 //! other way. An *edge* is known by the smaller of its two half-edges.
 //!
-//! Voronoi planes (Mirtich 1998, section 2.1), never stored, because two points and a normal are
+//! Voronoi planes (Mirtich 1998), never stored, because two points and a normal are
 //! at hand: between a vertex `v` and an edge `vw` the plane through `v` normal to `w - v`
 //! ([`Shell::beyond_vertex`]), between a face of normal `n` and its edge `ab` the plane through `a`
 //! normal to `n x (b - a)` ([`Shell::inside_edge`]). Both features that a plane parts ask the same
@@ -22,6 +22,12 @@ pub(crate) struct HalfEdge {
     pub(crate) target: u32,
     pub(crate) twin: u32,
     pub(crate) face: u32,
+}
+
+impl HalfEdge {
+    pub(crate) fn both_ends(self) -> [u32; 2] {
+        [self.origin, self.target]
+    }
 }
 
 /// A vertex, an edge (its smaller half-edge) or a face.
@@ -153,6 +159,11 @@ impl Shell {
         [self.vertex(origin), self.vertex(target)]
     }
 
+    pub(crate) fn length(&self, h: u32) -> f64 {
+        let [a, b] = self.ends(h);
+        a.distance(b)
+    }
+
     pub(crate) fn normal(&self, face: u32) -> DVec3 {
         self.normals[face as usize]
     }
@@ -184,15 +195,6 @@ impl Shell {
             Feature::Vertex(v) => v,
             Feature::Edge(h) => self.half_edge(h).origin,
             Feature::Face(f) => self.half_edge(self.face_start[f as usize]).origin,
-        }
-    }
-
-    /// The vertices of a feature.
-    pub(crate) fn vertices_of(&self, feature: Feature) -> Vec<u32> {
-        match feature {
-            Feature::Vertex(v) => vec![v],
-            Feature::Edge(h) => vec![self.half_edge(h).origin, self.half_edge(h).target],
-            Feature::Face(f) => self.boundary(f).map(|h| self.half_edge(h).origin).collect(),
         }
     }
 

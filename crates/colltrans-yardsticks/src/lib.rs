@@ -19,7 +19,6 @@ mod placed;
 pub mod pqp;
 mod proximity;
 pub mod raycast;
-mod segment;
 pub mod vclip;
 
 pub use proximity::Proximity;

@@ -2,105 +2,112 @@
 
 mod walks;
 
-use colltrans::{ConvexPolyhedron, Pose};
-use colltrans_oracle::settings::Rng;
-use colltrans_yardsticks::hwalk::{HWalk, Hierarchy};
+use colltrans_yardsticks::Proximity;
+use colltrans_yardsticks::hwalk::{HWalk, Hierarchy, Steps};
 use colltrans_yardsticks::vclip::{Shell, VClip};
-use walks::{ACCURACY, Placed, coherent, hard_settings, large, random_settings, worst_of};
+use walks::{Placed, coherent, hard_settings, large, random_settings, wide_settings};
 
-fn solver_error(placed: &Placed) -> f64 {
-    let [moving, fixed] = [&placed.moving, &placed.fixed].map(|b| Hierarchy::new(b).unwrap());
+fn hierarchies(placed: &Placed) -> [Hierarchy; 2] {
+    [&placed.moving, &placed.fixed].map(|body| Hierarchy::new(body).unwrap())
+}
+
+/// From scratch with little patience, so that small bodies take shortcuts as well; then again from
+/// where that ended.
+fn twice(placed: &Placed) -> [Proximity<Steps>; 2] {
+    let [moving, fixed] = hierarchies(placed);
     let mut solver = HWalk::new(&moving, &fixed).with_patience(2);
-    let scratch = solver.distance(&placed.moving_pose, &placed.fixed_pose);
-    let again = solver.distance(&placed.moving_pose, &placed.fixed_pose);
-    let verdict = placed.verdict(
-        scratch.distance,
-        scratch.on_moving,
-        scratch.on_fixed,
-        scratch.steps.gave_up || again.steps.gave_up,
-    );
-    verdict.max((scratch.distance - again.distance).abs() / placed.size())
+    [0; 2].map(|_| solver.distance(&placed.moving_pose, &placed.fixed_pose))
 }
 
-#[test]
-fn random_solids() {
-    let (worst, name) = worst_of(random_settings(2_000), solver_error);
-    assert!(worst <= ACCURACY, "{name}: {worst:e}");
-}
-
-#[test]
-fn tied_solids() {
-    let (worst, name) = worst_of(hard_settings(150), solver_error);
-    assert!(worst <= ACCURACY, "{name}: {worst:e}");
-}
-
-#[test]
-fn a_hierarchy_has_few_layers_and_little_more_vertices_than_the_body() {
-    let mut rng = Rng::new(3);
-    for n in [20, 300, 5_000] {
-        let points: Vec<_> = (0..n).map(|_| rng.direction()).collect();
-        let body = ConvexPolyhedron::from_points(&points).unwrap();
-        let hierarchy = Hierarchy::new(&body).unwrap();
-        assert!(hierarchy.vertex_count() < 6 * n, "{n}: {}", hierarchy.vertex_count());
-        let layers = hierarchy.layer_count() as f64;
-        assert!(layers < 6.0 * (n as f64).log2(), "{n}: {layers} layers");
-    }
-}
-
-#[test]
-fn large_solids_agree_with_v_clip_at_every_patience() {
-    let mut rng = Rng::new(11);
-    for (n, settings) in [(2_000, 20), (20_000, 4)] {
-        for placed in large(n, settings, &mut rng) {
-            let shells = [&placed.moving, &placed.fixed].map(|body| Shell::new(body).unwrap());
-            let walks = [&placed.moving, &placed.fixed].map(|body| Hierarchy::new(body).unwrap());
-            let reference = VClip::new(&shells[0], &shells[1])
-                .distance(&placed.moving_pose, &placed.fixed_pose);
-            for patience in [1, 5, 20, 1_000_000] {
-                let mut solver = HWalk::new(&walks[0], &walks[1]).with_patience(patience);
-                for at in coherent(&placed, 0.05, 6, &mut rng) {
-                    let tracked = solver.distance(&at.moving_pose, &at.fixed_pose);
-                    let fresh = VClip::new(&shells[0], &shells[1])
-                        .distance(&at.moving_pose, &at.fixed_pose);
-                    let difference = (tracked.distance - fresh.distance).abs() / at.size();
-                    assert!(difference <= ACCURACY, "{} {patience}: {difference:e}", at.name);
-                    assert!(!tracked.steps.gave_up, "{}", at.name);
-                }
-                solver.reset();
-                let again = solver.distance(&placed.moving_pose, &placed.fixed_pose);
-                let difference = (again.distance - reference.distance).abs() / placed.size();
-                assert!(difference <= ACCURACY, "{} {patience}: {difference:e}", placed.name);
-                // From scratch through the layers, the way is short whatever the size.
-                assert!(again.steps.pairs < 400, "{}: {:?}", placed.name, again.steps);
-            }
+fn check(settings: impl Iterator<Item = Placed>, accuracy: f64) {
+    let (mut count, mut layers) = (0, 0);
+    for placed in settings {
+        for Proximity { distance, on_moving, on_fixed, steps } in twice(&placed) {
+            let error = placed.error(distance);
+            let place = placed.error_of_points(distance, on_moving, on_fixed);
+            assert!(error <= accuracy && !steps.gave_up, "{}: {error:e}, {steps:?}", placed.name);
+            assert!(place <= accuracy, "{}: points {place:e}, {steps:?}", placed.name);
+            count += 1;
+            layers += steps.layers;
         }
     }
+    assert!(count >= 60 && layers > count, "{count} settings, {layers} layers");
 }
 
 #[test]
-fn coherence_and_shortcuts_save_steps() {
-    let mut rng = Rng::new(12);
-    let placed = large(20_000, 1, &mut rng).remove(0);
-    let walks = [&placed.moving, &placed.fixed].map(|body| Hierarchy::new(body).unwrap());
-    let pairs = |sequence: &[Placed], patience: u32| {
-        let mut solver = HWalk::new(&walks[0], &walks[1]).with_patience(patience);
-        let steps = sequence
-            .iter()
-            .map(|at| solver.distance(&at.moving_pose, &at.fixed_pose).steps.pairs)
-            .collect::<Vec<_>>();
-        steps[1..].iter().sum::<u32>()
-    };
-    let near = coherent(&placed, 1e-4, 30, &mut rng);
-    // Half a turn about each other and about themselves from one to the next.
-    let far: Vec<Placed> = (0..30)
-        .map(|k| {
-            let side = if k % 2 == 0 { 1.0 } else { -1.0 };
-            let at = placed.moving_pose.translation() * side;
-            let moving_pose = Pose::new(rng.rotation(), at).unwrap();
-            Placed { moving_pose, ..placed.clone() }
-        })
-        .collect();
-    let (near, short, long) = (pairs(&near, 5), pairs(&far, 5), pairs(&far, 1_000_000));
-    println!("pairs of features: coherent {near}, far {short}, far without shortcuts {long}");
-    assert!(near < short && short < long, "{near} {short} {long}");
+fn random_solids_at_all_distances() {
+    check(random_settings(2_000), 4e-15);
+}
+
+#[test]
+fn ties_needles_plates_and_what_else_is_hard() {
+    check(hard_settings(60), 1e-14);
+}
+
+#[test]
+fn wide_faces_and_crowded_vertices() {
+    check(wide_settings(), 4e-15);
+}
+
+#[test]
+fn a_query_after_another_gives_the_same_with_fewer_steps() {
+    for (seed, patience) in [(0, 1), (1, 4), (2, 16), (3, 64), (4, 16)] {
+        let placed = large(500, seed);
+        let [moving, fixed] = hierarchies(&placed);
+        let solver = HWalk::new(&moving, &fixed).with_patience(patience);
+        let (mut fresh, mut carried) = (solver.clone(), solver);
+        let (mut fresh_pairs, mut carried_pairs) = (0, 0);
+        let poses = coherent(&placed, 0.0025, 200, seed);
+        carried.distance(&poses[0], &placed.fixed_pose);
+        for pose in &poses {
+            fresh.reset();
+            let expected = fresh.distance(pose, &placed.fixed_pose);
+            let answer = carried.distance(pose, &placed.fixed_pose);
+            let difference = (expected.distance - answer.distance).abs();
+            assert!(difference <= 1e-14 * placed.size(), "{seed}: {difference:e}");
+            fresh_pairs += expected.steps.pairs;
+            carried_pairs += answer.steps.pairs;
+        }
+        assert!(2 * carried_pairs < fresh_pairs, "{patience}: {carried_pairs} of {fresh_pairs}");
+    }
+}
+
+#[test]
+fn large_bodies_as_v_clip_says_in_fewer_steps() {
+    let (mut walks, mut hierarchical) = (0, 0);
+    for (n, seed) in [(2_000, 1), (2_000, 2), (20_000, 3)] {
+        let placed = large(n, seed);
+        let [moving, fixed] = hierarchies(&placed);
+        let shells = [&placed.moving, &placed.fixed].map(|body| Shell::new(body).unwrap());
+        let mut plain = VClip::new(&shells[0], &shells[1]);
+        let mut solver = HWalk::new(&moving, &fixed);
+        for gap in [None, Some(1e-3), Some(1e-9), Some(0.0), Some(-0.01), Some(-1.0)] {
+            let here = gap.map_or_else(|| placed.clone(), |gap| placed.at_gap(gap));
+            plain.reset();
+            solver.reset();
+            let expected = plain.distance(&here.moving_pose, &here.fixed_pose);
+            let answer = solver.distance(&here.moving_pose, &here.fixed_pose);
+            let error = here.error(answer.distance);
+            assert!(error <= 1e-14 && !answer.steps.gave_up, "{}: {error:e}", here.name);
+            let difference = (answer.distance - expected.distance).abs();
+            assert!(difference <= 1e-14 * here.size(), "{}: {difference:e}", here.name);
+            walks += expected.steps.pairs;
+            hierarchical += answer.steps.pairs;
+        }
+    }
+    assert!(hierarchical < walks, "{hierarchical} against {walks}");
+}
+
+/// Half a turn between two queries: a walk on layer 0 would cross the body.
+#[test]
+fn shortcuts_are_taken_when_bodies_jump() {
+    let placed = large(5_000, 9);
+    let [moving, fixed] = hierarchies(&placed);
+    let mut solver = HWalk::new(&moving, &fixed);
+    let poses = coherent(&placed, std::f64::consts::PI, 2, 4);
+    solver.distance(&poses[0], &placed.fixed_pose);
+    let answer = solver.distance(&poses[1], &placed.fixed_pose);
+    assert!(answer.steps.shortcuts > 0 && answer.steps.layers > answer.steps.shortcuts);
+    let error = Placed { moving_pose: poses[1], ..placed }.error(answer.distance);
+    assert!(error <= 1e-14, "{error:e}");
 }

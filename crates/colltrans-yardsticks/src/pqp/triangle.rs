@@ -1,174 +1,225 @@
-//! The distance of two triangles and their nearest points.
+//! Nearest points of two triangles.
 //!
-//! The nearest points are an inner point of one triangle and a corner of the other, or points of
-//! two edges, or the triangles meet. All nine pairs of edges and six of corner and triangle are
-//! looked at, unless the slab between the planes across an edge pair's nearest points already
-//! proves them (as Larsen et al. do). Triangles that meet without an edge near another have an edge
-//! that pierces the other triangle. Degenerate triangles are segments and points: their edges are
-//! all there is to look at.
+//! Notation. `A` and `B` are triangles in one frame, degenerate ones included; `P` and `Q` a pair
+//! of nearest points, `v = Q - P`.
+//!
+//! If the triangles are apart, the shortest vector joins two edges (9 pairs) or a vertex and the
+//! inside of a face (6 pairs); if they meet, an edge of one pierces the other, or they are coplanar
+//! and one of the former has length 0. Every candidate is a pair of points of `A` and `B`, so it is
+//! an upper bound whatever rounding did; the answer is the best of them. An edge pair ends the
+//! search at once if the third corners lie *clearly* outside the slab between the planes through
+//! `P` and `Q` normal to `v`: then nothing is nearer (Larsen et al. 1999). Where
+//! rounding cannot tell, all candidates are compared.
+//!
+//! What slivers need: the nearest points of two lines come from the cross product of their
+//! directions, whose error grows with 1/sin of the angle and not with its square; normals of
+//! slivers are formed without cancellation; a point is inside a face if it is behind its three
+//! edges *and* beside the longest one, since two edges at a sharp corner do not tell where it ends.
 
 use glam::DVec3;
 
-use crate::segment::{foot, nearest_of_segments};
+use super::Scale;
 
-/// Corners in order.
+/// Three corners.
 pub(crate) type Triangle = [DVec3; 3];
 
-/// A point of either triangle and the square of their distance.
+/// Relative error of the normal of a triangle below which it counts as a segment: its edges say as
+/// much.
+const DEGENERATE: f64 = 32.0 * f64::EPSILON;
+
+/// Sine of the angle below which a cross product is formed without cancellation: above, it loses
+/// four bits at most.
+const NEARLY_PARALLEL: f64 = 0.1;
+
+/// A point of each triangle and their squared distance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nearest {
-    pub(crate) first: DVec3,
-    pub(crate) second: DVec3,
-    pub(crate) square: f64,
+    pub(crate) squared: f64,
+    pub(crate) on_a: DVec3,
+    pub(crate) on_b: DVec3,
 }
 
 impl Nearest {
-    fn new(first: DVec3, second: DVec3) -> Self {
-        Self { first, second, square: first.distance_squared(second) }
+    fn between(on_a: DVec3, on_b: DVec3) -> Self {
+        Self { squared: on_a.distance_squared(on_b), on_a, on_b }
+    }
+
+    fn common(point: DVec3) -> Self {
+        Self { squared: 0.0, on_a: point, on_b: point }
     }
 
     fn swapped(self) -> Self {
-        Self { first: self.second, second: self.first, ..self }
+        Self { on_a: self.on_b, on_b: self.on_a, ..self }
+    }
+
+    fn or_nearer(self, other: Self) -> Self {
+        if other.squared < self.squared { other } else { self }
     }
 }
 
-/// Sines below this make the closed formula for two lines lose more than a third of its digits.
-const NEARLY_PARALLEL: f64 = 1e-5;
-
-/// The nearest points of two triangles.
-pub(crate) fn nearest_of_triangles(s: &Triangle, t: &Triangle) -> Nearest {
-    let mut best = Nearest::new(s[0], t[0]);
-    for i in 0..3 {
-        for j in 0..3 {
-            let (ab, cd) = ([s[i], s[(i + 1) % 3]], [t[j], t[(j + 1) % 3]]);
-            let near = nearest_of_edges(ab, cd);
-            if near.square <= best.square {
-                best = near;
-                if best.square == 0.0 || is_proven(&best, s, t) {
-                    return best;
-                }
+/// Nearest points of two triangles; distance 0 with a common point if they intersect.
+pub(crate) fn nearest(a: &Triangle, b: &Triangle, scale: Scale) -> Nearest {
+    let (edges_a, edges_b) = (edges(a), edges(b));
+    let margin = scale.area_noise();
+    let mut best = Nearest::between(a[0], b[0]);
+    for (i, edge_a) in edges_a.iter().enumerate() {
+        for (j, edge_b) in edges_b.iter().enumerate() {
+            let found = edge_a.nearest(edge_b);
+            best = best.or_nearer(found);
+            let v = found.on_b - found.on_a;
+            let third_a = (a[(i + 2) % 3] - found.on_a).dot(v);
+            let third_b = (b[(j + 2) % 3] - found.on_b).dot(v);
+            if third_a < -margin && third_b > margin {
+                return best;
             }
         }
     }
-    let faces = [from_corners(s, t, best.square), from_corners(t, s, best.square)];
-    if let Some(near) = faces[0].map(Nearest::swapped) {
-        best = near;
+    if let Some(face) = Face::new(a) {
+        best = best.or_nearer(face.nearest_corner_or_common(b, best));
     }
-    if let Some(near) = faces[1].filter(|near| near.square < best.square) {
-        best = near;
-    }
-    pierced(s, t).or_else(|| pierced(t, s)).map_or(best, |x| Nearest::new(x, x))
-}
-
-/// Nearest points of two edges: the closed formula where it is accurate.
-fn nearest_of_edges([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> Nearest {
-    let (u, v, w) = (b - a, d - c, a - c);
-    let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
-    let det = uu * vv - uv * uv;
-    if det <= NEARLY_PARALLEL * NEARLY_PARALLEL * uu * vv {
-        let near = nearest_of_segments([a, b], [c, d]);
-        return if near.first.is_finite() && near.second.is_finite() {
-            Nearest::new(near.first, near.second)
-        } else {
-            nearest_of_points([a, b], [c, d])
-        };
-    }
-    let (uw, vw) = (u.dot(w), v.dot(w));
-    let share = ((uv * vw - vv * uw) / det).clamp(0.0, 1.0);
-    let other = ((uv * share + vw) / vv).clamp(0.0, 1.0);
-    let first = a + u * ((uv * other - uw) / uu).clamp(0.0, 1.0);
-    // The foot of the foot: its error is of second order in that of the share.
-    let second = c + v * ((first - c).dot(v) / vv).clamp(0.0, 1.0);
-    Nearest::new(first, second)
-}
-
-/// For edges of length zero.
-fn nearest_of_points([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> Nearest {
-    let on = |x: DVec3, ends: [DVec3; 2]| {
-        if ends[0] == ends[1] { ends[0] } else { ends[0].lerp(ends[1], foot(x, ends)) }
-    };
-    let second = on(a, [c, d]);
-    let candidates = [Nearest::new(on(second, [a, b]), second), Nearest::new(b, on(b, [c, d]))];
-    if candidates[0].square <= candidates[1].square { candidates[0] } else { candidates[1] }
-}
-
-/// Whether all corners lie beyond the planes across two nearest points.
-fn is_proven(near: &Nearest, s: &Triangle, t: &Triangle) -> bool {
-    let across = near.second - near.first;
-    s.iter().all(|x| across.dot(*x - near.first) <= 0.0)
-        && t.iter().all(|x| across.dot(*x - near.second) >= 0.0)
-}
-
-/// The corner of `t` that is nearest to an inner point of `s`, if nearer than `square`: the point
-/// of `t` first.
-fn from_corners(s: &Triangle, t: &Triangle, square: f64) -> Option<Nearest> {
-    let normal = (s[1] - s[0]).cross(s[2] - s[0]);
-    let length = normal.length_squared();
-    let mut best = None;
-    let mut least = square;
-    for &x in t {
-        let height = normal.dot(x - s[0]);
-        if length > 0.0 && height * height < least * length && is_above(s, normal, x) {
-            let near = Nearest::new(x, x - normal * (height / length));
-            if near.square < least {
-                (best, least) = (Some(near), near.square);
-            }
-        }
+    if let Some(face) = Face::new(b) {
+        best = best.or_nearer(face.nearest_corner_or_common(a, best.swapped()).swapped());
     }
     best
 }
 
-/// Whether the foot of `x` on the triangle's plane is inside.
-fn is_above(s: &Triangle, normal: DVec3, x: DVec3) -> bool {
-    (0..3).all(|i| normal.cross(s[(i + 1) % 3] - s[i]).dot(x - s[i]) >= 0.0)
+/// Whether two triangles have a point in common, up to rounding.
+pub(crate) fn intersect(a: &Triangle, b: &Triangle, scale: Scale) -> bool {
+    let beside = |a: &Triangle, b: &Triangle| Face::new(a).is_some_and(|f| f.is_beside(b, scale));
+    let noise = scale.noise();
+    !beside(a, b) && !beside(b, a) && nearest(a, b, scale).squared <= noise * noise
 }
 
-/// A point where an edge of `t` goes through `s`.
-fn pierced(s: &Triangle, t: &Triangle) -> Option<DVec3> {
-    let normal = (s[1] - s[0]).cross(s[2] - s[0]);
-    let heights = t.map(|x| normal.dot(x - s[0]));
-    (0..3).find_map(|j| {
-        let (low, high) = (heights[j], heights[(j + 1) % 3]);
-        if !(low < 0.0 && high > 0.0 || low > 0.0 && high < 0.0) {
-            return None;
-        }
-        let x = t[j].lerp(t[(j + 1) % 3], low / (low - high));
-        is_above(s, normal, x).then_some(x)
+struct Edge {
+    start: DVec3,
+    along: DVec3,
+    /// 1 / length^2, or 0 if that is none.
+    inverse_square: f64,
+}
+
+fn edges(t: &Triangle) -> [Edge; 3] {
+    [0, 1, 2].map(|i| {
+        let along = t[(i + 1) % 3] - t[i];
+        Edge { start: t[i], along, inverse_square: inverse(along.length_squared()) }
     })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use colltrans::{ConvexPolyhedron, Pose};
-    use colltrans_oracle::distance::distance_of_bodies;
-    use colltrans_oracle::settings::Rng;
+fn inverse(square: f64) -> f64 {
+    if square >= f64::MIN_POSITIVE { 1.0 / square } else { 0.0 }
+}
 
-    /// Triangles of all kinds, small whole coordinates among them so that ties are frequent.
-    fn triangle(rng: &mut Rng) -> Triangle {
-        let kind = rng.int(0, 3);
-        let mut corner = || if kind == 0 { rng.vector() } else { rng.grid(-2, 2) };
-        let (a, b, c) = (corner(), corner(), corner());
-        match kind {
-            2 => [a, b, a.lerp(b, 1e-3) + c * 1e-9],
-            3 => [a, b, b],
-            _ => [a, b, c],
+impl Edge {
+    /// Points `start + s along` of both, `0 <= s <= 1`: those of the lines, then clamped in turn,
+    /// which ends in the minimum because the squared distance is convex.
+    #[inline]
+    fn nearest(&self, other: &Self) -> Nearest {
+        let r = other.start - self.start;
+        let normal = self.along.cross(other.along);
+        let square = normal.length_squared();
+        let cosine = self.along.dot(other.along);
+        let (r_self, r_other) = (r.dot(self.along), r.dot(other.along));
+        let mut s = 0.0;
+        if square > 0.0 {
+            s = (r.cross(other.along).dot(normal) / square).clamp(0.0, 1.0);
         }
+        let t = ((s * cosine - r_other) * other.inverse_square).clamp(0.0, 1.0);
+        s = ((r_self + t * cosine) * self.inverse_square).clamp(0.0, 1.0);
+        Nearest::between(self.start + self.along * s, other.start + other.along * t)
+    }
+}
+
+/// A triangle that is not degenerate.
+struct Face<'a> {
+    corners: &'a Triangle,
+    normal: DVec3,
+    square: f64,
+}
+
+impl<'a> Face<'a> {
+    fn new(corners: &'a Triangle) -> Option<Self> {
+        let (u, v) = (corners[1] - corners[0], corners[2] - corners[0]);
+        let mut normal = u.cross(v);
+        let product = u.length_squared() * v.length_squared();
+        if normal.length_squared() < NEARLY_PARALLEL * NEARLY_PARALLEL * product {
+            normal = accurate_cross(u, v);
+        }
+        let square = normal.length_squared();
+        let enough = (DEGENERATE * DEGENERATE * product).max(f64::MIN_POSITIVE);
+        (square > enough).then_some(Self { corners, normal, square })
     }
 
-    #[test]
-    fn the_distance_is_the_exact_one() {
-        let mut rng = Rng::new(4);
-        let mut worst = 0.0_f64;
-        for _ in 0..20_000 {
-            let (s, t) = (triangle(&mut rng), triangle(&mut rng));
-            let [p, q] = [s, t].map(|t| ConvexPolyhedron::from_points(&t).unwrap());
-            let exact = distance_of_bodies((&p, &Pose::IDENTITY), (&q, &Pose::IDENTITY)).to_f64();
-            let near = nearest_of_triangles(&s, &t);
-            let error = (near.square.sqrt() - exact).abs();
-            assert!(error < 1e-12, "{s:?} {t:?}: {error:e} {exact}");
-            worst = worst.max(error);
-        }
-        println!("worst error {worst:e}");
+    fn heights(&self, other: &Triangle) -> [f64; 3] {
+        other.map(|p| (p - self.corners[0]).dot(self.normal))
     }
+
+    /// Whether a triangle lies clearly on one side of this one's plane.
+    fn is_beside(&self, other: &Triangle, scale: Scale) -> bool {
+        let margin = scale.noise() * self.square.sqrt();
+        let heights = self.heights(other);
+        heights.iter().all(|h| *h > margin) || heights.iter().all(|h| *h < -margin)
+    }
+
+    /// A common point where an edge of `other` pierces this face; or, if `other` is on one side,
+    /// its lowest corner and the foot of that; or `known`, if neither is inside. This face is `A`.
+    fn nearest_corner_or_common(&self, other: &Triangle, known: Nearest) -> Nearest {
+        let h = self.heights(other);
+        let low = (0..3).fold(0, |low, i| if h[i].abs() < h[low].abs() { i } else { low });
+        if h.iter().all(|h| *h > 0.0) || h.iter().all(|h| *h < 0.0) {
+            let corner = other[low];
+            if !self.contains(corner) {
+                return known;
+            }
+            let squared = h[low] * (h[low] / self.square);
+            let foot = corner - self.normal * (h[low] / self.square);
+            return Nearest { squared, on_a: foot, on_b: corner };
+        }
+        let crossing = |i: usize| {
+            let j = (i + 1) % 3;
+            if h[i] == 0.0 {
+                return Some(other[i]);
+            }
+            let apart = (h[i] > 0.0) != (h[j] > 0.0);
+            apart.then(|| other[i] + (other[j] - other[i]) * (h[i] / (h[i] - h[j])))
+        };
+        let common = (0..3).filter_map(crossing).find(|p| self.contains(*p));
+        common.map_or(known, Nearest::common)
+    }
+
+    /// Whether the foot of a point on the plane is inside.
+    fn contains(&self, p: DVec3) -> bool {
+        let c = self.corners;
+        let along = [c[1] - c[0], c[2] - c[1], c[0] - c[2]];
+        let lengths = along.map(DVec3::length_squared);
+        let long = (0..3).fold(0, |long, i| if lengths[i] > lengths[long] { i } else { long });
+        let beside = (0.0..=lengths[long]).contains(&(p - c[long]).dot(along[long]));
+        beside && (0..3).all(|i| (p - c[i]).dot(self.normal.cross(along[i])) >= 0.0)
+    }
+}
+
+/// A cross product with a relative error of a few units in the last place.
+fn accurate_cross(u: DVec3, v: DVec3) -> DVec3 {
+    DVec3::new(
+        difference_of_products(u.y, v.z, u.z, v.y),
+        difference_of_products(u.z, v.x, u.x, v.z),
+        difference_of_products(u.x, v.y, u.y, v.x),
+    )
+}
+
+/// `a b - c d`: the rounded products and their errors (Dekker 1971).
+fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let (ab, ab_error) = two_product(a, b);
+    let (cd, cd_error) = two_product(c, d);
+    (ab - cd) + (ab_error - cd_error)
+}
+
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let split = |x: f64| {
+        let c = f64::from((1 << 27) + 1) * x;
+        let high = c - (c - x);
+        (high, x - high)
+    };
+    let product = a * b;
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    (product, error)
 }

@@ -5,12 +5,15 @@
 //! Voronoi region. A walk starts from the closest features of the last query and exchanges one
 //! feature at a time for a neighbour that is nearer (`walk`, `view`).
 //!
-//! As published, apart from its end: the walk decides on rounded numbers and can go in circles
-//! among tied features, which is noticed, and every answer is measured against the supporting
-//! planes across it (`proof`); [`Steps::gap`] is what that leaves open.
+//! As published, apart from its end. The walk decides on rounded numbers, and can then go in
+//! circles among tied features, which is noticed, or end where rounding hides that a feature is
+//! nearer. So every end is measured against the supporting planes across it (`proof`), which
+//! costs a look at the neighbours of a few vertices. If it is not proven, the search goes on by
+//! distances alone to nearer features around, then from where the planes touch, with Voronoi
+//! regions that overlap by more than rounding. [`Steps::gap`] is what that leaves open.
 
 pub(crate) mod proof;
-
+mod segment;
 mod view;
 pub(crate) mod walk;
 
@@ -23,8 +26,8 @@ use crate::proximity::Proximity;
 use proof::Slab;
 use walk::{End, Pair, Scene, Work};
 
-/// How often a walk whose answer is not proven starts again, from where the supporting planes touch.
-const MAX_RESTARTS: u32 = 8;
+/// How often a walk whose answer is not proven starts again, where the supporting planes touch.
+const MAX_RESTARTS: u32 = 6;
 
 /// The work of a query, and what it proves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -33,12 +36,12 @@ pub struct Steps {
     pub pairs: u32,
     /// Scans of all faces of a body, in local minima of the walk: when bodies overlap.
     pub scans: u32,
-    /// Walks that started again because the answer was not proven.
-    pub restarts: u32,
+    /// How often an end that was not proven was left for nearer features around, or for a new walk.
+    pub rescues: u32,
     /// The distance is at most what is reported and at least that less this gap, up to rounding
     /// (world units); 0 if the bodies overlap.
     pub gap: f64,
-    /// Whether all restarts were used up and the gap is more than rounding explains.
+    /// Whether all rescues were used up and the gap is more than rounding explains.
     pub gave_up: bool,
 }
 
@@ -98,28 +101,28 @@ pub(crate) struct Settled {
     pub(crate) on_fixed: DVec3,
     pub(crate) distance: f64,
     pub(crate) gap: f64,
-    pub(crate) restarts: u32,
+    pub(crate) rescues: u32,
     pub(crate) gave_up: bool,
 }
 
 impl Settled {
     /// Bodies with a point in common.
-    pub(crate) fn meeting(common: DVec3, restarts: u32) -> Self {
+    pub(crate) fn meeting(common: DVec3, rescues: u32) -> Self {
         Self {
             on_moving: common,
             on_fixed: common,
             distance: 0.0,
             gap: 0.0,
-            restarts,
+            rescues,
             gave_up: false,
         }
     }
 
     fn into_proximity(self, fixed_pose: &Pose, work: Work) -> Proximity<Steps> {
-        let Self { gap, restarts, gave_up, .. } = self;
+        let Self { gap, rescues, gave_up, .. } = self;
         self.proximity(
             fixed_pose,
-            Steps { pairs: work.pairs, scans: work.scans, restarts, gap, gave_up },
+            Steps { pairs: work.pairs, scans: work.scans, rescues, gap, gave_up },
         )
     }
 
@@ -138,25 +141,22 @@ impl Settled {
 /// the answer is not proven.
 pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Work) -> Settled {
     let mut best: Option<(Settled, Pair)> = None;
-    for restarts in 0..=MAX_RESTARTS {
+    let mut scene = *scene;
+    let mut rescues = 0;
+    for restart in 0..=MAX_RESTARTS {
         end = scene.walk_on(pair, end, work);
         if let End::Penetrating(body, x) = end {
-            let common = if body == 1 { x } else { to_fixed(scene, x) };
-            return Settled::meeting(common, restarts);
+            let common = if body == 1 { x } else { to_fixed(&scene, x) };
+            return Settled::meeting(common, rescues);
         }
         if end == End::Circle {
             scene.settle_in_circle(pair);
         }
-        let near = scene.nearest(*pair);
-        let Slab { gap, supports } = scene.slab(&near, *pair);
-        let settled = Settled {
-            on_moving: near.on_moving,
-            on_fixed: near.on_fixed,
-            distance: near.distance,
-            gap,
-            restarts,
-            gave_up: gap > scene.rounding(),
-        };
+        let (mut settled, mut supports) = judge(&scene, *pair, rescues);
+        if settled.gave_up && scene.polish(pair) {
+            rescues += 1;
+            (settled, supports) = judge(&scene, *pair, rescues);
+        }
         if !settled.gave_up {
             return settled;
         }
@@ -164,11 +164,30 @@ pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Wo
             best = Some((settled, *pair));
         }
         *pair = supports;
+        // Planes flared by more each time: up to what the proof forgives.
+        let flare = scene.rounding() / f64::from(1 << (MAX_RESTARTS - restart));
+        rescues += 1;
+        scene = scene.flared(flare);
         end = scene.walk(pair, scene.patience(), work);
     }
     let (settled, kept) = best.expect("at least one walk");
     *pair = kept;
     settled
+}
+
+/// What a pair of features is worth, and vertices of nearer ones if it is not the answer.
+fn judge(scene: &Scene, pair: Pair, rescues: u32) -> (Settled, Pair) {
+    let near = scene.nearest(pair);
+    let Slab { gap, supports } = scene.slab(&near, pair);
+    let settled = Settled {
+        on_moving: near.on_moving,
+        on_fixed: near.on_fixed,
+        distance: near.distance,
+        gap,
+        rescues,
+        gave_up: gap > scene.rounding(),
+    };
+    (settled, supports)
 }
 
 /// A point of the moving body's frame in the fixed body's.

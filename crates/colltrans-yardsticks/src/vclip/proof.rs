@@ -12,13 +12,16 @@
 
 use glam::DVec3;
 
+use super::segment::{at, foot, nearest_of_segments};
 use super::walk::{Pair, Scene};
 use crate::features::{Feature, HalfEdge, Shell};
-use crate::segment::{at, foot, nearest_of_segments};
 
 /// Rounding of a coordinate of a difference of two points, in units of `2^-53` times the size: as
 /// derived at the head of `colltrans`' `minkowski`.
 const NOISE: f64 = 32.0;
+
+/// Edges of a vertex that are looked at when an answer is not proven at once: pairs of them are.
+const MAX_FAN: usize = 32;
 
 /// Nearest points of a pair of features, in the fixed body's frame.
 #[derive(Debug, Clone, Copy)]
@@ -91,6 +94,17 @@ impl Scene<'_> {
         }
     }
 
+    /// Of each feature the vertex that is nearest to its nearest point.
+    pub(crate) fn nearest_vertices(&self, pair: Pair) -> [u32; 2] {
+        let [from_moving, from_fixed] = &self.views;
+        let Nearest { on_moving, on_fixed, .. } = self.nearest(pair);
+        let in_moving = from_moving.rotation * on_moving + from_moving.translation;
+        [
+            nearest_corner(from_moving.own, pair[0], in_moving),
+            nearest_corner(from_fixed.own, pair[1], on_fixed),
+        ]
+    }
+
     /// How far below the distance of these points that of the bodies can be. `pair` is where to
     /// look for supporting planes first.
     pub(crate) fn slab(&self, near: &Nearest, pair: Pair) -> Slab {
@@ -122,13 +136,69 @@ impl Scene<'_> {
         Slab { gap, supports: [p, q].map(Feature::Vertex) }
     }
 
+    /// Goes on to nearer features around as long as there are any, by distances alone: where a body
+    /// comes close at a small angle, rounding hides on which side of a Voronoi plane a point is
+    /// long before it hides a distance. Says whether it went anywhere.
+    pub(crate) fn polish(&self, pair: &mut Pair) -> bool {
+        let (start, mut best) = (*pair, self.nearest(*pair).distance);
+        for _ in 0..self.patience() {
+            let distances = self.pairs_around(*pair).into_iter();
+            let distances = distances.map(|pair| (self.nearest(pair).distance, pair));
+            match distances.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                Some((distance, nearer)) if distance < best => (best, *pair) = (distance, nearer),
+                _ => break,
+            }
+        }
+        *pair != start
+    }
+
+    /// Edges with edges, which includes their ends, and vertices above faces.
+    fn pairs_around(&self, pair: Pair) -> Vec<Pair> {
+        let around = self.around(pair);
+        let shells = self.views.map(|view| view.own);
+        let mut pairs = Vec::new();
+        for &g in &around[0] {
+            for &h in &around[1] {
+                pairs.push([shells[0].edge(g), shells[1].edge(h)]);
+                for (body, vertex_edge, face_edge) in [(1, g, h), (0, h, g)] {
+                    let vertex = shells[1 - body].half_edge(vertex_edge).target;
+                    let face = shells[body].half_edge(face_edge).face;
+                    if self.views[body].is_above(face, vertex) {
+                        let mut pair = [Feature::Vertex(vertex); 2];
+                        pair[body] = Feature::Face(face);
+                        pairs.push(pair);
+                    }
+                }
+            }
+        }
+        pairs
+    }
+
+    /// The half-edges that leave two features where they are nearest: all of them, unless a vertex
+    /// has very many.
+    fn around(&self, pair: Pair) -> [Vec<u32>; 2] {
+        let near = self.nearest_vertices(pair);
+        let leaving = |body: usize| {
+            let shell = self.views[body].own;
+            let vertices = match pair[body] {
+                Feature::Edge(h) => shell.half_edge(h).both_ends().to_vec(),
+                _ => vec![near[body]],
+            };
+            let fans = vertices.into_iter().flat_map(|v| shell.outgoing(v).iter().take(MAX_FAN));
+            fans.copied().collect()
+        };
+        [leaving(0), leaving(1)]
+    }
+
     /// Unit vectors that two features may have meant by `normal`: across one edge around them, or
     /// across one of each body, or along a face's normal; with both signs where the edges do not
     /// say which.
     fn normals_around(&self, normal: DVec3, pair: Pair) -> Vec<DVec3> {
         let [from_moving, from_fixed] = &self.views;
         let to_fixed = |n: DVec3| from_fixed.rotation * n;
-        let [moving, fixed] = [around(from_moving.own, pair[0]), around(from_fixed.own, pair[1])];
+        let [moving, fixed] = self.around(pair);
+        let moving = described(from_moving.own, &moving);
+        let fixed = described(from_fixed.own, &fixed);
         let moving = moving.into_iter().map(|(along, n)| (to_fixed(along), to_fixed(n)));
         let moving: Vec<(DVec3, DVec3)> = moving.collect();
         let mut normals: Vec<DVec3> = moving.iter().map(|(_, n)| *n).collect();
@@ -157,7 +227,7 @@ impl Nearest {
     }
 }
 
-/// `apart` without what rounding left of it along an edge, if it ends at an inner point of the edge.
+/// `apart` without what rounding left of it along an edge, if it ends at an inner point of it.
 fn across(apart: DVec3, [a, b]: [DVec3; 2], share: f64) -> DVec3 {
     if share <= 0.0 || share >= 1.0 {
         return apart;
@@ -177,12 +247,27 @@ fn across_both(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
     normal * normal.dot(apart).signum()
 }
 
-/// The edges that leave the vertices of a feature: unit vector, normal of the face on the left.
-fn around(shell: &Shell, feature: Feature) -> Vec<(DVec3, DVec3)> {
-    let edges = shell.vertices_of(feature).into_iter().flat_map(|v| shell.outgoing(v));
-    let described = edges.map(|&h| {
+/// Unit vector along each half-edge, and the normal of the face on its left.
+fn described(shell: &Shell, half_edges: &[u32]) -> Vec<(DVec3, DVec3)> {
+    let described = half_edges.iter().map(|&h| {
         let [a, b] = shell.ends(h);
         ((b - a).normalize_or_zero(), shell.normal(shell.half_edge(h).face))
     });
     described.collect()
+}
+
+fn corners(shell: &Shell, feature: Feature) -> Vec<u32> {
+    match feature {
+        Feature::Vertex(v) => vec![v],
+        Feature::Edge(h) => shell.half_edge(h).both_ends().to_vec(),
+        Feature::Face(f) => shell.boundary(f).map(|h| shell.half_edge(h).origin).collect(),
+    }
+}
+
+fn nearest_corner(shell: &Shell, feature: Feature, x: DVec3) -> u32 {
+    let square = |v: &u32| shell.vertex(*v).distance_squared(x);
+    let corners = corners(shell, feature).into_iter();
+    corners
+        .min_by(|v, w| square(v).total_cmp(&square(w)))
+        .unwrap_or_else(|| shell.some_vertex(feature))
 }

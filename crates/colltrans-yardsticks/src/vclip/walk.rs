@@ -1,7 +1,7 @@
 //! The walk over pairs of features, from any pair to a closest one.
 //!
 //! Invariant. A step leads to a pair that is nearer, or as near with a feature of lower dimension
-//! (Mirtich 1998, section 4), so that in exact arithmetic no pair returns. With rounding, pairs
+//! (Mirtich 1998), so that in exact arithmetic no pair returns. With rounding, pairs
 //! that are tied can send the walk in a circle. A step is a function of the pair alone, so a pair
 //! that returns once returns forever: the walk is compared with a pair kept from the step whose
 //! number was the last power of two (Brent 1980), which a circle always meets. What it ends with
@@ -59,9 +59,14 @@ impl<'a> Scene<'a> {
     ) -> Self {
         let Relative { rotation, translation } = Relative::new(moving_pose, fixed_pose);
         let back = rotation.transpose();
-        let from_moving =
-            View { own: moving, other: fixed, rotation: back, translation: -(back * translation) };
-        let from_fixed = View { own: fixed, other: moving, rotation, translation };
+        let from_moving = View {
+            own: moving,
+            other: fixed,
+            rotation: back,
+            translation: -(back * translation),
+            flare: 0.0,
+        };
+        let from_fixed = View { own: fixed, other: moving, rotation, translation, flare: 0.0 };
         Self { views: [from_moving, from_fixed] }
     }
 
@@ -74,6 +79,11 @@ impl<'a> Scene<'a> {
                 View { own: fixed, other: moving, ..from_fixed },
             ],
         }
+    }
+
+    /// The same with Voronoi regions that are larger by this length.
+    pub(crate) fn flared(&self, flare: f64) -> Self {
+        Self { views: self.views.map(|view| View { flare, ..view }) }
     }
 
     /// Walks until an end, over no more than `patience` pairs.

@@ -1,26 +1,27 @@
 //! What the tests of V-Clip and H-Walk share: settings, and the exact distance beside an answer.
 
-// Not every test uses all of it.
-#![allow(dead_code)]
+#![allow(unreachable_pub, reason = "a module of two test programs")]
+
+use std::f64::consts::TAU;
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_oracle::distance::{distance_of_bodies, distance_of_point};
 use colltrans_oracle::settings::{FAMILIES, Rng, setting};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 /// Two solids in place.
 #[derive(Debug, Clone)]
-pub(crate) struct Placed {
-    pub(crate) name: String,
-    pub(crate) moving: ConvexPolyhedron,
-    pub(crate) fixed: ConvexPolyhedron,
-    pub(crate) moving_pose: Pose,
-    pub(crate) fixed_pose: Pose,
+pub struct Placed {
+    pub name: String,
+    pub moving: ConvexPolyhedron,
+    pub fixed: ConvexPolyhedron,
+    pub moving_pose: Pose,
+    pub fixed_pose: Pose,
 }
 
 impl Placed {
     /// Reaches of both bodies and the distance of their frames.
-    pub(crate) fn size(&self) -> f64 {
+    pub fn size(&self) -> f64 {
         let reach = |body: &ConvexPolyhedron| {
             body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
         };
@@ -30,27 +31,11 @@ impl Placed {
     }
 
     /// Moved along the shortest vector so that about `gap` is left of it.
-    pub(crate) fn at_gap(&self, gap: f64) -> Self {
+    pub fn at_gap(&self, gap: f64) -> Self {
         let exact = self.exact();
         let share = 1.0 - gap / exact.to_f64();
         let moving_pose = self.moving_pose.translated(exact.shortest * share).unwrap();
         Self { name: format!("{} at {gap:e}", self.name), moving_pose, ..self.clone() }
-    }
-
-    pub(crate) fn is_apart(&self) -> bool {
-        !self.exact().intersects()
-    }
-
-    /// The worst error of an answer, as a share of the size; infinite if it is none.
-    pub(crate) fn verdict(
-        &self,
-        distance: f64,
-        on_moving: DVec3,
-        on_fixed: DVec3,
-        gave_up: bool,
-    ) -> f64 {
-        let points = self.error_of_points(distance, on_moving, on_fixed);
-        if gave_up { f64::INFINITY } else { self.error(distance).max(points) }
     }
 
     fn exact(&self) -> colltrans_oracle::distance::Distance {
@@ -58,13 +43,13 @@ impl Placed {
     }
 
     /// The error of a distance, as a share of the size.
-    pub(crate) fn error(&self, distance: f64) -> f64 {
+    pub fn error(&self, distance: f64) -> f64 {
         (distance - self.exact().to_f64()).abs() / self.size()
     }
 
     /// How far nearest points are from their bodies, and from being `distance` apart, as a share of
     /// the size and of where in the world it is.
-    pub(crate) fn error_of_points(&self, distance: f64, on_moving: DVec3, on_fixed: DVec3) -> f64 {
+    pub fn error_of_points(&self, distance: f64, on_moving: DVec3, on_fixed: DVec3) -> f64 {
         let of_point = |x, body, pose| distance_of_point(x, (body, pose)).to_f64();
         let errors = [
             (distance - on_moving.distance(on_fixed)).abs(),
@@ -76,44 +61,8 @@ impl Placed {
     }
 }
 
-/// Largest error as a share of the size. Nearly parallel features leave a few roundings of the
-/// nearest points' places along them, divided by the sine of their angle.
-pub(crate) const ACCURACY: f64 = 1e-11;
-
-/// The worst value over settings, and where it is met.
-pub(crate) fn worst_of(
-    settings: impl Iterator<Item = Placed>,
-    value: impl Fn(&Placed) -> f64,
-) -> (f64, String) {
-    settings
-        .map(|placed| (value(&placed), placed.name))
-        .fold((0.0, String::new()), |worst, found| if found.0 > worst.0 { found } else { worst })
-}
-
-/// Ellipsoids of about `n` random vertices, near each other.
-pub(crate) fn large(n: usize, count: usize, rng: &mut Rng) -> Vec<Placed> {
-    (0..count)
-        .map(|k| {
-            let mut body = || {
-                let axes = DVec3::from_array([0; 3].map(|_| rng.range(0.6, 1.4)));
-                let points: Vec<DVec3> = (0..n).map(|_| rng.direction() * axes).collect();
-                ConvexPolyhedron::from_points(&points).unwrap()
-            };
-            let (moving, fixed) = (body(), body());
-            let at = rng.direction() * rng.range(2.5, 4.0);
-            Placed {
-                name: format!("large {n}:{k}"),
-                moving,
-                fixed,
-                moving_pose: Pose::new(rng.rotation(), at).unwrap(),
-                fixed_pose: Pose::new(rng.rotation(), DVec3::ZERO).unwrap(),
-            }
-        })
-        .collect()
-}
-
 /// Random solids of 4 to 20 vertices: apart, at gaps down to nothing, overlapping, nested.
-pub(crate) fn random_settings(count: u64) -> impl Iterator<Item = Placed> {
+pub fn random_settings(count: u64) -> impl Iterator<Item = Placed> {
     (0..count).map(|seed| {
         let mut rng = Rng::new(seed);
         let mut solid = || {
@@ -155,7 +104,7 @@ fn nested(apart: &Placed) -> Placed {
 
 /// The hard families of the oracle, solids only, as they are and moved to a gap, to contact and
 /// beyond.
-pub(crate) fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
+pub fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
     FAMILIES
         .iter()
         .flat_map(move |&(family, _)| (0..seeds).map(move |seed| (family, seed)))
@@ -184,17 +133,61 @@ pub(crate) fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
         })
 }
 
-/// Small steps in turn and place, about `share` of a size each.
-pub(crate) fn coherent(placed: &Placed, share: f64, steps: u32, rng: &mut Rng) -> Vec<Placed> {
+/// Prisms and double cones over a polygon of many sides: wide faces, vertices with many neighbours,
+/// one over the other and side by side, apart by a little or not at all, tilted by a little or not
+/// at all.
+pub fn wide_settings() -> impl Iterator<Item = Placed> {
+    let ring = (0..200).map(|k| DVec3::from((DVec2::from_angle(TAU * f64::from(k) / 200.0), -0.5)));
+    let prism: Vec<DVec3> = ring.clone().flat_map(|p| [p, p + DVec3::Z]).collect();
+    let cone: Vec<DVec3> = ring.chain([DVec3::Z, DVec3::NEG_Z]).collect();
+    let solids = [prism, cone].map(|points| ConvexPolyhedron::from_points(&points).unwrap());
+    let (axis, aslant) = (DVec3::new(0.6, 0.8, 0.0), DVec3::new(1.0, 0.3, 1.0));
+    let places = [DVec3::ZERO, DVec3::Z, DVec3::Z * 2.0, DVec3::X * 2.0, aslant, aslant * 0.1];
+    let mut settings = Vec::new();
+    for body in solids {
+        for place in places {
+            for (gap, tilt) in [(0.0, 0.0), (0.0, 1e-12), (1e-9, 0.0), (1e-9, 1e-9), (1e-6, 1e-5)] {
+                let at = place * (1.0 + gap);
+                settings.push(Placed {
+                    name: format!("wide, {} faces at {at} by {tilt:e}", body.face_count()),
+                    moving: body.clone(),
+                    fixed: body.clone(),
+                    moving_pose: Pose::new(DQuat::from_axis_angle(axis, tilt), DVec3::ZERO)
+                        .unwrap(),
+                    fixed_pose: Pose::from_translation(at).unwrap(),
+                });
+            }
+        }
+    }
+    settings.into_iter()
+}
+
+/// Ellipsoids with `n` vertices at random, semi-axes from 0.6 to 1.4, about as far apart as they
+/// are large.
+pub fn large(n: usize, seed: u64) -> Placed {
+    let mut rng = Rng::new(seed);
+    let mut ellipsoid = || {
+        let axes = DVec3::from_array([0; 3].map(|_| rng.range(0.6, 1.4)));
+        let points: Vec<DVec3> = (0..n).map(|_| rng.direction() * axes).collect();
+        ConvexPolyhedron::from_points(&points).unwrap()
+    };
+    let (moving, fixed) = (ellipsoid(), ellipsoid());
+    let moving_pose = Pose::new(rng.rotation(), rng.vector()).unwrap();
+    let at = moving_pose.translation() + rng.direction() * rng.range(3.0, 4.0);
+    let fixed_pose = Pose::new(rng.rotation(), at).unwrap();
+    Placed { name: format!("large {seed}"), moving, fixed, moving_pose, fixed_pose }
+}
+
+/// The moving body turned about a fixed axis and moved past the other, `share` of its size a step.
+pub fn coherent(placed: &Placed, share: f64, steps: u32, seed: u64) -> Vec<Pose> {
+    let mut rng = Rng::new(seed);
     let (axis, along) = (rng.direction(), rng.direction());
-    let size = placed.size();
-    (0..steps)
-        .map(|k| {
-            let turn = DQuat::from_axis_angle(axis, share * f64::from(k));
-            let rotation = (turn * placed.moving_pose.rotation()).normalize();
-            let at = placed.moving_pose.translation() + along * size * share * f64::from(k);
-            let moving_pose = Pose::new(rotation, at).unwrap();
-            Placed { name: format!("{} step {k}", placed.name), moving_pose, ..placed.clone() }
-        })
-        .collect()
+    let reach = placed.moving.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let poses = (0..steps).map(|k| {
+        let turn = DQuat::from_axis_angle(axis, share * f64::from(k));
+        let rotation = (turn * placed.moving_pose.rotation()).normalize();
+        let at = placed.moving_pose.translation() + along * reach * share * f64::from(k);
+        Pose::new(rotation, at).unwrap()
+    });
+    poses.collect()
 }

@@ -150,12 +150,13 @@ impl Shell {
         [self.vertex(origin), self.vertex(target)]
     }
 
-    pub(crate) fn normal(&self, face: u32) -> DVec3 {
-        self.normals[face as usize]
+    pub(crate) fn length(&self, h: u32) -> f64 {
+        let [a, b] = self.ends(h);
+        a.distance(b)
     }
 
-    pub(crate) fn normals(&self) -> &[DVec3] {
-        &self.normals
+    pub(crate) fn normal(&self, face: u32) -> DVec3 {
+        self.normals[face as usize]
     }
 
     /// The half-edges that leave a vertex.

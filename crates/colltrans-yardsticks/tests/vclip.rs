@@ -30,3 +30,7 @@ fn report(settings: impl Iterator<Item = Placed>) {
 fn random() { report(random_settings(2000)); }
 #[test]
 fn hard() { report(hard_settings(400)); }
+#[test]
+fn dbg() { let p = hard_settings(400).find(|p| p.name.starts_with(&std::env::var("CASE").unwrap_or("nearly:351".into())[..])).unwrap();
+ println!("{:?} {:?}", p.moving.vertices(), p.fixed.vertices()); println!("{:?}\n{:?}", p.moving_pose, p.fixed_pose);
+ println!("{:?}", from_scratch(&p)); }

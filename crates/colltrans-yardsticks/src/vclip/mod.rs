@@ -20,10 +20,11 @@ use glam::DVec3;
 pub use crate::features::{NotSolid, Shell};
 use crate::features::Feature;
 use crate::proximity::Proximity;
+use proof::Slab;
 use walk::{End, Pair, Scene, Work};
 
 /// How often a walk whose answer is not proven starts again, from where the supporting planes touch.
-const MAX_RESTARTS: u32 = 8;
+const MAX_RESTARTS: u32 = 6;
 
 /// The work of a query, and what it proves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -137,17 +138,18 @@ impl Settled {
 /// the answer is not proven.
 pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Work) -> Settled {
     let mut best: Option<(Settled, Pair)> = None;
+    let mut scene = *scene;
     for restarts in 0..=MAX_RESTARTS {
         end = scene.walk_on(pair, end, work);
         if let End::Penetrating(body, x) = end {
-            let common = if body == 1 { x } else { to_fixed(scene, x) };
+            let common = if body == 1 { x } else { to_fixed(&scene, x) };
             return Settled::meeting(common, restarts);
         }
         if end == End::Circle {
             scene.settle_in_circle(pair);
         }
         let near = scene.nearest(*pair);
-        let gap = scene.gap(&near, *pair);
+        let Slab { gap, supports } = scene.slab(&near, *pair);
         let settled = Settled {
             on_moving: near.on_moving,
             on_fixed: near.on_fixed,
@@ -162,7 +164,10 @@ pub(crate) fn settle(scene: &Scene, pair: &mut Pair, mut end: End, work: &mut Wo
         if best.is_none_or(|(other, _)| settled.distance < other.distance) {
             best = Some((settled, *pair));
         }
-        *pair = scene.supports(&near, *pair);
+        *pair = supports;
+        // Planes flared by more each time: up to what the proof forgives.
+        let flare = scene.rounding() / f64::from(1 << (MAX_RESTARTS - restarts));
+        scene = scene.flared(flare);
         end = scene.walk(pair, scene.patience(), work);
     }
     let (settled, kept) = best.expect("at least one walk");

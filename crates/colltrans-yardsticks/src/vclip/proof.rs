@@ -30,6 +30,15 @@ pub(crate) struct Nearest {
     normal: DVec3,
 }
 
+/// The slab between two parallel supporting planes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slab {
+    /// By how much the slab is narrower than the distance found.
+    pub(crate) gap: f64,
+    /// Vertices on the planes: if the gap is real, a nearer pair is around here.
+    pub(crate) supports: Pair,
+}
+
 impl Scene<'_> {
     /// The nearest points of two features that a walk ended with.
     pub(crate) fn nearest(&self, pair: Pair) -> Nearest {
@@ -82,17 +91,18 @@ impl Scene<'_> {
         }
     }
 
-    /// What the distance may be less than that of these points. `pair` is where to look for
-    /// supporting planes first.
-    pub(crate) fn gap(&self, near: &Nearest, pair: Pair) -> f64 {
-        let gap = near.distance - self.width(near.normal, pair).max(0.0);
-        if gap <= self.rounding() {
-            return gap.max(0.0);
+    /// How far below the distance of these points that of the bodies can be. `pair` is where to
+    /// look for supporting planes first.
+    pub(crate) fn slab(&self, near: &Nearest, pair: Pair) -> Slab {
+        let straight = self.slab_along(near, near.normal, pair);
+        if straight.gap <= self.rounding() {
+            return straight;
         }
         // A tie: the normal is at the border of what the features allow, and rounded beyond it.
-        let normals = self.normals_around(near.normal, pair).into_iter();
-        let widths = normals.map(|n| self.width(n, pair));
-        (near.distance - widths.fold(near.distance - gap, f64::max)).max(0.0)
+        self.normals_around(near.normal, pair)
+            .into_iter()
+            .map(|normal| self.slab_along(near, normal, pair))
+            .fold(straight, |best, slab| if slab.gap < best.gap { slab } else { best })
     }
 
     /// A gap that rounding explains: a few noises of the coordinates.
@@ -102,29 +112,14 @@ impl Scene<'_> {
         4.0 * NOISE * (f64::EPSILON / 2.0) * size
     }
 
-    /// The vertices on the supporting planes across `q - p`: a pair that is nearer, if there is
-    /// one.
-    pub(crate) fn supports(&self, near: &Nearest, pair: Pair) -> Pair {
+    fn slab_along(&self, near: &Nearest, normal: DVec3, pair: Pair) -> Slab {
         let [from_moving, from_fixed] = &self.views;
-        let along = from_moving.rotation * near.normal;
-        [
-            from_moving.own.support(along, from_moving.own.some_vertex(pair[0])),
-            from_fixed.own.support(-near.normal, from_fixed.own.some_vertex(pair[1])),
-        ]
-        .map(Feature::Vertex)
-    }
-
-    /// `w(n)`.
-    fn width(&self, normal: DVec3, pair: Pair) -> f64 {
-        let [from_moving, from_fixed] = &self.views;
-        let [p, q] = [
-            from_moving.own.support(
-                from_moving.rotation * normal,
-                from_moving.own.some_vertex(pair[0]),
-            ),
-            from_fixed.own.support(-normal, from_fixed.own.some_vertex(pair[1])),
-        ];
-        normal.dot(from_fixed.own.vertex(q) - from_fixed.seen(p))
+        let (moving, fixed) = (from_moving.own, from_fixed.own);
+        let p = moving.support(from_moving.rotation * normal, moving.some_vertex(pair[0]));
+        let q = fixed.support(-normal, fixed.some_vertex(pair[1]));
+        let width = normal.dot(fixed.vertex(q) - from_fixed.seen(p));
+        let gap = (near.distance - width.max(0.0)).max(0.0);
+        Slab { gap, supports: [p, q].map(Feature::Vertex) }
     }
 
     /// Unit vectors that two features may have meant by `normal`: across one edge around them, or

@@ -4,6 +4,10 @@
 //! body's feature is a vertex or an edge `e(l) = tail + l (head - tail)`, `0 <= l <= 1`, *seen* in
 //! the own body's frame. `D(l)` is the distance of `e(l)` from a feature.
 //!
+//! *Flared* planes: a Voronoi region grown outwards by `flare` (a length, 0 as published), so that
+//! the regions of neighbours overlap by more than rounding and ties send a walk nowhere. What a
+//! walk ends with is then nearest to within about that.
+//!
 //! Source: Mirtich 1998, sections 3 (clipping an edge against a Voronoi region, and what the
 //! derivative of `D` where the edge leaves it says) and 4 (states). The states are one half each:
 //! what they say about `X`. The other half is the same with the bodies exchanged.
@@ -20,7 +24,13 @@ pub(crate) struct View<'a> {
     pub(crate) other: &'a Shell,
     pub(crate) rotation: DMat3,
     pub(crate) translation: DVec3,
+    /// By how much the planes of Voronoi regions are moved outwards.
+    pub(crate) flare: f64,
 }
+
+/// Relative error of the slope of an edge, if the planes are flared: a few roundings of a rotated
+/// normal and of a product.
+const LEVEL: f64 = 8.0 * f64::EPSILON;
 
 /// What a state with a face says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,10 +64,22 @@ impl View<'_> {
         (self.rotation.transpose() * self.own.normal(face)).dot(head - tail)
     }
 
+    /// The sign that a slope has for certain.
+    fn certain_slope(&self, face: u32, h: u32) -> f64 {
+        let slope = self.slope(face, h);
+        if self.flare > 0.0 && slope.abs() <= LEVEL * self.other.length(h) { 0.0 } else { slope }
+    }
+
+    /// What flaring adds to a height above a Voronoi plane, which is in units of this edge's
+    /// length.
+    fn lift(&self, h: u32) -> f64 {
+        if self.flare > 0.0 { self.flare * self.own.length(h) } else { 0.0 }
+    }
+
     /// Vertex `v` against the other's vertex: an edge whose plane the latter is beyond.
     pub(crate) fn vertex_vertex(&self, v: u32, other: u32) -> Option<Feature> {
         let x = self.seen(other);
-        let beyond = |h: &&u32| self.own.beyond_vertex(**h, x) > 0.0;
+        let beyond = |h: &&u32| self.own.beyond_vertex(**h, x) > self.lift(**h);
         self.own.outgoing(v).iter().find(beyond).map(|&h| self.own.edge(h))
     }
 
@@ -66,28 +88,36 @@ impl View<'_> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();
         for &h in self.own.outgoing(v) {
-            let heights = [edge.tail, edge.head].map(|x| -self.own.beyond_vertex(h, x));
+            let lift = self.lift(h);
+            let heights = [edge.tail, edge.head].map(|x| lift - self.own.beyond_vertex(h, x));
             match clip.cut(heights, self.own.edge(h)) {
                 Cut::Part => {}
                 Cut::Excluded => return Some(self.own.edge(h)),
                 Cut::Empty => break,
             }
         }
-        let apex = self.own.vertex(v);
-        clip.leave_through(|l, _| edge.along().dot(edge.at(l) - apex))
+        clip.leave_through(|l, _| self.climb_from(v, edge, l))
+    }
+
+    /// A number of the sign of `D'(l)` for the distance from vertex `v`.
+    fn climb_from(&self, v: u32, edge: Edge, l: f64) -> f64 {
+        let along = edge.along();
+        let climb = along.dot(edge.at(l) - self.own.vertex(v));
+        if self.flare > 0.0 && climb.abs() <= self.flare * along.length() { 0.0 } else { climb }
     }
 
     /// Edge `h` against the other's vertex.
     pub(crate) fn edge_vertex(&self, h: u32, other: u32) -> Option<Feature> {
         let x = self.seen(other);
         let HalfEdge { origin, target, twin, face } = self.own.half_edge(h);
-        if self.own.beyond_vertex(h, x) < 0.0 {
+        let lift = self.lift(h);
+        if self.own.beyond_vertex(h, x) < -lift {
             Some(Feature::Vertex(origin))
-        } else if self.own.beyond_vertex(twin, x) < 0.0 {
+        } else if self.own.beyond_vertex(twin, x) < -lift {
             Some(Feature::Vertex(target))
-        } else if self.own.inside_edge(h, x) > 0.0 {
+        } else if self.own.inside_edge(h, x) > lift {
             Some(Feature::Face(face))
-        } else if self.own.inside_edge(twin, x) > 0.0 {
+        } else if self.own.inside_edge(twin, x) > lift {
             Some(Feature::Face(self.own.half_edge(twin).face))
         } else {
             None
@@ -98,9 +128,9 @@ impl View<'_> {
     pub(crate) fn edge_edge(&self, h: u32, other: u32) -> Option<Feature> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();
-        let sides = [h, self.own.half_edge(h).twin];
+        let (sides, lift) = ([h, self.own.half_edge(h).twin], self.lift(h));
         for h in sides {
-            let heights = [edge.tail, edge.head].map(|x| self.own.beyond_vertex(h, x));
+            let heights = [edge.tail, edge.head].map(|x| lift + self.own.beyond_vertex(h, x));
             let end = Feature::Vertex(self.own.half_edge(h).origin);
             match clip.cut(heights, end) {
                 Cut::Part => {}
@@ -109,10 +139,10 @@ impl View<'_> {
             }
         }
         let derivative = |l: f64, at: Feature| match at {
-            Feature::Vertex(v) => edge.along().dot(edge.at(l) - self.own.vertex(v)),
+            Feature::Vertex(v) => self.climb_from(v, edge, l),
             Feature::Face(f) => {
                 let height = self.own.height(f, edge.at(l));
-                if height == 0.0 { 0.0 } else { self.slope(f, other) * height.signum() }
+                if height == 0.0 { 0.0 } else { self.certain_slope(f, other) * height.signum() }
             }
             Feature::Edge(_) => 0.0,
         };
@@ -121,7 +151,7 @@ impl View<'_> {
             return end;
         }
         for h in sides {
-            let heights = [edge.tail, edge.head].map(|x| -self.own.inside_edge(h, x));
+            let heights = [edge.tail, edge.head].map(|x| lift - self.own.inside_edge(h, x));
             let face = Feature::Face(self.own.half_edge(h).face);
             match clip.cut(heights, face) {
                 Cut::Part => {}
@@ -135,12 +165,11 @@ impl View<'_> {
     /// Face `f` against the other's vertex.
     pub(crate) fn face_vertex(&self, f: u32, other: u32) -> FaceVerdict {
         let x = self.seen(other);
-        let mut lowest = (0.0, None);
+        let mut lowest = (-self.flare, None);
         for h in self.own.boundary(f) {
             let inside = self.own.inside_edge(h, x);
             if inside < 0.0 {
-                let [a, b] = self.own.ends(h);
-                let height = inside / (b - a).length();
+                let height = inside / self.own.length(h);
                 if height < lowest.0 {
                     lowest = (height, Some(h));
                 }
@@ -153,7 +182,7 @@ impl View<'_> {
         if height == 0.0 {
             return FaceVerdict::Stay;
         }
-        let nearer = |h: &&u32| self.slope(f, **h) * height.signum() < 0.0;
+        let nearer = |h: &&u32| self.certain_slope(f, **h) * height.signum() < 0.0;
         match self.other.outgoing(other).iter().find(nearer) {
             Some(&h) => FaceVerdict::Other(self.other.edge(h)),
             None if height > 0.0 => FaceVerdict::Stay,
@@ -166,7 +195,8 @@ impl View<'_> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();
         for h in self.own.boundary(f) {
-            let heights = [edge.tail, edge.head].map(|x| self.own.inside_edge(h, x));
+            let lift = self.lift(h);
+            let heights = [edge.tail, edge.head].map(|x| lift + self.own.inside_edge(h, x));
             if clip.cut(heights, self.own.edge(h)) != Cut::Part {
                 return FaceVerdict::Own(self.nearest_of_border(f, edge));
             }

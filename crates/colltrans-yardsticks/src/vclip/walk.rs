@@ -60,8 +60,8 @@ impl<'a> Scene<'a> {
         let Relative { rotation, translation } = Relative::new(moving_pose, fixed_pose);
         let back = rotation.transpose();
         let from_moving =
-            View { own: moving, other: fixed, rotation: back, translation: -(back * translation) };
-        let from_fixed = View { own: fixed, other: moving, rotation, translation };
+            View { own: moving, other: fixed, rotation: back, translation: -(back * translation), flare: 0.0 };
+        let from_fixed = View { own: fixed, other: moving, rotation, translation, flare: 0.0 };
         Self { views: [from_moving, from_fixed] }
     }
 
@@ -74,6 +74,11 @@ impl<'a> Scene<'a> {
                 View { own: fixed, other: moving, ..from_fixed },
             ],
         }
+    }
+
+    /// The same with Voronoi regions that are larger by this length.
+    pub(crate) fn flared(&self, flare: f64) -> Self {
+        Self { views: self.views.map(|view| View { flare, ..view }) }
     }
 
     /// Walks until an end, over no more than `patience` pairs.

@@ -92,9 +92,12 @@ impl Shell {
         for face in faces.clone() {
             let corners = body.face_vertices(face);
             let next = corners.clone().cycle().skip(1);
-            half_edges.extend(
-                corners.zip(next).map(|(origin, target)| HalfEdge { origin, target, twin: 0, face }),
-            );
+            half_edges.extend(corners.zip(next).map(|(origin, target)| HalfEdge {
+                origin,
+                target,
+                twin: 0,
+                face,
+            }));
             face_start.push(half_edges.len() as u32);
         }
         let (vertex_start, outgoing) = group_by_origin(body.vertices().len(), &half_edges);

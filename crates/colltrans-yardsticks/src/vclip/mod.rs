@@ -17,8 +17,8 @@ pub(crate) mod walk;
 use colltrans::Pose;
 use glam::DVec3;
 
-pub use crate::features::{NotSolid, Shell};
 use crate::features::Feature;
+pub use crate::features::{NotSolid, Shell};
 use crate::proximity::Proximity;
 use proof::Slab;
 use walk::{End, Pair, Scene, Work};

@@ -91,6 +91,17 @@ impl Scene<'_> {
         }
     }
 
+    /// Of each feature the vertex that is nearest to its nearest point.
+    pub(crate) fn nearest_vertices(&self, pair: Pair) -> [u32; 2] {
+        let [from_moving, from_fixed] = &self.views;
+        let Nearest { on_moving, on_fixed, .. } = self.nearest(pair);
+        let in_moving = from_moving.rotation * on_moving + from_moving.translation;
+        [
+            nearest_corner(from_moving.own, pair[0], in_moving),
+            nearest_corner(from_fixed.own, pair[1], on_fixed),
+        ]
+    }
+
     /// How far below the distance of these points that of the bodies can be. `pair` is where to
     /// look for supporting planes first.
     pub(crate) fn slab(&self, near: &Nearest, pair: Pair) -> Slab {
@@ -179,15 +190,26 @@ fn across_both(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
 
 /// The edges that leave the vertices of a feature: unit vector, normal of the face on the left.
 fn around(shell: &Shell, feature: Feature) -> Vec<(DVec3, DVec3)> {
-    let vertices: Vec<u32> = match feature {
-        Feature::Vertex(v) => vec![v],
-        Feature::Edge(h) => vec![shell.half_edge(h).origin, shell.half_edge(h).target],
-        Feature::Face(f) => shell.boundary(f).map(|h| shell.half_edge(h).origin).collect(),
-    };
-    let edges = vertices.into_iter().flat_map(|v| shell.outgoing(v));
+    let edges = corners(shell, feature).into_iter().flat_map(|v| shell.outgoing(v));
     let described = edges.map(|&h| {
         let [a, b] = shell.ends(h);
         ((b - a).normalize_or_zero(), shell.normal(shell.half_edge(h).face))
     });
     described.collect()
+}
+
+fn corners(shell: &Shell, feature: Feature) -> Vec<u32> {
+    match feature {
+        Feature::Vertex(v) => vec![v],
+        Feature::Edge(h) => vec![shell.half_edge(h).origin, shell.half_edge(h).target],
+        Feature::Face(f) => shell.boundary(f).map(|h| shell.half_edge(h).origin).collect(),
+    }
+}
+
+fn nearest_corner(shell: &Shell, feature: Feature, x: DVec3) -> u32 {
+    let square = |v: &u32| shell.vertex(*v).distance_squared(x);
+    let corners = corners(shell, feature).into_iter();
+    corners
+        .min_by(|v, w| square(v).total_cmp(&square(w)))
+        .unwrap_or_else(|| shell.some_vertex(feature))
 }

@@ -59,8 +59,13 @@ impl<'a> Scene<'a> {
     ) -> Self {
         let Relative { rotation, translation } = Relative::new(moving_pose, fixed_pose);
         let back = rotation.transpose();
-        let from_moving =
-            View { own: moving, other: fixed, rotation: back, translation: -(back * translation), flare: 0.0 };
+        let from_moving = View {
+            own: moving,
+            other: fixed,
+            rotation: back,
+            translation: -(back * translation),
+            flare: 0.0,
+        };
         let from_fixed = View { own: fixed, other: moving, rotation, translation, flare: 0.0 };
         Self { views: [from_moving, from_fixed] }
     }

@@ -62,7 +62,8 @@ pub fn random_settings(count: u64) -> impl Iterator<Item = Placed> {
     (0..count).map(|seed| {
         let mut rng = Rng::new(seed);
         let mut solid = || {
-            let (n, axes) = (rng.int(4, 20), DVec3::from_array([0; 3].map(|_| rng.range(0.3, 1.5))));
+            let (n, axes) =
+                (rng.int(4, 20), DVec3::from_array([0; 3].map(|_| rng.range(0.3, 1.5))));
             let points: Vec<DVec3> = (0..n).map(|_| rng.direction() * axes).collect();
             ConvexPolyhedron::from_points(&points).unwrap()
         };
@@ -100,8 +101,10 @@ fn nested(apart: &Placed) -> Placed {
 /// The hard families of the oracle, solids only, as they are and moved to a gap, to contact and
 /// beyond.
 pub fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
-    FAMILIES.iter().flat_map(move |&(family, _)| (0..seeds).map(move |seed| (family, seed))).filter_map(
-        |(family, seed)| {
+    FAMILIES
+        .iter()
+        .flat_map(move |&(family, _)| (0..seeds).map(move |seed| (family, seed)))
+        .filter_map(|(family, seed)| {
             let drawn = setting(family, seed);
             let bodies = drawn.bodies().ok()?;
             if bodies.moving.dimension() < 3 || bodies.fixed.dimension() < 3 {
@@ -123,8 +126,7 @@ pub fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
                 2 => placed.at_gap(0.0),
                 _ => placed.at_gap(1e-6 * distance),
             })
-        },
-    )
+        })
 }
 
 /// Small steps in turn and place, about `share` of a size each.

@@ -1,1 +1,0 @@
-//! H-Walk (Guibas, Hsu, Zhang 1999).

@@ -1,1 +1,0 @@
-//! V-Clip (Mirtich 1998).

@@ -1,0 +1,202 @@
+//! The walk over pairs of features, from any pair to a closest one.
+//!
+//! Invariant. A step leads to a pair that is nearer, or as near with a feature of lower dimension
+//! (Mirtich 1998, section 4), so that in exact arithmetic no pair returns. With rounding, pairs
+//! that are tied can send the walk in a circle. A step is a function of the pair alone, so a pair
+//! that returns once returns forever: the walk is compared with a pair kept from the step whose
+//! number was the last power of two (Brent 1980), which a circle always meets. What it ends with
+//! is judged elsewhere ([`super::proof`]).
+
+use colltrans::Pose;
+
+use super::view::{FaceVerdict, View};
+use crate::features::{Feature, Shell};
+use crate::placed::Relative;
+
+/// A feature of the moving body and one of the fixed body.
+pub(crate) type Pair = [Feature; 2];
+
+/// Two placed bodies, each seen from the other.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    /// From the moving body's frame, from the fixed body's frame.
+    pub(crate) views: [View<'a>; 2],
+}
+
+/// How a walk ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum End {
+    /// No feature has a nearer neighbour.
+    Nearest,
+    /// The walk came back to where it was.
+    Circle,
+    /// The bodies have a point in common: in the frame of this body.
+    Penetrating(usize, glam::DVec3),
+    /// A vertex of one body is below the face of this other body, and so are its neighbours.
+    LocalMinimum(usize),
+    /// No end within the steps allowed.
+    OutOfPatience,
+}
+
+/// The work of a walk, as the papers count it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Work {
+    /// Pairs of features looked at.
+    pub(crate) pairs: u32,
+    /// Scans of all faces of a body.
+    pub(crate) scans: u32,
+}
+
+enum Step {
+    To(Pair),
+    End(End),
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn new(
+        (moving, moving_pose): (&'a Shell, &Pose),
+        (fixed, fixed_pose): (&'a Shell, &Pose),
+    ) -> Self {
+        let Relative { rotation, translation } = Relative::new(moving_pose, fixed_pose);
+        let back = rotation.transpose();
+        let from_moving = View {
+            own: moving,
+            other: fixed,
+            rotation: back,
+            translation: -(back * translation),
+            flare: 0.0,
+        };
+        let from_fixed = View { own: fixed, other: moving, rotation, translation, flare: 0.0 };
+        Self { views: [from_moving, from_fixed] }
+    }
+
+    /// The same bodies with other shells, in the same places.
+    pub(crate) fn with_shells(&self, moving: &'a Shell, fixed: &'a Shell) -> Self {
+        let [from_moving, from_fixed] = self.views;
+        Self {
+            views: [
+                View { own: moving, other: fixed, ..from_moving },
+                View { own: fixed, other: moving, ..from_fixed },
+            ],
+        }
+    }
+
+    /// The same with Voronoi regions that are larger by this length.
+    pub(crate) fn flared(&self, flare: f64) -> Self {
+        Self { views: self.views.map(|view| View { flare, ..view }) }
+    }
+
+    /// Walks until an end, over no more than `patience` pairs.
+    pub(crate) fn walk(&self, pair: &mut Pair, patience: u32, work: &mut Work) -> End {
+        let mut kept = *pair;
+        for step in 1..=patience {
+            work.pairs += 1;
+            match self.step(*pair) {
+                Step::End(end) => return end,
+                Step::To(next) => *pair = next,
+            }
+            if *pair == kept {
+                return End::Circle;
+            }
+            if step.is_power_of_two() {
+                kept = *pair;
+            }
+        }
+        End::OutOfPatience
+    }
+
+    /// Walks until an end that is not a local minimum: from there the walk goes on with the face
+    /// that the vertex is highest above, and if there is none the vertex is inside. Each scan
+    /// leaves a pair farther apart than any before it for good, so there are few; a pair that
+    /// rounding sends there again is left as it is.
+    pub(crate) fn walk_on(&self, pair: &mut Pair, mut end: End, work: &mut Work) -> End {
+        for _ in 0..MAX_SCANS {
+            let End::LocalMinimum(body) = end else { return end };
+            let Feature::Vertex(vertex) = pair[1 - body] else { return end };
+            work.scans += 1;
+            let Some(face) = self.views[body].face_below(vertex) else {
+                return End::Penetrating(body, self.views[body].seen(vertex));
+            };
+            pair[body] = Feature::Face(face);
+            end = self.walk(pair, self.patience(), work);
+        }
+        end
+    }
+
+    /// More steps than any walk needs that is not in trouble: one for each feature.
+    pub(crate) fn patience(&self) -> u32 {
+        self.views.iter().map(|view| 2 * view.own.edge_count() as u32 + 2).sum()
+    }
+
+    /// Goes around a circle once and stays at the pair that is nearest.
+    pub(crate) fn settle_in_circle(&self, pair: &mut Pair) {
+        let (start, mut best) = (*pair, (self.nearest(*pair).distance, *pair));
+        let mut at = start;
+        for _ in 0..self.patience() {
+            let Step::To(next) = self.step(at) else { break };
+            at = next;
+            if at == start {
+                break;
+            }
+            let distance = self.nearest(at).distance;
+            if distance < best.0 {
+                best = (distance, at);
+            }
+        }
+        *pair = best.1;
+    }
+
+    fn step(&self, pair: Pair) -> Step {
+        use Feature::{Edge, Face, Vertex};
+        // The view of `i` is that of the body whose feature has the lower dimension.
+        let i = usize::from(dimension(pair[0]) > dimension(pair[1]));
+        let j = 1 - i;
+        let [low, high] = [self.views[i], self.views[j]];
+        let moved = match (pair[i], pair[j]) {
+            (Vertex(v), Vertex(w)) => {
+                let first = low.vertex_vertex(v, w).map(|to| (i, to));
+                first.or_else(|| high.vertex_vertex(w, v).map(|to| (j, to)))
+            }
+            (Vertex(v), Edge(e)) => {
+                let first = high.edge_vertex(e, v).map(|to| (j, to));
+                first.or_else(|| low.vertex_edge(v, e).map(|to| (i, to)))
+            }
+            (Edge(e), Edge(f)) => {
+                let first = low.edge_edge(e, f).map(|to| (i, to));
+                first.or_else(|| high.edge_edge(f, e).map(|to| (j, to)))
+            }
+            (Vertex(v), Face(f)) => return face_step(pair, i, high.face_vertex(f, v)),
+            (Edge(e), Face(f)) => return face_step(pair, i, high.face_edge(f, e)),
+            // No state leads here.
+            (first, _) => Some((i, Vertex(low.own.some_vertex(first)))),
+        };
+        moved.map_or(Step::End(End::Nearest), |(body, to)| Step::To(replaced(pair, body, to)))
+    }
+}
+
+/// A walk leaves a local minimum for good; more scans than this are rounding's.
+const MAX_SCANS: usize = 8;
+
+fn dimension(feature: Feature) -> u8 {
+    match feature {
+        Feature::Vertex(_) => 0,
+        Feature::Edge(_) => 1,
+        Feature::Face(_) => 2,
+    }
+}
+
+fn replaced(mut pair: Pair, body: usize, to: Feature) -> Pair {
+    pair[body] = to;
+    pair
+}
+
+/// What a state says in which the body other than `i` is in with a face.
+fn face_step(pair: Pair, i: usize, verdict: FaceVerdict) -> Step {
+    match verdict {
+        FaceVerdict::Stay => Step::End(End::Nearest),
+        FaceVerdict::Own(to) => Step::To(replaced(pair, 1 - i, to)),
+        FaceVerdict::Other(to) => Step::To(replaced(pair, i, to)),
+        FaceVerdict::Penetrating(x) => Step::End(End::Penetrating(1 - i, x)),
+        FaceVerdict::LocalMinimum => Step::End(End::LocalMinimum(1 - i)),
+    }
+}

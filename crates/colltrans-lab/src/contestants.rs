@@ -231,7 +231,7 @@ impl Contestant for Pqp<'_> {
 
     fn ask(&mut self, setting: &Setting) -> Work {
         let found = self.distance(&setting.moving, &setting.fixed);
-        let steps = found.steps.volume_tests;
+        let steps = u32::try_from(found.steps.volume_tests).unwrap_or(u32::MAX);
         Work { answer: Answer::Distance(found.distance), steps, finish: [0; 2] }
     }
 }

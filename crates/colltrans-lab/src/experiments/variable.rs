@@ -2,7 +2,9 @@
 
 use colltrans::Region;
 
-use super::{Coherence, Parts, Race, Results, axis, claim, series, share, shares, thousands, time};
+use super::{
+    ABOUT, Coherence, Parts, Race, Results, axis, claim, series, share, shares, thousands, time,
+};
 use crate::Experiment;
 use crate::contestants::{Until, Who, Work};
 use crate::finding::{Claim, Figure, Finding, Table};
@@ -24,7 +26,7 @@ const ALPHAS_DEG: [f64; 3] = [0.25, 2.0, 15.0];
 const HALF_SIDES: [f64; 7] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
 /// H-Walk's parameter.
-const PATIENCES: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
+const PATIENCES: [u32; 7] = [1, 4, 8, 16, 32, 64, 128];
 
 /// One algorithm with each of its parameters at each coherence.
 struct Sweep {
@@ -141,6 +143,22 @@ impl Sweep {
         wrong(high, low).max(wrong(low, high))
     }
 
+    /// How many times the best mean the worst one is, at the coherence where that is most.
+    fn worst(&self, by: &[Vec<Vec<f64>>]) -> f64 {
+        let ratio = |at: usize| {
+            let means = by[at].iter().map(|values| mean_and_deviation(values)[0]);
+            let best = mean_and_deviation(&by[at][self.best(by, at)])[0];
+            means.fold(0.0, f64::max) / best
+        };
+        (0..ALPHAS_DEG.len()).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// The best parameters for the highest and lowest coherence.
+    fn best_ends(&self, by: &[Vec<Vec<f64>>]) -> String {
+        let [high, low] = [0, ALPHAS_DEG.len() - 1].map(|at| self.parameters[self.best(by, at)]);
+        format!("{high} and {low}")
+    }
+
     /// Standard deviation over mean with the best parameter.
     fn dispersion(&self, by: &[Vec<Vec<f64>>], coherence: usize) -> f64 {
         let [mean, deviation] = mean_and_deviation(&by[coherence][self.best(by, coherence)]);
@@ -170,11 +188,16 @@ fn table(sweeps: &Sweeps) -> Table {
     Table { id: format!("figure-19-times-{}", sweeps.n), title, columns, rows }
 }
 
+/// Whether CTA suffers no more than in the paper, a quarter of that allowed, and less than H-Walk.
+/// Counts leave out the inner loops of planar problems, which the paper's do not: time has to bear
+/// them out.
 fn worsens(((sweeps, cta), walk): ((&Sweeps, f64), f64)) -> Claim {
-    let Sweeps { cta: ours, walk: theirs, .. } = sweeps;
-    let [own, rival] = [ours, theirs].map(|s| s.worsening(&s.steps));
-    let times = [ours, theirs].map(|s| s.worsening(&s.times));
+    let both = [&sweeps.cta, &sweeps.walk];
+    let [own, rival] = both.map(|s| 100.0 * s.worsening(&s.steps));
+    let [own_time, rival_time] = both.map(|s| 100.0 * s.worsening(&s.times));
+    let [own_worst, rival_worst] = both.map(|s| s.worst(&s.times));
     let n = thousands(sweeps.n);
+    let most = 100.0 * cta * (1.0 + ABOUT);
     claim(
         &format!(
             "Variable coherence, {n} vertices: a wrong parameter worsens CTA by {:.0} % and H-Walk \
@@ -184,25 +207,21 @@ fn worsens(((sweeps, cta), walk): ((&Sweeps, f64), f64)) -> Claim {
         ),
         format!(
             "With the best parameter for {} degrees a step used at {} degrees, or the other way \
-             round, whichever is worse: CTA {:.0} %, H-Walk {:.0} % more counted steps; {:.0} % \
-             and {:.0} % more time.",
-            ALPHAS_DEG[0],
-            ALPHAS_DEG[2],
-            100.0 * own,
-            100.0 * rival,
-            100.0 * times[0],
-            100.0 * times[1]
+             round, whichever is worse: CTA {own:.0} %, H-Walk {rival:.0} % more counted steps; \
+             {own_time:.0} % and {rival_time:.0} % more time. The worst of all parameters tried \
+             takes {own_worst:.1} and {rival_worst:.1} times as long as the best.",
+            ALPHAS_DEG[0], ALPHAS_DEG[2],
         ),
-        own < rival && own <= cta * 1.25,
+        own < rival && own_time < rival_time && own.max(own_time) <= most,
         || {
+            let [half_sides, patiences] =
+                both.map(|s| [s.best_ends(&s.steps), s.best_ends(&s.times)]);
             format!(
-                "The best half-side is {} D at high and {} D at low coherence, the best patience \
-                 {} and {} steps. Portal refinement, which ends our queries, costs the same \
-                 whatever the half-side; planar problems alone are what it changes.",
-                ours.parameters[ours.best(&ours.steps, 0)],
-                ours.parameters[ours.best(&ours.steps, 2)],
-                theirs.parameters[theirs.best(&theirs.steps, 0)],
-                theirs.parameters[theirs.best(&theirs.steps, 2)],
+                "At high and low coherence the best half-sides are {} D by counted steps and {} D \
+                 by time, the best patiences {} by steps and {} by time: one half-side counts as \
+                 few steps as another, but not all planar problems take as long as each other; and \
+                 any patience beyond the few steps of a coherent query does as well as another.",
+                half_sides[0], half_sides[1], patiences[0], patiences[1]
             )
         },
     )
@@ -239,10 +258,14 @@ fn disperses(sweeps: &[Sweeps; 2], coherence: usize, [cta, walk]: [f64; 2]) -> C
         ),
         by_steps.iter().all(|[own, rival]| *own < 0.5 * rival),
         || {
-            "The counts are not the paper's, which adds up the iterations of all loops: ours are \
-             planar problems, portals and supporting planes, few and of equal weight, so that one \
-             more or less is a large part of them."
-                .into()
+            let best =
+                |s: &Sweeps| format!("{} D", s.cta.parameters[s.cta.best(&s.cta.steps, coherence)]);
+            format!(
+                "The counts are not the paper's, which adds up the iterations of all loops: ours \
+                 are planar problems, portals and supporting planes, few (with half-sides of {}) \
+                 and of equal weight, so that one more or less is a large part of them.",
+                sweeps.iter().map(best).collect::<Vec<_>>().join(" and ")
+            )
         },
     )
 }

@@ -53,7 +53,7 @@ pub struct Contact {
     pub fixed_feature: Feature,
     /// Lower and upper bound with their proofs.
     pub certificate: Certificate,
-    /// The solver that narrowed the search (never `Auto`).
+    /// The solver asked for (never `Auto`); what the search began with is [`Steps::path`].
     pub solver: Solver,
     /// Work done.
     pub steps: Steps,

@@ -150,7 +150,7 @@ impl Search<'_> {
             Trace::Nothing => None,
             Trace::Contact(met) => match portal::follow(&self.difference, met, &mut self.steps) {
                 Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
-                Followed::Rim { outward, near } => self.one_side(outward, near),
+                Followed::Rim { outward, near } => self.one_side(-outward, near),
                 Followed::Lost => None,
             },
             Trace::Apart { normals, pair } => {
@@ -208,20 +208,24 @@ impl Search<'_> {
         region: Region,
         last: &Trace,
     ) -> Result<CtaStart, VertexPair> {
+        let by_ellipsoids = self.narrowing.start == options::Start::Ellipsoids;
+        let normal = ellipsoids.normal;
+        if by_ellipsoids && normal.z == 0.0 {
+            self.steps.supports += 1;
+            let support = self.difference.support(normal);
+            if normal.dot(support.at) > 0.0 {
+                return Err(support.pair);
+            }
+        }
         if let Some(focus) = self.region(region, last) {
             self.steps.path = Path::Region;
             return Ok(CtaStart::Region(focus));
         }
-        if self.narrowing.start == options::Start::Center {
+        if !by_ellipsoids || normal.z == 0.0 {
             return Ok(CtaStart::Center);
         }
-        let normal = ellipsoids.normal;
         self.steps.supports += 1;
         let support = self.difference.support(normal);
-        if normal.z == 0.0 {
-            let apart = normal.dot(support.at) > 0.0;
-            return if apart { Err(support.pair) } else { Ok(CtaStart::Center) };
-        }
         Ok(CtaStart::Contact(ContactGuess {
             normal: self.difference.axes * normal,
             supports: [support.pair.moving, support.pair.fixed],

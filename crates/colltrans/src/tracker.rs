@@ -23,10 +23,11 @@ use crate::setting::Setting;
 /// change of pose or direction. Outcomes and certificates are those of the one-off functions
 /// ([`cast`](crate::cast()), [`contact_range`](crate::contact_range),
 /// [`clearance`](crate::clearance)); where corners or parallel edges meet, the normal and the
-/// witness points may be another choice of several. Poses and direction may jump, and the bodies
+/// witness points may be another choice of several, and so may the contact of a grazing outcome,
+/// which is that of bodies widened by rounding. Poses and direction may jump, and the bodies
 /// may meet now and pass each other then: a poor beginning costs time, never the answer.
 ///
-/// A tracker is small (two references and less than 300 bytes), allocates nothing and may be
+/// A tracker is small (less than 300 bytes), allocates nothing and may be
 /// cloned, to follow several motions from one place. [`Focus`] says what it makes of its last
 /// answer.
 ///

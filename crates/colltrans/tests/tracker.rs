@@ -420,3 +420,30 @@ fn a_tracker_is_small() {
     // As its documentation says: besides two references and the focus.
     assert!(size - 2 * size_of::<&ConvexPolyhedron>() < 300 + size_of::<Focus>(), "{size}");
 }
+
+#[test]
+fn a_slide_from_contact_to_separation_is_followed() {
+    let mut rng = Rng::new(5);
+    let (mut switches, mut followed) = (0, 0);
+    for _ in 0..100 {
+        let mut body = || {
+            let points: Vec<DVec3> = (0..60).map(|_| rng.direction()).collect();
+            ConvexPolyhedron::from_points(&points).unwrap()
+        };
+        let (moving, fixed) = (body(), body());
+        let mut tracker = Tracker::new(&moving, &fixed);
+        let mut met = false;
+        for step in 0..250 {
+            let at = DVec3::new(0.01 * f64::from(step), 0.1, 5.0);
+            let pose = Pose::from_translation(at).unwrap();
+            let outcome = tracker.cast(&pose, &Pose::IDENTITY, DVec3::NEG_Z).unwrap();
+            let meets = matches!(outcome, Outcome::Contact(_));
+            if met && !meets {
+                switches += 1;
+                followed += u32::from(tracker.steps().path == Path::Features);
+            }
+            met = meets;
+        }
+    }
+    assert!(switches >= 100 && 10 * followed >= 9 * switches, "{followed} of {switches}");
+}

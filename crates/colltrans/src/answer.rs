@@ -45,7 +45,7 @@ impl<'a> Proven<'a> {
         let lower = distance / normal.dot(setting.direction);
         let [u, v, w] = optimum.weights;
         let [a, b, c] = portal.each_ref().map(Point::height);
-        let upper = (a * u + b * v + c * w) / setting.direction.length();
+        let upper = (a * u + b * v + c * w) / setting.length;
         let tolerance = gap_tolerance(setting, normal, difference.noise, difference.widening);
         let gap = upper - lower;
         if gap.is_nan() || gap > tolerance {
@@ -121,28 +121,32 @@ fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> 
     let in_plane = |w: u32| outward.dot(vertices[w as usize]) >= least;
     let topology = body.topology();
     let neighbours = topology.neighbours(vertex);
-    let outgoing = topology.outgoing(vertex);
     let (first, count) = body.plane_candidates(vertex, outward);
-    let mut edge = None;
-    let mut i = first;
-    for _ in 0..count {
-        let next = if i + 1 == neighbours.len() { 0 } else { i + 1 };
-        if in_plane(neighbours[i]) {
-            edge = edge.or(Some(neighbours[i]));
-            // The face between neighbour `i` and the next one is on the left of the half-edge to
-            // the next one.
-            if next != i && !outgoing.is_empty() && in_plane(neighbours[next]) {
-                let face = topology.half_edge(outgoing[next]).face;
-                // Of the two faces of a flat polygon, the one that looks there.
-                let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
-                if looks && spread(topology.face_vertices(face), in_plane) {
-                    return Feature::Face(face);
-                }
-            }
-        }
-        i = next;
+    let wrapped = |i: usize| if i >= neighbours.len() { i - neighbours.len() } else { i };
+    // Bit `k`: whether the candidate `k` is in the plane. Without branches: none is predictable.
+    let mut hits = 0_u32;
+    for k in 0..count {
+        hits |= u32::from(in_plane(neighbours[wrapped(first + k)])) << k;
     }
-    edge.map_or(Feature::Vertex(vertex), |w| Feature::Edge([vertex, w]))
+    if hits == 0 {
+        return Feature::Vertex(vertex);
+    }
+    let outgoing = topology.outgoing(vertex);
+    let all_round = count == neighbours.len() && count > 1;
+    let followed = hits & ((hits >> 1) | ((u32::from(all_round) * (hits & 1)) << (count - 1)));
+    let mut corners = if outgoing.is_empty() { 0 } else { followed };
+    while corners != 0 {
+        // The face between a neighbour and the next one is on the left of the half-edge to the next.
+        let next = wrapped(wrapped(first + corners.trailing_zeros() as usize) + 1);
+        let face = topology.half_edge(outgoing[next]).face;
+        // Of the two faces of a flat polygon, the one that looks there.
+        let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
+        if looks && spread(topology.face_vertices(face), in_plane) {
+            return Feature::Face(face);
+        }
+        corners &= corners - 1;
+    }
+    Feature::Edge([vertex, neighbours[wrapped(first + hits.trailing_zeros() as usize)]])
 }
 
 /// Whether something holds for up to [`SAMPLES`] vertices, spread over a face: those near a vertex

@@ -10,12 +10,13 @@
 //! axis itself `2 u`: together less than `10 u S sqrt(3) < 18 u S`. [`Difference::noise`] is `32 u
 //! S`, which also covers comparing two such coordinates along a unit normal of the frame.
 
+use std::cell::Cell;
 use std::cmp::Ordering;
 
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::error::MIN_MAGNITUDE;
-use crate::exact;
+use crate::exact::{self, Shadow};
 use crate::setting::{Setting, VertexPair};
 
 /// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
@@ -47,7 +48,7 @@ const TURNED: f64 = 0.94;
 const NEAR: f64 = 0.1;
 
 /// `M` in the shadow frame: support points and orientations.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Difference<'a> {
     pub(crate) setting: &'a Setting<'a>,
     /// Columns `e1, e2, d` in the setting frame.
@@ -64,17 +65,29 @@ pub(crate) struct Difference<'a> {
     /// than the rounding error when shadows only touch, so that the line passes through the widened
     /// body.
     pub(crate) widening: f64,
+    /// The exact shadow that was needed last.
+    known: Cell<Option<(VertexPair, Shadow)>>,
 }
 
 impl<'a> Difference<'a> {
-    /// With the lateral axes turned by an angle (0: along the world's axes where the direction is).
-    #[inline]
-    pub(crate) fn new(setting: &'a Setting<'a>, turn_rad: f64) -> Self {
-        let mut e1 = setting.unit.any_orthonormal_vector();
-        if turn_rad != 0.0 {
-            let (sin, cos) = turn_rad.sin_cos();
-            e1 = (e1 * cos + setting.unit.cross(e1) * sin).normalize();
-        }
+    /// With the lateral axes turned by an angle.
+    #[cold]
+    pub(crate) fn turned_by(setting: &'a Setting<'a>, turn_rad: f64) -> Self {
+        let e1 = setting.unit.any_orthonormal_vector();
+        let (sin, cos) = turn_rad.sin_cos();
+        Self::with_axis(setting, (e1 * cos + setting.unit.cross(e1) * sin).normalize())
+    }
+
+    /// With lateral axes along the world's where the direction is.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    pub(crate) fn new(setting: &'a Setting<'a>) -> Self {
+        Self::with_axis(setting, setting.unit.any_orthonormal_vector())
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    fn with_axis(setting: &'a Setting<'a>, e1: DVec3) -> Self {
         let e2 = setting.unit.cross(e1);
         let axes = DMat3::from_cols(e1, e2, setting.unit);
         Self {
@@ -85,11 +98,13 @@ impl<'a> Difference<'a> {
             offset: axes.transpose() * setting.offset,
             noise: Self::noise_of(setting),
             widening: 0.0,
+            known: Cell::new(None),
         }
     }
 
     /// Bound on the rounding error of a coordinate of a point of `M`, and of comparing two along a
     /// unit normal.
+    #[inline]
     pub(crate) fn noise_of(setting: &Setting) -> f64 {
         // Two points in one place have no size; the least there can be stands for it.
         16.0 * f64::EPSILON * setting.scale().max(MIN_MAGNITUDE)
@@ -98,13 +113,14 @@ impl<'a> Difference<'a> {
     /// The same body, widened sideways by four times [`Self::touching`] and, if the line misses it,
     /// by `margin` more: then the line passes clearly inside.
     pub(crate) fn widened(&self, margin: f64) -> Self {
-        Self { widening: margin.max(0.0) + 4.0 * self.touching(), ..*self }
+        Self { widening: margin.max(0.0) + 4.0 * self.touching(), ..self.clone() }
     }
 
     /// Sideways distance below which points are not told apart: shadows that overlap by less only
     /// touch, and triangles of shadows that are narrower have no plane. Eight times the bound on
     /// the rounding error, so that directions across such a distance are still known to better than
     /// 1/8.
+    #[inline]
     pub(crate) fn touching(&self) -> f64 {
         8.0 * self.noise
     }
@@ -112,8 +128,12 @@ impl<'a> Difference<'a> {
     /// The point of `M` that is lowest along `normal` (shadow frame, any length).
     #[inline]
     pub(crate) fn support(&self, normal: DVec3) -> Point {
-        let moving = self.setting.moving.support(self.in_moving(normal));
-        let fixed = self.setting.fixed.support(-self.in_fixed(normal));
+        let (p, q) = (self.setting.moving, self.setting.fixed);
+        let (in_moving, in_fixed) = (self.in_moving(normal), -self.in_fixed(normal));
+        // Both tables are asked before either climb, so that neither waits for the other's memory.
+        let (near_p, near_q) = (p.support_guess(in_moving), q.support_guess(in_fixed));
+        let moving = p.support_from_guess(in_moving, near_p);
+        let fixed = q.support_from_guess(in_fixed, near_q);
         self.point(VertexPair { moving, fixed }, normal)
     }
 
@@ -130,6 +150,7 @@ impl<'a> Difference<'a> {
     }
 
     /// A normal of the shadow frame in the moving body's frame.
+    #[inline]
     pub(crate) fn in_moving(&self, normal: DVec3) -> DVec3 {
         self.moving_axes * normal
     }
@@ -151,6 +172,7 @@ impl<'a> Difference<'a> {
     }
 
     /// A normal of the shadow frame in the fixed body's frame.
+    #[inline]
     pub(crate) fn in_fixed(&self, normal: DVec3) -> DVec3 {
         self.fixed_axes * normal
     }
@@ -188,14 +210,20 @@ impl<'a> Difference<'a> {
 
     /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and
     /// their matrices.
+    #[inline]
     pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.measure(), self.setting.fixed.measure());
-        let center = (transposed(&self.fixed_axes, fixed.center)
-            - transposed(&self.moving_axes, moving.center))
-            + self.offset;
         let a = Symmetric::gram(&moving.axes_by_factor(&self.moving_axes));
         let b = Symmetric::gram(&fixed.axes_by_factor(&self.fixed_axes));
-        (center, [a, b])
+        (self.center(), [a, b])
+    }
+
+    /// The difference of the bodies' centres in the shadow frame.
+    #[inline]
+    pub(crate) fn center(&self) -> DVec3 {
+        let (moving, fixed) = (self.setting.moving.measure(), self.setting.fixed.measure());
+        (transposed(&self.fixed_axes, fixed.center) - transposed(&self.moving_axes, moving.center))
+            + self.offset
     }
 
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between
@@ -216,11 +244,30 @@ impl<'a> Difference<'a> {
     }
 
     #[cold]
+    #[inline(never)]
     fn is_left_exactly(&self, from: &Point, to: &Point) -> bool {
         if self.widening == 0.0 {
             let setting = self.setting;
-            let (a, b) = (setting.exact_difference(from.pair), setting.exact_difference(to.pair));
-            return exact::orientation(&a, &b, setting.direction) == Ordering::Greater;
+            let (a, b) = (setting.terms(from.pair), setting.terms(to.pair));
+            // The line passes near one of the two again and again.
+            let from_is_near = from.shadow().length_squared() < to.shadow().length_squared();
+            let (near, terms) = if from_is_near { (from.pair, &a) } else { (to.pair, &b) };
+            let base = || match self.known.get() {
+                Some((pair, known)) if pair == near => known,
+                _ => {
+                    let new = exact::shadow(terms, setting.direction);
+                    self.known.set(Some((near, new)));
+                    new
+                }
+            };
+            let way = to.shadow() - from.shadow();
+            if way.length_squared() > self.touching() * self.touching() {
+                let side = exact::side(&base(), way, &self.axes, setting.direction, self.noise);
+                if let Some(left) = side {
+                    return left;
+                }
+            }
+            return exact::orientation(&a, &b, setting.direction, base) == Ordering::Greater;
         }
         // Widened bodies exist only in rounded coordinates; their determinant is exact for those.
         let (a, b) = (from.shadow(), to.shadow());
@@ -234,6 +281,7 @@ impl<'a> Difference<'a> {
 }
 
 /// `m^T v`.
+#[inline]
 fn transposed(m: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))
 }
@@ -251,12 +299,14 @@ pub(crate) struct Symmetric {
 
 impl Symmetric {
     /// `w^T w`.
+    #[inline]
     fn gram(w: &DMat3) -> Self {
         let (x, y, z) = (w.x_axis, w.y_axis, w.z_axis);
         Self { xx: x.dot(x), xy: x.dot(y), xz: x.dot(z), yy: y.dot(y), yz: y.dot(z), zz: z.dot(z) }
     }
 
     /// `f self + g other`.
+    #[inline]
     pub(crate) fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
         Self {
             xx: f * self.xx + g * other.xx,
@@ -268,6 +318,7 @@ impl Symmetric {
         }
     }
 
+    #[inline]
     pub(crate) fn apply(&self, v: DVec3) -> DVec3 {
         DVec3::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,
@@ -277,22 +328,25 @@ impl Symmetric {
     }
 
     /// `v^T self v`.
+    #[inline]
     pub(crate) fn square(&self, v: DVec3) -> f64 {
         v.dot(self.apply(v))
     }
 
-    pub(crate) fn inverse(&self) -> Self {
+    /// The adjugate `J`, with `self^-1 = J / det`, and the determinant.
+    #[inline]
+    pub(crate) fn adjugate(&self) -> (Self, f64) {
         let xx = self.yy * self.zz - self.yz * self.yz;
         let xy = self.xz * self.yz - self.xy * self.zz;
         let xz = self.xy * self.yz - self.xz * self.yy;
-        let f = 1.0 / (self.xx * xx + self.xy * xy + self.xz * xz);
-        Self {
-            xx: xx * f,
-            xy: xy * f,
-            xz: xz * f,
-            yy: (self.xx * self.zz - self.xz * self.xz) * f,
-            yz: (self.xy * self.xz - self.xx * self.yz) * f,
-            zz: (self.xx * self.yy - self.xy * self.xy) * f,
-        }
+        let adjugate = Self {
+            xx,
+            xy,
+            xz,
+            yy: self.xx * self.zz - self.xz * self.xz,
+            yz: self.xy * self.xz - self.xx * self.yz,
+            zz: self.xx * self.yy - self.xy * self.xy,
+        };
+        (adjugate, self.xx * xx + self.xy * xy + self.xz * xz)
     }
 }

@@ -10,10 +10,22 @@ const NEARLY_PARALLEL: f64 = 0.1;
 
 /// Twice the area times the unit normal of the counter-clockwise triangle `a b c`.
 ///
+/// Where the angle at `a` is small, or `a b c` is a sliver, from other edges.
+#[inline]
+pub(crate) fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
+    let [a, b, c] = corners;
+    let (u, v) = (b - a, c - a);
+    let normal = u.cross(v);
+    let size = u.length_squared() * v.length_squared();
+    if normal.length_squared() >= NEARLY_PARALLEL * NEARLY_PARALLEL * size {
+        return normal;
+    }
+    normal_of_sliver(corners)
+}
+
 /// From its two shorter edges, which determine it best: the product of two long, nearly parallel
 /// ones would lose the normal to rounding.
-#[inline]
-pub(crate) fn triangle_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [b - a, c - b, a - c];
     let lengths = edges.map(DVec3::length_squared);
     let longest = if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {

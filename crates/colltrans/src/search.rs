@@ -51,22 +51,22 @@ pub(crate) fn search(
         solver => solver,
     };
     let last = std::mem::take(trace);
-    let search = |turn_rad, steps| Search {
-        difference: Difference::new(setting, turn_rad),
+    let mut first = Search {
+        difference: Difference::new(setting),
         moving_pose,
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
-        steps,
+        steps: Steps::default(),
     };
-    let mut first = search(0.0, Steps::default());
-    let answer = first.run(focus, &last, trace);
+    let mut answer = first.run(focus, &last, trace);
     lap(Phase::Answer);
     if let Err(QueryError::NotConverged { .. }) = answer {
         let turns_rad: &[f64] =
             if first.steps.path == Path::Scratch { &OTHER_TURNS_RAD } else { &ALL_TURNS_RAD };
-        return again(first.steps, turns_rad, |turn_rad, steps| {
-            let mut next = search(turn_rad, *steps);
+        answer = again(first.steps, turns_rad, |turn_rad, steps| {
+            let difference = Difference::turned_by(setting, turn_rad);
+            let mut next = Search { difference, steps: *steps, ..first };
             let answer = next.run(&Focus::NONE, &Trace::Nothing, trace);
             *steps = next.steps;
             answer
@@ -124,7 +124,10 @@ impl Search<'_> {
         } else {
             let start = self.start(focus.region, last);
             lap(Phase::Setup);
-            portal::enclose(&self.difference, &start, &mut self.steps)
+            match self.approach(&start) {
+                None => portal::enclose(&self.difference, &start, &mut self.steps),
+                found => found,
+            }
         };
         lap(Phase::Finish);
         let noise = self.difference.noise;
@@ -160,8 +163,25 @@ impl Search<'_> {
         }
     }
 
+    /// A portal, or a separating direction, face by face from a guess that is not lateral.
+    #[inline]
+    fn approach(&mut self, start: &Start) -> Option<Enclosure> {
+        if start.normal.z <= 0.0 {
+            return None;
+        }
+        match portal::approach(&self.difference, start, &mut self.steps) {
+            Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
+            Followed::Rim { outward, near } => self.one_side(-outward, near),
+            Followed::Lost => None,
+        }
+    }
+
     /// Whether all of `M` lies beyond a lateral direction.
     fn one_side(&mut self, lateral: DVec2, near: VertexPair) -> Option<Enclosure> {
+        // Of a length fit to be normalised: shorter ones lose digits.
+        if lateral.length_squared() <= f64::MIN_POSITIVE {
+            return None;
+        }
         let normal = lateral.try_normalize()?;
         let least = -self.difference.touching();
         if normal.dot(self.difference.vertex(near).shadow()) < least {
@@ -175,12 +195,12 @@ impl Search<'_> {
 
     /// The first guess of the contact normal.
     fn start(&mut self, region: Region, last: &Trace) -> Start {
-        let ellipsoids = Start::from_ellipsoids(&self.difference);
         let setting = self.difference.setting;
         let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
         if self.solver != Solver::Cta || !solid {
-            return ellipsoids;
+            return Start::new(&self.difference);
         }
+        let ellipsoids = Start::from_ellipsoids(&self.difference);
         let start = match self.cta_start(&ellipsoids, region, last) {
             Ok(start) => start,
             Err(extreme) => return ellipsoids.guided(ellipsoids.normal, extreme),
@@ -286,6 +306,7 @@ impl Search<'_> {
 
     /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
     /// of the bodies widened sideways by a little more than that.
+    #[cold]
     fn touching(&mut self, rim: &OneSide, next: &mut Trace) -> Result<Grazing, QueryError> {
         self.difference = self.difference.widened(rim.margin);
         let start = Start::from_ellipsoids(&self.difference);

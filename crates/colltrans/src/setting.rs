@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::error::{QueryError, in_exact_range};
-use crate::exact::{self, ExactVector};
+use crate::exact::{self, Terms};
 use crate::polyhedron::ConvexPolyhedron;
 use crate::pose::Pose;
 
@@ -37,6 +37,8 @@ pub(crate) struct Setting<'a> {
     offset_error: DVec3,
     /// The direction as given.
     pub(crate) direction: DVec3,
+    /// Its length.
+    pub(crate) length: f64,
     /// `direction` at length 1.
     pub(crate) unit: DVec3,
 }
@@ -54,6 +56,7 @@ impl<'a> Setting<'a> {
         if direction == DVec3::ZERO || !in_exact_range(direction) {
             return Err(QueryError::Direction { direction });
         }
+        let length = direction.length();
         let (t_p, t_q) = (moving_pose.translation(), fixed_pose.translation());
         Ok(Self {
             moving,
@@ -67,7 +70,8 @@ impl<'a> Setting<'a> {
                 exact::difference_error(t_q.z, t_p.z),
             ),
             direction,
-            unit: direction.normalize(),
+            length,
+            unit: direction * (1.0 / length),
         })
     }
 
@@ -114,11 +118,13 @@ impl<'a> Setting<'a> {
         self.fixed_matrix.transpose() * normal
     }
 
-    /// `q - p` for a pair of vertices, exactly.
-    pub(crate) fn exact_difference(&self, pair: VertexPair) -> ExactVector {
-        let q = self.fixed.vertices()[pair.fixed as usize];
-        let p = self.moving.vertices()[pair.moving as usize];
-        let offset = [self.offset, self.offset_error];
-        exact::difference((&self.fixed_matrix, q), (&self.moving_matrix, p), offset)
+    /// `q - p` for a pair of vertices, as the sum of products that defines it.
+    pub(crate) fn terms(&self, pair: VertexPair) -> Terms<'_> {
+        let [p, q] = self.vertices(pair);
+        Terms {
+            fixed: (&self.fixed_matrix, q),
+            moving: (&self.moving_matrix, p),
+            offset: [self.offset, self.offset_error],
+        }
     }
 }

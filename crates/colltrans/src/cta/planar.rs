@@ -22,6 +22,9 @@ const HALVINGS: usize = 64;
 /// Steps from a guess of the edges that cross before the problem is solved from scratch.
 const STEPS_NEAR: usize = 24;
 
+/// Newton's method walks so far back down a chain before it searches the snapshot.
+const STEPS_DOWN: usize = 4;
+
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Planar {
@@ -260,7 +263,9 @@ impl<'a, 'b> Slide<'a, 'b> {
                 };
             }
             if h < meet {
-                edges = [0, 1].map(|body| self.down_to(body, edges[body], h));
+                for (body, edge) in edges.iter_mut().enumerate() {
+                    *edge = self.down_to(body, *edge, h)?;
+                }
             }
             // NaN: an edge too flat for its slope to be a number.
             if h.is_nan() {
@@ -290,15 +295,22 @@ impl<'a, 'b> Slide<'a, 'b> {
         self.sections[body].retreat(self.chains[body], edge)
     }
 
-    fn down_to(&self, body: usize, edge: Bracket, h: f64) -> Bracket {
+    /// Down to height `h`: a few steps along the mesh, or a search from scratch.
+    fn down_to(&self, body: usize, edge: Bracket, h: f64) -> Option<Bracket> {
         let mut edge = edge;
-        while edge.low.h() > h {
+        for _ in 0..STEPS_DOWN {
+            if edge.low.h() <= h {
+                return Some(edge);
+            }
             match self.retreat(body, &edge) {
                 Some(below) => edge = below,
-                None => break,
+                None => return Some(edge),
             }
         }
-        edge
+        match self.sections[body].locate(self.chains[body], h)? {
+            Located::Edge(edge) | Located::Beyond(edge) => Some(edge),
+            Located::Short => None,
+        }
     }
 
     /// The gap grows at height `high`, where `edges` are, falls at height `low`, and is positive

@@ -443,13 +443,19 @@ impl<'a> Section<'a> {
         if chain.ascends(bracket.direction) {
             return bracket;
         }
-        // Down the opposite chain and around the bottom.
+        // Down the opposite chain and around the bottom, or back over the top: whichever is shorter.
+        let (mut ahead, mut back) = (start, bracket.low);
         for _ in 0..self.step_limit() {
-            let next = self.up(chain, &bracket.high);
-            bracket = Bracket::new(bracket.high, next);
+            bracket = Bracket::new(ahead, self.up(chain, &ahead));
             if chain.ascends(bracket.direction) {
                 break;
             }
+            ahead = bracket.high;
+            let below = Bracket::new(self.down(chain, &back), back);
+            if chain.ascends(below.direction) {
+                return below;
+            }
+            back = below.low;
         }
         bracket
     }

@@ -21,12 +21,17 @@ pub(crate) struct Measure {
     pub(crate) factor: DMat3,
     /// Root of the trace of `S`: the ellipsoid's mean size.
     pub(crate) radius: f64,
+    /// Whether the ellipsoid is nearly a ball.
+    pub(crate) round: bool,
     /// Volume.
     pub(crate) volume: f64,
 }
 
 /// Least ratio of the ellipsoid's axes: keeps `S` positive definite for flat bodies.
 const LEAST_AXIS_RATIO: f64 = 1e-6;
+
+/// Least ratio of the geometric to the arithmetic mean of a round ellipsoid's squared semi-axes.
+const ROUND: f64 = 0.6;
 
 impl Measure {
     pub(crate) fn new(vertices: &[DVec3], topology: &Topology, dimension: u8) -> Self {
@@ -43,7 +48,10 @@ impl Measure {
         let floor = (trace * LEAST_AXIS_RATIO * LEAST_AXIS_RATIO).max(f64::MIN_POSITIVE.sqrt());
         let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
         let radius = (0..3).map(|i| shape.col(i)[i]).sum::<f64>().sqrt();
-        Self { reach, center, factor: cholesky(&shape), radius, volume }
+        let factor = cholesky(&shape);
+        let mean = (factor.x_axis.x * factor.y_axis.y * factor.z_axis.z).powf(2.0 / 3.0);
+        let round = mean > ROUND * radius * radius / 3.0;
+        Self { reach, center, factor, radius, round, volume }
     }
 
     /// The volume that a closed surface encloses: positive if its faces are counter-clockwise from
@@ -65,6 +73,7 @@ impl Measure {
     }
 
     /// `L^T m`.
+    #[inline]
     pub(crate) fn axes_by_factor(&self, m: &DMat3) -> DMat3 {
         let l = &self.factor;
         let column = |c: DVec3| {

@@ -203,6 +203,18 @@ impl ConvexPolyhedron {
         self.support.extreme(&self.vertices, &self.topology, direction)
     }
 
+    /// A vertex near the support point.
+    #[inline]
+    pub(crate) fn support_guess(&self, direction: DVec3) -> u32 {
+        self.support.guess(direction)
+    }
+
+    /// The support point, from a guess.
+    #[inline]
+    pub(crate) fn support_from_guess(&self, direction: DVec3, guess: u32) -> u32 {
+        self.support.extreme_from_guess(&self.vertices, &self.topology, direction, guess)
+    }
+
     /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
     #[inline(always)]
     #[expect(

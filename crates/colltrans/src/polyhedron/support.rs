@@ -5,7 +5,7 @@
 //! because on a convex body a local maximum is global. Solvers that already know a vertex nearby
 //! climb from it and leave the table out.
 //!
-//! The table is a cube map of *normalised* directions `L^T n`, where `L L^T` is the shape of the
+//! The table is an octahedral map of *normalised* directions `L^T n`, where `L L^T` is the shape of the
 //! body's inertia ellipsoid: a support point of an affine image `L u` of a round body in direction
 //! `n` is that of the round body in direction `L^T n`, so needles and plates spread over the table
 //! as evenly as balls. Where vertices still crowd (the rim of a prism with many sides, a rounded
@@ -17,7 +17,9 @@
 //! maximum and one minimum: the steepest edge is found among widely spaced ones first, then among
 //! ever closer ones.
 
-use glam::{DMat3, DVec3};
+use std::hint::select_unpredictable;
+
+use glam::{DMat3, DVec2, DVec3};
 
 use super::measure::Measure;
 use crate::topology::Topology;
@@ -51,7 +53,7 @@ const GAIN_NOISE: f64 = 4.0 * f64::EPSILON;
 pub(crate) struct SupportIndex {
     /// `L^T`.
     normalise: DMat3,
-    /// Cells along an edge of the cube; 0 if the body is small enough to scan.
+    /// Cells along a side of the map; 0 if the body is small enough to scan.
     resolution: u32,
     /// Entries of the base cells, then groups of four.
     cells: Vec<u32>,
@@ -74,7 +76,7 @@ impl SupportIndex {
         if vertices.len() <= SCAN_LIMIT {
             index.groups = groups(vertices);
         } else {
-            index.resolution = ((vertices.len() as f64 / 18.0).sqrt() as u32).max(2);
+            index.resolution = ((vertices.len() as f64 / 3.0).sqrt() as u32).max(5);
             index.fill(vertices, topology);
         }
         index
@@ -110,6 +112,27 @@ impl SupportIndex {
             return scan(&self.groups, direction);
         }
         self.climb_from(vertices, topology, direction, start)
+    }
+
+    /// Where a climb along `direction` may start; of no use to a body that is scanned.
+    #[inline]
+    pub(crate) fn guess(&self, direction: DVec3) -> u32 {
+        if self.resolution == 0 { 0 } else { self.look_up(direction) }
+    }
+
+    /// [`Self::extreme`] from a guess.
+    #[inline]
+    pub(crate) fn extreme_from_guess(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        direction: DVec3,
+        guess: u32,
+    ) -> u32 {
+        if self.resolution == 0 {
+            return scan(&self.groups, direction);
+        }
+        self.climb(vertices, topology, direction, guess, usize::MAX).0
     }
 
     fn climb_from(
@@ -212,15 +235,13 @@ impl SupportIndex {
 
     /// The entry of the cell that a direction falls into.
     fn look_up(&self, direction: DVec3) -> u32 {
-        let w = self.normalise * direction;
-        let (face, along, s, t) = cube_face(w);
-        let scale = 0.5 * f64::from(self.resolution) / along;
         let half = 0.5 * f64::from(self.resolution);
+        let place = octahedral(self.normalise * direction) * half + half;
         // Casts saturate, so that a NaN from a zero direction is cell 0.
-        let (mut fs, mut ft) = (s * scale + half, t * scale + half);
+        let (mut fs, mut ft) = (place.x, place.y);
         let last = self.resolution - 1;
         let (i, j) = ((fs as u32).min(last), (ft as u32).min(last));
-        let mut entry = self.cells[((face * self.resolution + j) * self.resolution + i) as usize];
+        let mut entry = self.cells[(j * self.resolution + i) as usize];
         if entry & DIVIDED == 0 {
             return entry;
         }
@@ -239,7 +260,7 @@ impl SupportIndex {
 
     fn fill(&mut self, vertices: &[DVec3], topology: &Topology) {
         let r = self.resolution;
-        let base = 6 * r * r;
+        let base = r * r;
         let mut cells = vec![0; base as usize];
         let builder = Builder {
             index: self,
@@ -250,14 +271,12 @@ impl SupportIndex {
             limit: base as usize + vertices.len(),
         };
         let mut near = 0;
-        for face in 0..6 {
-            for j in 0..r {
-                for i in 0..r {
-                    let cell = Cell { face, side: 2.0 / f64::from(r), i, j, depth: 0 };
-                    near = builder.support(cell.direction(0.5, 0.5), near).0;
-                    let entry = builder.entry(cell, near, &mut cells);
-                    cells[((face * r + j) * r + i) as usize] = entry;
-                }
+        for j in 0..r {
+            for i in 0..r {
+                let cell = Cell { side: 2.0 / f64::from(r), i, j, depth: 0 };
+                near = builder.support(cell.direction(0.5, 0.5), near).0;
+                let entry = builder.entry(cell, near, &mut cells);
+                cells[(j * r + i) as usize] = entry;
             }
         }
         cells.shrink_to_fit();
@@ -265,10 +284,9 @@ impl SupportIndex {
     }
 }
 
-/// A square on a face of the cube `[-1, 1]^3`.
+/// A square of the map `[-1, 1]^2`.
 #[derive(Clone, Copy)]
 struct Cell {
-    face: u32,
     side: f64,
     i: u32,
     j: u32,
@@ -280,35 +298,30 @@ impl Cell {
     fn direction(&self, s: f64, t: f64) -> DVec3 {
         let s = (f64::from(self.i) + s) * self.side - 1.0;
         let t = (f64::from(self.j) + t) * self.side - 1.0;
-        let along = if self.face & 1 == 0 { 1.0 } else { -1.0 };
-        match self.face >> 1 {
-            0 => DVec3::new(along, s, t),
-            1 => DVec3::new(t, along, s),
-            _ => DVec3::new(s, t, along),
-        }
+        let along = 1.0 - s.abs() - t.abs();
+        let [s, t] = if along < 0.0 { folded(s, t) } else { [s, t] };
+        DVec3::new(s, t, along)
     }
 
     fn quarter(&self, i: u32, j: u32) -> Self {
-        Self {
-            side: self.side * 0.5,
-            i: 2 * self.i + i,
-            j: 2 * self.j + j,
-            depth: self.depth + 1,
-            ..*self
-        }
+        Self { side: self.side * 0.5, i: 2 * self.i + i, j: 2 * self.j + j, depth: self.depth + 1 }
     }
 }
 
-/// Face of the cube, distance to it, and the two coordinates on it.
-fn cube_face(w: DVec3) -> (u32, f64, f64, f64) {
+/// Where a direction meets the octahedron `|x| + |y| + |z| = 1`, in `x` and `y`, with the lower half
+/// folded outwards onto the square around the upper one.
+#[inline]
+fn octahedral(w: DVec3) -> DVec2 {
     let a = w.abs();
-    if a.x >= a.y && a.x >= a.z {
-        (u32::from(w.x < 0.0), a.x, w.y, w.z)
-    } else if a.y >= a.z {
-        (2 + u32::from(w.y < 0.0), a.y, w.z, w.x)
-    } else {
-        (4 + u32::from(w.z < 0.0), a.z, w.x, w.y)
-    }
+    let w = w * (1.0 / (a.x + a.y + a.z));
+    let [s, t] = folded(w.x, w.y);
+    let below = w.z < 0.0;
+    DVec2::new(select_unpredictable(below, s, w.x), select_unpredictable(below, t, w.y))
+}
+
+/// The fold about the edges of the diamond `|s| + |t| = 1`.
+fn folded(s: f64, t: f64) -> [f64; 2] {
+    [(1.0 - t.abs()).copysign(s), (1.0 - s.abs()).copysign(t)]
 }
 
 struct Builder<'a> {
@@ -402,9 +415,9 @@ fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec
     let (mut best, mut gain) = (u32::MAX, f64::NEG_INFINITY);
     for &w in neighbours {
         let along = direction.dot(vertices[w as usize] - here);
-        if along > gain {
-            (best, gain) = (w, along);
-        }
+        let higher = along > gain;
+        best = select_unpredictable(higher, w, best);
+        gain = select_unpredictable(higher, along, gain);
     }
     (best, gain)
 }

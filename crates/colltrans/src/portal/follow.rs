@@ -14,10 +14,12 @@
 //! All this guesses: the old triangle need not be a face of `M` any more. The result is three points
 //! of `M` around the line, whatever way led there; refinement does not ask.
 
+use std::hint::select_unpredictable;
+
 use glam::{DVec2, DVec3};
 
 use super::start::continued;
-use super::{Portal, normal_of};
+use super::{Portal, Start, normal_of};
 use crate::minkowski::{Difference, Point};
 use crate::outcome::Steps;
 use crate::plane::triangle_normal;
@@ -79,8 +81,14 @@ pub(crate) fn follow(difference: &Difference, met: &Met, steps: &mut Steps) -> F
             None => return Followed::Lost,
         }
     }
-    for _ in 0..CROSSINGS {
-        let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
+    walk(difference, portal, CROSSINGS, steps)
+}
+
+/// From a face of `M` to the one that the line pierces, over one edge after another.
+#[inline]
+fn walk(difference: &Difference, mut portal: Portal, most: usize, steps: &mut Steps) -> Followed {
+    let Some(mut edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
+    for _ in 0..most {
         steps.pivots += 1;
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
         match first_met(difference, &edge.from, &tilt) {
@@ -89,6 +97,53 @@ pub(crate) fn follow(difference: &Difference, met: &Met, steps: &mut Steps) -> F
                 return Followed::Rim { outward: tilt.outward, near: edge.from.pair };
             }
             Neighbour::TooMany => return Followed::Lost,
+        }
+        // The edge that was crossed has the line on its left now.
+        let [to, from, point] = portal;
+        edge = if !difference.is_left(&from, &point) {
+            Edge { from, to: point, third: to }
+        } else if !difference.is_left(&point, &to) {
+            Edge { from: point, to, third: from }
+        } else {
+            return Followed::Portal(portal);
+        };
+    }
+    Followed::Lost
+}
+
+/// The same for a start from scratch, which has wider portals to fall back on.
+const FEW_CROSSINGS: usize = 8;
+
+/// How often a guess is corrected by the ellipsoids' curvature before the walk begins.
+const CORRECTIONS: usize = 4;
+
+/// A correction that leaves more of the distance from the line than this share says that the bodies
+/// are no ellipsoids.
+const PROGRESS: f64 = 0.5;
+
+/// From a guessed normal: the face of `M` beside its support point, and from there to the line.
+pub(crate) fn approach(difference: &Difference, start: &Start, steps: &mut Steps) -> Followed {
+    let mut slope = start.normal.truncate() / start.normal.z;
+    steps.supports += 1;
+    let mut vertex = match start.near {
+        Some(near) => difference.support_from(normal_of(slope), near),
+        None => difference.support(normal_of(slope)),
+    };
+    for _ in 0..CORRECTIONS {
+        let Some(portal) = beside(difference, &vertex, slope) else { return Followed::Lost };
+        let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
+        if edge.distance() <= FAR * edge.width() {
+            return walk(difference, portal, FEW_CROSSINGS, steps);
+        }
+        let shadow = vertex.shadow();
+        slope += start.slope_per_shadow * shadow;
+        if !slope.is_finite() {
+            break;
+        }
+        steps.supports += 1;
+        vertex = difference.support_from(normal_of(slope), vertex.pair);
+        if vertex.shadow().length_squared() > PROGRESS * PROGRESS * shadow.length_squared() {
+            break;
         }
     }
     Followed::Lost
@@ -112,10 +167,12 @@ struct Edge {
 /// An edge of the portal over which the line has left it.
 #[inline]
 fn crossed(difference: &Difference, portal: &Portal) -> Option<Edge> {
-    [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
-        .into_iter()
-        .find(|&(i, j, _)| !difference.is_left(&portal[i], &portal[j]))
-        .map(|(i, j, k)| Edge { from: portal[i], to: portal[j], third: portal[k] })
+    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+        if !difference.is_left(&portal[i], &portal[j]) {
+            return Some(Edge { from: portal[i], to: portal[j], third: portal[k] });
+        }
+    }
+    None
 }
 
 impl Edge {
@@ -158,58 +215,67 @@ enum Neighbour {
 
 /// Of the neighbours of a vertex of `M` on the axis of the turn, the one with the least rise over
 /// its run.
+#[inline]
 fn first_met(difference: &Difference, vertex: &Point, tilt: &Tilt) -> Neighbour {
-    // A neighbour closer to the axis than this is not beyond it.
-    let least = difference.touching() * tilt.outward.length();
-    let mut first = First { pair: None, rise: f64::INFINITY, run: 1.0, least };
     let VertexPair { moving, fixed } = vertex.pair;
     let setting = difference.setting;
     let (normal, outward) = (tilt.normal, tilt.outward.extend(0.0));
-    let (up, out) = (-difference.in_moving(normal), -difference.in_moving(outward));
-    let few = first.look(setting.moving, moving, up, out, |moving| VertexPair { moving, fixed });
-    let (up, out) = (difference.in_fixed(normal), difference.in_fixed(outward));
-    let few =
-        few && first.look(setting.fixed, fixed, up, out, |fixed| VertexPair { moving, fixed });
-    match first.pair {
-        _ if !few => Neighbour::TooMany,
-        Some(pair) => Neighbour::Met(difference.vertex(pair)),
-        None => Neighbour::None,
+    // A neighbour closer to the axis than this is not beyond it.
+    let least = difference.touching() * tilt.outward.length();
+    let turn =
+        Turn { up: -difference.in_moving(normal), out: -difference.in_moving(outward), least };
+    let p = turn.first(setting.moving, moving);
+    let turn = Turn { up: difference.in_fixed(normal), out: difference.in_fixed(outward), least };
+    let q = turn.first(setting.fixed, fixed);
+    let (Some(p), Some(q)) = (p, q) else { return Neighbour::TooMany };
+    let of_fixed = q.rise * p.run < p.rise * q.run;
+    let found = if of_fixed { q.vertex } else { p.vertex };
+    if found == NOBODY {
+        return Neighbour::None;
     }
+    let moving = select_unpredictable(of_fixed, moving, found);
+    let fixed = select_unpredictable(of_fixed, found, fixed);
+    Neighbour::Met(difference.vertex(VertexPair { moving, fixed }))
 }
 
-struct First {
-    pair: Option<VertexPair>,
-    rise: f64,
-    run: f64,
+/// A turn seen from one body's frame: `up` and `out` measure rise and run.
+struct Turn {
+    up: DVec3,
+    out: DVec3,
     /// Least run.
     least: f64,
 }
 
-impl First {
-    /// Looks at the neighbours of one body's vertex; `up` and `out` measure rise and run in its
-    /// frame. `false` if there are too many.
+/// The neighbour that a turn meets first.
+struct First {
+    vertex: u32,
+    rise: f64,
+    run: f64,
+}
+
+/// No neighbour lies beyond the axis.
+const NOBODY: u32 = u32::MAX;
+
+impl Turn {
+    /// The first among the neighbours of one body's vertex; `None` if there are too many.
     #[inline]
-    fn look(
-        &mut self,
-        body: &ConvexPolyhedron,
-        vertex: u32,
-        up: DVec3,
-        out: DVec3,
-        pair: impl Fn(u32) -> VertexPair,
-    ) -> bool {
+    #[expect(clippy::needless_bitwise_bool, reason = "a branch here is not predictable")]
+    fn first(&self, body: &ConvexPolyhedron, vertex: u32) -> Option<First> {
         let here = body.vertices()[vertex as usize];
         let neighbours = body.neighbours(vertex);
         if neighbours.len() > MOST_NEIGHBOURS {
-            return false;
+            return None;
         }
+        let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
         for &w in neighbours {
             let edge = body.vertices()[w as usize] - here;
-            let (rise, run) = (up.dot(edge), out.dot(edge));
-            if run > self.least && rise * self.run < self.rise * run {
-                (self.pair, self.rise, self.run) = (Some(pair(w)), rise, run);
-            }
+            let (rise, run) = (self.up.dot(edge), self.out.dot(edge));
+            let sooner = (run > self.least) & (rise * first.run < first.rise * run);
+            first.vertex = select_unpredictable(sooner, w, first.vertex);
+            first.rise = select_unpredictable(sooner, rise, first.rise);
+            first.run = select_unpredictable(sooner, run, first.run);
         }
-        true
+        Some(first)
     }
 }
 
@@ -223,9 +289,14 @@ fn jump(
     if !slope.is_finite() {
         return None;
     }
-    let normal = normal_of(slope);
     steps.supports += 1;
-    let vertex = difference.support_from(normal, near);
+    let vertex = difference.support_from(normal_of(slope), near);
+    beside(difference, &vertex, slope)
+}
+
+/// The face of `M` at the support point `vertex` along a slope, on the side of the line.
+fn beside(difference: &Difference, vertex: &Point, slope: DVec2) -> Option<Portal> {
+    let (vertex, normal) = (*vertex, normal_of(slope));
     let toward_line = Tilt { normal, outward: -vertex.shadow() };
     let Neighbour::Met(second) = first_met(difference, &vertex, &toward_line) else { return None };
     // The plane after the turn, which contains both.

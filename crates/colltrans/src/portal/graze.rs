@@ -43,7 +43,7 @@ pub(crate) fn overlap(
     }
     let mut corners = [portal[0]; MAX_CORNERS];
     corners[..3].copy_from_slice(portal);
-    let mut count = hull(&mut corners[..3]);
+    let mut count = if is_triangle(portal) { 3 } else { hull(&mut corners[..3]) };
     let mut slightest = Overlap::Ample;
     for _ in 0..MAX_ROUNDS {
         let Some((edge, outward, reach)) = nearest_edge(&corners[..count]) else {
@@ -65,8 +65,7 @@ pub(crate) fn overlap(
         if depth <= tolerance {
             slightest = Overlap::Slight { inward: -outward, depth };
         }
-        corners[count] = point;
-        count = hull(&mut corners[..=count]);
+        count = insert(&mut corners, count, edge, point);
     }
     slightest
 }
@@ -75,7 +74,42 @@ pub(crate) fn overlap(
 /// overlap found within the tolerance stands.
 const MAX_ROUNDS: usize = 200;
 
+/// Whether the shadows are in counter-clockwise order.
+fn is_triangle(portal: &[Point; 3]) -> bool {
+    let [a, b, c] = portal.map(|p| p.shadow());
+    accurate_det(b - a, c - a) > 0.0
+}
+
+/// Adds a corner beyond the edge that follows corner `edge` of a counter-clockwise polygon, takes
+/// away those that are no corners any more, and returns the number left.
+fn insert(corners: &mut [Point; MAX_CORNERS], count: usize, edge: usize, new: Point) -> usize {
+    let new_at = new.shadow();
+    let mut count = count;
+    // First the corners after the new one, in a polygon turned so that the edge is the last one.
+    corners[..count].rotate_left(edge + 1);
+    let mut skip = 0;
+    while count - skip > 2 {
+        let [a, b] = [corners[skip], corners[skip + 1]].map(|p| p.shadow());
+        if accurate_det(a - new_at, b - new_at) > 0.0 {
+            break;
+        }
+        skip += 1;
+    }
+    while count - skip > 2 {
+        let [a, b] = [corners[count - 2], corners[count - 1]].map(|p| p.shadow());
+        if accurate_det(b - a, new_at - a) > 0.0 {
+            break;
+        }
+        count -= 1;
+    }
+    corners.copy_within(skip..count, 0);
+    count -= skip;
+    corners[count] = new;
+    count + 1
+}
+
 /// Moves the corners of the convex hull to the front, counter-clockwise, and returns their number.
+#[cold]
 fn hull(points: &mut [Point]) -> usize {
     let at = |p: &Point| p.shadow();
     points.sort_unstable_by(|p, q| {

@@ -19,7 +19,7 @@ mod start;
 use glam::{DVec2, DVec3};
 
 pub(crate) use enclose::{Enclosure, OneSide, enclose, widest_margin};
-pub(crate) use follow::{Followed, Met, follow};
+pub(crate) use follow::{Followed, Met, approach, follow};
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, refine};
 pub(crate) use start::Start;

@@ -137,14 +137,19 @@ fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
 
 /// Replaces the one point whose exchange keeps the line inside, and says which.
 fn exchange(difference: &Difference, portal: &mut Portal, new: Point) -> usize {
-    let left = [0, 1, 2].map(|i| difference.is_left(&portal[i], &new));
+    let left = |i: usize| difference.is_left(&portal[i], &new);
+    let (first, second) = (left(0), left(1));
     // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the
-    // sides change.
-    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-        if !left[i] && left[j] {
-            portal[k] = new;
-            return k;
-        }
+    // sides change from right to left; the third point goes.
+    let gone = match (first, second) {
+        (false, true) => Some(2),
+        (true, false) => Some(usize::from(!left(2))),
+        (false, false) => left(2).then_some(0),
+        (true, true) => (!left(2)).then_some(1),
+    };
+    if let Some(k) = gone {
+        portal[k] = new;
+        return k;
     }
     // All on one side: the shadows coincide, and the new point takes the place of the one it lies
     // under.

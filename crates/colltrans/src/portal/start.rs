@@ -11,6 +11,7 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::minkowski::{Difference, Symmetric};
+use crate::polyhedron::ConvexPolyhedron;
 use crate::setting::VertexPair;
 
 /// Where to begin, and how the shadow of the support point answers to a change of slope.
@@ -24,13 +25,14 @@ pub(crate) struct Start {
     /// The change of slope that moves the shadow of the support point by minus a given vector: the
     /// inverse Hessian of the ellipsoids' support functions.
     pub(crate) slope_per_shadow: DMat2,
-    /// The matrices of the ellipsoids.
-    ellipsoids: [Symmetric; 2],
 }
 
 /// Least share of a contact normal along the direction that is guessed: a steeper guess
 /// would say nothing about where the walls of the body are.
 const LEAST_INCLINATION: f64 = 0.05;
+
+/// Mean semi-axis of an ellipsoid over the root of its trace.
+const MEAN_RADIUS: f64 = 0.577_350_269_189_625_8;
 
 /// Newton's step is taken if it is shorter than this share of the normal; a longer one leaves the
 /// region it knows.
@@ -42,8 +44,47 @@ const LIKE: f64 = 0.5;
 const FITTED: f64 = 0.1;
 const MAX_FITS: usize = 12;
 
+/// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
+const FEW: usize = 20;
+
 impl Start {
+    /// The guess that suits the bodies.
+    #[inline]
+    pub(crate) fn new(difference: &Difference) -> Self {
+        let setting = difference.setting;
+        let simple = |body: &ConvexPolyhedron| body.vertices().len() <= FEW && body.measure().round;
+        if simple(setting.moving) && simple(setting.fixed) {
+            Self::from_spheres(difference)
+        } else {
+            Self::from_ellipsoids(difference)
+        }
+    }
+
+    /// The guess for bodies that resemble balls: their inertia ellipsoids replaced by balls of the
+    /// same mean size.
+    #[inline]
+    fn from_spheres(difference: &Difference) -> Self {
+        let setting = difference.setting;
+        let radius =
+            (setting.moving.measure().radius + setting.fixed.measure().radius) * MEAN_RADIUS;
+        let lateral = difference.center().truncate();
+        let square = radius * radius - lateral.length_squared();
+        let meets = square > 0.0;
+        let slope =
+            if meets { tempered(lateral.extend(square.sqrt())).truncate() } else { steep(lateral) };
+        // The support function `r |n|` has the Hessian `r (I / |n| - a a^T / |n|^3)`.
+        let scale = (1.0 + slope.length_squared()).sqrt() / radius;
+        let slope_per_shadow = DMat2::from_cols(
+            DVec2::new(1.0 + slope.x * slope.x, slope.x * slope.y) * scale,
+            DVec2::new(slope.x * slope.y, 1.0 + slope.y * slope.y) * scale,
+        );
+        let passes = !meets && lateral != DVec2::ZERO;
+        let normal = if passes { lateral.extend(0.0) } else { slope.extend(1.0) };
+        Self { normal, near: None, slope_per_shadow }
+    }
+
     /// The guess from the inertia ellipsoids.
+    #[inline]
     pub(crate) fn from_ellipsoids(difference: &Difference) -> Self {
         let (center, [a, b]) = difference.ellipsoids();
         let mut r =
@@ -52,15 +93,17 @@ impl Start {
         let mut enough = LIKE;
         for _ in 0..MAX_FITS {
             let k = a.combine(1.0 + r, &b, 1.0 + 1.0 / r);
-            normal = entry_normal(&k.inverse(), center);
-            let fit = (b.square(normal) / a.square(normal)).sqrt();
-            if normal.z == 0.0 || (fit / r - 1.0).abs() < enough {
+            normal = entry_normal(&k, center);
+            let (along_a, along_b) = (a.square(normal), b.square(normal));
+            let [least, most] = [1.0 - enough, 1.0 + enough].map(|f| f * f * r * r * along_a);
+            if normal.z == 0.0 || (least < along_b && along_b < most) {
                 break;
             }
-            (r, enough) = (fit, FITTED);
+            (r, enough) = ((along_b / along_a).sqrt(), FITTED);
         }
         let sloped = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
-        let [(shadow_a, hessian_a), (shadow_b, hessian_b)] = [a, b].map(|k| response(&k, sloped));
+        let ((shadow_a, hessian_a), (shadow_b, hessian_b)) =
+            (response(&a, sloped), response(&b, sloped));
         let slope_per_shadow = (hessian_a + hessian_b).inverse();
         if normal.z > 0.0 {
             let step = slope_per_shadow * (center.truncate() - shadow_a - shadow_b);
@@ -68,7 +111,7 @@ impl Start {
                 normal += step.extend(0.0);
             }
         }
-        Self { normal, near: None, slope_per_shadow, ellipsoids: [a, b] }
+        Self { normal, near: None, slope_per_shadow }
     }
 
     /// Where the ellipsoids have their supporting planes across the normal, in the frames of the
@@ -80,10 +123,10 @@ impl Start {
             let kn = k.apply(normal);
             difference.axes * (kn * (1.0 / normal.dot(kn).sqrt()))
         };
-        let [a, b] = &self.ellipsoids;
+        let (_, [a, b]) = difference.ellipsoids();
         [
-            setting.moving.measure().center + setting.moving_normal(away(a)),
-            setting.fixed.measure().center - setting.fixed_normal(away(b)),
+            setting.moving.measure().center + setting.moving_normal(away(&a)),
+            setting.fixed.measure().center - setting.fixed_normal(away(&b)),
         ]
     }
 
@@ -93,28 +136,38 @@ impl Start {
     }
 }
 
-/// The normal where the axis enters the ellipsoid around `center` with inverse matrix `j`, or, if
-/// it misses it, where it passes closest in the ellipsoid's metric.
-fn entry_normal(j: &Symmetric, center: DVec3) -> DVec3 {
+/// The normal where the axis enters the ellipsoid around `center` with matrix `k`, or, if it misses
+/// it, where it passes closest in the ellipsoid's metric.
+///
+/// With `J = det K^-1` the axis is inside for the heights `h` with `J_zz h^2 - 2 (J c)_z h + c.J c <
+/// det`; up to its length the normal is `J c - h J e_z`.
+#[inline]
+fn entry_normal(k: &Symmetric, center: DVec3) -> DVec3 {
+    let (j, det) = k.adjugate();
     let jc = j.apply(center);
-    let middle = jc.z / j.zz;
-    let discriminant = middle * middle - (center.dot(jc) - 1.0) / j.zz;
-    let entry = if discriminant > 0.0 { middle - discriminant.sqrt() } else { middle };
-    let mut normal = jc - DVec3::new(j.xz, j.yz, j.zz) * entry;
-    if discriminant <= 0.0 {
-        normal.z = 0.0;
-        return normal;
+    let square = jc.z * jc.z - j.zz * (center.dot(jc) - det);
+    let root = square.max(0.0).sqrt();
+    let lateral = jc.truncate() - DVec2::new(j.xz, j.yz) * ((jc.z - root) / j.zz);
+    if square > 0.0 {
+        return tempered(lateral.extend(root));
     }
-    tempered(normal)
+    // Of a length fit to be normalised; out of range, any normal will do.
+    let lateral = lateral / lateral.abs().max_element();
+    if lateral.is_finite() { lateral.extend(0.0) } else { DVec3::Z }
 }
 
 /// `(a, 1)` along `normal`, or along the nearest direction that is not too steep.
+#[inline]
 fn tempered(normal: DVec3) -> DVec3 {
     if normal.z == 0.0 {
         return normal;
     }
-    let along = normal.z.max(LEAST_INCLINATION * normal.length());
-    if along > 0.0 { (normal.truncate() / along).extend(1.0) } else { DVec3::Z }
+    let lateral = normal.truncate();
+    let steepest = LEAST_INCLINATION * LEAST_INCLINATION * normal.length_squared();
+    if normal.z > 0.0 && normal.z * normal.z >= steepest {
+        return (lateral * (1.0 / normal.z)).extend(1.0);
+    }
+    if steepest > 0.0 { (lateral / steepest.sqrt()).extend(1.0) } else { DVec3::Z }
 }
 
 /// The steepest slope that is guessed, along a lateral direction.
@@ -131,11 +184,12 @@ pub(super) fn steep(lateral: DVec2) -> DVec2 {
 pub(super) fn continued(difference: &Difference, shadow: DVec2, slopes: [DVec2; 2]) -> DVec2 {
     let (_, ellipsoids) = difference.ellipsoids();
     let n = ((slopes[0] + slopes[1]) * 0.5).extend(1.0);
-    let [a, b] = ellipsoids.map(|k| response(&k, n).1);
+    let [a, b] = [response(&ellipsoids[0], n).1, response(&ellipsoids[1], n).1];
     (a + b).inverse() * (shadow + a * slopes[0] + b * slopes[1])
 }
 
 /// Gradient and Hessian of an ellipsoid's support function in the lateral components of a normal.
+#[inline]
 fn response(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
     let kn = k.apply(normal);
     let inverse_length = 1.0 / normal.dot(kn).sqrt();

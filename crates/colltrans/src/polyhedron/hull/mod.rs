@@ -116,9 +116,9 @@ fn finish(
     regions: &merge::Regions,
     near: &[u32],
 ) -> Hull {
-    let (vertices, topology) = faces(points.len(), simplicial, regions).unwrap_or_else(|_| {
+    let (vertices, topology) = faces(points, simplicial, regions).unwrap_or_else(|_| {
         // Rounding can make coplanar regions that do not fit together; the triangles always do.
-        faces(points.len(), simplicial, &merge::Regions::triangles(simplicial))
+        faces(points, simplicial, &merge::Regions::triangles(simplicial))
             .expect("the triangles of a simplicial hull are a closed surface")
     });
     let corners: Vec<DVec3> = vertices.iter().map(|&i| points[i as usize]).collect();
@@ -129,7 +129,7 @@ fn finish(
 /// The vertices, in the order of the input because whoever wrote it kept neighbours together, and
 /// the faces over them.
 fn faces(
-    point_count: usize,
+    points: &[DVec3],
     simplicial: &Simplicial,
     regions: &merge::Regions,
 ) -> Result<(Vec<u32>, Topology), TopologyError> {
@@ -137,11 +137,63 @@ fn faces(
     let mut vertices = corners.clone();
     vertices.sort_unstable();
     vertices.dedup();
-    let mut position = vec![0; point_count];
+    let large = vertices.len() > LARGE;
+    if large {
+        sort_by_place(points, &mut vertices);
+    }
+    let mut position = vec![0; points.len()];
     for (k, &v) in vertices.iter().enumerate() {
         position[v as usize] = k as u32;
     }
-    let face_vertices: Vec<u32> = corners.iter().map(|&v| position[v as usize]).collect();
+    let mut face_start = face_start;
+    let mut face_vertices: Vec<u32> = corners.iter().map(|&v| position[v as usize]).collect();
+    if large {
+        (face_start, face_vertices) = sorted_by_vertex(&face_start, &face_vertices);
+    }
     let topology = Topology::from_faces(vertices.len(), face_start, &face_vertices)?;
     Ok((vertices, topology))
+}
+
+/// More vertices than this are numbered by place: what a query visits one after the other is then
+/// near in memory. Smaller bodies fit in the fastest cache in any order.
+const LARGE: usize = 500;
+
+/// Sorts points along a space-filling curve (Morton's).
+fn sort_by_place(points: &[DVec3], vertices: &mut [u32]) {
+    let at = |v: u32| points[v as usize];
+    let low = vertices.iter().map(|&v| at(v)).fold(DVec3::INFINITY, DVec3::min);
+    let high = vertices.iter().map(|&v| at(v)).fold(DVec3::NEG_INFINITY, DVec3::max);
+    let scale = f64::from(1 << 20) / (high - low);
+    // Casts saturate: an axis without extent is all zeros.
+    let key = |&v: &u32| {
+        let cell = (at(v) - low) * scale;
+        spread(cell.x as u32) | spread(cell.y as u32) << 1 | spread(cell.z as u32) << 2
+    };
+    vertices.sort_by_cached_key(key);
+}
+
+/// The lowest 21 bits, two places apart.
+fn spread(bits: u32) -> u64 {
+    let mut x = u64::from(bits) & 0x1f_ffff;
+    x = (x | x << 32) & 0x1f_0000_0000_ffff;
+    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
+    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+/// The faces in the order of their lowest vertices.
+fn sorted_by_vertex(face_start: &[u32], face_vertices: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let face = |f: u32| {
+        &face_vertices[face_start[f as usize] as usize..face_start[f as usize + 1] as usize]
+    };
+    let mut order: Vec<u32> = (0..face_start.len() as u32 - 1).collect();
+    order.sort_by_cached_key(|&f| face(f).iter().min().copied());
+    let mut start = vec![0];
+    let mut vertices = Vec::with_capacity(face_vertices.len());
+    for f in order {
+        vertices.extend_from_slice(face(f));
+        start.push(vertices.len() as u32);
+    }
+    (start, vertices)
 }

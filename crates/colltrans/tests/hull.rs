@@ -457,3 +457,32 @@ fn exactly_planar_caps_cost_no_more() {
     assert_eq!(body.face_count(), sides as usize + 2);
     assert!(start.elapsed().as_secs_f64() < 5.0);
 }
+
+/// Two rings, as of a prism, a frustum or a bottle: once a quadratic case, because one ring was
+/// finished before the other was begun.
+#[test]
+fn large_rings_grow_no_faster_than_clouds() {
+    let ring = |sides: u32, radius: f64, z: f64| {
+        (0..sides).map(move |k| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+            DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
+        })
+    };
+    let seconds = |sides: u32, top: f64, apex: Option<DVec3>| {
+        let points: Vec<DVec3> =
+            ring(sides, 1.0, 0.0).chain(ring(sides, top, 1.0)).chain(apex).collect();
+        let start = std::time::Instant::now();
+        let body = ConvexPolyhedron::from_points(&points).unwrap();
+        assert_eq!(body.vertices().len(), points.len());
+        start.elapsed().as_secs_f64()
+    };
+    let few = if cfg!(debug_assertions) { 1_000 } else { 12_000 };
+    for (what, top, apex) in
+        [("prism", 1.0, None), ("frustum", 0.7, None), ("bottle", 0.9, Some(DVec3::Z * 1.5))]
+    {
+        let growth = seconds(5 * few, top, apex) / seconds(few, top, apex);
+        println!("{what}: {growth:.1} times as long for 5 times the points");
+        // Quadratic would be 25; n log n and a colder cache measured 5 to 8.
+        assert!(growth < 15.0, "{what}: {growth}");
+    }
+}

@@ -11,6 +11,8 @@
 //! Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", ACM TOMS 22(4), 1996, for
 //! the conflict lists.
 
+use std::collections::VecDeque;
+
 use glam::DVec3;
 
 use crate::plane::triangle_normal;
@@ -63,6 +65,14 @@ pub(super) enum Flat {
     Plane(DVec3),
 }
 
+/// Refinement goes in breadth until this many points are left for each one inserted, then in depth.
+///
+/// In depth, what is looked at is still in the cache (spheres of 200,000 points: 1.5 times faster).
+/// But of two rings, one would be finished before the other: then every point of the other one sees
+/// a fan over half the ring, and each of its orphans is held against the new fan, which is quadratic.
+/// In breadth both rings grow together. Patches of a bounded number of points cannot do much harm.
+const POINTS_A_PATCH: u32 = 128;
+
 /// The hull of the points in `kept`, or what dimension they have instead.
 pub(super) fn simplicial_hull(
     points: &[DVec3],
@@ -72,10 +82,13 @@ pub(super) fn simplicial_hull(
     let simplex = first_simplex(points, kept, tolerance)?;
     let mut builder = Builder::new(points, kept, tolerance);
     builder.start(simplex, kept);
-    while let Some(face) = builder.pending.pop() {
+    let in_breadth = kept.len() as u32 / POINTS_A_PATCH;
+    let mut inserted = 0;
+    while let Some(face) = builder.next_pending(inserted < in_breadth) {
         let triangle = &builder.triangles[face as usize];
         if triangle.alive && triangle.outside != NONE {
             builder.insert(face);
+            inserted += 1;
         }
     }
     Ok(builder.finish())
@@ -134,7 +147,7 @@ struct Builder<'a> {
     extent: f64,
     triangles: Vec<Triangle>,
     /// Triangles that may have points outside.
-    pending: Vec<u32>,
+    pending: VecDeque<u32>,
     /// For each point, the next in its list.
     next: Vec<u32>,
     /// For each point, the new triangle whose rim edge starts there.
@@ -160,7 +173,7 @@ impl<'a> Builder<'a> {
             tolerance,
             extent: (high - low).length(),
             triangles: Vec::new(),
-            pending: Vec::new(),
+            pending: VecDeque::new(),
             next: vec![NONE; points.len()],
             rim_start: vec![NONE; points.len()],
             near: Vec::new(),
@@ -169,6 +182,10 @@ impl<'a> Builder<'a> {
             rim: Vec::new(),
             free: Vec::new(),
         }
+    }
+
+    fn next_pending(&mut self, in_breadth: bool) -> Option<u32> {
+        if in_breadth { self.pending.pop_front() } else { self.pending.pop_back() }
     }
 
     fn at(&self, i: u32) -> DVec3 {
@@ -282,7 +299,7 @@ impl<'a> Builder<'a> {
             }
             self.mark(face, false);
             if let Assigned::To(face) = self.assign(i, std::iter::once(face)) {
-                self.pending.push(face);
+                self.pending.push_back(face);
                 return;
             }
             if self.sees(face, p) {

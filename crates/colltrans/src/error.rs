@@ -123,10 +123,11 @@ pub enum TopologyError {
         /// The vertex.
         vertex: usize,
     },
-    /// The faces form several surfaces, or one with handles.
+    /// The faces form several surfaces, or one with holes through it (handles).
     #[error(
-        "the surface is not one sphere: {vertices} vertices - {edges} edges + {faces} faces = \
-         {euler}, not 2"
+        "the surface is {}, not one sphere ({vertices} vertices - {edges} edges + {faces} faces = \
+         {euler}, not 2)",
+        surface_in_words(*euler, *shells)
     )]
     NotASphere {
         /// Number of vertices in use.
@@ -137,10 +138,24 @@ pub enum TopologyError {
         faces: usize,
         /// Their alternating sum.
         euler: i64,
+        /// Number of surfaces that share no vertex.
+        shells: usize,
     },
     /// There are no faces.
     #[error("the mesh has no faces")]
     NoFaces,
+}
+
+/// What closed surfaces with this Euler characteristic are: every shell adds 2, every hole through
+/// one takes 2 away.
+fn surface_in_words(euler: i64, shells: usize) -> String {
+    match (shells, shells as i64 - euler / 2) {
+        (1, 1) => "one body with a hole through it".into(),
+        (1, holes) => format!("one body with {holes} holes through it"),
+        (_, 0) => format!("{shells} separate shells"),
+        (_, 1) => format!("{shells} separate shells with a hole through one of them"),
+        (_, holes) => format!("{shells} separate shells with {holes} holes in all"),
+    }
 }
 
 /// Why a [`Pose`](crate::Pose) was refused.

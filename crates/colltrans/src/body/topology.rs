@@ -242,27 +242,34 @@ impl Topology {
         let vertices = self.vertex_start.windows(2).filter(|w| w[0] != w[1]).count();
         let (edges, faces) = (self.edge_count(), self.face_count());
         let euler = vertices as i64 - edges as i64 + faces as i64;
-        if euler == 2 && self.is_connected(vertices) {
+        let shells = self.count_shells();
+        if euler == 2 && shells == 1 {
             Ok(())
         } else {
-            Err(TopologyError::NotASphere { vertices, edges, faces, euler })
+            Err(TopologyError::NotASphere { vertices, edges, faces, euler, shells })
         }
     }
 
-    fn is_connected(&self, vertices_in_use: usize) -> bool {
+    /// Number of connected surfaces.
+    fn count_shells(&self) -> usize {
         let mut seen = vec![false; self.vertex_count()];
-        let mut stack = vec![self.half_edges[0].origin];
-        seen[stack[0] as usize] = true;
-        let mut reached = 0;
-        while let Some(v) = stack.pop() {
-            reached += 1;
-            for &w in self.neighbours(v) {
-                if !std::mem::replace(&mut seen[w as usize], true) {
-                    stack.push(w);
+        let mut stack = Vec::new();
+        let mut shells = 0;
+        for start in self.half_edges.iter().map(|h| h.origin) {
+            if std::mem::replace(&mut seen[start as usize], true) {
+                continue;
+            }
+            shells += 1;
+            stack.push(start);
+            while let Some(v) = stack.pop() {
+                for &w in self.neighbours(v) {
+                    if !std::mem::replace(&mut seen[w as usize], true) {
+                        stack.push(w);
+                    }
                 }
             }
         }
-        reached == vertices_in_use
+        shells
     }
 }
 
@@ -379,7 +386,23 @@ mod tests {
             .chain(TETRAHEDRON.iter().map(|f| f.iter().map(|v| v + 4).collect()))
             .collect();
         let twice: Vec<&[u32]> = twice.iter().map(Vec::as_slice).collect();
-        assert!(matches!(build(8, &twice), Err(TopologyError::NotASphere { euler: 4, .. })));
+        let two = build(8, &twice).unwrap_err();
+        assert!(matches!(two, TopologyError::NotASphere { euler: 4, shells: 2, .. }));
+        assert!(two.to_string().contains("is 2 separate shells, not one sphere"), "{two}");
+        // Three by three squares, closed both ways: a hole through it.
+        let ring = |shift: u32| {
+            let vertex = move |i: u32, j: u32| shift + 3 * (i % 3) + j % 3;
+            (0..9).map(move |k| {
+                let (i, j) = (k / 3, k % 3);
+                [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)]
+            })
+        };
+        let rings: Vec<[u32; 4]> = ring(0).chain(ring(9)).collect();
+        let faces: Vec<&[u32]> = rings.iter().map(<[u32; 4]>::as_slice).collect();
+        let one = build(9, &faces[..9]).unwrap_err().to_string();
+        assert!(one.contains("is one body with a hole through it, not one sphere"), "{one}");
+        let both = build(18, &faces).unwrap_err().to_string();
+        assert!(both.contains("is 2 separate shells with 2 holes in all, not"), "{both}");
         // Two tetrahedra that share one vertex.
         let pinched: Vec<Vec<u32>> = TETRAHEDRON
             .iter()

@@ -141,7 +141,7 @@ impl Surface {
     }
 
     fn hull(&self) -> Hull {
-        hull::convex_hull(&self.points)
+        hull::hull_of_mesh(&self.points, &self.topology)
     }
 
     fn body(&self, mut hull: Hull) -> ConvexPolyhedron {

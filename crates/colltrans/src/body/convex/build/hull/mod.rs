@@ -1,13 +1,14 @@
 //! The convex hull of a point cloud, of any dimension, with coplanar faces as polygons.
 //!
 //! The way: [`quickhull`] makes a simplicial hull on exact decisions, of the points that are
-//! outside by more than the tolerance; [`merge`] joins its coplanar triangles and names the
+//! outside by more than the tolerance (a mesh that is convex already is one: [`convex_mesh`]); [`merge`] joins its coplanar triangles and names the
 //! vertices that are then no corners; the hull is made again without those, until none is left;
 //! [`planar`] does the same for points in a plane.
 //!
 //! Tolerance. Points within [`noise::COPLANAR`] of the largest coordinate of a face are taken to lie
 //! on it.
 
+mod convex_mesh;
 mod merge;
 mod planar;
 mod quickhull;
@@ -68,15 +69,29 @@ pub(super) fn tolerance(points: &[DVec3]) -> f64 {
 
 /// The convex hull of points that [`check_points`] has passed.
 pub(super) fn convex_hull(points: &[DVec3]) -> Hull {
+    reduced_hull(points, None)
+}
+
+/// The convex hull of a closed surface's vertices, all in use: quicker where the surface is that
+/// hull already.
+pub(super) fn hull_of_mesh(points: &[DVec3], topology: &Topology) -> Hull {
+    reduced_hull(points, convex_mesh::simplicial(points, topology))
+}
+
+/// The hull without what is no corner, from a simplicial hull of all points if there is one.
+fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
     let tolerance = tolerance(points);
     let mut kept: Vec<u32> = (0..points.len() as u32).collect();
     // Points near the surface: they are what the violation is measured on.
     let mut near: Vec<u32> = Vec::new();
     let mut forced: Vec<u32> = Vec::new();
     for _ in 0..MAX_ROUNDS {
-        let simplicial = match quickhull::simplicial_hull(points, &kept, tolerance) {
-            Ok(simplicial) => simplicial,
-            Err(flat) => return planar::hull(points, &kept, flat, tolerance),
+        let simplicial = match known.take() {
+            Some(simplicial) => simplicial,
+            None => match quickhull::simplicial_hull(points, &kept, tolerance) {
+                Ok(simplicial) => simplicial,
+                Err(flat) => return planar::hull(points, &kept, flat, tolerance),
+            },
         };
         near.extend(&simplicial.near);
         let regions = merge::regions(points, &simplicial, tolerance);

@@ -11,19 +11,30 @@
 //! Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", ACM TOMS 22(4), 1996, for
 //! the conflict lists.
 
+use std::collections::VecDeque;
+
 use glam::DVec3;
 
 use crate::number::plane::triangle_normal;
 
 const NONE: u32 = u32::MAX;
 
-/// A triangle with its neighbours across the edges `corner[k] -> corner[k + 1]`.
-#[derive(Debug, Clone)]
+/// A triangle of a hull.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Triangle {
     pub(super) corners: [u32; 3],
+    /// The triangles across the edges `corners[k] -> corners[k + 1]`.
     pub(super) neighbours: [u32; 3],
-    /// Unit normal, outwards.
+    /// Unit normal, outwards; 0 if rounding leaves no area.
     pub(super) normal: DVec3,
+}
+
+/// A triangle of a hull that grows.
+#[derive(Debug, Clone)]
+struct Growing {
+    corners: [u32; 3],
+    neighbours: [u32; 3],
+    normal: DVec3,
     /// Distance below which a rounded distance from the plane may have the wrong sign.
     doubt: f64,
     /// Head of the list of points outside.
@@ -63,6 +74,14 @@ pub(super) enum Flat {
     Plane(DVec3),
 }
 
+/// Refinement goes in breadth until this many points are left for each one inserted, then in depth.
+///
+/// In depth, what is looked at is still in the cache (spheres of 200,000 points: 1.5 times faster).
+/// But of two rings, one would be finished before the other: then every point of the other one sees
+/// a fan over half the ring, and each of its orphans is held against the new fan, which is quadratic.
+/// In breadth both rings grow together. Patches of a bounded number of points cannot do much harm.
+const POINTS_A_PATCH: u32 = 128;
+
 /// The hull of the points in `kept`, or what dimension they have instead.
 pub(super) fn simplicial_hull(
     points: &[DVec3],
@@ -72,10 +91,13 @@ pub(super) fn simplicial_hull(
     let simplex = first_simplex(points, kept, tolerance)?;
     let mut builder = Builder::new(points, kept, tolerance);
     builder.start(simplex, kept);
-    while let Some(face) = builder.pending.pop() {
+    let in_breadth = kept.len() as u32 / POINTS_A_PATCH;
+    let mut inserted = 0;
+    while let Some(face) = builder.next_pending(inserted < in_breadth) {
         let triangle = &builder.triangles[face as usize];
         if triangle.alive && triangle.outside != NONE {
             builder.insert(face);
+            inserted += 1;
         }
     }
     Ok(builder.finish())
@@ -112,7 +134,7 @@ fn first_simplex(points: &[DVec3], kept: &[u32], tolerance: f64) -> Result<[u32;
 }
 
 /// Positive if `p` is above the plane of the counter-clockwise triangle `a b c`; exact sign.
-fn side(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
+pub(super) fn side(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
     let coord = |v: DVec3| robust::Coord3D { x: v.x, y: v.y, z: v.z };
     -robust::orient3d(coord(a), coord(b), coord(c), coord(p))
 }
@@ -132,9 +154,9 @@ struct Builder<'a> {
     tolerance: f64,
     /// Bound on the distance between two points.
     extent: f64,
-    triangles: Vec<Triangle>,
+    triangles: Vec<Growing>,
     /// Triangles that may have points outside.
-    pending: Vec<u32>,
+    pending: VecDeque<u32>,
     /// For each point, the next in its list.
     next: Vec<u32>,
     /// For each point, the new triangle whose rim edge starts there.
@@ -160,7 +182,7 @@ impl<'a> Builder<'a> {
             tolerance,
             extent: (high - low).length(),
             triangles: Vec::new(),
-            pending: Vec::new(),
+            pending: VecDeque::new(),
             next: vec![NONE; points.len()],
             rim_start: vec![NONE; points.len()],
             near: Vec::new(),
@@ -169,6 +191,10 @@ impl<'a> Builder<'a> {
             rim: Vec::new(),
             free: Vec::new(),
         }
+    }
+
+    fn next_pending(&mut self, in_breadth: bool) -> Option<u32> {
+        if in_breadth { self.pending.pop_front() } else { self.pending.pop_back() }
     }
 
     fn at(&self, i: u32) -> DVec3 {
@@ -201,7 +227,7 @@ impl<'a> Builder<'a> {
         let longest = lengths[0].max(lengths[1]).max(lengths[2]);
         let product = lengths[0] * lengths[1] * lengths[2] / longest;
         let doubt = 16.0 * f64::EPSILON * product * self.extent / area;
-        let triangle = Triangle {
+        let triangle = Growing {
             corners,
             neighbours: [NONE; 3],
             normal: if area > 0.0 { normal / area } else { DVec3::ZERO },
@@ -282,7 +308,7 @@ impl<'a> Builder<'a> {
             }
             self.mark(face, false);
             if let Assigned::To(face) = self.assign(i, std::iter::once(face)) {
-                self.pending.push(face);
+                self.pending.push_back(face);
                 return;
             }
             if self.sees(face, p) {
@@ -343,7 +369,7 @@ impl<'a> Builder<'a> {
         while k < self.seen.len() {
             let face = self.seen[k];
             k += 1;
-            let Triangle { corners, neighbours, .. } = self.triangles[face as usize];
+            let Growing { corners, neighbours, .. } = self.triangles[face as usize];
             for side in 0..3 {
                 let other = neighbours[side];
                 if self.triangles[other as usize].stamp != self.insertion {
@@ -390,16 +416,16 @@ impl<'a> Builder<'a> {
     /// Drops the dead triangles and renumbers the rest.
     fn finish(self) -> Simplicial {
         let mut number = vec![NONE; self.triangles.len()];
-        let mut triangles = Vec::with_capacity(self.triangles.len());
-        for (k, triangle) in self.triangles.into_iter().enumerate() {
-            if triangle.alive {
-                number[k] = triangles.len() as u32;
-                triangles.push(triangle);
-            }
+        let alive = || self.triangles.iter().enumerate().filter(|(_, t)| t.alive);
+        for (n, (k, _)) in alive().enumerate() {
+            number[k] = n as u32;
         }
-        for triangle in &mut triangles {
-            triangle.neighbours = triangle.neighbours.map(|n| number[n as usize]);
-        }
+        let renumbered = |t: &Growing| Triangle {
+            corners: t.corners,
+            neighbours: t.neighbours.map(|n| number[n as usize]),
+            normal: t.normal,
+        };
+        let triangles = alive().map(|(_, t)| renumbered(t)).collect();
         Simplicial { triangles, near: self.near }
     }
 }

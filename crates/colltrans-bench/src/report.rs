@@ -74,7 +74,7 @@ impl Times {
 /// Writes the rows with what they were measured on, if a file was named.
 pub fn write(arguments: &Arguments, rows: &[Value]) -> ExitCode {
     let Some(path) = &arguments.json else { return ExitCode::SUCCESS };
-    let here = Provenance::of_this_process(&["parry3d-f64 0.31.1"]);
+    let here = Provenance::of_this_process("parry3d-f64 0.31.1");
     let report = json!({
         "date": here.date,
         "command": here.command,

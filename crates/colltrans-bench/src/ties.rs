@@ -201,7 +201,10 @@ mod tests {
                                 _ => None,
                             };
                             let got = contact.translation;
-                            assert!(expected.is_none_or(|t| t == got), "{tie:?}: {got}");
+                            assert!(
+                                expected.is_none_or(|t| (t - got).abs() < 1e-12),
+                                "{tie:?}: {got}"
+                            );
                         }
                         Outcome::Grazing(_) => assert_eq!(tie, Tie::ZeroClearance),
                         other => panic!("{tie:?} {placement:?}: {other:?}"),

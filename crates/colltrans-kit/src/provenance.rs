@@ -27,16 +27,15 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// That of this process, now; `others`: versions of what else the numbers depend on.
-    pub fn of_this_process(others: &[&str]) -> Self {
+    /// That of this process, now; `other`: the version of what else the numbers depend on.
+    pub fn of_this_process(other: &str) -> Self {
         let version = env!("CARGO_PKG_VERSION");
         let compiler = env!("COLLTRANS_KIT_COMPILER");
-        let others: String = others.iter().map(|other| format!("; {other}")).collect();
         Self {
             processor: processor().unwrap_or_else(unknown),
             cores: available_parallelism().map_or_else(|_| unknown(), |count| count.to_string()),
             system: system(),
-            versions: format!("colltrans {version}; {compiler}{others}"),
+            versions: format!("colltrans {version}; {compiler}; {other}"),
             build: env!("COLLTRANS_KIT_BUILD").into(),
             date: DateTime::<Utc>::from(SystemTime::now()).format("%Y-%m-%d %H:%M UTC").to_string(),
             command: command(std::env::args()),
@@ -127,7 +126,7 @@ mod tests {
 
     #[test]
     fn nothing_is_left_blank() {
-        let here = Provenance::of_this_process(&[]);
+        let here = Provenance::of_this_process("-");
         let facts = [&here.processor, &here.cores, &here.system, &here.versions, &here.build];
         assert!(facts.into_iter().chain([&here.date, &here.command]).all(|f| !f.is_empty()));
     }

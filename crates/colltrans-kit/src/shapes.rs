@@ -91,7 +91,7 @@ pub fn superellipsoid(n: usize, exponent: f64) -> Mesh {
 /// The upper half of a ring sphere of about `2 n` vertices, with a flat base.
 pub fn half_sphere(n: usize) -> Mesh {
     let [around, rings] = even_rings(2 * n);
-    let rings = rings | 1;
+    let rings = (rings - 1) | 1;
     let upper =
         ring_points(around, rings, 0.0).into_iter().take(1 + (around * (rings / 2 + 1)) as usize);
     Mesh::of_points(upper.map(|v| if v.z.abs() < 1e-9 { v.with_z(0.0) } else { v }).collect())

@@ -58,7 +58,7 @@ pub fn run(
     directory: &Path,
 ) -> Result<Summary, LabError> {
     let start = Instant::now();
-    let provenance = Provenance::of_this_process(&[&format!("kuva {} (plots)", kuva::VERSION)]);
+    let provenance = Provenance::of_this_process(&format!("kuva {} (plots)", kuva::VERSION));
     let path = directory.join("report.html");
     let write_report = |done: &[Done]| {
         let (all, wall) = (experiments.len(), start.elapsed());

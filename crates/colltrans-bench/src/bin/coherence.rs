@@ -8,8 +8,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::{
-    Focus, Narrowing, Options, Outcome, Path, QueryError, Region, Solver, Start, Steps, Tracker,
-    cast_with,
+    Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, StartedFrom, Steps,
+    Tracker, cast_with,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParrySetting};
@@ -62,10 +62,10 @@ const REGION: Focus = Focus { features: false, region: Region::Automatic };
 const BOTH: Focus = Focus { features: true, region: Region::Automatic };
 
 /// What a user gets.
-const SHIPPED: Narrowing = Narrowing { start: Start::Ellipsoids, gap: 0.2 };
+const SHIPPED: Narrowing = Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2 };
 
 /// The paper's: from the centre of the levels, most of the way by planar problems.
-const PAPER: Narrowing = Narrowing { start: Start::Center, gap: 0.01 };
+const PAPER: Narrowing = Narrowing { start: NarrowFrom::Center, gap: 0.01 };
 
 fn main() -> ExitCode {
     let Command { arguments } = Command::parse();
@@ -99,7 +99,7 @@ fn measure_size(
     let spheres = [Bodies::new([sphere.clone(), sphere])];
     let small = pair(8)?;
     let count = if arguments.quick { 12 } else { 60 };
-    let mut table = Table { n, scale: Scale::new(small, &mut random), rows };
+    let mut table = Table { n, scale: Scale::new(&small, &mut random), rows };
     print_header();
     for (name, meeting) in
         [("colliding", Meeting::Colliding), ("separated", Meeting::PassingWithin(0.2))]
@@ -141,7 +141,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn new(small: Bodies, random: &mut Random) -> Self {
+    fn new(small: &Bodies, random: &mut Random) -> Self {
         let settings = (0..LENGTH)
             .map(|_| ParrySetting::new(&Setting::draw(&small, Meeting::Colliding, random)))
             .collect();
@@ -205,7 +205,7 @@ impl Measured {
         self.steps.planar_problems += steps.planar_problems;
         self.steps.supports += steps.supports;
         self.steps.pivots += steps.pivots;
-        self.by_features += u32::from(steps.path == Path::Features);
+        self.by_features += u32::from(steps.started_from == StartedFrom::Features);
     }
 
     fn average(&self, count: u32) -> f64 {

@@ -207,7 +207,7 @@ mod tests {
                             );
                         }
                         Outcome::Grazing(_) => assert_eq!(tie, Tie::ZeroClearance),
-                        other => panic!("{tie:?} {placement:?}: {other:?}"),
+                        other @ Outcome::Separated(_) => panic!("{tie:?} {placement:?}: {other:?}"),
                     }
                 }
             }

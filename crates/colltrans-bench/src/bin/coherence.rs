@@ -143,7 +143,7 @@ struct Scale {
 impl Scale {
     fn new(small: &Bodies, random: &mut Random) -> Self {
         let settings = (0..LENGTH)
-            .map(|_| ParrySetting::new(&Setting::draw(&small, Meeting::Colliding, random)))
+            .map(|_| ParrySetting::new(&Setting::draw(small, Meeting::Colliding, random)))
             .collect();
         let convert = |body| parry::body(body).expect("an ellipsoid is solid");
         Self { bodies: small.pair.each_ref().map(convert), settings }

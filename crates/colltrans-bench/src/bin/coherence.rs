@@ -14,8 +14,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use colltrans::{
-    ConvexPolyhedron, Focus, Narrowing, Options, Outcome, Path, QueryError, Region, Solver, Start,
-    Steps, Tracker, cast_with,
+    ConvexPolyhedron, Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver,
+    StartedFrom, Steps, Tracker, cast_with,
 };
 use colltrans_bench::arguments::{self, Arguments};
 use colltrans_bench::motion::{Motion, orbit, sequence};
@@ -58,10 +58,10 @@ const REGION: Focus = Focus { features: false, region: Region::Automatic };
 const BOTH: Focus = Focus { features: true, region: Region::Automatic };
 
 /// What a user gets.
-const SHIPPED: Narrowing = Narrowing { start: Start::Ellipsoids, gap: 0.2 };
+const SHIPPED: Narrowing = Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2 };
 
 /// The paper's: from the centre of the levels, most of the way by planar problems.
-const PAPER: Narrowing = Narrowing { start: Start::Center, gap: 0.01 };
+const PAPER: Narrowing = Narrowing { start: NarrowFrom::Center, gap: 0.01 };
 
 fn main() -> ExitCode {
     arguments::start(USAGE, &[200, 2_000, 20_000, 200_000], run)
@@ -168,7 +168,7 @@ impl Measured {
         self.steps.planar_problems += steps.planar_problems;
         self.steps.supports += steps.supports;
         self.steps.pivots += steps.pivots;
-        self.by_features += u32::from(steps.path == Path::Features);
+        self.by_features += u32::from(steps.started_from == StartedFrom::Features);
     }
 
     fn average(&self, count: u32) -> f64 {

@@ -4,6 +4,7 @@ use colltrans::glam::DVec3;
 use colltrans::{Certificate, Contact, ContactRange, Feature, Separated};
 
 use super::{Cast, Scene, Solid, layout};
+use crate::query::{When, when};
 
 /// What is shown and said.
 pub(super) struct Story<'a> {
@@ -24,11 +25,14 @@ pub(super) struct Story<'a> {
 impl<'a> Story<'a> {
     pub(super) fn of(scene: &Scene<'a>) -> Self {
         match scene.answer {
-            ContactRange::Contact { first, .. } => Self::of_contact(scene, first, "Contact", None),
-            ContactRange::Grazing { first, .. } => {
+            ContactRange::Contact { first, last } => {
+                Self::of_contact(scene, first, "Contact", when(first, last), None)
+            }
+            ContactRange::Grazing { first, last } => {
                 let overlap = short(first.overlap);
                 let also = format!("the bodies slide along each other, overlapping by {overlap}");
-                Self::of_contact(scene, &first.contact, "Grazing", Some(also))
+                let when = when(&first.contact, &last.contact);
+                Self::of_contact(scene, &first.contact, "Grazing", when, Some(also))
             }
             ContactRange::Separated(separated) => Self::of_separated(scene, separated),
         }
@@ -38,9 +42,10 @@ impl<'a> Story<'a> {
         scene: &Scene<'_>,
         contact: &'a Contact,
         name: &str,
+        when: When,
         also: Option<String>,
     ) -> Self {
-        let length = scene.direction.length();
+        let length = scene.query.direction.length();
         let way = quantity(contact.translation, length);
         let Certificate { lower, upper, .. } = contact.certificate;
         let features = format!(
@@ -52,7 +57,7 @@ impl<'a> Story<'a> {
         details.push(features);
         let agreement = match (upper - lower).abs() {
             0.0 => "are equal".into(),
-            gap => format!("agree to {}", short(gap)),
+            gap => format!("agree to {gap:.0e}"),
         };
         details.push(format!(
             "normal n = {}; proven lower and upper bound of t {agreement}",
@@ -64,7 +69,11 @@ impl<'a> Story<'a> {
             normal: contact.normal,
             contact: Some(contact),
             margin: None,
-            headline: format!("{name} at {way}"),
+            headline: match when {
+                When::Ahead => format!("{name} at {way}"),
+                When::Now => format!("{name}: the bodies overlap now, first contact at {way}"),
+                When::Behind => format!("{name}: lies behind, at {way}"),
+            },
             way,
             details,
         }
@@ -73,10 +82,11 @@ impl<'a> Story<'a> {
     /// The bodies pass each other: shown where they are side by side.
     fn of_separated(scene: &Scene<'_>, separated: &Separated) -> Self {
         let normal = separated.certificate.normal;
-        let origin = scene.fixed_pose.transform_point(scene.fixed.vertices()[0]);
-        let moving = Solid::new(scene.moving, &scene.moving_pose, origin);
-        let fixed = Solid::new(scene.fixed, &scene.fixed_pose, origin);
-        let unit = scene.direction.normalize();
+        let query = scene.query;
+        let origin = query.fixed_pose.transform_point(query.fixed.vertices()[0]);
+        let moving = Solid::new(query.moving, &query.moving_pose, origin);
+        let fixed = Solid::new(query.fixed, &query.fixed_pose, origin);
+        let unit = query.direction.normalize();
         let ahead = (fixed.support(-normal) - moving.support(normal)).dot(unit);
         let margin = separated.certificate.margin;
         Self {
@@ -88,7 +98,7 @@ impl<'a> Story<'a> {
             way: "d".into(),
             headline: "Separated: the bodies never meet along d".into(),
             details: vec![format!(
-                "margin {} across the separating plane, normal n = {}",
+                "margin (gap along the normal n) {}, n = {} of the separating plane",
                 short(margin),
                 components(normal)
             )],

@@ -1,8 +1,9 @@
 //! The library's queries, as the commands ask them.
 
 use colltrans::glam::DVec3;
-use colltrans::{Contact, ContactRange, ConvexPolyhedron, Grazing, Options, Pose, Separated};
-use colltrans::{QueryError, contact_range};
+use colltrans::{
+    Cast, Contact, ContactRange, ConvexPolyhedron, Grazing, Options, Pose, QueryError, Separated,
+};
 
 /// Two placed bodies and a direction.
 #[derive(Clone, Copy)]
@@ -30,16 +31,15 @@ pub(crate) enum Clearance {
 }
 
 impl Query<'_> {
+    /// As the library sees it.
+    pub(crate) fn cast(&self) -> Result<Cast<'_>, QueryError> {
+        let (moving, fixed) = (self.moving.at(self.moving_pose), self.fixed.at(self.fixed_pose));
+        Cast::new(moving, fixed, self.direction)?.with_options(self.options)
+    }
+
     /// At which translations the bodies first and last meet.
     pub(crate) fn contact_range(&self) -> Result<ContactRange, QueryError> {
-        contact_range(
-            self.moving,
-            &self.moving_pose,
-            self.fixed,
-            &self.fixed_pose,
-            self.direction,
-            &self.options,
-        )
+        self.cast()?.contact_range()
     }
 
     /// How far the moving body can go.

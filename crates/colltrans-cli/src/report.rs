@@ -139,7 +139,10 @@ fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
 fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3) {
     let proof = &first.certificate;
     line(text, "normal", &unit_vector(first.normal));
-    line(text, "point", &known_vector(first.point_on_fixed, proof.tolerance * direction.length()));
+    if let Some(point) = record.point {
+        let point = DVec3::from_array(point);
+        line(text, "point", &known_vector(point, proof.tolerance * direction.length()));
+    }
     if let Some(features) = &record.features {
         line(text, "moving", &feature(&features.moving));
         line(text, "fixed", &feature(&features.fixed));

@@ -5,7 +5,7 @@
 //! convexity, at the corners, the middles of the edges and the centres of all faces: for curved
 //! surfaces that is all there is, in a large flat face some other point may lie a little deeper.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 
 use colltrans::ConvexPolyhedron;
 use colltrans::glam::DVec3;
@@ -14,6 +14,9 @@ use serde::Serialize;
 
 /// Planes that are compared before the search for the deepest point is given up: some seconds.
 const MOST_COMPARISONS: u64 = 4_000_000_000;
+
+/// Faces that were nearest to points before, which are tried first.
+const RECENT: usize = 8;
 
 /// What a hull has and its part has not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -58,25 +61,30 @@ fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
     let noise = 1e-13 * mesh.extent();
     let mut deepest = noise;
     // Points in the order of the mesh are near each other, and so are the faces they are below.
-    let (mut passed, mut nearest) = (0, 0);
+    let mut passed = 0;
+    let mut recent = VecDeque::from([0]);
     let mut comparisons = 0;
     for p in mesh.faces.iter().flat_map(|face| samples(mesh, face)) {
         // Most points are seen to be no deeper by one face or by those around them.
-        if faces.below(nearest, p) <= deepest || faces.bound(p, &mut passed) <= deepest {
+        if recent.iter().any(|&face| faces.below(face, p) <= deepest)
+            || faces.bound(p, &mut passed) <= deepest
+        {
             continue;
         }
-        let mut least = f64::INFINITY;
+        let mut least = (f64::INFINITY, 0);
         for face in 0..faces.planes.len() {
             let depth = faces.below(face, p);
-            if depth < least {
-                (least, nearest) = (depth, face);
+            if depth < least.0 {
+                least = (depth, face);
             }
             comparisons += 1;
-            if least <= deepest {
+            if least.0 <= deepest {
                 break;
             }
         }
-        deepest = deepest.max(least);
+        deepest = deepest.max(least.0);
+        recent.push_front(least.1);
+        recent.truncate(RECENT);
         if comparisons > MOST_COMPARISONS {
             return None;
         }

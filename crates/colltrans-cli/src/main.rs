@@ -3,8 +3,8 @@
 //! The data's way: [`args`] -> [`body`] (mesh file to polyhedron; [`excess`]: what a hull has more)
 //! -> [`query`] (the library's part) -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
-//! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read. [`info`]
-//! looks at one mesh, [`lab`] runs the paper's experiments.
+//! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read.
+//! [`info`] looks at one mesh.
 
 mod args;
 mod batch;
@@ -14,7 +14,6 @@ mod excess;
 mod failure;
 mod info;
 mod inputs;
-mod lab;
 mod numbers;
 mod picture;
 mod query;
@@ -38,7 +37,6 @@ fn main() -> ExitCode {
         Command::Clearance(arguments) => cast::run(&arguments, Asked::Clearance),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
-        Command::Lab(arguments) => lab::run(&arguments.what),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

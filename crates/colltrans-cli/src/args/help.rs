@@ -2,7 +2,7 @@
 
 pub(super) const EXIT_CODES: &str = "\
 Exit codes:
-  0  answered (contact, grazing, separated are all answers; lab: claims may not hold)
+  0  answered (contact, grazing, separated are all answers)
   1  batch, --directions: some lines have no answer; the results say which and why
   2  the command line is wrong
   3  an input file cannot be read, a body is not what it should be, or an output would overwrite an
@@ -76,16 +76,3 @@ Translations, bounds and tolerance are in multiples of the direction, other leng
 the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
 that exists is replaced when all lines are answered, and never if a query reads it. A line may have
 up to 64 MiB."#;
-
-pub(super) const LAB_RESULTS: &str = "\
-The paper is Mirolo, Carpin and Pagello, \"Incremental Convex Minimization for Computing Collision
-Translations of Convex Polyhedra\", IEEE Transactions on Robotics 23(3), 2007, section V.
-
-Results, in the folder given by --output (files of these names are replaced):
-  report.html              every figure and table beside the claims it supports or refutes, and
-                           where the numbers come from; one page that needs nothing else
-  figure-NN....csv         the data: series,x,y,low,high,count
-  figure-NN....svg, .png   the figure
-  table-N....csv           the table
-
-Times are of this machine: leave it alone while it measures.";

@@ -4,6 +4,5 @@ mod batch;
 mod cast;
 mod door;
 mod example_parts;
-mod lab;
 mod picture;
 mod support;

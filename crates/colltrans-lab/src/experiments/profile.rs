@@ -10,9 +10,9 @@ use crate::Experiment;
 use crate::contestants::{PAPER_GAP, Until};
 use crate::finding::{Claim, Finding, Table};
 use crate::plan::{Plan, Progress};
-use crate::random::Random;
 use crate::settings::{Meeting, Setting};
 use crate::shapes::{Kind, bodies};
+use colltrans_kit::random::Random;
 
 pub(super) const TABLE_1: Experiment =
     Experiment { id: "table-1", title: "time profile of the collision translation algorithm", run };

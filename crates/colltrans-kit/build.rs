@@ -13,9 +13,9 @@ fn main() {
     let target = env::var("TARGET").unwrap_or_default();
     // Cargo separates flags by 0x1f.
     let flags = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\u{1f}', " ");
-    println!("cargo:rustc-env=COLLTRANS_LAB_COMPILER={compiler}");
+    println!("cargo:rustc-env=COLLTRANS_KIT_COMPILER={compiler}");
     println!(
-        "cargo:rustc-env=COLLTRANS_LAB_BUILD={}",
+        "cargo:rustc-env=COLLTRANS_KIT_BUILD={}",
         format!("{target}, opt-level {level} {flags}").trim_end()
     );
 }

@@ -3,24 +3,23 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use crate::finding::Point;
-
 /// Measures one call at a time, with the clock's own cost taken off.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stopwatch {
+pub struct Stopwatch {
     /// The least time between two readings, in nanoseconds.
     cost: f64,
 }
 
 impl Stopwatch {
     /// Finds out what the clock costs now.
-    pub(crate) fn new() -> Self {
+    #[expect(clippy::new_without_default, reason = "it measures")]
+    pub fn new() -> Self {
         let once = |_| Instant::now().elapsed().as_nanos();
         Self { cost: (0..256).map(once).min().unwrap_or(0) as f64 }
     }
 
     /// The result of a call and the nanoseconds it took: at least 1, so that ratios exist.
-    pub(crate) fn time<T>(self, call: impl FnOnce() -> T) -> (T, f64) {
+    pub fn time<T>(self, call: impl FnOnce() -> T) -> (T, f64) {
         let started = Instant::now();
         let result = black_box(call());
         let spent = started.elapsed().as_nanos() as f64 - self.cost;
@@ -29,7 +28,7 @@ impl Stopwatch {
 }
 
 /// The value below which a share of the values lies; NaN if there are none.
-pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
+pub fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let last = sorted.len().saturating_sub(1);
@@ -37,12 +36,12 @@ pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
 }
 
 /// The median.
-pub(crate) fn median(values: &[f64]) -> f64 {
+pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
 /// Mean and standard deviation.
-pub(crate) fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
+pub fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / count;
@@ -51,27 +50,15 @@ pub(crate) fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
 
 /// All but the largest hundredth, which other programs on the machine cause where times are
 /// measured.
-pub(crate) fn without_disturbed(values: &[f64]) -> Vec<f64> {
+pub fn without_disturbed(values: &[f64]) -> Vec<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.truncate((values.len() * 99).div_ceil(100));
     sorted
 }
 
-/// Median with quartiles.
-pub(crate) fn median_point(x: f64, values: &[f64]) -> Point {
-    let [low, y, high] = [0.25, 0.5, 0.75].map(|share| quantile(values, share));
-    Point { x, y, low, high, count: values.len() }
-}
-
-/// Mean, plus and minus a standard deviation.
-pub(crate) fn mean_point(x: f64, values: &[f64]) -> Point {
-    let [y, deviation] = mean_and_deviation(values);
-    Point { x, y, low: y - deviation, high: y + deviation, count: values.len() }
-}
-
 /// The exponent `k` of `y = c x^k` by least squares in the logarithms.
-pub(crate) fn exponent(points: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+pub fn exponent(points: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     let logs: Vec<_> = points.map(|(x, y)| (x.ln(), y.ln())).collect();
     let count = logs.len() as f64;
     let [mx, my] = [
@@ -89,8 +76,7 @@ mod tests {
     #[test]
     fn statistics_of_small_samples() {
         let values = [4.0, 1.0, 3.0, 2.0, 5.0];
-        let point = median_point(7.0, &values);
-        assert_eq!((point.low, point.y, point.high, point.count), (2.0, 3.0, 4.0, 5));
+        assert_eq!([0.25, 0.5, 0.75].map(|share| quantile(&values, share)), [2.0, 3.0, 4.0]);
         assert_eq!(mean_and_deviation(&values), [3.0, 2.0_f64.sqrt()]);
         assert!(median(&[]).is_nan());
         let hundred: Vec<f64> = (0..100).rev().map(f64::from).collect();

@@ -1,27 +1,37 @@
-//! `colltrans lab`: the experiments of the paper, run anew.
+//! `colltrans-lab`: the experiments of the paper, run anew.
+
+mod args;
 
 use std::io::{self, IsTerminal, Write};
+use std::process::ExitCode;
 
+use clap::Parser;
 use colltrans_lab::plan::Progress;
 use colltrans_lab::{Experiment, experiments};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::args::LabCommand;
-use crate::failure::{Code, Failure};
+use args::{Arguments, Command};
 
-pub(crate) fn run(what: &LabCommand) -> Result<(), Failure> {
-    let (chosen, options) = match what {
-        LabCommand::Figure { numbers, options } => (choose("figure-", numbers), options),
-        LabCommand::Table { numbers, options } => (choose("table-", numbers), options),
-        LabCommand::All { options } => (experiments().to_vec(), options),
+/// The exit code where results cannot be written, as `--help` documents it.
+const CANNOT_WRITE: u8 = 5;
+
+fn main() -> ExitCode {
+    let (chosen, options) = match Arguments::parse().command {
+        Command::Figure { numbers, options } => (choose("figure-", &numbers), options),
+        Command::Table { numbers, options } => (choose("table-", &numbers), options),
+        Command::All { options } => (experiments().to_vec(), options),
     };
     let mut bar = Bar::new();
     let result = colltrans_lab::run(&chosen, &options.plan(), &mut bar, &options.output);
     bar.0.finish_and_clear();
-    let summary = result.map_err(|error| Failure::new(Code::Output, error.to_string()))?;
-    io::stdout()
-        .write_all(summary.to_string().as_bytes())
-        .map_err(|error| Failure::output("standard output", &error))
+    let said = match &result {
+        Ok(summary) => io::stdout().write_all(summary.to_string().as_bytes()),
+        // Not `eprintln!`, which panics when standard error is closed.
+        Err(error) => io::stderr().write_all(format!("error: {error}\n").as_bytes()),
+    };
+    // A pipe whose reader has gone is no failure: the results are in their folder.
+    let is_lost = said.is_err_and(|error| error.kind() != io::ErrorKind::BrokenPipe);
+    if result.is_err() || is_lost { ExitCode::from(CANNOT_WRITE) } else { ExitCode::SUCCESS }
 }
 
 /// The experiments with these numbers, in the paper's order.

@@ -10,11 +10,11 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng};
 
 /// A stream of random numbers.
 #[derive(Debug, Clone)]
-pub(crate) struct Random(ChaCha8Rng);
+pub struct Random(ChaCha8Rng);
 
 impl Random {
     /// The stream for a purpose, told from others by a few numbers.
-    pub(crate) fn new(seed: u64, purpose: &[u64]) -> Self {
+    pub fn new(seed: u64, purpose: &[u64]) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         // Horner's rule with an odd multiplier: different short lists give different streams.
         let stream = purpose
@@ -25,22 +25,27 @@ impl Random {
     }
 
     /// Uniform in `[0, 1)`, a multiple of `2^-53`.
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON)
     }
 
     /// Uniform in `[low, high)`.
-    pub(crate) fn range(&mut self, low: f64, high: f64) -> f64 {
+    pub fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// One of `0..count`; `count > 0`.
-    pub(crate) fn index(&mut self, count: usize) -> usize {
+    pub fn index(&mut self, count: usize) -> usize {
         ((self.unit() * count as f64) as usize).min(count - 1)
     }
 
+    /// A whole number of `low..=high`.
+    pub fn int(&mut self, low: i64, high: i64) -> i64 {
+        low + self.index((high - low + 1) as usize) as i64
+    }
+
     /// Uniform on the unit sphere (Archimedes: heights are uniform).
-    pub(crate) fn direction(&mut self) -> DVec3 {
+    pub fn direction(&mut self) -> DVec3 {
         let height = self.range(-1.0, 1.0);
         let angle_rad = self.range(0.0, TAU);
         let radius = (1.0 - height * height).sqrt();
@@ -48,7 +53,7 @@ impl Random {
     }
 
     /// Uniform among all rotations (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
-    pub(crate) fn rotation(&mut self) -> DQuat {
+    pub fn rotation(&mut self) -> DQuat {
         let share = self.unit();
         let [a, b] = [self.range(0.0, TAU), self.range(0.0, TAU)];
         let [r, s] = [(1.0 - share).sqrt(), share.sqrt()];

@@ -27,17 +27,16 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// That of this process, now.
-    pub fn of_this_process() -> Self {
+    /// That of this process, now; `other`: the version of what else the numbers depend on.
+    pub fn of_this_process(other: &str) -> Self {
         let version = env!("CARGO_PKG_VERSION");
-        let compiler = env!("COLLTRANS_LAB_COMPILER");
-        let drawn_by = kuva::VERSION;
+        let compiler = env!("COLLTRANS_KIT_COMPILER");
         Self {
             processor: processor().unwrap_or_else(unknown),
             cores: available_parallelism().map_or_else(|_| unknown(), |count| count.to_string()),
             system: system(),
-            versions: format!("colltrans {version}; {compiler}; kuva {drawn_by} (plots)"),
-            build: env!("COLLTRANS_LAB_BUILD").into(),
+            versions: format!("colltrans {version}; {compiler}; {other}"),
+            build: env!("COLLTRANS_KIT_BUILD").into(),
             date: DateTime::<Utc>::from(SystemTime::now()).format("%Y-%m-%d %H:%M UTC").to_string(),
             command: command(std::env::args()),
             is_optimised: !cfg!(debug_assertions),
@@ -94,7 +93,7 @@ fn command(mut arguments: impl Iterator<Item = String>) -> String {
 }
 
 /// A duration for people: `0.4 s`, `12 s`, `3 min 20 s`, `1 h 2 min`.
-pub(crate) fn for_people(duration: Duration) -> String {
+pub fn for_people(duration: Duration) -> String {
     let seconds = duration.as_secs();
     match seconds {
         0..10 => format!("{:.1} s", duration.as_secs_f64()),
@@ -127,7 +126,7 @@ mod tests {
 
     #[test]
     fn nothing_is_left_blank() {
-        let here = Provenance::of_this_process();
+        let here = Provenance::of_this_process("-");
         let facts = [&here.processor, &here.cores, &here.system, &here.versions, &here.build];
         assert!(facts.into_iter().chain([&here.date, &here.command]).all(|f| !f.is_empty()));
     }

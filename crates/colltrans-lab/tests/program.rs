@@ -1,12 +1,29 @@
-//! `lab`: what can be asked for, and where the results go.
+//! The program: what can be asked for, and where the results go.
 
-use crate::support::{colltrans, folder, stderr, stdout};
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+
+fn lab(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("colltrans-lab").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
 
 #[test]
 fn help_says_what_there_is() {
-    let folder = folder();
+    let folder = tempfile::tempdir().unwrap();
     let help = |arguments: &[&str]| {
-        let output = colltrans(folder.path()).arg("lab").args(arguments).output().unwrap();
+        let output = lab(folder.path()).args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
         stdout(&output)
     };
@@ -29,7 +46,7 @@ fn help_says_what_there_is() {
 
 #[test]
 fn what_there_is_not() {
-    let folder = folder();
+    let folder = tempfile::tempdir().unwrap();
     for arguments in [
         &["figure", "10"][..],
         &["figure", "twelve"],
@@ -41,7 +58,7 @@ fn what_there_is_not() {
         &["all", "--quick", "--full"],
         &["all", "--seed", "-1"],
     ] {
-        let output = colltrans(folder.path()).arg("lab").args(arguments).output().unwrap();
+        let output = lab(folder.path()).args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
         assert!(!folder.path().join("lab-results").exists(), "{arguments:?}");
         if arguments == ["figure", "10"] {
@@ -55,12 +72,10 @@ fn what_there_is_not() {
 
 #[test]
 fn folders_that_cannot_be_written_to() {
-    let folder = folder();
-    let output = colltrans(folder.path())
-        .args(["lab", "all", "--tiny", "-o", "cube.off/results"])
-        .output()
-        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    let output = lab(folder.path()).args(["all", "--tiny", "-o", "file/results"]).output().unwrap();
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
-    assert!(stderr(&output).starts_with("error: cube.off/results: the folder cannot be made: "));
+    assert!(stderr(&output).starts_with("error: file/results: the folder cannot be made: "));
     assert_eq!(stdout(&output), "");
 }

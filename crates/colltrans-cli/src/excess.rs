@@ -43,11 +43,13 @@ impl Excess {
         }
     }
 
-    /// Whether the part is its hull but for rounding: what is said of one holds for the other.
-    pub(crate) fn is_nothing(&self, extent: f64) -> bool {
-        let is_filled =
-            self.part_volume.is_some_and(|v| self.hull_volume - v <= 1e-9 * self.hull_volume);
-        is_filled && self.depth.is_some_and(|depth| depth <= 1e-9 * extent)
+    /// Whether the part is its hull to within a depth below it, as it would be taken for convex
+    /// without asking for the hull: what is said of one holds for the other.
+    pub(crate) fn is_within(&self, tolerance: f64, extent: f64) -> bool {
+        // A box with sides of this extent has six faces.
+        let most = 6.0 * tolerance * extent * extent;
+        let is_filled = self.part_volume.is_some_and(|volume| self.hull_volume - volume <= most);
+        is_filled && self.depth.is_some_and(|depth| depth <= tolerance)
     }
 }
 
@@ -206,7 +208,7 @@ mod tests {
         let excess = Excess::of(&mesh, &hull);
         assert_eq!((excess.hull_volume, excess.part_volume), (36.0, Some(32.0)));
         assert_eq!(excess.depth, Some(1.0), "the middle of the wall inside");
-        assert!(!excess.is_nothing(4.0));
+        assert!(excess.is_within(1.0, 4.0) && !excess.is_within(0.99, 4.0));
         mesh.faces.pop();
         assert_eq!(Excess::of(&mesh, &hull).part_volume, None, "open");
         mesh.faces.clear();

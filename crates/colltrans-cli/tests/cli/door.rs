@@ -85,6 +85,14 @@ fn results_never_overwrite_what_is_read() {
     for output in names_of(path, "q.jsonl", "jsonl") {
         let before = contents(path);
         refused(path, &["batch", "q.jsonl", "-o", &output], 3, &["holds the queries"]);
+        let input = std::fs::File::open(path.join("q.jsonl")).unwrap();
+        let result = std::process::Command::new(assert_cmd::cargo::cargo_bin("colltrans"))
+            .args(["batch", "-", "-o", &output])
+            .current_dir(path)
+            .stdin(input)
+            .output()
+            .unwrap();
+        assert_eq!(result.status.code(), Some(3), "{}", stderr(&result));
         assert!(contents(path) == before, "{output}");
     }
     for output in names_of(path, "cube.off", "off") {

@@ -15,9 +15,12 @@ use help::{BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, FORMATS};
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, threads};
 
-/// How far can one convex body translate before it touches another? Certified.
+/// How far can one convex body move along a direction before it touches another?
+///
+/// Every answer comes with proven bounds. Start with `colltrans info MESH` to see whether a mesh can
+/// be used, then `colltrans cast MOVING FIXED --direction -z`.
 #[derive(Debug, Parser)]
-#[command(version, about, after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
+#[command(version, after_help = EXIT_CODES, after_long_help = format!("{CAST_EXAMPLES}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,

@@ -57,7 +57,7 @@ pub(crate) fn load(path: &Path, recipe: Recipe) -> Result<Part, String> {
     };
     let body = build.map_err(|error| format!("{}: {error}{}", path.display(), hint(&error)))?;
     let excess = recipe.hull.then(|| Excess::of(&mesh, &body));
-    let excess = excess.filter(|excess| !excess.is_nothing(mesh.extent()));
+    let excess = excess.filter(|excess| !excess.is_within(tolerance, mesh.extent()));
     Ok(Part { body, excess, note })
 }
 

@@ -5,6 +5,8 @@
 //! convexity, at the corners, the middles of the edges and the centres of all faces: for curved
 //! surfaces that is all there is, in a large flat face some other point may lie a little deeper.
 
+use std::collections::{HashMap, VecDeque};
+
 use colltrans::ConvexPolyhedron;
 use colltrans::glam::DVec3;
 use colltrans_mesh::Mesh;
@@ -12,6 +14,9 @@ use serde::Serialize;
 
 /// Planes that are compared before the search for the deepest point is given up: some seconds.
 const MOST_COMPARISONS: u64 = 4_000_000_000;
+
+/// Faces that were nearest to points before, which are tried first.
+const RECENT: usize = 8;
 
 /// What a hull has and its part has not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -38,11 +43,13 @@ impl Excess {
         }
     }
 
-    /// Whether the part is its hull but for rounding: what is said of one holds for the other.
-    pub(crate) fn is_nothing(&self, extent: f64) -> bool {
-        let is_filled =
-            self.part_volume.is_some_and(|v| self.hull_volume - v <= 1e-9 * self.hull_volume);
-        is_filled && self.depth.is_some_and(|depth| depth <= 1e-9 * extent)
+    /// Whether the part is its hull to within a depth below it, as it would be taken for convex
+    /// without asking for the hull: what is said of one holds for the other.
+    pub(crate) fn is_within(&self, tolerance: f64, extent: f64) -> bool {
+        // A box with sides of this extent has six faces.
+        let most = 6.0 * tolerance * extent * extent;
+        let is_filled = self.part_volume.is_some_and(|volume| self.hull_volume - volume <= most);
+        is_filled && self.depth.is_some_and(|depth| depth <= tolerance)
     }
 }
 
@@ -51,42 +58,108 @@ fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
     if hull.dimension() < 3 {
         return Some(0.0);
     }
-    let planes: Vec<(DVec3, f64)> = (0..hull.face_count() as u32)
-        .map(|face| {
-            let normal = hull.face_normal(face);
-            let corners = hull.face_vertices(face).map(|v| hull.vertices()[v as usize]);
-            (normal, corners.map(|p| normal.dot(p)).fold(f64::NEG_INFINITY, f64::max))
-        })
-        .collect();
-    let below = |(normal, offset): (DVec3, f64), p: DVec3| offset - normal.dot(p);
-    let mut deepest = 0.0;
-    // Points in the order of the mesh are near each other, and so are the planes they are below.
-    let mut nearest = 0;
+    let faces = Faces::of(hull);
+    // Less than this is rounding.
+    let noise = 1e-13 * mesh.extent();
+    let mut deepest = noise;
+    // Points in the order of the mesh are near each other, and so are the faces they are below.
+    let mut passed = 0;
+    let mut recent = VecDeque::from([0]);
     let mut comparisons = 0;
-    for face in &mesh.faces {
-        for p in samples(mesh, face) {
-            if below(planes[nearest], p) <= deepest {
-                continue;
-            }
-            let mut least = (f64::INFINITY, nearest);
-            for (k, &plane) in planes.iter().enumerate() {
-                comparisons += 1;
-                let depth = below(plane, p);
-                if depth < least.0 {
-                    least = (depth, k);
-                }
-                if depth <= deepest {
-                    break;
-                }
-            }
-            nearest = least.1;
-            deepest = least.0.max(deepest);
+    for p in mesh.faces.iter().flat_map(|face| samples(mesh, face)) {
+        // Most points are seen to be no deeper by one face or by those around them.
+        if recent.iter().any(|&face| faces.below(face, p) <= deepest)
+            || faces.bound(p, &mut passed) <= deepest
+        {
+            continue;
         }
+        let mut least = (f64::INFINITY, 0);
+        for face in 0..faces.planes.len() {
+            let depth = faces.below(face, p);
+            if depth < least.0 {
+                least = (depth, face);
+            }
+            comparisons += 1;
+            if least.0 <= deepest {
+                break;
+            }
+        }
+        deepest = deepest.max(least.0);
+        recent.push_front(least.1);
+        recent.truncate(RECENT);
         if comparisons > MOST_COMPARISONS {
             return None;
         }
     }
-    Some(deepest)
+    Some(if deepest == noise { 0.0 } else { deepest })
+}
+
+/// The faces of a hull, to walk along.
+struct Faces {
+    /// A point inside.
+    centre: DVec3,
+    /// Unit normal and distance from the centre of each face's plane.
+    planes: Vec<(DVec3, f64)>,
+    /// For each face where its neighbours begin, and one entry past the end.
+    start: Vec<u32>,
+    neighbours: Vec<u32>,
+}
+
+impl Faces {
+    fn of(hull: &ConvexPolyhedron) -> Self {
+        let vertices = hull.vertices();
+        let centre = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+        let mut planes = Vec::new();
+        let mut start = vec![0];
+        let mut edges = Vec::new();
+        let mut face_of = HashMap::new();
+        for face in 0..hull.face_count() as u32 {
+            let normal = hull.face_normal(face);
+            let corners = hull.face_vertices(face);
+            let heights = corners.clone().map(|v| normal.dot(vertices[v as usize] - centre));
+            planes.push((normal, heights.fold(f64::NEG_INFINITY, f64::max)));
+            for (a, b) in corners.clone().zip(corners.cycle().skip(1)) {
+                edges.push((a, b));
+                face_of.insert((a, b), face);
+            }
+            start.push(edges.len() as u32);
+        }
+        // Across every edge lies a face that has it the other way round.
+        let across = |&(a, b): &(u32, u32)| face_of.get(&(b, a)).copied().unwrap_or_default();
+        Self { centre, planes, start, neighbours: edges.iter().map(across).collect() }
+    }
+
+    /// How far a point is below a face.
+    fn below(&self, face: usize, p: DVec3) -> f64 {
+        let (normal, offset) = self.planes[face];
+        offset - normal.dot(p - self.centre)
+    }
+
+    /// An upper bound of the depth of a point, from the face that the ray from the centre to it
+    /// passes, found by a walk from `near`, and from the faces around.
+    fn bound(&self, p: DVec3, near: &mut usize) -> f64 {
+        let ray = p - self.centre;
+        let passing = |face: usize| {
+            let (normal, offset) = self.planes[face];
+            normal.dot(ray) / offset.max(f64::MIN_POSITIVE)
+        };
+        let around = |face: usize| {
+            let range = self.start[face] as usize..self.start[face + 1] as usize;
+            self.neighbours[range].iter().map(|&f| f as usize)
+        };
+        let mut value = passing(*near);
+        // Every step goes up; the bound is for rounding.
+        for _ in 0..self.planes.len() {
+            let best = around(*near)
+                .map(|f| (passing(f), f))
+                .fold((value, *near), |a, b| if b.0 > a.0 { b } else { a });
+            if best.1 == *near {
+                break;
+            }
+            (value, *near) = best;
+        }
+        around(*near).map(|f| self.below(f, p)).fold(self.below(*near, p), f64::min)
+    }
 }
 
 /// The corners of a face, the middles of its edges and its centre.
@@ -135,7 +208,7 @@ mod tests {
         let excess = Excess::of(&mesh, &hull);
         assert_eq!((excess.hull_volume, excess.part_volume), (36.0, Some(32.0)));
         assert_eq!(excess.depth, Some(1.0), "the middle of the wall inside");
-        assert!(!excess.is_nothing(4.0));
+        assert!(excess.is_within(1.0, 4.0) && !excess.is_within(0.99, 4.0));
         mesh.faces.pop();
         assert_eq!(Excess::of(&mesh, &hull).part_volume, None, "open");
         mesh.faces.clear();

@@ -72,7 +72,8 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
             line(&mut text, "hull", &counts(&hull));
             line(&mut text, "hull volume", &computed(hull.volume()));
             let excess = Excess::of(mesh, &hull);
-            if !mesh.faces.is_empty() && !excess.is_nothing(mesh.extent()) {
+            let tolerance = body::tolerance(mesh, asked_tolerance);
+            if !mesh.faces.is_empty() && !excess.is_within(tolerance, mesh.extent()) {
                 line(&mut text, "hull exceeds", &exceeds(&excess));
             }
             let error = about(hull.hull_error());

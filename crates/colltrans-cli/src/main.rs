@@ -3,8 +3,8 @@
 //! The data's way: [`args`] -> [`body`] (mesh file to polyhedron; [`excess`]: what a hull has more)
 //! -> [`query`] (the library's part) -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
-//! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read. [`info`]
-//! looks at one mesh.
+//! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read.
+//! [`info`] looks at one mesh.
 
 mod args;
 mod batch;

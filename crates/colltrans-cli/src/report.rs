@@ -208,7 +208,7 @@ fn hulls(text: &mut String, record: &Record) {
 pub(crate) fn exceeds(excess: &Excess) -> String {
     let volume = match excess.part_volume {
         Some(part) => {
-            let more = excess.hull_volume - part;
+            let more = (excess.hull_volume - part).max(0.0);
             let share = 100.0 * more / excess.hull_volume;
             format!(
                 "{} of its volume {} is not the part ({share:.3} %)",

@@ -79,7 +79,7 @@ fn main() -> ExitCode {
             }
         }
     }
-    report::write(&arguments, &rows)
+    report::write("coherence", &arguments, &rows)
 }
 
 /// All rows of a size.

@@ -80,7 +80,7 @@ fn main() -> ExitCode {
             }
         }
     }
-    report::write(&arguments, &rows)
+    report::write("table", &arguments, &rows)
 }
 
 /// Which shapes in which sizes: all sizes of ellipsoids; of the others some.

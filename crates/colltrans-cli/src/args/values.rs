@@ -16,9 +16,12 @@ pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
     if let Some(axis) = axis(text.trim()) {
         return Ok(axis);
     }
+    if !text.contains(|c: char| c == ',' || c.is_ascii_digit()) {
+        return Err("neither three numbers (x,y,z) nor an axis (x, -x, y, -y, z, -z)".into());
+    }
     match numbers(text)?.as_slice() {
         &[x, y, z] => Ok(DVec3::new(x, y, z)),
-        other => Err(format!("{} numbers, not 3 (x,y,z) or an axis (x, -x, y ...)", other.len())),
+        other => Err(format!("{} numbers, not 3 (x,y,z)", other.len())),
     }
 }
 

@@ -69,14 +69,13 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
 
 /// Writing the results over the queries would lose both.
 fn refuse_own_input(queries: &Path, output: Option<&Path>) -> Result<(), Failure> {
-    match output.and_then(|output| overwritten(output, &[queries])) {
-        Some(_) => {
-            let name = queries.display();
-            let message = format!("{name}: holds the queries; give the results another file");
-            Err(Failure::new(Code::Input, message))
-        }
-        None => Ok(()),
-    }
+    // Standard input may be a file too.
+    let file = if queries == Path::new("-") { Path::new("/dev/stdin") } else { queries };
+    let Some(output) = output.filter(|output| overwritten(output, &[file]).is_some()) else {
+        return Ok(());
+    };
+    let message = format!("{}: holds the queries; give the results another file", output.display());
+    Err(Failure::new(Code::Input, message))
 }
 
 type Queries = BufReader<Box<dyn Read + Send>>;

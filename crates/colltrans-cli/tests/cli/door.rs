@@ -85,6 +85,14 @@ fn results_never_overwrite_what_is_read() {
     for output in names_of(path, "q.jsonl", "jsonl") {
         let before = contents(path);
         refused(path, &["batch", "q.jsonl", "-o", &output], 3, &["holds the queries"]);
+        let input = std::fs::File::open(path.join("q.jsonl")).unwrap();
+        let result = std::process::Command::new(assert_cmd::cargo::cargo_bin("colltrans"))
+            .args(["batch", "-", "-o", &output])
+            .current_dir(path)
+            .stdin(input)
+            .output()
+            .unwrap();
+        assert_eq!(result.status.code(), Some(3), "{}", stderr(&result));
         assert!(contents(path) == before, "{output}");
     }
     for output in names_of(path, "cube.off", "off") {
@@ -197,7 +205,7 @@ fn scales_angles_and_named_axes() {
         ("--moving-scale", "0", "positive"),
         ("--moving-scale", "-1", "positive"),
         ("--fixed-rpy", "1,2", "roll,pitch,yaw"),
-        ("--direction", "w", "`w` is no number"),
+        ("--direction", "w", "neither three numbers (x,y,z) nor an axis (x, -x,"),
     ] {
         let mut arguments = vec!["cast", "cube.off", "cube.off", option, value];
         if option != "--direction" {
@@ -251,7 +259,7 @@ fn a_scan_gives_one_answer_a_line() {
     std::fs::write(path.join("bad.txt"), "x\nsideways\n").unwrap();
     std::fs::write(path.join("none.txt"), "# nothing\n").unwrap();
     for (file, word) in [
-        ("bad.txt", "bad.txt: line 2: `sideways` is no number"),
+        ("bad.txt", "bad.txt: line 2: neither three numbers"),
         ("none.txt", "none.txt: holds no directions"),
         ("missing.txt", "missing.txt: cannot be read"),
     ] {

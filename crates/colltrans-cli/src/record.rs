@@ -192,7 +192,8 @@ impl Record {
             normal: Some(first.normal.to_array()),
             point: Some(first.points(cast).on_fixed.to_array()),
             lower: Some(first.certificate.lower),
-            upper: Some(first.certificate.upper),
+            // Bodies that only touch claim no upper bound.
+            upper: Some(first.certificate.upper).filter(|upper| upper.is_finite()),
             tolerance: Some(first.certificate.tolerance),
             features: Some(Features {
                 moving: FeatureRecord::of(features.moving, cast.moving()),

@@ -147,17 +147,18 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
         line(text, "moving", &feature(&features.moving));
         line(text, "fixed", &feature(&features.fixed));
     }
-    line(
-        text,
-        "bounds",
-        &format!(
+    let bounds = if proof.upper.is_finite() {
+        format!(
             "{} to {}, gap {} (rounding alone: up to {})",
             number(proof.lower),
             number(proof.upper),
-            about((proof.upper - proof.lower).max(0.0)),
+            about(proof.gap()),
             about(proof.tolerance)
-        ),
-    );
+        )
+    } else {
+        format!("at least {}; whether they touch is beyond rounding", number(proof.lower))
+    };
+    line(text, "bounds", &bounds);
     line(text, "solver", &work(solver_name(first.solver), first.steps));
 }
 

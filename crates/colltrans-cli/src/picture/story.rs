@@ -1,7 +1,7 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Certificate, Contact, ContactRange, Feature, Features, Separated};
+use colltrans::{Contact, ContactRange, Feature, Features, Separated};
 
 use super::{Cast, Scene, Solid, layout};
 use crate::query::{When, when};
@@ -50,7 +50,7 @@ impl<'a> Story<'a> {
         let length = scene.query.direction.length();
         let (features, points) = (contact.features(scene.cast), contact.points(scene.cast));
         let way = quantity(contact.translation, length);
-        let Certificate { lower, upper, .. } = contact.certificate;
+        let proof = &contact.certificate;
         let touch = format!(
             "{} of the moving body on {} of the fixed body",
             features.moving.kind(),
@@ -58,14 +58,12 @@ impl<'a> Story<'a> {
         );
         let mut details: Vec<String> = also.into_iter().collect();
         details.push(touch);
-        let agreement = match (upper - lower).abs() {
-            0.0 => "are equal".into(),
-            gap => format!("agree to {gap:.0e}"),
+        let proven = if proof.upper.is_finite() {
+            format!("proven lower and upper bound of t agree to {:.0e}", proof.gap())
+        } else {
+            "t is a proven lower bound".into()
         };
-        details.push(format!(
-            "normal n = {}; proven lower and upper bound of t {agreement}",
-            components(contact.normal)
-        ));
+        details.push(format!("normal n = {}; {proven}", components(contact.normal)));
         Self {
             origin: points.on_fixed,
             stop: contact.translation * length,

@@ -279,7 +279,11 @@ fn clearance_tells_its_cases_apart() {
         answered(folder.path(), &[&first[..], &[pose], more].concat())
     };
     let cases = [
-        ("-3,0.5,0", "blocked", "free         1 times the direction, a length of 2"),
+        (
+            "-3,0.5,0",
+            "blocked",
+            "free         0.9999999999998 times the direction, a length of 1.9999999999996",
+        ),
         (
             "-1,0.5,0",
             "blocked",

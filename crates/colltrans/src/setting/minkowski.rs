@@ -213,6 +213,15 @@ impl<'a> MinkowskiDifference<'a> {
             + self.offset
     }
 
+    /// Whether balls inside the bodies prove that the shadow of `M` contains all that is nearer to
+    /// the line than `margin`.
+    #[inline]
+    pub(crate) fn is_deep(&self, margin: f64) -> bool {
+        let inner = self.setting.moving.inertia().inner + self.setting.fixed.inertia().inner;
+        let rest = inner - (margin + self.noise.point());
+        rest > 0.0 && self.center().truncate().length_squared() < rest * rest
+    }
+
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between
     /// two shadows.
     ///

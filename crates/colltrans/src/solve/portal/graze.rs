@@ -38,9 +38,21 @@ pub(crate) fn overlap<O: Observer>(
     tolerance: f64,
     watch: &mut Watch<O>,
 ) -> Overlap {
-    if is_ample(portal, tolerance) {
+    if is_ample(portal, tolerance) || difference.is_deep(tolerance) {
         return Overlap::Ample;
     }
+    search(difference, portal, tolerance, watch)
+}
+
+/// The polygon, grown until it decides.
+#[cold]
+#[inline(never)]
+fn search<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &[Point; 3],
+    tolerance: f64,
+    watch: &mut Watch<O>,
+) -> Overlap {
     let mut corners = [portal[0]; MAX_CORNERS];
     corners[..3].copy_from_slice(portal);
     let mut count = if is_triangle(portal) { 3 } else { hull(&mut corners[..3]) };

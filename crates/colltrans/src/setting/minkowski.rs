@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::number::noise::{self, Noise};
-use crate::number::orientation::{self, Shadow};
+use crate::number::orientation::{self, Shadow, Terms};
 use crate::number::symmetric::Symmetric;
 use crate::setting::{Setting, VertexPair};
 
@@ -222,6 +222,28 @@ impl<'a> MinkowskiDifference<'a> {
         rest > 0.0 && self.center().truncate().length_squared() < rest * rest
     }
 
+    /// A pair's exact shadow, computed once if it is asked for several times.
+    fn shadow_of(&self, pair: VertexPair, terms: &Terms) -> Shadow {
+        match self.known.get() {
+            Some((known, shadow)) if known == pair => shadow,
+            _ => {
+                let new = orientation::shadow(terms, self.setting.direction);
+                self.known.set(Some((pair, new)));
+                new
+            }
+        }
+    }
+
+    /// The shadow of a pair's point of `M`, not widened, with a small error relative to its length;
+    /// zero only if the line passes through the point. `None` if that is not known.
+    pub(crate) fn exact_shadow(&self, pair: VertexPair) -> Option<DVec2> {
+        if self.widening != 0.0 {
+            return None;
+        }
+        let exact = self.shadow_of(pair, &self.setting.terms(pair));
+        orientation::rounded(&exact, &self.setting_from_shadow, self.setting.direction)
+    }
+
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between
     /// two shadows.
     ///
@@ -248,14 +270,7 @@ impl<'a> MinkowskiDifference<'a> {
             // The line passes near one of the two again and again.
             let from_is_near = from.shadow().length_squared() < to.shadow().length_squared();
             let (near, terms) = if from_is_near { (from.pair, &a) } else { (to.pair, &b) };
-            let base = || match self.known.get() {
-                Some((pair, known)) if pair == near => known,
-                _ => {
-                    let new = orientation::shadow(terms, setting.direction);
-                    self.known.set(Some((near, new)));
-                    new
-                }
-            };
+            let base = || self.shadow_of(near, terms);
             let way = to.shadow() - from.shadow();
             if way.length_squared() > self.touching() * self.touching() {
                 let side = orientation::side(

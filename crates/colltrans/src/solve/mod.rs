@@ -23,7 +23,7 @@ use crate::setting::{Setting, VertexPair};
 use cta::{ContactGuess, CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
-use portal::{Enclosure, FirstNormal, Followed, Overlap, Portal, Refined, SeparatingLine};
+use portal::{Enclosure, FirstNormal, Followed, Optimum, Overlap, Portal, Refined, SeparatingLine};
 use proof::Proven;
 pub(crate) use warm_start::WarmStart;
 
@@ -49,6 +49,7 @@ pub(crate) fn search<O: Observer>(
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
+        optimum: None,
         watch: Watch::new(observer),
     };
     let mut answer = first.run(focus, &last, warm_start);
@@ -102,6 +103,8 @@ struct Run<'a, 'o, O> {
     graze_tolerance: f64,
     solver: Solver,
     narrowing: Narrowing,
+    /// The optimum in the first portal, if that is known to be the lowest.
+    optimum: Option<Optimum>,
     watch: Watch<'o, O>,
 }
 
@@ -170,7 +173,8 @@ impl<O: Observer> Run<'_, '_, O> {
         if start.normal.z <= 0.0 {
             return None;
         }
-        match portal::approach(&self.difference, start, &mut self.watch) {
+        let optimum = &mut self.optimum;
+        match portal::approach(&self.difference, start, optimum, &mut self.watch) {
             Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
             Followed::Rim { outward, near } => self.beside(-outward, near),
             Followed::Lost => None,
@@ -285,10 +289,13 @@ impl<O: Observer> Run<'_, '_, O> {
             StartedFrom::Features => MOST_AFTER_FOLLOWING,
             StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
         };
-        let optimum = match portal::refine(&self.difference, portal, most, &mut self.watch) {
-            Some(Refined::Optimum(optimum)) => optimum,
-            Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
-            None => return Err(self.not_converged()),
+        let optimum = match self.optimum.take() {
+            Some(optimum) => optimum,
+            None => match portal::refine(&self.difference, portal, most, &mut self.watch) {
+                Some(Refined::Optimum(optimum)) => optimum,
+                Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
+                None => return Err(self.not_converged()),
+            },
         };
         let tolerance = self.graze_tolerance.max(self.difference.touching());
         let overlap = portal::overlap(&self.difference, portal, tolerance, &mut self.watch);

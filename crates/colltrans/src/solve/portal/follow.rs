@@ -19,8 +19,9 @@ use std::hint::select_unpredictable;
 use glam::{DVec2, DVec3};
 
 use super::start::continued;
-use super::{FirstNormal, Portal, normal_of};
+use super::{FirstNormal, Optimum, Portal, normal_of};
 use crate::body::ConvexPolyhedron;
+use crate::number::determinant::accurate_det;
 use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -75,7 +76,7 @@ pub(crate) fn follow<O: Observer>(
     if (b - a).perp_dot(c - a) < 0.0 {
         portal.swap(0, 1);
     }
-    let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
+    let Some(mut edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
     let shift = a * last.weights[0] + b * last.weights[1] + c * last.weights[2];
     let Some(slopes) = slopes(difference, last, shift) else { return Followed::Lost };
     if edge.distance() > FAR * edge.width() {
@@ -84,19 +85,22 @@ pub(crate) fn follow<O: Observer>(
             Some(there) => portal = there,
             None => return Followed::Lost,
         }
+        let Some(next) = left_behind(difference, &portal) else { return Followed::Portal(portal) };
+        edge = next;
     }
-    walk(difference, portal, CROSSINGS, watch)
+    walk(difference, portal, edge, CROSSINGS, watch)
 }
 
-/// From a face of `M` to the one that the line pierces, over one edge after another.
+/// From a face of `M` to the one that the line pierces, over one edge after another, of which the
+/// first is given.
 #[inline]
 fn walk<O: Observer>(
     difference: &MinkowskiDifference,
     mut portal: Portal,
+    mut edge: Edge,
     most: usize,
     watch: &mut Watch<O>,
 ) -> Followed {
-    let Some(mut edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
     for _ in 0..most {
         watch.portal(|| portal.map(|p| p.at));
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
@@ -131,9 +135,13 @@ const CORRECTIONS: usize = 4;
 const PROGRESS: f64 = 0.5;
 
 /// From a guessed normal: the face of `M` beside its support point, and from there to the line.
+///
+/// Where the support point is itself on the line, or nearly so, its plane may prove that the portal
+/// reached is the lowest; then `optimum` says so.
 pub(crate) fn approach<O: Observer>(
     difference: &MinkowskiDifference,
     start: &FirstNormal,
+    optimum: &mut Option<Optimum>,
     watch: &mut Watch<O>,
 ) -> Followed {
     let mut slope = start.normal.truncate() / start.normal.z;
@@ -143,12 +151,25 @@ pub(crate) fn approach<O: Observer>(
     };
     watch.support(|| Support::of(normal_of(slope), &vertex));
     for _ in 0..CORRECTIONS {
-        let Some(portal) = beside(difference, &vertex, slope) else { return Followed::Lost };
-        let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
-        if edge.distance() <= FAR * edge.width() {
-            return walk(difference, portal, FEW_CROSSINGS, watch);
-        }
         let shadow = vertex.shadow();
+        let mut toward_line = -shadow;
+        if shadow.length_squared() <= difference.touching() * difference.touching() {
+            match pointed(difference, &vertex, slope) {
+                Pointed::Lowest(portal, found) => {
+                    *optimum = Some(found);
+                    return Followed::Portal(portal);
+                }
+                Pointed::Toward(line) => toward_line = line,
+                Pointed::Unknown => {}
+            }
+        }
+        let Some(portal) = beside(difference, &vertex, slope, toward_line) else {
+            return Followed::Lost;
+        };
+        let Some(edge) = left_behind(difference, &portal) else { return Followed::Portal(portal) };
+        if edge.distance() <= FAR * edge.width() {
+            return walk(difference, portal, edge, FEW_CROSSINGS, watch);
+        }
         slope += start.slope_per_shadow * shadow;
         if !slope.is_finite() {
             break;
@@ -160,6 +181,77 @@ pub(crate) fn approach<O: Observer>(
         }
     }
     Followed::Lost
+}
+
+/// What a support point within rounding error of the line says.
+enum Pointed {
+    /// The line meets `M` here: the support point's plane is the lower bound, the portal's point on
+    /// the line the upper one.
+    Lowest(Portal, Optimum),
+    /// The direction, any length, in which the line is.
+    Toward(DVec2),
+    /// Nothing, because it is too close to be told.
+    Unknown,
+}
+
+/// Looks for the line around the support point `vertex` along a slope, exactly.
+///
+/// If the line is on the point, any triangle with this corner is pierced there. If it is not, the
+/// face of the point in whose direction it lies is, and the line passes it at a height that the
+/// shadow's exact direction tells, however steep the face is. What lies higher than the plane by
+/// less than the noise is as low as can be told.
+#[cold]
+#[inline(never)]
+fn pointed(difference: &MinkowskiDifference, vertex: &Point, slope: DVec2) -> Pointed {
+    let normal = normal_of(slope);
+    let optimum = |weights| Optimum { normal, lowest: vertex.pair, weights };
+    let Some(shadow) = difference.exact_shadow(vertex.pair) else { return Pointed::Unknown };
+    if shadow == DVec2::ZERO {
+        return match corner(difference, vertex) {
+            Some(portal) => Pointed::Lowest(portal, optimum([1.0, 0.0, 0.0])),
+            None => Pointed::Unknown,
+        };
+    }
+    let line = -shadow.normalize();
+    let Some(portal) = beside(difference, vertex, slope, line) else {
+        return Pointed::Toward(line);
+    };
+    if left_behind(difference, &portal).is_some() {
+        return Pointed::Toward(line);
+    }
+    // Of the three corners, `vertex` is the first or the second.
+    let here = usize::from(portal[0].pair != vertex.pair);
+    let [i, j] = [1 - here, 2];
+    let [a, b] = [i, j].map(|k| portal[k].at - vertex.at);
+    let (u, v) = (a.truncate(), b.truncate());
+    let area = accurate_det(u, v);
+    let least = difference.touching() * (u.length() + v.length());
+    let parts = [-accurate_det(shadow, v), -accurate_det(u, shadow)].map(|p| (p / area).max(0.0));
+    let sum = parts[0] + parts[1];
+    let height = parts[0] * normal.dot(a) + parts[1] * normal.dot(b);
+    let level = height <= difference.noise.point() * normal.length();
+    // Narrower triangles have no plane.
+    if area.abs() <= least || sum > 1.0 || !level {
+        return Pointed::Toward(line);
+    }
+    let mut weights = [0.0; 3];
+    (weights[here], weights[i], weights[j]) = (1.0 - sum, parts[0], parts[1]);
+    Pointed::Lowest(portal, optimum(weights))
+}
+
+/// A triangle of `M` with the corner `vertex`: two edges of one of the bodies.
+fn corner(difference: &MinkowskiDifference, vertex: &Point) -> Option<Portal> {
+    let VertexPair { moving, fixed } = vertex.pair;
+    let setting = difference.setting;
+    let (second, third) =
+        if let [first, second, ..] = *setting.fixed.neighbours(fixed) {
+            (VertexPair { moving, fixed: first }, VertexPair { moving, fixed: second })
+        } else if let [first, second, ..] = *setting.moving.neighbours(moving) {
+            (VertexPair { moving: first, fixed }, VertexPair { moving: second, fixed })
+        } else {
+            return None;
+        };
+    Some([*vertex, difference.vertex(second), difference.vertex(third)])
 }
 
 /// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has
@@ -184,7 +276,16 @@ struct Edge {
 /// An edge of the portal over which the line has left it.
 #[inline]
 fn crossed(difference: &MinkowskiDifference, portal: &Portal) -> Option<Edge> {
-    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+    if !difference.is_left(&portal[0], &portal[1]) {
+        return Some(Edge { from: portal[0], to: portal[1], third: portal[2] });
+    }
+    left_behind(difference, portal)
+}
+
+/// The same, if the line is known to be on the left of the first edge.
+#[inline]
+fn left_behind(difference: &MinkowskiDifference, portal: &Portal) -> Option<Edge> {
+    for (i, j, k) in [(1, 2, 0), (2, 0, 1)] {
         if !difference.is_left(&portal[i], &portal[j]) {
             return Some(Edge { from: portal[i], to: portal[j], third: portal[k] });
         }
@@ -308,13 +409,19 @@ fn jump<O: Observer>(
     }
     let vertex = difference.support_from(normal_of(slope), near);
     watch.support(|| Support::of(normal_of(slope), &vertex));
-    beside(difference, &vertex, slope)
+    beside(difference, &vertex, slope, -vertex.shadow())
 }
 
-/// The face of `M` at the support point `vertex` along a slope, on the side of the line.
-fn beside(difference: &MinkowskiDifference, vertex: &Point, slope: DVec2) -> Option<Portal> {
+/// The face of `M` at the support point `vertex` along a slope, in the direction of the line, with
+/// the line on the left of its first edge.
+fn beside(
+    difference: &MinkowskiDifference,
+    vertex: &Point,
+    slope: DVec2,
+    line: DVec2,
+) -> Option<Portal> {
     let (vertex, normal) = (*vertex, normal_of(slope));
-    let toward_line = Tilt { normal, outward: -vertex.shadow() };
+    let toward_line = Tilt { normal, outward: line };
     let Neighbour::Met(second) = first_met(difference, &vertex, &toward_line) else { return None };
     // The plane after the turn, which contains both.
     let edge = second.at - vertex.at;

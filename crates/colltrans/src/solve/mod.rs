@@ -154,7 +154,8 @@ impl<O: Observer> Run<'_, '_, O> {
         match last {
             WarmStart::Nothing => None,
             WarmStart::Contact(portal) => {
-                match portal::follow(&self.difference, portal, &mut self.watch) {
+                let optimum = &mut self.optimum;
+                match portal::follow(&self.difference, portal, optimum, &mut self.watch) {
                     Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
                     Followed::Rim { outward, near } => self.beside(-outward, near),
                     Followed::Lost => None,

@@ -231,7 +231,10 @@ fn pointed<O: Observer>(
                 corner(difference, vertex, &to)
             });
         match portal {
-            Some(portal) => Pointed::Lowest(portal, optimum([1.0, 0.0, 0.0])),
+            Some(portal) => {
+                let weights = weights_of(&portal, vertex, 0.0);
+                Pointed::Lowest(portal, optimum(weights))
+            }
             None => Pointed::Unknown,
         }
     };
@@ -270,7 +273,14 @@ fn pointed<O: Observer>(
     Pointed::Lowest(portal, optimum(weights))
 }
 
-/// A triangle with an edge of `M` and another edge of the same body at its first end.
+/// The weights of a place on the first edge of a portal, given as a share of the way from one of the
+/// edge's ends.
+fn weights_of(portal: &Portal, from: &Point, share: f64) -> [f64; 3] {
+    if portal[0].pair == from.pair { [1.0 - share, share, 0.0] } else { [share, 1.0 - share, 0.0] }
+}
+
+/// A triangle with an edge of `M` and another edge of the same body at its end `from`,
+/// counter-clockwise.
 fn corner(difference: &MinkowskiDifference, from: &Point, to: &Point) -> Option<Portal> {
     let VertexPair { moving, fixed } = from.pair;
     let setting = difference.setting;
@@ -282,7 +292,9 @@ fn corner(difference: &MinkowskiDifference, from: &Point, to: &Point) -> Option<
         let fixed = other(setting.fixed.neighbours(fixed), to.pair.fixed)?;
         VertexPair { moving, fixed }
     };
-    Some([*from, *to, difference.vertex(third)])
+    let third = difference.vertex(third);
+    let (way, across) = (to.shadow() - from.shadow(), third.shadow() - from.shadow());
+    Some(if way.perp_dot(across) < 0.0 { [*to, *from, third] } else { [*from, *to, third] })
 }
 
 /// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has
@@ -548,6 +560,6 @@ fn lowest_edge<O: Observer>(
     if normal.dot(contact - point.at) > noise * normal.length() {
         return None;
     }
-    let weights = [1.0 - share, share, 0.0];
+    let weights = weights_of(&portal, from, share);
     Some((portal, Optimum { normal, lowest: point.pair, weights }))
 }

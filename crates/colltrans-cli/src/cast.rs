@@ -5,14 +5,14 @@ use std::io::{self, Read as _, Write};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{ContactRange, Options};
+use colltrans::{Clearance, ContactRange, Options};
 
 use crate::args::{self, PairArguments};
 use crate::body::{self, Part};
 use crate::failure::{Code, Failure, note};
 use crate::inputs::overwritten;
 use crate::picture::{Scene, draw};
-use crate::query::{Clearance, Query};
+use crate::query::Query;
 use crate::record::{Hulls, Name, Record};
 use crate::report;
 
@@ -137,12 +137,12 @@ fn ask(
     let (answer, record) = match asked {
         Asked::Contact => {
             let answer = query.contact_range()?;
-            let record = Record::of_answer(&answer, query.moving, query.fixed);
+            let record = Record::of_answer(&answer, &query.cast()?);
             (Answer::Contact(answer), record)
         }
         Asked::Clearance => {
             let answer = query.clearance()?;
-            let record = Record::of_clearance(&answer, query.moving, query.fixed);
+            let record = Record::of_clearance(&answer, &query.cast()?);
             (Answer::Clearance(answer), record)
         }
     };
@@ -170,7 +170,7 @@ fn answer_one(
         Answer::Contact(range) => range,
         Answer::Clearance(_) => query.contact_range()?,
     };
-    fs::write(path, draw(&Scene { query, answer: &range }))
+    fs::write(path, draw(&Scene { query, cast: &query.cast()?, answer: &range }))
         .map_err(|error| Failure::output(path.display(), &error))
 }
 

@@ -1,13 +1,14 @@
 //! What is said about an answer, in the fields that `batch --help` documents.
 
 use colltrans::{
-    Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, Separated, Solver, Steps,
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, Separated, Solver,
+    Steps,
 };
 use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::excess::Excess;
-use crate::query::{Clearance, exit_of, safe_distance};
+use crate::query::exit_of;
 
 /// One result; fields that do not apply are left out.
 #[derive(Debug, Default, Serialize)]
@@ -125,49 +126,47 @@ pub(crate) struct StepCounts {
 
 impl Record {
     /// The result of a query that was answered.
-    pub(crate) fn of_answer(
-        answer: &ContactRange,
-        moving: &ConvexPolyhedron,
-        fixed: &ConvexPolyhedron,
-    ) -> Self {
+    pub(crate) fn of_answer(answer: &ContactRange, cast: &Cast) -> Self {
         match answer {
             ContactRange::Contact { first, last } => {
-                Self { outcome: Name::Contact, ..Self::of_contact(first, last, moving, fixed) }
+                Self { outcome: Name::Contact, ..Self::of_contact(first, last, cast) }
             }
             ContactRange::Grazing { first, last } => Self {
                 outcome: Name::Grazing,
                 margin: Some(-first.overlap),
                 message: Some(describe(first)),
-                ..Self::of_contact(&first.contact, &last.contact, moving, fixed)
+                ..Self::of_contact(&first.contact, &last.contact, cast)
             },
             ContactRange::Separated(separated) => Self::of_separated(separated),
         }
     }
 
     /// The result of a query for the clearance.
-    pub(crate) fn of_clearance(
-        clearance: &Clearance,
-        moving: &ConvexPolyhedron,
-        fixed: &ConvexPolyhedron,
-    ) -> Self {
+    pub(crate) fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
         match clearance {
-            Clearance::Blocked(contact) => Self {
+            Clearance::Blocked { distance, contact } => Self {
                 outcome: Name::Blocked,
-                distance: Some(safe_distance(contact)),
-                ..Self::of_first(contact, moving, fixed)
+                distance: Some(*distance),
+                ..Self::of_first(contact, cast)
             },
             Clearance::Slides(grazing) => Self {
                 outcome: Name::Slides,
                 margin: Some(-grazing.overlap),
                 message: Some(describe(grazing)),
-                ..Self::of_first(&grazing.contact, moving, fixed)
+                ..Self::of_first(&grazing.contact, cast)
             },
-            Clearance::Behind(contact) => {
-                Self { outcome: Name::Behind, ..Self::of_first(contact, moving, fixed) }
-            }
+            // The last contact is the first one of the way back.
+            Clearance::Behind(last) => Self {
+                outcome: Name::Behind,
+                exit: Some(exit_of(last)),
+                translation: None,
+                lower: None,
+                upper: None,
+                ..Self::of_first(last, &cast.reversed())
+            },
             Clearance::Separated(separated) => Self::of_separated(separated),
             Clearance::Overlapping { first, last } => {
-                Self { outcome: Name::Overlapping, ..Self::of_contact(first, last, moving, fixed) }
+                Self { outcome: Name::Overlapping, ..Self::of_contact(first, last, cast) }
             }
         }
     }
@@ -189,26 +188,22 @@ impl Record {
         Self { outcome: Name::Error, message: Some(message), ..Self::default() }
     }
 
-    fn of_contact(
-        first: &Contact,
-        last: &Contact,
-        moving: &ConvexPolyhedron,
-        fixed: &ConvexPolyhedron,
-    ) -> Self {
-        Self { exit: Some(exit_of(last)), ..Self::of_first(first, moving, fixed) }
+    fn of_contact(first: &Contact, last: &Contact, cast: &Cast) -> Self {
+        Self { exit: Some(exit_of(last)), ..Self::of_first(first, cast) }
     }
 
-    fn of_first(first: &Contact, moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron) -> Self {
+    fn of_first(first: &Contact, cast: &Cast) -> Self {
+        let features = first.features(cast);
         Self {
             translation: Some(first.translation),
             normal: Some(first.normal.to_array()),
-            point: Some(first.point_on_fixed.to_array()),
+            point: Some(first.points(cast).on_fixed.to_array()),
             lower: Some(first.certificate.lower),
-            upper: Some(first.certificate.upper),
+            upper: Some(first.certificate.upper).filter(|upper| upper.is_finite()),
             tolerance: Some(first.certificate.tolerance),
             features: Some(Features {
-                moving: FeatureRecord::of(first.moving_feature, moving),
-                fixed: FeatureRecord::of(first.fixed_feature, fixed),
+                moving: FeatureRecord::of(features.moving, cast.moving()),
+                fixed: FeatureRecord::of(features.fixed, cast.fixed()),
             }),
             solver: Some(solver_name(first.solver)),
             steps: Some(StepCounts::of(first.steps)),

@@ -1,5 +1,6 @@
 //! What is said about an answer, in the fields that `batch --help` documents.
 
+use colltrans::glam::DVec3;
 use colltrans::{
     Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, Separated, Solver,
     Steps,
@@ -8,6 +9,7 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::excess::Excess;
+use crate::numbers::{about, unit_vector};
 use crate::query::exit_of;
 
 /// One result; fields that do not apply are left out.
@@ -133,7 +135,7 @@ impl Record {
             }
             ContactRange::Grazing { first, last } => Self {
                 outcome: Name::Grazing,
-                margin: Some(-first.overlap),
+                margin: Some(0.0 - first.overlap),
                 message: Some(describe(first)),
                 ..Self::of_contact(&first.contact, &last.contact, cast)
             },
@@ -151,7 +153,7 @@ impl Record {
             },
             Clearance::Slides(grazing) => Self {
                 outcome: Name::Slides,
-                margin: Some(-grazing.overlap),
+                margin: Some(0.0 - grazing.overlap),
                 message: Some(describe(grazing)),
                 ..Self::of_first(&grazing.contact, cast)
             },
@@ -175,7 +177,7 @@ impl Record {
         let Separated { certificate, solver, steps } = separated;
         Self {
             outcome: Name::Separated,
-            normal: Some(certificate.normal.to_array()),
+            normal: Some(coordinates(certificate.normal)),
             margin: Some(certificate.margin),
             solver: Some(solver_name(*solver)),
             steps: Some(StepCounts::of(*steps)),
@@ -196,8 +198,8 @@ impl Record {
         let features = first.features(cast);
         Self {
             translation: Some(first.translation),
-            normal: Some(first.normal.to_array()),
-            point: Some(first.points(cast).on_fixed.to_array()),
+            normal: Some(coordinates(first.normal)),
+            point: Some(coordinates(first.points(cast).on_fixed)),
             lower: Some(first.certificate.lower),
             upper: Some(first.certificate.upper).filter(|upper| upper.is_finite()),
             tolerance: Some(first.certificate.tolerance),
@@ -228,9 +230,14 @@ impl StepCounts {
     }
 }
 
+/// Without -0.
+fn coordinates(v: DVec3) -> [f64; 3] {
+    v.to_array().map(|c| c + 0.0)
+}
+
 fn describe(grazing: &Grazing) -> String {
-    let [x, y, z] = grazing.separating_direction.to_array();
-    format!("the shadows overlap by {:e} along [{x},{y},{z}]", grazing.overlap)
+    let (overlap, along) = (about(grazing.overlap), unit_vector(grazing.separating_direction));
+    format!("the shadows overlap by {overlap} along [{along}]")
 }
 
 pub(crate) fn solver_name(solver: Solver) -> &'static str {

@@ -298,7 +298,9 @@ fn clearance_tells_its_cases_apart() {
         let text = clearance(pose, &[]);
         assert!(text.starts_with(outcome) && text.contains(part), "{text}");
         assert!(!text.contains("-0 ") && !text.contains("e0"), "{text}");
-        let record = json(&clearance(pose, &["--json"]));
+        let line = clearance(pose, &["--json"]);
+        assert!(!line.contains("-0.0,") && !line.contains("-0.0]"), "{line}");
+        let record = json(&line);
         assert_eq!(record["outcome"], outcome, "{record}");
         assert_eq!(record.get("distance").is_some(), outcome == "blocked", "{record}");
     }

@@ -24,6 +24,10 @@ pub(crate) struct Record {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) distance: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) back: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) on: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) translation: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) exit: Option<f64>,
@@ -167,9 +171,12 @@ impl Record {
                 ..Self::of_first(last, &cast.reversed())
             },
             Clearance::Separated(separated) => Self::of_separated(separated),
-            Clearance::Overlapping { first, last } => {
-                Self { outcome: Name::Overlapping, ..Self::of_contact(first, last, cast) }
-            }
+            Clearance::Overlapping { first, last } => Self {
+                outcome: Name::Overlapping,
+                back: Some(-first.certificate.lower),
+                on: Some(-last.certificate.lower),
+                ..Self::of_contact(first, last, cast)
+            },
         }
     }
 

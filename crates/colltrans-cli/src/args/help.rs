@@ -55,6 +55,7 @@ Each result is one JSON object with those of these fields that apply:
                "behind", "separated" or "overlapping"
   direction    with --directions: the direction as it was read
   distance     of `clearance`, blocked: how far the body can go for certain
+  back on      of `clearance`, overlapping: how far to go back, or on, to be free for certain
   translation  first contact, in multiples of the direction; negative: behind, or overlapping
   exit         last contact; behind: where that is (and normal, point, features are those there)
   tolerance    what rounding alone can make of upper - lower; digits below it are not known

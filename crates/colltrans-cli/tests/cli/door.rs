@@ -313,6 +313,8 @@ fn clearance_tells_its_cases_apart() {
     assert!(ahead.len() == 1 && ahead[0] <= 1.0 && ahead[0] > 1.0 - 1e-12, "{ahead:?}");
     let ways = certain(&clearance("0.5,0.5,0", &[]));
     assert!(ways.len() == 2 && ways[0] >= 0.75 && ways[1] >= 0.25, "{ways:?}");
+    let record = json(&clearance("0.5,0.5,0", &["--json"]));
+    assert_eq!([&record["back"], &record["on"]].map(|v| v.as_f64().unwrap()), ways[..], "{record}");
     let record = json(&clearance("-3,0.5,0", &["--json"]));
     let (distance, lower) = (&record["distance"], &record["lower"]);
     assert!(distance.as_f64() <= lower.as_f64() && lower.as_f64().is_some(), "{record}");

@@ -208,6 +208,7 @@ impl Record {
             normal: Some(coordinates(first.normal)),
             point: Some(coordinates(first.points(cast).on_fixed)),
             lower: Some(first.certificate.lower),
+            // Bodies that only touch claim no upper bound.
             upper: Some(first.certificate.upper).filter(|upper| upper.is_finite()),
             tolerance: Some(first.certificate.tolerance),
             features: Some(Features {

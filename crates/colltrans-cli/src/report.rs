@@ -150,12 +150,16 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
         line(text, "moving", &feature(&features.moving));
         line(text, "fixed", &feature(&features.fixed));
     }
-    let rounding = format!("rounding alone: up to {}", about(proof.tolerance));
     let bounds = if proof.upper.is_finite() {
-        let gap = about(proof.upper - proof.lower);
-        format!("{} to {}, gap {gap} ({rounding})", number(proof.lower), number(proof.upper))
+        format!(
+            "{} to {}, gap {} (rounding alone: up to {})",
+            number(proof.lower),
+            number(proof.upper),
+            about(proof.gap()),
+            about(proof.tolerance)
+        )
     } else {
-        format!("from {} on, perhaps there is none ({rounding})", number(proof.lower))
+        format!("at least {}; whether they touch is beyond rounding", number(proof.lower))
     };
     line(text, "bounds", &bounds);
     line(text, "solver", &work(solver_name(first.solver), first.steps));

@@ -1,7 +1,7 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Certificate, Contact, ContactRange, Feature, Features, Separated};
+use colltrans::{Contact, ContactRange, Feature, Features, Separated};
 
 use super::{Cast, Scene, Solid, layout};
 use crate::query::{When, when};
@@ -50,7 +50,7 @@ impl<'a> Story<'a> {
         let length = scene.query.direction.length();
         let (features, points) = (contact.features(scene.cast), contact.points(scene.cast));
         let way = quantity(contact.translation, length);
-        let Certificate { lower, upper, tolerance, .. } = contact.certificate;
+        let proof = &contact.certificate;
         let touch = format!(
             "{} of the moving body on {} of the fixed body",
             features.moving.kind(),
@@ -58,12 +58,10 @@ impl<'a> Story<'a> {
         );
         let mut details: Vec<String> = also.into_iter().collect();
         details.push(touch);
-        // To within rounding, or what is left.
-        let agreement = if upper.is_finite() {
-            format!(
-                "proven lower and upper bound of t agree to {:.0e}",
-                tolerance.max(upper - lower)
-            )
+        let agreement = if proof.upper.is_finite() {
+            // The gap itself changes with the last bits of a search.
+            let within = proof.gap().max(proof.tolerance);
+            format!("proven lower and upper bound of t agree to {within:.0e}")
         } else {
             "t is a proven lower bound".into()
         };

@@ -110,6 +110,7 @@
 //! `portal` (solvers); `answer`, `search` (one cast), `query` and `tracker`.
 
 mod answer;
+mod body;
 mod certificate;
 mod cta;
 mod error;
@@ -129,9 +130,11 @@ mod query;
 mod search;
 mod section;
 mod setting;
+mod solve;
 mod topology;
 mod tracker;
 
+pub use body::solid::{Shell, ShrinkReport, Solid, SolidError, SolidReport};
 pub use certificate::{Certificate, CertificateError, Separation};
 pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
 pub use glam;
@@ -143,6 +146,9 @@ pub use polyhedron::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
 pub use pose::Pose;
 pub use query::{cast, cast_with, clearance, contact_range, directional_depth, intersects};
 pub use setting::VertexPair;
+pub use solve::facets::{
+    SolidCast, SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace,
+};
 pub use tracker::Tracker;
 
 /// The example of the README, compiled and run as a test.

@@ -1,0 +1,3 @@
+//! Solvers.
+
+pub(crate) mod facets;

@@ -325,12 +325,13 @@ impl Slope {
         let size = sides[i].abs().max_element() + sides[j].abs().max_element();
         let blur = 8.0 * scene.blur * (size + scene.blur) + 4.0 * f64::EPSILON * size * size;
         let steep = normal.length() / normal.z;
+        let upright = normal.z > 8.0 * blur;
         Self {
             origin: [a, b, c][j],
             normal,
             // A turned normal: its error over its upward part, and what that makes of the rest.
-            tilt: if normal.z > 8.0 * blur { 6.0 * blur / normal.z * steep } else { f64::INFINITY },
-            noise: 8.0 * scene.blur * steep,
+            tilt: if upright { 6.0 * blur / normal.z * steep } else { f64::INFINITY },
+            noise: if upright { 8.0 * scene.blur * steep } else { f64::INFINITY },
         }
     }
 
@@ -338,7 +339,9 @@ impl Slope {
     fn height_above(&self, p: DVec3) -> (f64, f64) {
         let to = self.origin - p;
         let error = self.noise + self.tilt * to.abs().max_element();
-        (self.normal.dot(to) / self.normal.z, if error.is_nan() { f64::INFINITY } else { error })
+        let height = self.normal.dot(to) / self.normal.z;
+        // A facet on edge has no heights to speak of.
+        if height.is_finite() && !error.is_nan() { (height, error) } else { (0.0, f64::INFINITY) }
     }
 }
 

@@ -2,46 +2,49 @@
 
 use std::hint::black_box;
 
-use colltrans::{Solver, Tracker};
-use colltrans_bench::motion::{Motion, sequence};
+use colltrans::{Options, Solver, Tracker, cast_with};
 use colltrans_bench::parry::{self, ParrySetting};
-use colltrans_bench::settings::{Meeting, Setting};
 use colltrans_bench::shapes::Shape;
-use colltrans_oracle::settings::Rng;
+use colltrans_kit::random::Random;
+use colltrans_lab::settings::{Meeting, Setting};
+use colltrans_lab::shapes::Bodies;
 use criterion::{Criterion, criterion_group, criterion_main};
 
+fn pair(shape: Shape, n: usize, random: &mut Random) -> Bodies {
+    Bodies::new([(); 2].map(|()| shape.draw(n, random).expect("a body")))
+}
+
 fn cast(criterion: &mut Criterion) {
-    for (shape, n, meeting) in [
-        (Shape::Ellipsoid, 8, Meeting::Colliding),
-        (Shape::Ellipsoid, 128, Meeting::Colliding),
-        (Shape::Ellipsoid, 2_000, Meeting::Colliding),
-        (Shape::Ellipsoid, 2_000, Meeting::Separated),
-        (Shape::Needle(100.0), 2_000, Meeting::Colliding),
+    for (shape, n, meeting, name) in [
+        (Shape::Ellipsoid, 8, Meeting::Colliding, "colliding"),
+        (Shape::Ellipsoid, 128, Meeting::Colliding, "colliding"),
+        (Shape::Ellipsoid, 2_000, Meeting::Colliding, "colliding"),
+        (Shape::Ellipsoid, 2_000, Meeting::PassingWithin(0.2), "separated"),
+        (Shape::Needle(100.0), 2_000, Meeting::Colliding, "colliding"),
     ] {
-        let mut rng = Rng::new(1);
-        let bodies: Vec<_> = (0..4).map(|_| shape.draw(n, &mut rng).expect("a body")).collect();
+        let mut random = Random::new(1, &[n as u64]);
+        let bodies = pair(shape, n, &mut random);
+        let [moving, fixed] = &bodies.pair;
         let settings: Vec<_> =
-            (0..256).map(|_| Setting::draw(&bodies, meeting, &mut rng)).collect();
-        let mut group =
-            criterion.benchmark_group(format!("{} {n} {}", shape.name(), meeting.name()));
+            (0..256).map(|_| Setting::draw(&bodies, meeting, &mut random)).collect();
+        let mut group = criterion.benchmark_group(format!("{} {n} {name}", shape.name()));
         for (name, solver) in
             [("cta", Solver::Cta), ("portal", Solver::Portal), ("auto", Solver::Auto)]
         {
+            let options = Options { solver, ..Options::default() };
             let mut cycle = settings.iter().cycle();
             group.bench_function(name, |bencher| {
-                bencher.iter(|| black_box(cycle.next().expect("endless")).cast(&bodies, solver));
+                bencher.iter(|| {
+                    let s = black_box(cycle.next().expect("endless"));
+                    cast_with(moving, &s.moving, fixed, &s.fixed, s.direction, &options)
+                });
             });
         }
-        let theirs: Option<Vec<_>> = bodies.iter().map(parry::body).collect();
-        if let Some(theirs) = theirs {
-            let settings: Vec<_> =
-                settings.iter().map(|s| (s.moving, s.fixed, ParrySetting::new(s))).collect();
+        if let (Some(moving), Some(fixed)) = (parry::body(moving), parry::body(fixed)) {
+            let settings: Vec<_> = settings.iter().map(ParrySetting::new).collect();
             let mut cycle = settings.iter().cycle();
             group.bench_function("parry3d-f64", |bencher| {
-                bencher.iter(|| {
-                    let (moving, fixed, setting) = black_box(cycle.next().expect("endless"));
-                    setting.cast(&theirs[*moving], &theirs[*fixed])
-                });
+                bencher.iter(|| black_box(cycle.next().expect("endless")).cast(&moving, &fixed));
             });
         }
         group.finish();
@@ -51,23 +54,25 @@ fn cast(criterion: &mut Criterion) {
 /// A sequence over and over, from scratch and tracked.
 fn track(criterion: &mut Criterion) {
     for (n, delta) in [(200, 0.01), (2_000, 0.01), (2_000, 0.0013), (20_000, 0.0013)] {
-        let mut rng = Rng::new(1);
-        let bodies: Vec<_> =
-            (0..4).map(|_| Shape::Ellipsoid.draw(n, &mut rng).expect("a body")).collect();
-        let settings = sequence(&bodies, Meeting::Colliding, Motion::Screw, delta, 1_000, &mut rng);
-        let Some(&Setting { moving, fixed, .. }) = settings.first() else { continue };
-        let mut tracker = Tracker::new(&bodies[moving], &bodies[fixed]);
+        let mut random = Random::new(1, &[n as u64]);
+        let bodies = pair(Shape::Ellipsoid, n, &mut random);
+        let [moving, fixed] = &bodies.pair;
+        let settings = Setting::sequence(&bodies, Meeting::Colliding, delta, 1_000, &mut random);
+        let mut tracker = Tracker::new(moving, fixed);
         let mut group = criterion.benchmark_group(format!("sequence {n} {}%", 100.0 * delta));
         // Forwards and back, so that there is no jump.
         let mut cycle = settings.iter().chain(settings.iter().rev()).cycle();
         group.bench_function("tracker", |bencher| {
             bencher.iter(|| {
-                let setting = black_box(cycle.next().expect("endless"));
-                tracker.cast(&setting.moving_pose, &setting.fixed_pose, setting.direction)
+                let s = black_box(cycle.next().expect("endless"));
+                tracker.cast(&s.moving, &s.fixed, s.direction)
             });
         });
         group.bench_function("scratch", |bencher| {
-            bencher.iter(|| black_box(cycle.next().expect("endless")).cast(&bodies, Solver::Auto));
+            bencher.iter(|| {
+                let s = black_box(cycle.next().expect("endless"));
+                colltrans::cast(moving, &s.moving, fixed, &s.fixed, s.direction)
+            });
         });
         group.finish();
     }

@@ -1,13 +1,11 @@
-//! Bodies and settings for benchmarks, and the one other library that is measured beside
-//! `colltrans`.
+//! Measurements of `colltrans` beside `parry3d-f64`.
 //!
-//! The data's way: [`shapes`] -> [`settings`], alone or in sequences ([`motion`]) -> the solvers,
-//! and [`parry`] on the same settings -> [`report`]. [`arguments`] is
-//! the command line of both programs.
+//! The data's way: [`shapes`] and [`ties`] (on what) -> `colltrans_lab::settings` (where it is) ->
+//! [`parry`] (the same in the other library) -> [`report`]. The programs `table`, `coherence` and
+//! `solids` go that way.
 
 pub mod arguments;
-pub mod motion;
 pub mod parry;
 pub mod report;
-pub mod settings;
 pub mod shapes;
+pub mod ties;

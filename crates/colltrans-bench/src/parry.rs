@@ -1,12 +1,11 @@
 //! The same bodies and settings in `parry3d-f64`.
 
 use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_lab::settings::Setting;
 use glam::DVec3;
 use parry3d_f64::math as parry_math;
 use parry3d_f64::query::{ShapeCastOptions, cast_shapes};
 use parry3d_f64::shape::ConvexPolyhedron as ParryPolyhedron;
-
-use crate::settings::Setting;
 
 /// Our vertices and faces, the latter cut into fans of triangles; `None` if parry refuses them.
 pub fn body(body: &ConvexPolyhedron) -> Option<ParryPolyhedron> {
@@ -35,8 +34,8 @@ impl ParrySetting {
     /// Converts.
     pub fn new(setting: &Setting) -> Self {
         Self {
-            moving_pose: pose(&setting.moving_pose),
-            fixed_pose: pose(&setting.fixed_pose),
+            moving_pose: pose(&setting.moving),
+            fixed_pose: pose(&setting.fixed),
             velocity: vector(setting.direction),
         }
     }

@@ -1,62 +1,94 @@
-//! What every report of measurements needs: the clock's own cost, the machine and the date.
+//! What every report of measurements needs: many times in a few numbers, and where they come from.
 
 use std::fs;
 use std::process::ExitCode;
-use std::time::{Instant, SystemTime};
 
+use colltrans_kit::provenance::Provenance;
 use serde_json::{Value, json};
 
 use crate::arguments::Arguments;
 
-/// The least time between two readings of the clock, in nanoseconds.
-pub fn clock_cost() -> f64 {
-    let once = |_| Instant::now().elapsed().as_nanos();
-    (0..64).map(once).min().unwrap_or(0) as f64
+/// Times of single queries, in nanoseconds.
+#[derive(Debug, Clone, Default)]
+pub struct Times {
+    nanoseconds: Vec<f64>,
+    is_sorted: bool,
+}
+
+impl Times {
+    /// One more.
+    pub fn add(&mut self, nanoseconds: f64) {
+        self.nanoseconds.push(nanoseconds);
+        self.is_sorted = false;
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.nanoseconds.len()
+    }
+
+    /// Sorts them, for what follows.
+    pub fn sort(&mut self) {
+        self.nanoseconds.sort_by(f64::total_cmp);
+        self.is_sorted = true;
+    }
+
+    /// The time that a share of them does not exceed; NaN if there are none.
+    ///
+    /// # Panics
+    /// If they are not sorted.
+    pub fn quantile(&self, share: f64) -> f64 {
+        assert!(self.is_sorted || self.nanoseconds.is_empty(), "times are sorted first");
+        let last = self.nanoseconds.len().saturating_sub(1);
+        let at = (last as f64 * share).round() as usize;
+        self.nanoseconds.get(at).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The median.
+    pub fn median(&self) -> f64 {
+        self.quantile(0.5)
+    }
+
+    /// Mean of all but the slowest hundredth, which other programs on the machine cause.
+    ///
+    /// # Panics
+    /// If they are not sorted.
+    pub fn mean(&self) -> f64 {
+        assert!(self.is_sorted || self.nanoseconds.is_empty(), "times are sorted first");
+        let kept = &self.nanoseconds[..(self.nanoseconds.len() * 99).div_ceil(100)];
+        kept.iter().sum::<f64>() / kept.len() as f64
+    }
+
+    /// `median_ns`, `mean_ns`, `p90_ns` and `p99_ns`.
+    pub fn to_json(&self) -> serde_json::Map<String, Value> {
+        let figures = [
+            ("median_ns", self.median()),
+            ("mean_ns", self.mean()),
+            ("p90_ns", self.quantile(0.9)),
+            ("p99_ns", self.quantile(0.99)),
+        ];
+        figures.into_iter().map(|(name, value)| (name.into(), json!(value))).collect()
+    }
 }
 
 /// Writes the rows with what they were measured on, if a file was named.
 pub fn write(arguments: &Arguments, rows: &[Value]) -> ExitCode {
     let Some(path) = &arguments.json else { return ExitCode::SUCCESS };
-    let report =
-        json!({ "date": date(), "machine": machine(), "seed": arguments.seed, "rows": rows });
+    let here = Provenance::of_this_process("parry3d-f64 0.31.1");
+    let report = json!({
+        "date": here.date,
+        "command": here.command,
+        "machine": { "cpu": here.processor, "cores": here.cores, "system": here.system },
+        "versions": here.versions,
+        "build": here.build,
+        "seed": arguments.seed,
+        "rows": rows,
+    });
     match fs::write(path, format!("{report:#}\n")) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{path}: {error}");
+            eprintln!("error: {}: {error}", path.display());
             ExitCode::FAILURE
         }
     }
-}
-
-fn machine() -> Value {
-    let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model =
-        cpu.lines().find(|l| l.starts_with("model name")).and_then(|l| l.split(": ").nth(1));
-    json!({
-        "cpu": model,
-        "threads": std::thread::available_parallelism().map_or(1, usize::from),
-        "os": std::env::consts::OS,
-        "arch": std::env::consts::ARCH,
-    })
-}
-
-/// Today in UTC, `YYYY-MM-DD` (days to civil date after Howard Hinnant).
-fn date() -> String {
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-    let days = now.as_secs() / 86_400 + 719_468;
-    let (era, day_of_era) = (days / 146_097, days % 146_097);
-    let year_of_era =
-        (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted_month = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * shifted_month + 2) / 5 + 1;
-    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
-    let year = year_of_era + era * 400 + u64::from(month <= 2);
-    format!("{year}-{month:02}-{day:02}")
-}
-
-/// The value below which a share of sorted numbers lies; NaN if there are none.
-pub fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let last = sorted.len().saturating_sub(1);
-    sorted.get((last as f64 * share).round() as usize).copied().unwrap_or(f64::NAN)
 }

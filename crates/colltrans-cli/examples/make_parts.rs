@@ -34,7 +34,7 @@ fn bracket() -> Mesh {
         (0..count).map(|i| vec![(i + 1) % count, i, i + count, (i + 1) % count + count]).collect();
     faces.push((0..count).collect());
     faces.push((count..2 * count).rev().collect());
-    Mesh { vertices, faces }
+    Mesh::new(vertices, faces)
 }
 
 /// The regular dodecahedron whose cube of vertices has sides of 2.
@@ -99,7 +99,7 @@ fn ellipsoid(semi_axes: DVec3, meridians: usize, parallels: usize) -> Mesh {
         faces.push(vec![south, at(rings.len() as u32 - 1, i + 1), at(rings.len() as u32 - 1, i)]);
     }
     let vertices = vertices.into_iter().map(|v| v * semi_axes).collect();
-    Mesh { vertices, faces }
+    Mesh::new(vertices, faces)
 }
 
 /// The corners of a regular polygon on the unit circle, starting at (1, 0); `count` must be
@@ -154,7 +154,7 @@ fn hull(points: &[DVec3]) -> Mesh {
         face.rotate_left(first);
     }
     faces.sort_unstable();
-    Mesh { vertices: kept.iter().map(|&k| points[k as usize]).collect(), faces }
+    Mesh::new(kept.iter().map(|&k| points[k as usize]).collect(), faces)
 }
 
 /// The same surface, each polygon cut into a fan of triangles.
@@ -163,5 +163,5 @@ fn triangulated(mesh: &Mesh) -> Mesh {
         let first = face[0];
         face[1..].windows(2).map(|edge| vec![first, edge[0], edge[1]]).collect::<Vec<_>>()
     };
-    Mesh { vertices: mesh.vertices.clone(), faces: mesh.faces.iter().flat_map(fan).collect() }
+    Mesh::new(mesh.vertices.clone(), mesh.faces.iter().flat_map(fan).collect())
 }

@@ -3,15 +3,13 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Pose, Solver};
-use colltrans_lab::plan::{Plan, Scale};
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  answered (contact, grazing and separated are all answers; lab: claims may not hold)
+  0  answered (contact, grazing and separated are all answers)
   1  batch: some lines have no answer; the results say which and why
   2  the command line is wrong
   3  an input file cannot be read, or a body is not what it should be
@@ -42,9 +40,6 @@ pub(crate) enum Command {
     /// Say what a mesh file holds, and whether it is convex
     #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
     Info(InfoArguments),
-    /// Run the experiments of the paper anew: figures, tables, and whether its claims hold here
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{LAB_RESULTS}\n\n{EXIT_CODES}"))]
-    Lab(LabArguments),
 }
 
 #[derive(Debug, Args)]
@@ -150,94 +145,6 @@ pub(crate) struct InfoArguments {
     /// How deep a face may lie below the convex hull [default: 1e-5 of the mesh's extent]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) convex_tolerance: Option<f64>,
-}
-
-const LAB_RESULTS: &str = "\
-The paper is Mirolo, Carpin and Pagello, \"Incremental Convex Minimization for Computing Collision
-Translations of Convex Polyhedra\", IEEE Transactions on Robotics 23(3), 2007, section V.
-
-Results, in the folder given by --output (files of these names are replaced):
-  report.html              every figure and table beside the claims it supports or refutes, and
-                           where the numbers come from; one page that needs nothing else
-  figure-NN....csv         the data: series,x,y,low,high,count
-  figure-NN....svg, .png   the figure
-  table-N....csv           the table
-
-Times are of this machine: leave it alone while it measures.";
-
-#[derive(Debug, Args)]
-pub(crate) struct LabArguments {
-    #[command(subcommand)]
-    pub(crate) what: LabCommand,
-}
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum LabCommand {
-    /// Some of the figures
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{LAB_RESULTS}\n\n{EXIT_CODES}"))]
-    Figure {
-        /// The figures' numbers in the paper
-        #[arg(required = true, value_name = "NUMBER", value_parser = numbers_of("figure-"))]
-        numbers: Vec<String>,
-        #[command(flatten)]
-        options: LabOptions,
-    },
-    /// Some of the tables
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{LAB_RESULTS}\n\n{EXIT_CODES}"))]
-    Table {
-        /// The tables' numbers in the paper
-        #[arg(required = true, value_name = "NUMBER", value_parser = numbers_of("table-"))]
-        numbers: Vec<String>,
-        #[command(flatten)]
-        options: LabOptions,
-    },
-    /// All figures and tables
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{LAB_RESULTS}\n\n{EXIT_CODES}"))]
-    All {
-        #[command(flatten)]
-        options: LabOptions,
-    },
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct LabOptions {
-    /// All sizes, few queries: everything in under five minutes (the default)
-    #[arg(long)]
-    quick: bool,
-    /// All sizes, many queries: everything in under an hour
-    #[arg(long, conflicts_with = "quick")]
-    full: bool,
-    /// Small bodies, for tests
-    #[arg(long, hide = true, conflicts_with_all = ["quick", "full"])]
-    tiny: bool,
-    /// What everything random is drawn from
-    ///
-    /// The same seed draws the same bodies, positions and directions. Times differ all the same.
-    #[arg(long, value_name = "S", default_value_t = 2007)]
-    seed: u64,
-    /// The folder of the results, made if it does not exist
-    #[arg(short, long, value_name = "DIR", default_value = "lab-results")]
-    pub(crate) output: PathBuf,
-}
-
-impl LabOptions {
-    pub(crate) fn plan(&self) -> Plan {
-        let scale = match self {
-            Self { full: true, .. } => Scale::Full,
-            Self { tiny: true, .. } => Scale::Tiny,
-            _ => Scale::Quick,
-        };
-        Plan { scale, seed: self.seed }
-    }
-}
-
-/// The numbers of the experiments whose ids begin so; the help and errors list them.
-fn numbers_of(prefix: &'static str) -> PossibleValuesParser {
-    let numbers = colltrans_lab::experiments().iter().filter_map(|experiment| {
-        let number = experiment.id.strip_prefix(prefix)?;
-        Some(PossibleValue::new(number).help(experiment.title))
-    });
-    numbers.collect::<Vec<_>>().into()
 }
 
 /// The name of a solver, on the command line and in queries.

@@ -2,8 +2,7 @@
 //!
 //! The data's way: [`args`] -> [`body`] (mesh file to polyhedron) -> the library's query ->
 //! [`record`] (what is said about the answer) -> [`report`] (for people), JSON, or [`picture`].
-//! [`batch`] does the same for every line of a file, [`info`] looks at one mesh, [`lab`] runs the
-//! paper's experiments.
+//! [`batch`] does the same for every line of a file, [`info`] looks at one mesh.
 
 mod args;
 mod batch;
@@ -11,7 +10,6 @@ mod body;
 mod cast;
 mod failure;
 mod info;
-mod lab;
 mod picture;
 mod record;
 mod report;
@@ -31,7 +29,6 @@ fn main() -> ExitCode {
         Command::Cast(arguments) => cast::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
-        Command::Lab(arguments) => lab::run(&arguments.what),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,6 +1,8 @@
 //! Who is measured: every algorithm behind the same three words.
 
-use colltrans::{Focus, Narrowing, Options, Outcome, Region, Solver, Start, Tracker, cast_with};
+use colltrans::{
+    Focus, NarrowFrom, Narrowing, Options, Outcome, Region, Solver, Tracker, cast_with,
+};
 use colltrans_yardsticks::egjk::Egjk;
 use colltrans_yardsticks::hwalk::HWalk;
 use colltrans_yardsticks::pqp::Pqp;
@@ -54,7 +56,7 @@ impl Until {
             Self::Near => PAPER_GAP,
             Self::End => END_GAP,
         };
-        let narrowing = Narrowing { start: Start::Center, gap };
+        let narrowing = Narrowing { start: NarrowFrom::Center, gap };
         Options { solver: Solver::Cta, narrowing, ..Options::default() }
     }
 }

@@ -1,5 +1,7 @@
 //! What an experiment found: figures and tables from data, and the claims they support or refute.
 
+use colltrans_kit::timing::{mean_and_deviation, quantile};
+
 /// The result of an experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
@@ -59,6 +61,20 @@ pub struct Point {
     pub high: f64,
     /// From how many measurements.
     pub count: usize,
+}
+
+impl Point {
+    /// Median with quartiles.
+    pub(crate) fn median(x: f64, values: &[f64]) -> Self {
+        let [low, y, high] = [0.25, 0.5, 0.75].map(|share| quantile(values, share));
+        Self { x, y, low, high, count: values.len() }
+    }
+
+    /// Mean, plus and minus a standard deviation.
+    pub(crate) fn mean(x: f64, values: &[f64]) -> Self {
+        let [y, deviation] = mean_and_deviation(values);
+        Self { x, y, low: y - deviation, high: y + deviation, count: values.len() }
+    }
 }
 
 /// A table.

@@ -5,7 +5,7 @@
 //! section V reports nine figures (11 to 19) and a table; each is an [`Experiment`] here.
 //!
 //! The data's way: [`plan`] (how much) -> `shapes`, `settings` (what on) -> `experiments` (what is
-//! measured, by `contestants` and `timing`) -> [`finding`] (figures, tables, claims with verdicts)
+//! measured, by `contestants`) -> [`finding`] (figures, tables, claims with verdicts)
 //! -> [`draw`], [`csv`], [`report`] (what a reader sees). [`run()`] goes all the way and writes the
 //! files.
 
@@ -16,13 +16,10 @@ mod error;
 mod experiments;
 pub mod finding;
 pub mod plan;
-pub mod provenance;
-mod random;
 pub mod report;
 mod run;
-mod settings;
-mod shapes;
-mod timing;
+pub mod settings;
+pub mod shapes;
 
 use finding::Finding;
 use plan::{Plan, Progress};

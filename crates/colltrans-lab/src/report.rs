@@ -7,8 +7,8 @@ use std::time::Duration;
 use crate::draw::Picture;
 use crate::finding::{Claim, Figure, Table};
 use crate::plan::Plan;
-use crate::provenance::{Provenance, for_people};
 use crate::run::Done;
+use colltrans_kit::provenance::{Provenance, for_people};
 
 /// What the page is about.
 #[derive(Debug)]

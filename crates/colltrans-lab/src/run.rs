@@ -13,9 +13,9 @@ use crate::draw::{Picture, draw};
 use crate::error::LabError;
 use crate::finding::Finding;
 use crate::plan::{Plan, Progress};
-use crate::provenance::{Provenance, for_people};
 use crate::report::{self, Report};
 use crate::{Experiment, csv};
+use colltrans_kit::provenance::{Provenance, for_people};
 
 /// An experiment that was run.
 #[derive(Debug, Clone)]
@@ -58,7 +58,7 @@ pub fn run(
     directory: &Path,
 ) -> Result<Summary, LabError> {
     let start = Instant::now();
-    let provenance = Provenance::of_this_process();
+    let provenance = Provenance::of_this_process(&format!("kuva {} (plots)", kuva::VERSION));
     let path = directory.join("report.html");
     let write_report = |done: &[Done]| {
         let (all, wall) = (experiments.len(), start.elapsed());

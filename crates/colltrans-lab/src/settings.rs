@@ -10,21 +10,23 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use colltrans::{ConvexPolyhedron, Pose};
 use glam::{DQuat, DVec3};
 
-use crate::random::Random;
 use crate::shapes::Bodies;
+use colltrans_kit::random::Random;
 
 /// Where the bodies are and where the moving one goes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Setting {
-    pub(crate) moving: Pose,
-    pub(crate) fixed: Pose,
+pub struct Setting {
+    /// The moving body's pose at the start.
+    pub moving: Pose,
+    /// The fixed body's pose.
+    pub fixed: Pose,
     /// Of unit length.
-    pub(crate) direction: DVec3,
+    pub direction: DVec3,
 }
 
 /// Whether the bodies meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Meeting {
+pub enum Meeting {
     /// They do.
     Colliding,
     /// They pass with this shadow gap, in `D`.
@@ -38,7 +40,10 @@ const AHEAD: [f64; 2] = [0.05, 1.0];
 
 impl Setting {
     /// A random setting of bodies that are apart at the start, in random orientations.
-    pub(crate) fn draw(bodies: &Bodies, meeting: Meeting, random: &mut Random) -> Self {
+    ///
+    /// # Panics
+    /// If the bodies are out of the range of poses.
+    pub fn draw(bodies: &Bodies, meeting: Meeting, random: &mut Random) -> Self {
         let [p, q] = &bodies.pair;
         let (turn_p, turn_q) = (random.rotation(), random.rotation());
         let direction = random.direction();
@@ -61,7 +66,10 @@ impl Setting {
 
     /// `count` settings about a random one, each `delta` diameters from the next: the moving body
     /// is displaced, or turns about its centre, or half of either as a screw does.
-    pub(crate) fn sequence(
+    ///
+    /// # Panics
+    /// If the bodies are out of the range of poses.
+    pub fn sequence(
         bodies: &Bodies,
         meeting: Meeting,
         delta: f64,
@@ -86,12 +94,10 @@ impl Setting {
     /// The paper's motion of variable coherence (section V-E), for spheres: the moving one goes
     /// round the fixed one, aiming at a point in its neighbourhood, and turns about an axis of its
     /// own by as much, `alpha_deg` a step.
-    pub(crate) fn orbit(
-        bodies: &Bodies,
-        alpha_deg: f64,
-        count: usize,
-        random: &mut Random,
-    ) -> Vec<Self> {
+    ///
+    /// # Panics
+    /// Never: the poses are in range.
+    pub fn orbit(bodies: &Bodies, alpha_deg: f64, count: usize, random: &mut Random) -> Vec<Self> {
         let (axis, spin_axis) = (random.direction(), random.direction());
         let start = axis.any_orthonormal_vector() * (2.0 * bodies.diameter);
         // Up to three quarters of a diameter from the centre: one in four or so passes.
@@ -116,10 +122,11 @@ fn pose(rotation: DQuat, translation: DVec3) -> Pose {
     Pose::new(rotation, translation).expect("a rotation, and a translation of a few diameters")
 }
 
-/// A point inside a body: between its centre, the origin, and a vertex.
+/// A point inside a body: between its middle and a vertex.
 fn inside(body: &ConvexPolyhedron, random: &mut Random) -> DVec3 {
     let vertices = body.vertices();
-    vertices[random.index(vertices.len())] * (0.95 * random.unit().sqrt())
+    let middle = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+    middle.lerp(vertices[random.index(vertices.len())], 0.95 * random.unit().sqrt())
 }
 
 /// `min_Q n.q - max_P n.p` for bodies turned about the origin.

@@ -6,7 +6,7 @@
 //! over all rings, `4 / around`; the *stretch* of the faces is the second over the first.
 
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
 
@@ -15,7 +15,8 @@ use colltrans_yardsticks::hwalk::Hierarchy;
 use colltrans_yardsticks::pqp::Soup;
 use glam::DVec3;
 
-use crate::random::Random;
+use colltrans_kit::random::Random;
+use colltrans_kit::shapes::{Mesh, ring_points, ring_sphere};
 
 /// A kind of body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,68 +64,38 @@ impl Kind {
             _ => DVec3::from_array([0; 3].map(|_| random.range(0.6, 1.4))),
         };
         let [around, rings] = self.arrangement(n);
-        let twist = if self == Self::Triangles { 0.5 } else { 0.0 };
-        let vertices: Vec<_> =
-            ring_sphere(around, rings, twist).into_iter().map(|v| v * semi_axes).collect();
         let built = if self == Self::Triangles {
-            ConvexPolyhedron::from_points(&vertices)
+            let points: Vec<_> =
+                ring_points(around, rings, 0.5).into_iter().map(|v| v * semi_axes).collect();
+            ConvexPolyhedron::from_points(&points)
         } else {
             // The corners of a trapezoid are rounded: it is flat to a few units in the last place.
-            let faces = trapezoids(around, rings);
+            let Mesh { vertices, faces } = ring_sphere(around, rings).mapped(|v| v * semi_axes);
             ConvexPolyhedron::from_mesh(&vertices, &faces, 64.0 * f64::EPSILON)
         };
         built.expect("points of an ellipsoid, and its faces, make a convex body")
     }
 }
 
-/// The poles and rings of a unit sphere; odd rings are turned by `twist` steps.
-fn ring_sphere(around: u32, rings: u32, twist: f64) -> Vec<DVec3> {
-    let mut vertices = vec![DVec3::Z];
-    for ring in 1..=rings {
-        let polar_rad = PI * f64::from(ring) / f64::from(rings + 1);
-        for k in 0..around {
-            let steps = f64::from(k) + twist * f64::from(ring % 2);
-            let angle_rad = TAU * steps / f64::from(around);
-            let (sin, cos) = angle_rad.sin_cos();
-            vertices.push(DVec3::new(
-                polar_rad.sin() * cos,
-                polar_rad.sin() * sin,
-                polar_rad.cos(),
-            ));
-        }
-    }
-    vertices.push(DVec3::NEG_Z);
-    vertices
-}
-
-/// The faces of a ring sphere without twist.
-fn trapezoids(around: u32, rings: u32) -> Vec<Vec<u32>> {
-    let at = |ring: u32, k: u32| 1 + ring * around + k % around;
-    let south = rings * around + 1;
-    let mut faces = Vec::new();
-    for k in 0..around {
-        faces.push(vec![0, at(0, k), at(0, k + 1)]);
-        for ring in 1..rings {
-            faces.push(vec![at(ring - 1, k), at(ring, k), at(ring, k + 1), at(ring - 1, k + 1)]);
-        }
-        faces.push(vec![at(rings - 1, k), south, at(rings - 1, k + 1)]);
-    }
-    faces
-}
-
 /// A moving and a fixed body, with what the contestants make of them before any query.
 #[derive(Debug)]
-pub(crate) struct Bodies {
+pub struct Bodies {
     /// The moving and the fixed one.
-    pub(crate) pair: [ConvexPolyhedron; 2],
+    pub pair: [ConvexPolyhedron; 2],
     /// `D`: the mean of both diameters, a diameter being twice the largest distance of a vertex
     /// from the centre.
-    pub(crate) diameter: f64,
+    pub diameter: f64,
     soups: OnceLock<[Soup; 2]>,
     hierarchies: OnceLock<[Hierarchy; 2]>,
 }
 
 impl Bodies {
+    /// With their diameter.
+    pub fn new(pair: [ConvexPolyhedron; 2]) -> Self {
+        let diameter = pair.iter().map(radius).sum();
+        Self { pair, diameter, soups: OnceLock::new(), hierarchies: OnceLock::new() }
+    }
+
     /// The bodies triangulated, with bounding volumes.
     pub(crate) fn soups(&self) -> &[Soup; 2] {
         self.soups.get_or_init(|| both(|i| Soup::of_polyhedron(&self.pair[i])))
@@ -137,7 +108,7 @@ impl Bodies {
     }
 
     /// Vertices of a body, on average.
-    pub(crate) fn vertices(&self) -> f64 {
+    pub fn vertices(&self) -> f64 {
         self.pair.iter().map(|body| body.vertices().len() as f64).sum::<f64>() / 2.0
     }
 }
@@ -166,15 +137,15 @@ pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies>
             let mut random = Random::new(seed, &[kind as u64, n as u64, which, i as u64]);
             kind.build(n, &mut random)
         });
-        let diameter = pair.iter().map(radius).sum();
-        Arc::new(Bodies { pair, diameter, soups: OnceLock::new(), hierarchies: OnceLock::new() })
+        Arc::new(Bodies::new(pair))
     };
     Arc::clone(built.entry((seed, kind, n, which)).or_insert_with(build))
 }
 
-/// The largest distance of a vertex from the centre, which is the origin.
+/// The largest distance of a vertex from the mean of all.
 fn radius(body: &ConvexPolyhedron) -> f64 {
-    body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
+    let middle = body.vertices().iter().sum::<DVec3>() / body.vertices().len() as f64;
+    body.vertices().iter().map(|v| v.distance(middle)).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

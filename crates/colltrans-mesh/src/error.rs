@@ -21,6 +21,24 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// The contents are of another kind than the extension says.
+    #[error("{}: holds {found}, not {format} as its name says", path.display())]
+    OtherContent {
+        /// The file.
+        path: PathBuf,
+        /// The format that the extension names.
+        format: Format,
+        /// What the file holds, in words.
+        found: &'static str,
+    },
+    /// Vertices cannot be merged within a distance like this.
+    #[error("{}: the merge tolerance {tolerance} is negative or not finite", path.display())]
+    MergeTolerance {
+        /// The file that was to be read.
+        path: PathBuf,
+        /// The tolerance as given.
+        tolerance: f64,
+    },
     /// The file cannot be read.
     #[error("{}: cannot be read: {source}", path.display())]
     Read {

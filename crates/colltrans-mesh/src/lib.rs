@@ -1,24 +1,34 @@
 //! Mesh files in double precision: STL, OBJ, PLY and OFF.
 //!
 //! The data's way: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`) ->
-//! [`Mesh`]. A reader either returns every vertex and face of the file, in the file's order, or an
-//! [`Error`] that says what is wrong and where; it never allocates more than a small multiple of
-//! the file's size, whatever the file's header promises.
+//! [`Mesh`] -> twins along open edges merged (`merge`). A reader either returns every vertex and
+//! face of the file, in the file's order, or an [`Error`] that says what is wrong and where; it
+//! never allocates more than a small multiple of the file's size, whatever the file's header
+//! promises. What the extension says is held against what the file holds (`sniff`).
 //!
-//! Every index in [`Mesh::faces`] is smaller than the number of vertices, but nothing else is
-//! promised: coordinates may be NaN, faces may be degenerate, the surface may be open.
+//! Every index in [`Mesh::faces`] is smaller than the number of vertices, every face has at least
+//! three corners, none of them followed by itself, and nothing else is promised: coordinates may
+//! be NaN, a face may pass twice through a vertex, the surface may be open ([`Mesh::open_edges`]).
 
 mod error;
+mod merge;
 mod mesh;
 mod obj;
 mod off;
 mod ply;
+mod sniff;
 mod stl;
+mod text;
 mod write;
 
+use std::fmt;
 use std::path::Path;
 
+use merge::{Places, Precision};
+use sniff::{Content, sniff};
+
 pub use error::{Error, Place};
+pub use merge::Merged;
 pub use mesh::Mesh;
 pub use write::{to_obj, to_off, to_stl, write};
 
@@ -55,20 +65,60 @@ impl Format {
     }
 }
 
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Stl => "STL",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            Self::Off => "OFF",
+        })
+    }
+}
+
+/// What a reader may choose.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ReadOptions {
+    /// Up to which distance vertices on open edges are merged, in the file's unit.
+    ///
+    /// 0 merges equal ones only. `None` is a few units in the last place of the largest
+    /// coordinate: `2^-22` times its magnitude where coordinates are in single precision (binary
+    /// STL, PLY with `float`), else `2^-48` times.
+    pub merge_tolerance: Option<f64>,
+}
+
+impl ReadOptions {
+    /// These options with another [`Self::merge_tolerance`].
+    #[must_use]
+    pub const fn with_merge_tolerance(self, tolerance: Option<f64>) -> Self {
+        Self { merge_tolerance: tolerance }
+    }
+}
+
 /// Reads a mesh file of the format that its extension names.
 ///
 /// The vertices of an STL file, which stores each triangle's corners anew, are welded
-/// ([`Mesh::weld`]); those of the other formats keep their place in the file.
+/// ([`Mesh::weld`]); those of the other formats keep their place in the file. Where the surface
+/// is open, vertices that rounding has kept apart are merged ([`Mesh::merged`] says which way).
 ///
 /// # Errors
-/// The extension is unknown, the file cannot be read, or its contents are not what the format
-/// prescribes.
+/// The extension is unknown, the file cannot be read, holds something else, or its contents are
+/// not what the format prescribes.
 pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
+    read_with(path, ReadOptions::default())
+}
+
+/// [`read`] with options.
+///
+/// # Errors
+/// As [`read`], and a tolerance that is negative or not finite.
+pub fn read_with(path: impl AsRef<Path>, options: ReadOptions) -> Result<Mesh, Error> {
     let path = path.as_ref();
     let format = Format::of_path(path)?;
     let bytes =
         std::fs::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
-    parse(format, bytes, path)
+    parse_with(format, bytes, path, options)
 }
 
 /// Reads a mesh from the bytes of a file; `path` is only named in errors.
@@ -80,21 +130,48 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 /// let square = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 /// let mesh = parse(Format::Off, square.into(), Path::new("square.off"))?;
 /// assert_eq!(mesh.faces, [[0, 1, 2, 3]]);
+/// assert_eq!(mesh.open_edges().len(), 4);
 ///
 /// let cut = square[..28].into();
 /// let error = parse(Format::Off, cut, Path::new("square.off")).unwrap_err();
 /// assert_eq!(error.to_string(), "square.off: end of file: vertex 3 of 4 is missing");
+///
+/// let error = parse(Format::Ply, square.into(), Path::new("square.ply")).unwrap_err();
+/// assert_eq!(error.to_string(), "square.ply: holds an OFF file, not PLY as its name says");
 /// # Ok::<(), colltrans_mesh::Error>(())
 /// ```
 ///
 /// # Errors
 /// The contents are not what the format prescribes.
 pub fn parse(format: Format, bytes: Vec<u8>, path: &Path) -> Result<Mesh, Error> {
+    parse_with(format, bytes, path, ReadOptions::default())
+}
+
+/// [`parse`] with options.
+///
+/// # Errors
+/// As [`parse`], and a tolerance that is negative or not finite.
+pub fn parse_with(
+    format: Format,
+    bytes: Vec<u8>,
+    path: &Path,
+    options: ReadOptions,
+) -> Result<Mesh, Error> {
+    if let Some(tolerance) = options.merge_tolerance.filter(|t| !t.is_finite() || *t < 0.0) {
+        return Err(Error::MergeTolerance { path: path.to_owned(), tolerance });
+    }
+    if let Some(content) = sniff(&bytes).filter(|content| *content != Content::Mesh(format)) {
+        let found = content.name(&bytes);
+        return Err(Error::OtherContent { path: path.to_owned(), format, found });
+    }
     let parsed = match format {
         Format::Stl => stl::parse(bytes),
-        Format::Obj => obj::parse(&bytes),
+        Format::Obj => obj::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
         Format::Ply => ply::parse(&bytes),
-        Format::Off => off::parse(&bytes),
+        Format::Off => off::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
     };
-    parsed.map_err(|fault| fault.in_file(path))
+    let (mut mesh, precision) = parsed.map_err(|fault| fault.in_file(path))?;
+    let places = if format == Format::Stl { Places::Closed } else { Places::Kept };
+    mesh.close(options.merge_tolerance, precision, places);
+    Ok(mesh)
 }

@@ -5,24 +5,34 @@ use std::collections::hash_map::Entry;
 
 use glam::DVec3;
 
+use crate::merge::Merged;
+
 /// Vertices and polygons over them, as a file lists them.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Mesh {
-    /// The vertices, in the file's unit.
+    /// The vertices, in the file's unit. Some may be used by no face.
     pub vertices: Vec<DVec3>,
     /// The faces, each a cycle of indices into `vertices`.
     pub faces: Vec<Vec<u32>>,
+    /// What was merged when the file was read; nothing for a mesh that comes from elsewhere.
+    pub merged: Merged,
 }
 
 impl Mesh {
+    /// A mesh of these vertices and faces.
+    pub fn new(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>) -> Self {
+        Self { vertices, faces, merged: Merged::default() }
+    }
+
     /// Merges vertices with equal coordinates (bit for bit, except that `-0` equals `0`).
     ///
-    /// Vertices keep the order of their first appearance. Corners of a face that become
-    /// neighbours of themselves are dropped, and so are faces with fewer than three corners
-    /// left: such a face has no area, and the edges it joined become neighbours.
+    /// Vertices keep the order of their first appearance. Steps that a face then makes to and
+    /// fro are taken out of it, and so are faces with fewer than three corners left: such a
+    /// face has no area, and the edges it joined become neighbours.
     #[must_use]
     pub fn weld(&self) -> Self {
-        let mut index_of = HashMap::with_capacity(self.vertices.len());
+        let mut index_of = HashMap::with_capacity(self.vertices.len() / 4);
         let mut vertices = Vec::new();
         let welded: Vec<u32> = self
             .vertices
@@ -36,18 +46,11 @@ impl Mesh {
                 }
             })
             .collect();
-        let mut faces = Vec::with_capacity(self.faces.len());
-        for face in &self.faces {
-            let mut corners: Vec<u32> = face.iter().map(|&v| welded[v as usize]).collect();
-            corners.dedup();
-            while corners.len() > 1 && corners.first() == corners.last() {
-                corners.pop();
-            }
-            if corners.len() >= 3 {
-                faces.push(corners);
-            }
-        }
-        Self { vertices, faces }
+        let renamed = |face: &Vec<u32>| face.iter().map(|&v| welded[v as usize]).collect();
+        let faces = self.faces.iter().map(renamed).collect();
+        let mut mesh = Self { vertices, faces, merged: self.merged };
+        mesh.drop_flat_faces();
+        mesh
     }
 
     /// The smallest and the largest coordinates of all vertices; `None` without vertices.
@@ -87,29 +90,30 @@ mod tests {
 
     #[test]
     fn welding_merges_signed_zeros_and_drops_faces_without_area() {
-        let mesh = Mesh {
-            vertices: vec![
+        let mesh = Mesh::new(
+            vec![
                 DVec3::new(0.0, 0.0, 0.0),
                 DVec3::new(1.0, 0.0, 0.0),
                 DVec3::new(0.0, 1.0, 0.0),
                 DVec3::new(-0.0, 0.0, 0.0),
                 DVec3::new(1.0, 0.0, 1e-300),
             ],
-            faces: vec![vec![0, 1, 2], vec![0, 3, 1], vec![3, 1, 4, 2], vec![2, 0, 3, 1]],
-        };
+            vec![vec![0, 1, 2], vec![0, 3, 1], vec![3, 1, 4, 2], vec![2, 0, 3, 1]],
+        );
         let welded = mesh.weld();
         assert_eq!(welded.vertices.len(), 4, "only the two zeros are equal");
         assert_eq!(welded.faces, [vec![0, 1, 2], vec![0, 1, 3, 2], vec![2, 0, 1]]);
+        assert_eq!(welded.merged.dropped_faces, 1);
         assert_eq!(welded.weld(), welded);
     }
 
     #[test]
     fn volume_of_a_tetrahedron_away_from_the_origin() {
         let at = DVec3::splat(10.0);
-        let mesh = Mesh {
-            vertices: vec![at, at + DVec3::X, at + DVec3::Y, at + DVec3::Z],
-            faces: vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]],
-        };
+        let mesh = Mesh::new(
+            vec![at, at + DVec3::X, at + DVec3::Y, at + DVec3::Z],
+            vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]],
+        );
         assert!((mesh.signed_volume() - 1.0 / 6.0).abs() < 1e-15);
         assert_eq!(mesh.extent(), 1.0);
         assert_eq!(Mesh::default().bounds(), None);

@@ -4,6 +4,9 @@
 //! errors name no line. Both are mended by what it is given to read ([`Lines`]): only positions
 //! and faces, no groups, and after each position a face of that one vertex, so that the
 //! order of first use is the order of the file.
+//!
+//! Keywords that say nothing about polygons are skipped. Those of curved surfaces are refused, and
+//! so are unknown ones: a vertex that is not recognised as one would change the answer.
 
 use std::io::{self, BufRead, Read};
 
@@ -12,13 +15,16 @@ use tobj::{LoadError, LoadOptions};
 
 use crate::error::{Fault, Place};
 use crate::mesh::Mesh;
-use crate::stl::quoted;
+use crate::text::{self, quoted, without_mark};
 
 pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = String::from_utf8_lossy(without_mark(bytes)?);
     let mut lines = Lines::new(&text);
     let loaded =
         tobj::load_obj_buf(&mut lines, &LoadOptions::default(), |_| Err(LoadError::OpenFileFailed));
+    if let Some(fault) = lines.refused {
+        return Err(fault);
+    }
     let models = match loaded {
         Ok((models, _)) => models,
         Err(LoadError::FaceVertexOutOfBounds) => return Err(unknown_vertex(&text)),
@@ -43,23 +49,59 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
 
 /// The position and face lines of an OBJ file, cleaned, one at a time.
 struct Lines<'a> {
-    text: std::iter::Enumerate<std::str::Lines<'a>>,
+    text: std::iter::Enumerate<text::Lines<'a>>,
     /// Number of the line that was read last.
     number: usize,
     /// What is left of it, as it is passed on.
     pending: Vec<u8>,
     read: usize,
     original: String,
+    /// A keyword that cannot be skipped; nothing is read after it.
+    refused: Option<Fault>,
 }
+
+/// Keywords without a meaning for the polygons of a mesh.
+const SKIPPED: [&str; 26] = [
+    "vt",
+    "vn",
+    "vp",
+    "p",
+    "l",
+    "o",
+    "g",
+    "s",
+    "mg",
+    "mtllib",
+    "usemtl",
+    "maplib",
+    "usemap",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "cstype",
+    "deg",
+    "bmat",
+    "step",
+    "parm",
+    "end",
+    "call",
+];
+
+/// Keywords of surfaces that are not polygons.
+const CURVED: [&str; 8] = ["surf", "curv", "curv2", "trim", "hole", "scrv", "sp", "con"];
 
 impl<'a> Lines<'a> {
     fn new(text: &'a str) -> Self {
         Self {
-            text: text.lines().enumerate(),
+            text: text::lines(text).enumerate(),
             number: 0,
             pending: Vec::new(),
             read: 0,
             original: String::new(),
+            refused: None,
         }
     }
 
@@ -81,7 +123,17 @@ impl<'a> Lines<'a> {
                     }
                     self.pending.push(b'\n');
                 }
-                _ => continue,
+                None => continue,
+                Some(keyword) if SKIPPED.contains(&keyword) => continue,
+                Some(keyword) => {
+                    let what = if CURVED.contains(&keyword) {
+                        format!("curved surfaces ({}) are not supported", quoted(keyword))
+                    } else {
+                        format!("unknown keyword {}", quoted(keyword))
+                    };
+                    self.refused = Some(Fault::new(Place::Line(self.number), what));
+                    return false;
+                }
             }
             self.original = line;
             return true;
@@ -156,7 +208,11 @@ impl Read for Lines<'_> {
 
 /// The first face that names a vertex that is not there.
 fn unknown_vertex(text: &str) -> Fault {
-    let total = text.lines().filter(|l| l.split_whitespace().next() == Some("v")).count() as i64;
+    let mut lines = Lines::new(text);
+    let mut total = 0;
+    while let Some(line) = lines.next_logical_line() {
+        total += i64::from(line.split_whitespace().next() == Some("v"));
+    }
     let mut lines = Lines::new(text);
     let mut so_far = 0;
     while let Some(line) = lines.next_logical_line() {

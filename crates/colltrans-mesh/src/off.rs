@@ -3,17 +3,18 @@
 //! The first word is `OFF`, with a prefix for what follows the coordinates of each vertex
 //! (`ST` texture, `C` colour, `N` normal); then the counts of vertices, faces and edges, then one
 //! line per vertex and one per face (`n i_1 ... i_n [colour]`). `#` begins a comment; blank lines
-//! mean nothing. The counts may follow `OFF` directly, even without a space.
+//! mean nothing. The counts may follow `OFF` directly, even without a space. What follows the last
+//! face is refused: the counts would be wrong.
 
 use glam::DVec3;
 
 use crate::error::{Fault, Place};
 use crate::mesh::Mesh;
-use crate::stl::quoted;
+use crate::text::{lines, quoted, without_mark};
 
 pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let text = String::from_utf8_lossy(bytes);
-    let mut lines = text.lines().enumerate().filter_map(|(number, line)| {
+    let text = String::from_utf8_lossy(without_mark(bytes)?);
+    let mut lines = lines(&text).enumerate().filter_map(|(number, line)| {
         let content = line.split('#').next().unwrap_or_default().trim();
         (!content.is_empty()).then_some(Line { number: number + 1, content })
     });
@@ -42,7 +43,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         let line = next(&format!("face {index} of {face_count}"))?;
         mesh.faces.push(parse_face(&line, vertex_count)?);
     }
-    Ok(mesh)
+    match next("") {
+        Ok(line) => Err(line.fault(format!(
+            "more follows the {vertex_count} vertices and {face_count} faces of the header"
+        ))),
+        Err(_) => Ok(mesh),
+    }
 }
 
 struct Line<'a> {

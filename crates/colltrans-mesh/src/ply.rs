@@ -1,9 +1,11 @@
 //! PLY, text and binary, through `ply-rs-bw`.
 //!
 //! Read are `x`, `y`, `z` of the element `vertex` and the list `vertex_indices` (or `vertex_index`)
-//! of the element `face`; all else is skipped. Before anything is read, the header's counts are
-//! compared with the bytes that are there.
+//! of the element `face`; all else is skipped, except triangle strips, which would be missed.
+//! Before anything is read, the header's counts are compared with the bytes that are there, and
+//! bytes that are left in the end are refused, unless they are blank.
 
+use std::borrow::Cow;
 use std::io::ErrorKind;
 
 use glam::DVec3;
@@ -13,21 +15,24 @@ use ply_rs_bw::ply::{
 };
 
 use crate::error::{Fault, Place};
+use crate::merge::Precision;
 use crate::mesh::Mesh;
-use crate::stl::quoted;
+use crate::text::{quoted, without_mark};
 
-pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let mut reader = Reader::new(bytes);
+/// The mesh, and the precision of its coordinates.
+pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
+    let bytes = with_line_feeds(without_mark(bytes)?);
+    let mut reader = Reader::new(&*bytes);
     let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|e| fault(&e, true))?;
     let text = header.encoding == Encoding::Ascii;
     let fault = |e| fault(&e, text);
     check_counts(&header, reader.get_ref().len())?;
+    let precision = check_properties(&header)?;
     let mut mesh = Mesh::default();
     let mut faces = Vec::new();
     for (name, element) in &header.elements {
         match name.as_str() {
             "vertex" => {
-                check_coordinates(&header)?;
                 let parser = Parser::<Vertex>::new();
                 let found = parser.read_payload_for_element(&mut reader, element, &header);
                 mesh.vertices = found.map_err(fault)?.into_iter().map(|v| v.0).collect();
@@ -46,7 +51,33 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     for (index, face) in faces.into_iter().enumerate() {
         mesh.faces.push(face.checked(index, mesh.vertices.len())?);
     }
-    Ok(mesh)
+    let rest = reader.get_ref();
+    if rest.iter().all(|b| *b == 0 || b.is_ascii_whitespace()) {
+        Ok((mesh, precision))
+    } else {
+        let what = format!("{} bytes follow the elements that the header promises", rest.len());
+        Err(Fault::new(Place::End, what))
+    }
+}
+
+/// Turns line ends of a lone CR into LF, in the header and, where it is text, in what follows.
+///
+/// How the first line ends tells how the header's last one does: in a binary file the byte after a
+/// lone CR may be a number that looks like LF.
+fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
+    const END: &[u8] = b"\rend_header\r";
+    if !bytes.starts_with(b"ply\r") || bytes.starts_with(b"ply\r\n") {
+        return Cow::Borrowed(bytes);
+    }
+    let mut bytes = bytes.to_vec();
+    let header = bytes.windows(END.len()).position(|w| w == END);
+    let header_end = header.map_or(bytes.len(), |start| start + END.len());
+    let is_text = bytes[..header_end].windows(13).any(|w| w == b"\rformat ascii");
+    let text_end = if is_text { bytes.len() } else { header_end };
+    for byte in bytes[..text_end].iter_mut().filter(|b| **b == b'\r') {
+        *byte = b'\n';
+    }
+    Cow::Owned(bytes)
 }
 
 /// The parser's error, in one line. Where the file is binary, lines mean nothing.
@@ -109,16 +140,30 @@ fn smallest_size(property: &PropertyType) -> usize {
     }
 }
 
-fn check_coordinates(header: &Header) -> Result<(), Fault> {
-    let vertex = header.elements.iter().find(|(name, _)| name.as_str() == "vertex");
+/// What is read must be there; returns the precision of the coordinates.
+fn check_properties(header: &Header) -> Result<Precision, Fault> {
+    let fault = |what: String| Fault::new(Place::Header, what);
+    let element = |name: &str| header.elements.iter().find(|(n, _)| n.as_str() == name);
+    let vertex = element("vertex").map(|(_, e)| &e.properties);
+    let mut precision = Precision::Double;
     for coordinate in ["x", "y", "z"] {
-        let found = vertex.is_some_and(|(_, e)| e.properties.contains_key(coordinate));
-        if !found {
-            let what = format!("the element `vertex` has no property `{coordinate}`");
-            return Err(Fault::new(Place::Header, what));
+        let property = vertex.and_then(|properties| properties.get(coordinate));
+        let property = property
+            .ok_or_else(|| fault(format!("the element `vertex` has no property `{coordinate}`")))?;
+        if matches!(property.data_type, PropertyType::Scalar(ScalarType::Float)) {
+            precision = Precision::Single;
         }
     }
-    Ok(())
+    if let Some((_, face)) = element("face") {
+        let known = ["vertex_indices", "vertex_index"];
+        if face.count > 0 && !known.iter().any(|name| face.properties.contains_key(*name)) {
+            return Err(fault("the element `face` has no list `vertex_indices`".into()));
+        }
+    }
+    if element("tristrips").is_some() {
+        return Err(fault("triangle strips are not supported".into()));
+    }
+    Ok(precision)
 }
 
 struct Vertex(DVec3);

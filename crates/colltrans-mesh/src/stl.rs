@@ -1,57 +1,90 @@
 //! STL: binary (through `stl_io`) and text.
 //!
 //! A binary file is 80 bytes of header, a count `n` and `50 n` bytes of triangles; many begin with
-//! the word `solid` as text files do, so the size decides, not the first word. Text is read
-//! here, because it may hold several solids and more digits than single precision, and because
-//! its errors should name a line. Either way the vertices are welded.
+//! the word `solid` as text files do, so the first word does not decide. A file of exactly
+//! the size that its count implies is binary; of the others those are text that begin with `solid`
+//! and hold no control characters, which binary numbers do. Text is read here, because it may hold
+//! several solids and more digits than single precision, and because its errors should name a
+//! line. Either way equal vertices are merged.
 
 use std::io::Cursor;
 
 use glam::DVec3;
 
 use crate::error::{Fault, Place};
+use crate::merge::Precision;
 use crate::mesh::Mesh;
+use crate::text::{lines, quoted, without_mark};
 
 const HEADER: usize = 80;
 const TRIANGLE: usize = 50;
 
-pub(crate) fn parse(bytes: Vec<u8>) -> Result<Mesh, Fault> {
+/// The mesh, and the precision of its coordinates.
+pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
     if bytes.is_empty() {
         return Err(Fault::new(Place::End, "the file is empty"));
     }
-    let promised = promised_size(&bytes);
-    if promised != Some(bytes.len()) && is_text(&bytes) {
-        return parse_text(&String::from_utf8_lossy(&bytes)).map(|mesh| mesh.weld());
+    if !is_exactly_binary(&bytes) && is_text(&bytes) {
+        let text = String::from_utf8_lossy(without_mark(&bytes)?);
+        return Ok((parse_text(&text)?.weld(), Precision::Double));
     }
-    let Some(promised) = promised else {
-        return Err(Fault::new(
-            Place::End,
-            format!(
-                "neither text (no leading `solid`) nor binary ({} bytes; the header alone has {})",
-                bytes.len(),
-                HEADER + 4
-            ),
-        ));
-    };
-    if bytes.len() < promised {
-        return Err(Fault::new(
-            Place::End,
-            format!("the header promises {promised} bytes, the file has {}", bytes.len()),
-        ));
+    if !is_exactly_binary(&bytes) {
+        // A mark of UTF-16 is the likelier reason.
+        without_mark(&bytes)?;
+        check_size(&bytes)?;
     }
-    parse_binary(bytes).map(|mesh| mesh.weld())
+    Ok((parse_binary(bytes)?.weld(), Precision::Single))
+}
+
+/// Whether the size is the one that the triangle count of a binary file implies.
+pub(crate) fn is_exactly_binary(bytes: &[u8]) -> bool {
+    promised_size(bytes).is_some_and(|promised| promised == bytes.len() as u64)
+}
+
+/// Whether the file begins as a text STL does and is text.
+pub(crate) fn is_text(bytes: &[u8]) -> bool {
+    let Ok(start) = without_mark(bytes).map(<[u8]>::trim_ascii_start) else { return false };
+    start.get(..5).is_some_and(|s| s.eq_ignore_ascii_case(b"solid")) && !has_control(start)
+}
+
+/// Characters that no text holds, but numbers in binary do.
+pub(crate) fn has_control(bytes: &[u8]) -> bool {
+    bytes.iter().any(|b| *b < b' ' && !(0x09..=0x0d).contains(b))
 }
 
 /// The size that the triangle count of a binary file implies.
-fn promised_size(bytes: &[u8]) -> Option<usize> {
+fn promised_size(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(HEADER..HEADER + 4)?;
     let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
-    (count as usize).checked_mul(TRIANGLE)?.checked_add(HEADER + 4)
+    Some(u64::from(count) * TRIANGLE as u64 + HEADER as u64 + 4)
 }
 
-fn is_text(bytes: &[u8]) -> bool {
-    let start = bytes.trim_ascii_start();
-    start.len() >= 5 && start[..5].eq_ignore_ascii_case(b"solid")
+/// A binary file must hold what its header promises, and no more than a little padding.
+fn check_size(bytes: &[u8]) -> Result<(), Fault> {
+    let fault = |what: String| Err(Fault::new(Place::End, what));
+    let Some(promised) = promised_size(bytes) else {
+        return fault(format!(
+            "neither text (no leading `solid`) nor binary ({} bytes; the header alone has {})",
+            bytes.len(),
+            HEADER + 4
+        ));
+    };
+    let triangles = (promised - HEADER as u64 - 4) / TRIANGLE as u64;
+    if (bytes.len() as u64) < promised {
+        return fault(format!(
+            "the file is cut short: its header promises {triangles} triangles in {promised} bytes, \
+             it has {}",
+            bytes.len()
+        ));
+    }
+    let rest = &bytes[promised as usize..];
+    if rest.len() >= TRIANGLE && rest.iter().any(|&b| b != 0) {
+        return fault(format!(
+            "{} bytes follow the {triangles} triangles that the header promises",
+            rest.len()
+        ));
+    }
+    Ok(())
 }
 
 fn parse_binary(mut bytes: Vec<u8>) -> Result<Mesh, Fault> {
@@ -78,53 +111,86 @@ fn push_face(mesh: &mut Mesh, corners: &[DVec3]) -> Result<(), Fault> {
     Ok(())
 }
 
-fn parse_text(text: &str) -> Result<Mesh, Fault> {
-    let mut mesh = Mesh::default();
-    let mut corners: Option<Vec<DVec3>> = None;
-    for (number, line) in text.lines().enumerate() {
-        let at = |what: String| Fault::new(Place::Line(number + 1), what);
-        let mut words = line.split_whitespace();
-        let Some(keyword) = words.next() else { continue };
-        match (keyword.to_ascii_lowercase().as_str(), &mut corners) {
-            ("solid" | "facet" | "endfacet" | "endsolid", None) => {}
-            ("outer", None) => corners = Some(Vec::with_capacity(3)),
-            ("vertex", Some(corners)) => corners.push(vertex(words).map_err(at)?),
-            ("endloop", Some(found)) => {
-                if found.len() < 3 {
-                    return Err(at(format!("a loop of {} vertices; 3 are needed", found.len())));
-                }
-                push_face(&mut mesh, found)?;
-                corners = None;
-            }
-            ("solid" | "facet" | "endfacet" | "endsolid" | "outer", Some(_)) => {
-                return Err(at(format!("`{keyword}` inside a loop that was not ended")));
-            }
-            ("vertex" | "endloop", None) => return Err(at(format!("`{keyword}` outside a loop"))),
-            _ => return Err(at(format!("unknown keyword {}", quoted(keyword)))),
+/// What has been begun and not yet ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Inside {
+    Nothing,
+    Solid,
+    Facet,
+    Loop,
+}
+
+impl Inside {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Nothing => "file",
+            Self::Solid => "solid",
+            Self::Facet => "facet",
+            Self::Loop => "loop",
         }
     }
-    if corners.is_some() {
-        return Err(Fault::new(Place::End, "the last loop is not ended"));
+
+    /// What is inside what after a keyword; `None` where it has no place.
+    fn after(self, keyword: &str) -> Option<Self> {
+        Some(match (self, keyword) {
+            (Self::Nothing, "solid") | (Self::Facet, "endfacet") => Self::Solid,
+            (Self::Solid, "facet") | (Self::Loop, "endloop") => Self::Facet,
+            (Self::Facet, "outer") | (Self::Loop, "vertex") => Self::Loop,
+            (Self::Solid, "endsolid") => Self::Nothing,
+            _ => return None,
+        })
+    }
+}
+
+const KEYWORDS: [&str; 7] =
+    ["solid", "facet", "outer", "vertex", "endloop", "endfacet", "endsolid"];
+
+fn parse_text(text: &str) -> Result<Mesh, Fault> {
+    let mut mesh = Mesh::default();
+    let mut inside = Inside::Nothing;
+    let mut corners: Vec<DVec3> = Vec::new();
+    for (number, line) in lines(text).enumerate() {
+        let at = |what: String| Fault::new(Place::Line(number + 1), what);
+        let mut words = line.split_whitespace();
+        let Some(word) = words.next() else { continue };
+        let keyword = word.to_ascii_lowercase();
+        if !KEYWORDS.contains(&keyword.as_str()) {
+            return Err(at(format!("unknown keyword {}", quoted(word))));
+        }
+        let Some(next) = inside.after(&keyword) else {
+            let what = match inside {
+                Inside::Nothing => format!("`{keyword}` outside a solid"),
+                _ => format!("`{keyword}` inside a {} that was not ended", inside.name()),
+            };
+            return Err(at(what));
+        };
+        match keyword.as_str() {
+            "outer" => corners.clear(),
+            "vertex" => corners.push(vertex(words).map_err(at)?),
+            "endloop" if corners.len() < 3 => {
+                return Err(at(format!("a loop of {} vertices; 3 are needed", corners.len())));
+            }
+            "endloop" => push_face(&mut mesh, &corners)?,
+            _ => {}
+        }
+        inside = next;
+    }
+    if inside != Inside::Nothing {
+        let what = format!("the last {} is not ended; the file is cut short", inside.name());
+        return Err(Fault::new(Place::End, what));
     }
     Ok(mesh)
 }
 
 fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<DVec3, String> {
-    let mut coordinates = Vec::with_capacity(3);
+    let mut xyz = [0.0; 3];
+    let mut found = 0;
     for word in words {
-        coordinates.push(word.parse().map_err(|_| format!("{} is no number", quoted(word)))?);
+        let value = word.parse().map_err(|_| format!("{} is no number", quoted(word)))?;
+        if let Some(place) = xyz.get_mut(found) {
+            *place = value;
+        }
+        found += 1;
     }
-    let found = coordinates.len();
-    let xyz: [f64; 3] =
-        coordinates.try_into().map_err(|_| format!("{found} coordinates, not 3"))?;
-    Ok(DVec3::from_array(xyz))
-}
-
-/// A word of the file, cut to a length that fits a message.
-pub(crate) fn quoted(word: &str) -> String {
-    let mut shown: String = word.chars().take(40).flat_map(char::escape_debug).collect();
-    if word.chars().nth(40).is_some() {
-        shown.push_str("...");
-    }
-    format!("`{shown}`")
+    if found == 3 { Ok(DVec3::from_array(xyz)) } else { Err(format!("{found} coordinates, not 3")) }
 }

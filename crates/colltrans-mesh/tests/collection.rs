@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use colltrans_mesh::{Error, Mesh, read};
+use colltrans_mesh::{Error, Mesh, ReadOptions, read, read_with};
 
 fn collection() -> Option<PathBuf> {
     let folder = std::env::var_os("COLLTRANS_DATA").map_or_else(
@@ -43,11 +43,50 @@ fn every_file_is_read_or_refused() {
     }
 }
 
+/// Closed parts whose corners are written in more than one way.
+#[test]
+fn closed_parts_are_closed() {
+    let Some(folder) = collection() else { return };
+    for (name, merged) in
+        [("angle_block.STL", 46), ("featuretype.STL", 288), ("octagonal_pocket.ply", 27)]
+    {
+        let path = folder.join("trimesh").join(name);
+        let mesh = read(&path).unwrap();
+        assert_eq!(mesh.open_edges().len(), 0, "{name}");
+        assert_eq!(mesh.merged.vertices, merged, "{name}");
+        assert_eq!((mesh.merged.ambiguous, mesh.merged.dropped_faces), (0, 0), "{name}");
+        assert!(mesh.merged.largest_distance <= 1e-15 * mesh.extent(), "{name}");
+        let equal_only = ReadOptions::default().with_merge_tolerance(Some(0.0));
+        assert!(!read_with(&path, equal_only).unwrap().open_edges().is_empty(), "{name}");
+    }
+}
+
+/// What each of the bad files holds: how many open edges its surface has.
+#[test]
+fn what_is_bad_about_the_bad_ones() {
+    let Some(folder) = collection() else { return };
+    for (name, open) in [
+        ("busted.STL", 0),
+        ("comments.off", 0),
+        ("multibody.stl", 12),
+        ("nancolor.obj", 0),
+        ("negative_indices.obj", 0),
+        ("not_convex.obj", 0),
+        ("points_emptyface.ply", 0),
+        ("soup.stl", 300),
+        ("whitespace.off", 0),
+    ] {
+        let mesh = read(folder.join("bad").join(name)).unwrap();
+        assert_eq!(mesh.open_edges().len(), open, "{name}");
+        assert!(mesh.vertices.iter().all(|v| v.is_finite()), "{name}");
+    }
+}
+
 #[test]
 fn known_counts() {
     let Some(folder) = collection() else { return };
     let counts = |name: &str| {
-        let Mesh { vertices, faces } = read(folder.join(name)).unwrap();
+        let Mesh { vertices, faces, .. } = read(folder.join(name)).unwrap();
         (vertices.len(), faces.len())
     };
     assert_eq!(counts("trimesh/unit_cube.STL"), (8, 12));

@@ -21,22 +21,24 @@ fn place(format: Format, text: impl AsRef<[u8]>) -> Place {
 }
 
 fn tetrahedron() -> Mesh {
-    Mesh {
-        vertices: vec![
+    Mesh::new(
+        vec![
             DVec3::ZERO,
             DVec3::new(0.1, 0.0, 0.0),
             DVec3::new(0.0, 1e-17, 0.3),
             DVec3::new(1.0 / 3.0, 2.0, -1e22),
         ],
-        faces: vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]],
-    }
+        vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]],
+    )
 }
 
 #[test]
 fn text_formats_return_every_bit() {
     let mesh = tetrahedron();
-    assert_eq!(read(Format::Obj, to_obj(&mesh)).unwrap(), mesh);
-    assert_eq!(read(Format::Off, to_off(&mesh)).unwrap(), mesh);
+    for back in [read(Format::Obj, to_obj(&mesh)), read(Format::Off, to_off(&mesh))] {
+        let Mesh { vertices, faces, .. } = back.unwrap();
+        assert_eq!((vertices, faces), (mesh.vertices.clone(), mesh.faces.clone()));
+    }
 }
 
 #[test]
@@ -49,7 +51,7 @@ fn binary_stl_returns_single_precision() {
     let rounded = |v: usize| mesh.vertices[v].as_vec3().as_dvec3();
     assert_eq!(read_back.vertices, [rounded(0), rounded(2), rounded(1), rounded(3)]);
     assert_eq!(read_back.faces, [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 3, 1]]);
-    assert_eq!(to_stl(&Mesh { faces: vec![vec![0, 1, 2, 3]], ..mesh }), None);
+    assert_eq!(to_stl(&Mesh::new(mesh.vertices, vec![vec![0, 1, 2, 3]])), None);
 }
 
 #[test]

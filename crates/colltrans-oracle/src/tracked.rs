@@ -5,7 +5,8 @@
 //! that holds by itself.
 
 use colltrans::{
-    Contact, Focus, Grazing, Options, Outcome, Path, QueryError, Region, Solver, Steps, Tracker,
+    Contact, Focus, Grazing, Options, Outcome, QueryError, Region, Solver, StartedFrom, Steps,
+    Tracker,
 };
 
 use crate::check::{Judge, Objection, Proof, same};
@@ -57,7 +58,7 @@ pub struct Finding {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agreement {
     /// What the search began with.
-    pub path: Path,
+    pub path: StartedFrom,
     /// What the answer proves.
     pub proof: Proof,
     /// It is not the one-off outcome, or not its value, and both are admissible: the shadows' rim
@@ -190,7 +191,7 @@ fn judge_answer(
         (Err(objection), Some(difference)) => Err(Objection(format!("{difference}; {objection}"))),
         (judged, None) => judged,
     }?;
-    Ok(Agreement { path: answer.steps().path, proof, rounding_decides })
+    Ok(Agreement { path: answer.steps().started_from, proof, rounding_decides })
 }
 
 /// The library's own check of an answer's certificate, and the gap that it states.

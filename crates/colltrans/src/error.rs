@@ -3,16 +3,6 @@
 use glam::DVec3;
 use thiserror::Error;
 
-/// Largest magnitude of a coordinate, a translation or a direction component: `2^200`.
-///
-/// Together with [`MIN_MAGNITUDE`] it keeps every product of three coordinates, and
-/// every rounding error of such a product, inside the range of an `f64`, so that the orientation
-/// predicates are exact.
-pub const MAX_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
-
-/// Smallest magnitude of a coordinate that is not zero: `2^-200`. See [`MAX_MAGNITUDE`].
-pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 200) << 52);
-
 /// Why no [`ConvexPolyhedron`](crate::ConvexPolyhedron) could be built.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -133,10 +123,11 @@ pub enum TopologyError {
         /// The vertex.
         vertex: usize,
     },
-    /// The faces form several surfaces, or one with handles.
+    /// The faces form several surfaces, or one with holes through it (handles).
     #[error(
-        "the surface is not one sphere: {vertices} vertices - {edges} edges + {faces} faces = \
-         {euler}, not 2"
+        "the surface is {}, not one sphere ({vertices} vertices - {edges} edges + {faces} faces = \
+         {euler}, not 2)",
+        surface_in_words(*euler, *shells)
     )]
     NotASphere {
         /// Number of vertices in use.
@@ -147,10 +138,24 @@ pub enum TopologyError {
         faces: usize,
         /// Their alternating sum.
         euler: i64,
+        /// Number of surfaces that share no vertex.
+        shells: usize,
     },
     /// There are no faces.
     #[error("the mesh has no faces")]
     NoFaces,
+}
+
+/// What closed surfaces with this Euler characteristic are: every shell adds 2, every hole through
+/// one takes 2 away.
+fn surface_in_words(euler: i64, shells: usize) -> String {
+    match (shells, shells as i64 - euler / 2) {
+        (1, 1) => "one body with a hole through it".into(),
+        (1, holes) => format!("one body with {holes} holes through it"),
+        (_, 0) => format!("{shells} separate shells"),
+        (_, 1) => format!("{shells} separate shells with a hole through one of them"),
+        (_, holes) => format!("{shells} separate shells with {holes} holes in all"),
+    }
 }
 
 /// Why a [`Pose`](crate::Pose) was refused.
@@ -228,9 +233,4 @@ pub enum QueryError {
         /// The gap that would have been accepted.
         tolerance: f64,
     },
-}
-
-/// Whether a coordinate is finite and inside the exact range.
-pub(crate) fn in_exact_range(v: DVec3) -> bool {
-    v.to_array().into_iter().all(|c| c == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&c.abs()))
 }

@@ -104,51 +104,38 @@
 //! Ties, where rounding cannot tell on which side of an edge the line passes, are decided in
 //! whole numbers.
 //!
-//! The modules, each using only those before it: `error`, `pose`, `exact` and `plane`
-//! (arithmetic); `topology`, `section` and `polyhedron` (bodies); `setting` and `minkowski` (two
-//! bodies and a direction); `options`, `certificate` and `outcome` (choices and answers); `cta` and
-//! `portal` (solvers); `answer`, `search` (one cast), `query` and `tracker`.
+//! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
+//! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
+//! (outcomes and certificates), `solve` (the two solvers, and [`observe`]), `cast` (the queries) and
+//! `tracker`.
 
 mod answer;
 mod body;
-mod certificate;
-mod cta;
+mod cast;
 mod error;
-mod exact;
-mod minkowski;
-mod options;
-mod outcome;
-mod plane;
-mod polyhedron;
-mod portal;
-mod pose;
-#[cfg(feature = "profile")]
-pub mod profile;
-#[cfg(not(feature = "profile"))]
-mod profile;
-mod query;
-mod search;
-mod section;
+mod number;
 mod setting;
 mod solve;
-mod topology;
 mod tracker;
 
-pub use body::solid::{Shell, ShrinkReport, Solid, SolidError, SolidReport};
-pub use certificate::{Certificate, CertificateError, Separation};
-pub use error::{BuildError, MAX_MAGNITUDE, MIN_MAGNITUDE, PoseError, QueryError, TopologyError};
-pub use glam;
-pub use options::{Focus, Narrowing, Options, Region, Start};
-pub use outcome::{
-    Clearance, Contact, ContactRange, Feature, Grazing, Outcome, Path, Separated, Solver, Steps,
+pub use answer::{
+    Certificate, CertificateError, Clearance, Contact, ContactRange, Grazing, Outcome, Separated,
+    Separation, Solver, StartedFrom, Steps,
 };
-pub use polyhedron::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
-pub use pose::Pose;
-pub use query::{cast, cast_with, clearance, contact_range, directional_depth, intersects};
+pub use body::solid::{Shell, ShrinkReport, Solid, SolidError, SolidReport};
+pub use body::{ConvexPolyhedron, ConvexityDefect, Feature, Pose, convexity_defect};
+pub use cast::{
+    cast, cast_observed, cast_with, clearance, contact_range, directional_depth, intersects,
+};
+pub use error::{BuildError, PoseError, QueryError, TopologyError};
+pub use glam;
+pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;
 pub use solve::facets::{
     SolidCast, SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace,
 };
+pub use solve::observe;
+pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
 pub use tracker::Tracker;
 
 /// The example of the README, compiled and run as a test.

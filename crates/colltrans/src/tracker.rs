@@ -1,21 +1,23 @@
 //! Coherence: a query that starts from the last one's answer (the paper, section III-D).
 //!
-//! Notation. A *trace* is what a cast leaves behind: the portal it ended with, or the separating
+//! Notation. A *warm start* is what a cast leaves behind: the portal it ended with, or the separating
 //! direction. There is one for casts along the direction and one for casts against it.
 //!
-//! Invariant. A trace only proposes where to begin; every answer is proven by its own certificate,
+//! Invariant. A warm start only proposes where to begin; every answer is proven by its own certificate,
 //! from the poses and the direction of its own query.
 
 use glam::DVec3;
 
-use crate::error::{QueryError, in_exact_range};
-use crate::options::{Focus, Options, Region};
-use crate::outcome::{Clearance, ContactRange, Outcome, Path, Steps};
-use crate::polyhedron::ConvexPolyhedron;
-use crate::pose::Pose;
-use crate::query::{clearance_of, range_of};
-use crate::search::{Trace, search};
+use crate::answer::{Clearance, ContactRange, Outcome, StartedFrom, Steps};
+use crate::body::ConvexPolyhedron;
+use crate::body::Pose;
+use crate::cast::{clearance_of, range_of};
+use crate::error::QueryError;
+use crate::number::range::in_exact_range;
 use crate::setting::Setting;
+use crate::solve::observe::Nobody;
+use crate::solve::options::{Focus, Options, Region};
+use crate::solve::{WarmStart, search};
 
 /// Casts of one pair of bodies, each starting from the answer of the one before.
 ///
@@ -33,7 +35,7 @@ use crate::setting::Setting;
 ///
 /// ```
 /// # use colltrans::glam::{DQuat, DVec3};
-/// # use colltrans::{ConvexPolyhedron, Options, Outcome, Path, Pose, Tracker};
+/// # use colltrans::{ConvexPolyhedron, Options, Outcome, StartedFrom, Pose, Tracker};
 /// # let corners: Vec<DVec3> = (0..8)
 /// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
 /// #     .collect();
@@ -46,8 +48,8 @@ use crate::setting::Setting;
 ///     let Outcome::Contact(contact) = tracker.cast(&pose, &Pose::IDENTITY, DVec3::NEG_Z)? else {
 ///         unreachable!("it stays above")
 ///     };
-///     let from = if step == 0 { Path::Scratch } else { Path::Features };
-///     assert_eq!(contact.steps.path, from);
+///     let from = if step == 0 { StartedFrom::Scratch } else { StartedFrom::Features };
+///     assert_eq!(contact.steps.started_from, from);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -59,7 +61,7 @@ pub struct Tracker<'a> {
     /// The direction of the last query.
     direction: DVec3,
     /// What the last casts along it and against it left.
-    traces: [Trace; 2],
+    warm_starts: [WarmStart; 2],
     steps: Steps,
 }
 
@@ -71,7 +73,7 @@ impl<'a> Tracker<'a> {
             fixed,
             focus: Focus::default(),
             direction: DVec3::ZERO,
-            traces: [Trace::Nothing; 2],
+            warm_starts: [WarmStart::Nothing; 2],
             steps: Steps::default(),
         }
     }
@@ -91,7 +93,7 @@ impl<'a> Tracker<'a> {
 
     /// Forgets the last answer: the next query starts from scratch.
     pub fn reset(&mut self) {
-        self.traces = [Trace::Nothing; 2];
+        self.warm_starts = [WarmStart::Nothing; 2];
     }
 
     /// The work of the last query: of all its casts together, and of their paths the longest.
@@ -157,13 +159,13 @@ impl<'a> Tracker<'a> {
         clearance_of(direction, |d| self.run(moving_pose, fixed_pose, d, options))
     }
 
-    /// A query begins: the traces change places if it looks the other way.
+    /// A query begins: the warm starts change places if it looks the other way.
     fn begin(&mut self, direction: DVec3) {
-        self.steps = Steps { path: Path::Features, ..Steps::default() };
+        self.steps = Steps { started_from: StartedFrom::Features, ..Steps::default() };
         if direction.dot(self.direction) < 0.0 {
-            self.traces.swap(0, 1);
+            self.warm_starts.swap(0, 1);
         }
-        // A direction that is about to be refused leaves no trace.
+        // A direction that is about to be refused leaves nothing.
         if in_exact_range(direction) && direction != DVec3::ZERO {
             self.direction = direction;
         }
@@ -179,9 +181,9 @@ impl<'a> Tracker<'a> {
     ) -> Result<Outcome, QueryError> {
         let setting = Setting::new(self.moving, moving_pose, self.fixed, fixed_pose, direction)?;
         let backwards = direction.dot(self.direction) < 0.0;
-        let trace = &mut self.traces[usize::from(backwards)];
+        let warm_start = &mut self.warm_starts[usize::from(backwards)];
         // Matched in place: an outcome is large, and moving it costs a tenth of a coherent query.
-        let outcome = search(&setting, moving_pose, options, &self.focus, trace);
+        let outcome = search(&setting, moving_pose, options, &self.focus, warm_start, &mut Nobody);
         if let Ok(outcome) = &outcome {
             self.steps.add(&outcome.steps());
         }

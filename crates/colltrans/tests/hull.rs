@@ -457,3 +457,79 @@ fn exactly_planar_caps_cost_no_more() {
     assert_eq!(body.face_count(), sides as usize + 2);
     assert!(start.elapsed().as_secs_f64() < 5.0);
 }
+
+/// Two rings, as of a prism, a frustum or a bottle: once a quadratic case, because one ring was
+/// finished before the other was begun.
+#[test]
+fn large_rings_grow_no_faster_than_clouds() {
+    let ring = |sides: u32, radius: f64, z: f64| {
+        (0..sides).map(move |k| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+            DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
+        })
+    };
+    let once = |sides: u32, top: f64, apex: Option<DVec3>| {
+        let points: Vec<DVec3> =
+            ring(sides, 1.0, 0.0).chain(ring(sides, top, 1.0)).chain(apex).collect();
+        let start = std::time::Instant::now();
+        let body = ConvexPolyhedron::from_points(&points).unwrap();
+        assert_eq!(body.vertices().len(), points.len());
+        start.elapsed().as_secs_f64()
+    };
+    let few = if cfg!(debug_assertions) { 1_000 } else { 12_000 };
+    for (what, top, apex) in
+        [("prism", 1.0, None), ("frustum", 0.7, None), ("bottle", 0.9, Some(DVec3::Z * 1.5))]
+    {
+        let seconds = |sides| once(sides, top, apex).min(once(sides, top, apex));
+        let growth = seconds(5 * few) / seconds(few);
+        println!("{what}: {growth:.1} times as long for 5 times the points");
+        // Quadratic would be 25; n log n and a colder cache measured 5 to 8.
+        assert!(growth < 15.0, "{what}: {growth}");
+    }
+}
+
+/// Bent outwards at every edge and every face away from its middle, and yet not convex: it goes
+/// twice round its axis.
+#[test]
+fn a_star_that_goes_round_twice_is_refused() {
+    let ring = (0..5).map(|k| {
+        let angle = 2.0 * std::f64::consts::TAU * f64::from(k) / 5.0;
+        DVec3::new(angle.cos(), angle.sin(), 0.0)
+    });
+    let vertices: Vec<DVec3> = ring.chain([DVec3::Z, DVec3::NEG_Z]).collect();
+    let faces: Vec<[u32; 3]> =
+        (0..5).flat_map(|k| [[k, (k + 1) % 5, 5], [(k + 1) % 5, k, 6]]).collect();
+    let star = ConvexPolyhedron::from_mesh(&vertices, &faces, 0.0);
+    assert!(matches!(star, Err(BuildError::NotConvex { .. })), "{star:?}");
+    // Once round, the same faces are a double pyramid.
+    let order: Vec<DVec3> = [0, 3, 1, 4, 2, 5, 6].into_iter().map(|k: usize| vertices[k]).collect();
+    let pyramid = ConvexPolyhedron::from_mesh(&order, &faces, 0.0).unwrap();
+    assert_eq!((pyramid.vertices().len(), pyramid.face_count()), (7, 10));
+}
+
+/// A mesh that is its own hull is taken as it is; what comes out is what its points alone give.
+#[test]
+fn convex_meshes_give_the_hull_of_their_vertices() {
+    let mut random = Random(21);
+    for count in [4, 9, 40, 400] {
+        let points: Vec<DVec3> = (0..count).map(|_| random.vector().normalize()).collect();
+        let hull = ConvexPolyhedron::from_points(&points).unwrap();
+        let faces: Vec<Vec<u32>> =
+            (0..hull.face_count() as u32).map(|f| hull.face_vertices(f).collect()).collect();
+        let again = ConvexPolyhedron::from_mesh(hull.vertices(), &faces, 0.0).unwrap();
+        let faces_of = |body: &ConvexPolyhedron| {
+            let name = |v: u32| body.vertices()[v as usize].to_array().map(f64::to_bits);
+            let mut faces: Vec<Vec<_>> = (0..body.face_count() as u32)
+                .map(|f| {
+                    let mut corners: Vec<_> = body.face_vertices(f).map(name).collect();
+                    let first = (0..corners.len()).min_by_key(|&k| corners[k]).unwrap();
+                    corners.rotate_left(first);
+                    corners
+                })
+                .collect();
+            faces.sort();
+            faces
+        };
+        assert_eq!(faces_of(&hull), faces_of(&again));
+    }
+}

@@ -2,8 +2,8 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{
-    Clearance, ContactRange, ConvexPolyhedron, Focus, Options, Outcome, Path, Pose, QueryError,
-    Region, Solver, Steps, Tracker,
+    Clearance, ContactRange, ConvexPolyhedron, Focus, Options, Outcome, Pose, QueryError, Region,
+    Solver, StartedFrom, Steps, Tracker,
 };
 use colltrans_oracle::check::same;
 use colltrans_oracle::sequences::Walk;
@@ -30,7 +30,9 @@ fn every_family_against_one_off_queries() {
                 for finding in lanes.ask(&walk.setting, walk.step.is_multiple_of(ORACLE_EVERY)) {
                     queries += 1;
                     match finding.verdict {
-                        Ok(agreement) => features += u32::from(agreement.path == Path::Features),
+                        Ok(agreement) => {
+                            features += u32::from(agreement.path == StartedFrom::Features);
+                        }
                         Err(e) => wrong.push(format!("{walk} {}: {e}", finding.lane)),
                     }
                 }
@@ -278,8 +280,8 @@ fn reset_forgets() {
     let bodies = setting.bodies().expect("bodies");
     let mut tracker = Tracker::new(&bodies.moving, &bodies.fixed);
     let first = check(&mut tracker, &setting, &bodies);
-    assert_eq!(first.steps().path, Path::Scratch);
-    assert_eq!(check(&mut tracker, &setting, &bodies).steps().path, Path::Features);
+    assert_eq!(first.steps().started_from, StartedFrom::Scratch);
+    assert_eq!(check(&mut tracker, &setting, &bodies).steps().started_from, StartedFrom::Features);
     tracker.reset();
     assert_eq!(check(&mut tracker, &setting, &bodies), first);
 }
@@ -378,12 +380,15 @@ fn steps_are_those_of_all_casts() {
             assert_eq!(tracker.steps(), outcome.steps());
             let range = tracker.contact_range(m, f, d, &options).expect("a range");
             let ends = range_ends(&range).into_iter().map(|end| end.steps());
-            let sum = ends.fold(Steps { path: Path::Features, ..Steps::default() }, |a, b| Steps {
-                planar_problems: a.planar_problems + b.planar_problems,
-                supports: a.supports + b.supports,
-                pivots: a.pivots + b.pivots,
-                path: a.path.max(b.path),
-            });
+            let sum = ends.fold(
+                Steps { started_from: StartedFrom::Features, ..Steps::default() },
+                |a, b| Steps {
+                    planar_problems: a.planar_problems + b.planar_problems,
+                    supports: a.supports + b.supports,
+                    pivots: a.pivots + b.pivots,
+                    started_from: a.started_from.max(b.started_from),
+                },
+            );
             assert_eq!(tracker.steps(), sum);
         }
     }
@@ -398,17 +403,17 @@ fn both_ends_of_a_range_are_followed() {
     let (m, f, d) = (&setting.moving_pose, &setting.fixed_pose, setting.direction);
     let options = Options::default();
     tracker.contact_range(m, f, d, &options).expect("a range");
-    assert_eq!(tracker.steps().path, Path::Scratch);
+    assert_eq!(tracker.steps().started_from, StartedFrom::Scratch);
     let [once, back] = [d, -d].map(|d| {
         tracker.contact_range(m, f, d, &options).expect("a range");
         tracker.steps()
     });
-    assert_eq!([once.path, back.path], [Path::Features; 2]);
+    assert_eq!([once.started_from, back.started_from], [StartedFrom::Features; 2]);
     // Both ends are where they were: no face is crossed on the way there.
     assert!(once.supports <= 8 && back.supports <= 8, "{once:?} {back:?}");
     for direction in [d, -d, -d, d] {
         let outcome = tracker.cast(m, f, direction).expect("an answer");
-        assert_eq!(outcome.steps().path, Path::Features);
+        assert_eq!(outcome.steps().started_from, StartedFrom::Features);
     }
 }
 
@@ -440,7 +445,7 @@ fn a_slide_from_contact_to_separation_is_followed() {
             let meets = matches!(outcome, Outcome::Contact(_));
             if met && !meets {
                 switches += 1;
-                followed += u32::from(tracker.steps().path == Path::Features);
+                followed += u32::from(tracker.steps().started_from == StartedFrom::Features);
             }
             met = meets;
         }

@@ -1,31 +1,35 @@
-//! Measures trackers against casts from scratch, on the same sequences in the same run; prints
-//! tables and writes JSON.
-//!
-//! ```text
-//! coherence [--quick] [--sizes 200,2000] [--json FILE] [--seed S]
-//! ```
+//! `coherence`: trackers against casts from scratch, on the same sequences in the same run, with
+//! parry's cast of bodies of 8 vertices beside them for scale.
 //!
 //! Every contestant works through a whole sequence before the next takes its turn; the order
 //! changes from sequence to sequence. A query is timed alone, with the clock's own cost taken off.
 
-use std::f64::consts::PI;
-use std::hint::black_box;
 use std::process::ExitCode;
-use std::time::Instant;
 
+use clap::Parser;
 use colltrans::{
-    ConvexPolyhedron, Focus, Narrowing, Options, Outcome, Path, QueryError, Region, Solver, Start,
-    Steps, Tracker, cast_with,
+    Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, StartedFrom, Steps,
+    Tracker, cast_with,
 };
-use colltrans_bench::arguments::{self, Arguments};
-use colltrans_bench::motion::{Motion, orbit, sequence};
-use colltrans_bench::report::{self, clock_cost, quantile};
-use colltrans_bench::settings::{Meeting, Setting};
-use colltrans_bench::shapes::Shape;
-use colltrans_oracle::settings::Rng;
+use colltrans_bench::arguments::Arguments;
+use colltrans_bench::parry::{self, ParrySetting};
+use colltrans_bench::report::{self, Times};
+use colltrans_bench::shapes::{Shape, body};
+use colltrans_kit::random::Random;
+use colltrans_kit::shapes::{even_rings, ring_sphere};
+use colltrans_kit::timing::Stopwatch;
+use colltrans_lab::settings::{Meeting, Setting};
+use colltrans_lab::shapes::Bodies;
 use serde_json::{Value, json};
 
-const USAGE: &str = "coherence [--quick] [--sizes 200,2000] [--json FILE] [--seed S]";
+/// Measures trackers against casts from scratch on the same sequences; prints tables
+#[derive(Debug, Parser)]
+struct Command {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+const SIZES: [usize; 4] = [200, 2_000, 20_000, 200_000];
 
 /// Configurations in a sequence.
 const LENGTH: usize = 100;
@@ -58,71 +62,106 @@ const REGION: Focus = Focus { features: false, region: Region::Automatic };
 const BOTH: Focus = Focus { features: true, region: Region::Automatic };
 
 /// What a user gets.
-const SHIPPED: Narrowing = Narrowing { start: Start::Ellipsoids, gap: 0.2 };
+const SHIPPED: Narrowing = Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2 };
 
 /// The paper's: from the centre of the levels, most of the way by planar problems.
-const PAPER: Narrowing = Narrowing { start: Start::Center, gap: 0.01 };
+const PAPER: Narrowing = Narrowing { start: NarrowFrom::Center, gap: 0.01 };
 
 fn main() -> ExitCode {
-    arguments::start(USAGE, &[200, 2_000, 20_000, 200_000], run)
-}
-
-fn run(arguments: &Arguments) -> ExitCode {
+    let Command { arguments } = Command::parse();
     let mut rows = Vec::new();
-    for &n in &arguments.sizes {
-        let mut rng = Rng::new(arguments.seed ^ n as u64);
-        let bodies: Result<Vec<_>, _> =
-            (0..4).map(|_| Shape::Ellipsoid.draw(n, &mut rng)).collect();
-        let spheres = colltrans_bench::shapes::ring_ellipsoid(n, glam::DVec3::ONE);
-        let (bodies, sphere) = match (bodies, spheres) {
-            (Ok(bodies), Ok(sphere)) => (bodies, [sphere]),
-            (Err(error), _) | (_, Err(error)) => {
-                eprintln!("ellipsoids with {n} vertices: {error}");
+    for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
+        match measure_size(n, &arguments, &mut rows) {
+            Ok(()) => {}
+            Err(error) => {
+                eprintln!("error: ellipsoids with {n} vertices: {error}");
                 return ExitCode::FAILURE;
             }
-        };
-        let sequences = if arguments.quick { 12 } else { 60 };
-        print_header();
-        for meeting in [Meeting::Colliding, Meeting::Separated] {
-            for delta in DELTAS {
-                let sequences: Vec<_> = (0..sequences)
-                    .map(|k| {
-                        sequence(&bodies, meeting, Motion::ALL[k % 3], delta, LENGTH, &mut rng)
-                    })
-                    .collect();
-                let name = format!("{:.2} %, {}", 100.0 * delta, meeting.name());
-                rows.push(measure(&name, n, &bodies, &sequences));
-            }
-            let unrelated: Vec<_> =
-                (0..sequences).map(|_| unrelated(&bodies, meeting, &mut rng)).collect();
-            rows.push(measure(&format!("random, {}", meeting.name()), n, &bodies, &unrelated));
-        }
-        for alpha in ALPHAS_DEG {
-            let orbits: Vec<_> =
-                (0..sequences).map(|_| orbit(alpha * PI / 180.0, LENGTH, &mut rng)).collect();
-            rows.push(measure(&format!("orbit {alpha} deg"), n, &sphere, &orbits));
         }
     }
-    report::write(arguments, &rows)
+    report::write(&arguments, &rows)
 }
 
-/// Settings of one pair of bodies that have nothing else in common.
-fn unrelated(bodies: &[ConvexPolyhedron], meeting: Meeting, rng: &mut Rng) -> Vec<Setting> {
-    let first = Setting::draw(bodies, meeting, rng);
-    let pair = [bodies[first.moving].clone(), bodies[first.fixed].clone()];
-    let draw = |rng: &mut Rng| loop {
-        let setting = Setting::draw(&pair, meeting, rng);
-        if (setting.moving, setting.fixed) == (0, 1) {
-            return Setting { moving: first.moving, fixed: first.fixed, ..setting };
-        }
+/// All rows of a size.
+fn measure_size(
+    n: usize,
+    arguments: &Arguments,
+    rows: &mut Vec<Value>,
+) -> Result<(), colltrans::BuildError> {
+    let mut random = Random::new(arguments.seed, &[n as u64]);
+    let mut pair = |n| -> Result<Bodies, colltrans::BuildError> {
+        let mut one = || Shape::Ellipsoid.draw(n, &mut random);
+        Ok(Bodies::new([one()?, one()?]))
     };
-    (0..LENGTH).map(|_| draw(rng)).collect()
+    let bodies = [pair(n)?, pair(n)?];
+    let [around, rings] = even_rings(n);
+    let sphere = body(&ring_sphere(around, rings))?;
+    let spheres = [Bodies::new([sphere.clone(), sphere])];
+    let small = pair(8)?;
+    let count = if arguments.quick { 12 } else { 60 };
+    let mut table = Table { n, scale: Scale::new(&small, &mut random), rows };
+    print_header();
+    for (name, meeting) in
+        [("colliding", Meeting::Colliding), ("separated", Meeting::PassingWithin(0.2))]
+    {
+        for delta in DELTAS {
+            let draw =
+                |bodies: &Bodies| Setting::sequence(bodies, meeting, delta, LENGTH, &mut random);
+            let sequences = in_turn(&bodies, count, draw);
+            table.add(&format!("{:.2} %, {name}", 100.0 * delta), &sequences);
+        }
+        let draw = |bodies: &Bodies| {
+            (0..LENGTH).map(|_| Setting::draw(bodies, meeting, &mut random)).collect()
+        };
+        let sequences = in_turn(&bodies, count, draw);
+        table.add(&format!("random, {name}"), &sequences);
+    }
+    for alpha in ALPHAS_DEG {
+        let draw = |bodies: &Bodies| Setting::orbit(bodies, alpha, LENGTH, &mut random);
+        let sequences = in_turn(&spheres, count, draw);
+        table.add(&format!("orbit {alpha} deg"), &sequences);
+    }
+    Ok(())
+}
+
+/// Sequences of several pairs in turn, each with its bodies.
+fn in_turn(
+    bodies: &[Bodies],
+    count: usize,
+    mut draw: impl FnMut(&Bodies) -> Vec<Setting>,
+) -> Vec<(&Bodies, Vec<Setting>)> {
+    bodies.iter().cycle().take(count).map(|bodies| (bodies, draw(bodies))).collect()
+}
+
+/// Parry's casts of bodies of 8 vertices, measured along with every row: a unit that the machine's
+/// mood changes as much as ours.
+struct Scale {
+    bodies: [parry3d_f64::shape::ConvexPolyhedron; 2],
+    settings: Vec<ParrySetting>,
+}
+
+impl Scale {
+    fn new(small: &Bodies, random: &mut Random) -> Self {
+        let settings = (0..LENGTH)
+            .map(|_| ParrySetting::new(&Setting::draw(small, Meeting::Colliding, random)))
+            .collect();
+        let convert = |body| parry::body(body).expect("an ellipsoid is solid");
+        Self { bodies: small.pair.each_ref().map(convert), settings }
+    }
+
+    fn measure(&self, times: &mut Times) {
+        let stopwatch = Stopwatch::new();
+        let [moving, fixed] = &self.bodies;
+        for setting in &self.settings {
+            times.add(stopwatch.time(|| setting.cast(moving, fixed)).1);
+        }
+    }
 }
 
 /// Measurements of one contestant in one row.
 #[derive(Default)]
 struct Measured {
-    nanoseconds: Vec<f64>,
+    times: Times,
     steps: Steps,
     by_features: u32,
     failures: u32,
@@ -132,34 +171,32 @@ impl Measured {
     fn follow(
         &mut self,
         contestant: &Contestant,
-        bodies: &[ConvexPolyhedron],
+        bodies: &Bodies,
         sequence: &[Setting],
     ) -> Vec<Result<Outcome, QueryError>> {
-        let Some(first) = sequence.first() else { return Vec::new() };
-        let clock = clock_cost();
-        let Contestant { solver, narrowing, .. } = *contestant;
+        let stopwatch = Stopwatch::new();
+        let Contestant { solver, narrowing, focus, .. } = *contestant;
         let options = Options { solver, narrowing, ..Options::default() };
-        let (moving, fixed) = (&bodies[first.moving], &bodies[first.fixed]);
-        let mut tracker =
-            Tracker::new(moving, fixed).with_focus(contestant.focus).expect("a focus");
+        let [moving, fixed] = &bodies.pair;
+        let mut tracker = Tracker::new(moving, fixed).with_focus(focus).expect("a focus");
         let mut outcomes = Vec::with_capacity(sequence.len());
         for setting in sequence {
-            let started = Instant::now();
-            let Setting { moving_pose: p, fixed_pose: q, direction: d, .. } = black_box(setting);
-            let outcome = black_box(if contestant.focus == Focus::NONE {
-                cast_with(moving, p, fixed, q, *d, &options)
-            } else {
-                tracker.cast_with(p, q, *d, &options)
+            let Setting { moving: p, fixed: q, direction: d } = setting;
+            let (outcome, spent) = stopwatch.time(|| {
+                if focus == Focus::NONE {
+                    cast_with(moving, p, fixed, q, *d, &options)
+                } else {
+                    tracker.cast_with(p, q, *d, &options)
+                }
             });
-            let spent = started.elapsed().as_nanos() as f64 - clock;
-            self.note(spent.max(0.0), &outcome);
+            self.note(spent, &outcome);
             outcomes.push(outcome);
         }
         outcomes
     }
 
     fn note(&mut self, spent: f64, outcome: &Result<Outcome, QueryError>) {
-        self.nanoseconds.push(spent);
+        self.times.add(spent);
         let Ok(outcome) = outcome else {
             self.failures += 1;
             return;
@@ -168,64 +205,73 @@ impl Measured {
         self.steps.planar_problems += steps.planar_problems;
         self.steps.supports += steps.supports;
         self.steps.pivots += steps.pivots;
-        self.by_features += u32::from(steps.path == Path::Features);
+        self.by_features += u32::from(steps.started_from == StartedFrom::Features);
     }
 
     fn average(&self, count: u32) -> f64 {
-        f64::from(count) / self.nanoseconds.len().max(1) as f64
-    }
-
-    /// Mean of all but the slowest hundredth, which other programs on the machine cause.
-    fn mean(&self) -> f64 {
-        let kept = &self.nanoseconds[..self.nanoseconds.len() * 99 / 100];
-        kept.iter().sum::<f64>() / kept.len().max(1) as f64
+        f64::from(count) / self.times.count().max(1) as f64
     }
 
     fn to_json(&self) -> Value {
-        json!({
-            "median_ns": quantile(&self.nanoseconds, 0.5),
-            "p90_ns": quantile(&self.nanoseconds, 0.9),
-            "mean_ns": self.mean(),
-            "planar_problems": self.average(self.steps.planar_problems),
-            "supports": self.average(self.steps.supports),
-            "pivots": self.average(self.steps.pivots),
-            "by_features": self.average(self.by_features),
-            "failures": self.failures,
-        })
+        let mut json = self.times.to_json();
+        for (name, count) in [
+            ("planar_problems", self.steps.planar_problems),
+            ("supports", self.steps.supports),
+            ("pivots", self.steps.pivots),
+            ("by_features", self.by_features),
+        ] {
+            json.insert(name.into(), json!(self.average(count)));
+        }
+        json.insert("failures".into(), json!(self.failures));
+        json.into()
     }
 }
 
-/// Lets every contestant follow every sequence, prints a row and returns it.
-fn measure(name: &str, n: usize, bodies: &[ConvexPolyhedron], sequences: &[Vec<Setting>]) -> Value {
-    let mut measured: [Measured; CONTESTANTS.len()] = Default::default();
-    let mut differences = 0;
-    for (turn, sequence) in sequences.iter().enumerate() {
-        let mut answers: [Vec<_>; CONTESTANTS.len()] = Default::default();
-        for k in 0..CONTESTANTS.len() {
-            let who = (turn + k) % CONTESTANTS.len();
-            answers[who] = measured[who].follow(&CONTESTANTS[who], bodies, sequence);
+/// The rows of one size.
+struct Table<'a> {
+    n: usize,
+    scale: Scale,
+    rows: &'a mut Vec<Value>,
+}
+
+impl Table<'_> {
+    /// Lets every contestant follow every sequence, prints a row and keeps it.
+    fn add(&mut self, name: &str, sequences: &[(&Bodies, Vec<Setting>)]) {
+        let mut measured: [Measured; CONTESTANTS.len()] = Default::default();
+        let mut parry = Times::default();
+        let mut differences = 0;
+        for (turn, (bodies, sequence)) in sequences.iter().enumerate() {
+            let mut answers: [Vec<_>; CONTESTANTS.len()] = Default::default();
+            for k in 0..CONTESTANTS.len() {
+                let who = (turn + k) % CONTESTANTS.len();
+                answers[who] = measured[who].follow(&CONTESTANTS[who], bodies, sequence);
+            }
+            self.scale.measure(&mut parry);
+            let [reference, others @ ..] = &answers;
+            let differs = |answers: &Vec<_>| {
+                answers.iter().zip(reference).filter(|(a, b)| !agree(a, b)).count()
+            };
+            differences += others.iter().map(differs).sum::<usize>();
         }
-        let [reference, others @ ..] = &answers;
-        let differs =
-            |answers: &Vec<_>| answers.iter().zip(reference).filter(|(a, b)| !agree(a, b)).count();
-        differences += others.iter().map(differs).sum::<usize>();
+        parry.sort();
+        for measured in &mut measured {
+            measured.times.sort();
+        }
+        print_row(name, self.n, &measured, &parry, differences);
+        let contestants: serde_json::Map<String, Value> = CONTESTANTS
+            .iter()
+            .zip(&measured)
+            .map(|(contestant, measured)| (contestant.name.into(), measured.to_json()))
+            .collect();
+        self.rows.push(json!({
+            "sequences": name,
+            "vertices": self.n,
+            "queries": measured[0].times.count(),
+            "contestants": contestants,
+            "parry_8": parry.to_json(),
+            "differences": differences,
+        }));
     }
-    for measured in &mut measured {
-        measured.nanoseconds.sort_by(f64::total_cmp);
-    }
-    print_row(name, n, &measured, differences);
-    let contestants: serde_json::Map<String, Value> = CONTESTANTS
-        .iter()
-        .zip(&measured)
-        .map(|(contestant, measured)| (contestant.name.into(), measured.to_json()))
-        .collect();
-    json!({
-        "sequences": name,
-        "vertices": n,
-        "queries": measured[0].nanoseconds.len(),
-        "contestants": contestants,
-        "differences": differences,
-    })
 }
 
 /// Whether two answers are the same, within what their certificates leave open.
@@ -244,7 +290,8 @@ fn agree(a: &Result<Outcome, QueryError>, b: &Result<Outcome, QueryError>) -> bo
 fn print_header() {
     println!(
         "\nmedian ns, and mean without the slowest hundredth; % = answered by feature focus; \
-         planar problems, supports and pivots on average"
+         planar problems, supports and pivots on average; tracker over scratch by medians and by \
+         means; mean of the tracker over parry's mean at 8 vertices"
     );
     print!("{:<18} {:>7}", "sequences", "n");
     for contestant in &CONTESTANTS {
@@ -253,16 +300,16 @@ fn print_header() {
             contestant.name, "mean", "%", "planar", "sup", "piv"
         );
     }
-    println!(" | ratio ratio of means, diff");
+    println!(" | ratio means parry, diff fail");
 }
 
-fn print_row(name: &str, n: usize, measured: &[Measured], differences: usize) {
+fn print_row(name: &str, n: usize, measured: &[Measured], parry: &Times, differences: usize) {
     print!("{name:<18} {n:>7}");
     for m in measured {
         print!(
             " | {:>11.0} {:>6.0} {:>3.0} {:>6.2} {:>5.2} {:>5.2}",
-            quantile(&m.nanoseconds, 0.5),
-            m.mean(),
+            m.times.median(),
+            m.times.mean(),
             100.0 * m.average(m.by_features),
             m.average(m.steps.planar_problems),
             m.average(m.steps.supports),
@@ -272,8 +319,9 @@ fn print_row(name: &str, n: usize, measured: &[Measured], differences: usize) {
     let [scratch, tracker, ..] = measured else { return };
     let failures: u32 = measured.iter().map(|m| m.failures).sum();
     println!(
-        " | {:.2} {:.2}, {differences} {failures}",
-        quantile(&tracker.nanoseconds, 0.5) / quantile(&scratch.nanoseconds, 0.5),
-        tracker.mean() / scratch.mean(),
+        " | {:.2} {:.2} {:.2}, {differences} {failures}",
+        tracker.times.median() / scratch.times.median(),
+        tracker.times.mean() / scratch.times.mean(),
+        tracker.times.mean() / parry.mean(),
     );
 }

@@ -3,6 +3,5 @@
 mod batch;
 mod cast;
 mod example_parts;
-mod lab;
 mod picture;
 mod support;

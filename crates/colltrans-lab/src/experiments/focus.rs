@@ -11,7 +11,7 @@ use crate::finding::{Claim, Figure, Finding, Point, Series};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
-use crate::timing::{mean_and_deviation, mean_point};
+use colltrans_kit::timing::mean_and_deviation;
 
 pub(super) const FIGURE_13: Experiment = Experiment {
     id: "figure-13",
@@ -179,7 +179,7 @@ struct Curves {
 impl Curves {
     fn new(n: usize, results: &[Results]) -> Self {
         let points = |who: usize| {
-            let point = |(delta, r): (&f64, &Results)| mean_point(100.0 * delta, &steps(r, who));
+            let point = |(delta, r): (&f64, &Results)| Point::mean(100.0 * delta, &steps(r, who));
             DELTAS.iter().zip(results).map(point).collect()
         };
         let scratch = |who: usize| {

@@ -8,10 +8,10 @@ use crate::Experiment;
 use crate::contestants::{PAPER_GAP, Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point};
 use crate::plan::{Plan, Progress};
-use crate::random::Random;
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
-use crate::timing::{Stopwatch, exponent, mean_point, median, median_point};
+use colltrans_kit::random::Random;
+use colltrans_kit::timing::{Stopwatch, exponent, median};
 
 pub(super) const FIGURE_11: Experiment =
     Experiment { id: "figure-11", title: "steps and time against the size of the bodies", run };
@@ -72,14 +72,14 @@ impl Grown {
 
     /// Mean steps with standard deviations.
     fn steps(&self, who: usize) -> Vec<Point> {
-        self.points(|at| mean_point(at.vertices, &at.counts(who, |work| work.steps)))
+        self.points(|at| Point::mean(at.vertices, &at.counts(who, |work| work.steps)))
     }
 
     /// Median times with quartiles, in microseconds.
     fn times(&self, who: usize) -> Vec<Point> {
         self.points(|at| {
             let times: Vec<_> = at.times(who).iter().map(|t| t / 1e3).collect();
-            median_point(at.vertices, &times)
+            Point::median(at.vertices, &times)
         })
     }
 
@@ -101,7 +101,7 @@ fn ask_again(race: &Race) -> Point {
             stopwatch.time(|| cta.ask(&setting)).1 / 1e3
         })
         .collect();
-    median_point(bodies.vertices(), &times)
+    Point::median(bodies.vertices(), &times)
 }
 
 fn steps_figure(balanced: &Grown, thin: &Grown) -> Figure {
@@ -149,7 +149,7 @@ fn thin_cost(balanced: &Grown, thin: &Grown) -> [Vec<Point>; 2] {
         let ratio = |(balanced, thin): (&Results, &Results)| {
             let usual = median(&balanced.times(who));
             let times: Vec<_> = thin.times(who).iter().map(|t| t / usual).collect();
-            median_point(balanced.vertices, &times)
+            Point::median(balanced.vertices, &times)
         };
         balanced.races.iter().zip(&thin.races).map(ratio).collect()
     })
@@ -199,7 +199,7 @@ fn few_steps(balanced: &Grown, who: usize) -> Claim {
     let points = balanced.steps(who);
     let largest = points.last().map_or(f64::NAN, |p| p.y);
     let finish = |at: &Results| {
-        let mean = |part: usize| mean_point(0.0, &at.counts(who, |work| work.finish[part])).y;
+        let mean = |part: usize| Point::mean(0.0, &at.counts(who, |work| work.finish[part])).y;
         format!("{:.1} portals and {:.1} supporting planes", mean(0), mean(1))
     };
     let after = balanced.races.last().map_or(String::new(), finish);

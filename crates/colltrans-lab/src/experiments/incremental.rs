@@ -12,7 +12,7 @@ use crate::finding::{Claim, Figure, Finding, Point};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
-use crate::timing::{median, median_point};
+use colltrans_kit::timing::median;
 
 pub(super) const FIGURE_18: Experiment =
     Experiment { id: "figure-18", title: "incremental queries beside EGJK", run };
@@ -43,7 +43,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
             let results = DELTAS.map(|delta| sequences(plan, n, delta));
             let points = |who: usize| {
                 let point = |(delta, r): (&f64, &Results)| {
-                    median_point(100.0 * delta, &r.ratios(who, EGJK))
+                    Point::median(100.0 * delta, &r.ratios(who, EGJK))
                 };
                 DELTAS.iter().zip(&results).map(point).collect()
             };

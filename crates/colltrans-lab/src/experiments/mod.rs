@@ -17,10 +17,10 @@ use crate::Experiment;
 use crate::contestants::{Answer, Contestant, Who, Work};
 use crate::finding::{Axis, Claim, Figure, Point, Series};
 use crate::plan::{Plan, Progress, Scale};
-use crate::random::Random;
 use crate::settings::Setting;
 use crate::shapes::{self, Bodies, Kind};
-use crate::timing::Stopwatch;
+use colltrans_kit::random::Random;
+use colltrans_kit::timing::Stopwatch;
 
 /// All experiments, in the paper's order.
 pub fn experiments() -> &'static [Experiment] {
@@ -313,5 +313,5 @@ fn extremes(points: &[Point]) -> [f64; 2] {
 
 /// The middle of all points' `y`.
 fn middle(points: &[Point]) -> f64 {
-    crate::timing::median(&points.iter().map(|p| p.y).collect::<Vec<_>>())
+    colltrans_kit::timing::median(&points.iter().map(|p| p.y).collect::<Vec<_>>())
 }

@@ -2,17 +2,17 @@
 
 use std::hint::black_box;
 
-use colltrans::cast_with;
-use colltrans::profile::{self, Profile};
+use colltrans::cast_observed;
+use colltrans::observe::{Clock, Profile};
 
 use super::{ABOUT, Parts, claim, share, shares, thousands};
 use crate::Experiment;
 use crate::contestants::{PAPER_GAP, Until};
 use crate::finding::{Claim, Finding, Table};
 use crate::plan::{Plan, Progress};
-use crate::random::Random;
 use crate::settings::{Meeting, Setting};
 use crate::shapes::{Kind, bodies};
+use colltrans_kit::random::Random;
 
 pub(super) const TABLE_1: Experiment =
     Experiment { id: "table-1", title: "time profile of the collision translation algorithm", run };
@@ -51,8 +51,11 @@ fn measure(plan: &Plan, n: usize) -> Profiled {
     let mut profiles: Vec<_> = settings
         .iter()
         .map(|s| {
-            let ask = || cast_with(moving, &s.moving, fixed, &s.fixed, s.direction, &options);
-            profile::measure(|| black_box(ask()).is_ok()).1
+            let mut clock = Clock::new();
+            let (p, q) = (&s.moving, &s.fixed);
+            let _ =
+                black_box(cast_observed(moving, p, fixed, q, s.direction, &options, &mut clock));
+            clock.profile()
         })
         .collect();
     // Other programs on the machine disturb some queries, in whatever phase they are.
@@ -65,7 +68,7 @@ fn measure(plan: &Plan, n: usize) -> Profiled {
     Profiled { vertices: bodies.vertices(), shares, queries }
 }
 
-/// Name of the phases in [`colltrans::profile`] that the claims are about.
+/// Name of the phases in [`colltrans::observe`] that the claims are about.
 const PLANAR: &str = "planar problems";
 const REGION: &str = "search region";
 

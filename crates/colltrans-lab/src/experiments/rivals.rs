@@ -11,7 +11,7 @@ use crate::finding::{Claim, Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
-use crate::timing::{median, median_point};
+use colltrans_kit::timing::median;
 
 pub(super) const FIGURE_15: Experiment =
     Experiment { id: "figure-15", title: "balanced faces, beside EGJK and PQP", run: balanced };
@@ -64,7 +64,7 @@ impl Field {
 
     /// `time(who) / time(CTA)`, query by query: medians with quartiles.
     fn ratio(&self, who: usize) -> Vec<Point> {
-        self.0.iter().map(|at| median_point(at.vertices, &at.ratios(who, CTA))).collect()
+        self.0.iter().map(|at| Point::median(at.vertices, &at.ratios(who, CTA))).collect()
     }
 
     fn figure(&self, id: &str, title: &str) -> Figure {
@@ -108,7 +108,7 @@ impl Field {
     fn steps(&self, who: usize) -> [f64; 2] {
         [self.0.first(), self.0.last()].map(|at| {
             at.map_or(f64::NAN, |at| {
-                crate::timing::mean_and_deviation(&at.counts(who, |w| w.steps))[0]
+                colltrans_kit::timing::mean_and_deviation(&at.counts(who, |w| w.steps))[0]
             })
         })
     }

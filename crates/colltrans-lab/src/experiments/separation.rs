@@ -10,7 +10,7 @@ use crate::finding::{Claim, Finding, Point};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
-use crate::timing::{mean_and_deviation, median, median_point};
+use colltrans_kit::timing::{mean_and_deviation, median};
 
 pub(super) const FIGURE_12: Experiment =
     Experiment { id: "figure-12", title: "separation beside collision", run };
@@ -79,7 +79,7 @@ fn ratios(all: &[Measured], who: usize, gap: usize) -> Vec<Point> {
     let point = |m: &Measured| {
         let usual = median(&m.colliding.times(who));
         let ratios: Vec<_> = m.passing[gap].times(who).iter().map(|t| t / usual).collect();
-        median_point(m.colliding.vertices, &ratios)
+        Point::median(m.colliding.vertices, &ratios)
     };
     all.iter().map(point).collect()
 }

@@ -7,11 +7,11 @@ use super::{
 };
 use crate::Experiment;
 use crate::contestants::{Until, Who, Work};
-use crate::finding::{Claim, Figure, Finding, Table};
+use crate::finding::{Claim, Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::Setting;
 use crate::shapes::Kind;
-use crate::timing::{mean_and_deviation, mean_point, without_disturbed};
+use colltrans_kit::timing::{mean_and_deviation, without_disturbed};
 
 pub(super) const FIGURE_19: Experiment = Experiment {
     id: "figure-19",
@@ -109,7 +109,7 @@ impl Sweep {
     fn figure(&self, n: f64) -> Figure {
         let line = |(alpha, steps): (&f64, &Vec<Vec<f64>>)| {
             let points =
-                self.parameters.iter().zip(steps).map(|(x, s)| mean_point(*x, s)).collect();
+                self.parameters.iter().zip(steps).map(|(x, s)| Point::mean(*x, s)).collect();
             series(format!("{alpha} degrees a step"), points)
         };
         Figure {

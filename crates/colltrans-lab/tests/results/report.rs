@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
+use colltrans_kit::provenance::Provenance;
 use colltrans_lab::Done;
 use colltrans_lab::draw::draw;
 use colltrans_lab::plan::{Plan, Scale};
-use colltrans_lab::provenance::Provenance;
 use colltrans_lab::report::{Report, html};
 
 use crate::made_up::{experiments, finding};

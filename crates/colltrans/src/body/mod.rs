@@ -1,3 +1,14 @@
-//! Bodies.
+//! Bodies, checked and indexed once, and where they stand.
 
+pub(crate) mod convex;
+mod feature;
+pub(crate) mod inertia;
+mod pose;
 pub(crate) mod solid;
+pub(crate) mod topology;
+
+pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
+pub use feature::Feature;
+pub(crate) use feature::feature;
+pub(crate) use inertia::Inertia;
+pub use pose::Pose;

@@ -1,3 +1,359 @@
-//! Solvers.
+//! One cast: from a setting, and what is left of the one before, to an outcome.
+//!
+//! The way: *features* (the portal or the separating direction of the last answer, if there is one)
+//! -> *narrowing* (a guess of the normal, from ellipsoids or by the collision translation
+//! algorithm, which may confine itself to the *region* of the last solution) -> a first portal ->
+//! the lowest face. The first two only save work: whatever they propose passes through the same
+//! enclosure and refinement, so a wrong proposal costs time and nothing else.
 
+pub(crate) mod cta;
 pub(crate) mod facets;
+pub mod observe;
+pub(crate) mod options;
+pub(crate) mod portal;
+mod proof;
+mod warm_start;
+
+use glam::{DVec2, DVec3};
+
+use crate::answer::{Grazing, Outcome, Separated, Solver, StartedFrom};
+use crate::body::Pose;
+use crate::error::QueryError;
+use crate::setting::minkowski::MinkowskiDifference;
+use crate::setting::{Setting, VertexPair};
+use cta::{ContactGuess, CtaOptions, Guess, Origin, RegionFocus};
+use observe::{Observer, Phase, ShadowFrame, Support, Watch};
+use options::{Focus, NarrowFrom, Narrowing, Options, Region};
+use portal::{Enclosure, FirstNormal, Followed, Overlap, Portal, Refined, SeparatingLine};
+use proof::Proven;
+pub(crate) use warm_start::WarmStart;
+
+/// Casts, starting from `warm_start` as far as `focus` allows, and leaves the next one there.
+#[inline]
+pub(crate) fn search<O: Observer>(
+    setting: &Setting,
+    moving_pose: &Pose,
+    options: &Options,
+    focus: &Focus,
+    warm_start: &mut WarmStart,
+    observer: &mut O,
+) -> Result<Outcome, QueryError> {
+    options.check()?;
+    let solver = match options.solver {
+        Solver::Auto => Solver::Portal,
+        solver => solver,
+    };
+    let last = std::mem::take(warm_start);
+    let mut first = Run {
+        difference: MinkowskiDifference::new(setting),
+        moving_pose,
+        graze_tolerance: options.graze_tolerance,
+        solver,
+        narrowing: options.narrowing,
+        watch: Watch::new(observer),
+    };
+    let mut answer = first.run(focus, &last, warm_start);
+    first.watch.ended(Phase::Answer);
+    if let Err(QueryError::NotConverged { .. }) = answer {
+        let turns: &[DVec2] = if first.watch.steps.started_from == StartedFrom::Scratch {
+            &TURNS[1..]
+        } else {
+            &TURNS
+        };
+        answer = again(&mut first, turns, warm_start);
+    }
+    answer
+}
+
+/// Tries turns of the lateral axes from scratch until there is an answer.
+#[cold]
+fn again<O: Observer>(
+    run: &mut Run<'_, '_, O>,
+    turns: &[DVec2],
+    next: &mut WarmStart,
+) -> Result<Outcome, QueryError> {
+    run.watch.steps.started_from = StartedFrom::Scratch;
+    let mut answer = Err(run.not_converged());
+    for &turn in turns {
+        run.difference = MinkowskiDifference::turned_by(run.difference.setting, turn);
+        answer = run.run(&Focus::NONE, &WarmStart::Nothing, next);
+        if !matches!(answer, Err(QueryError::NotConverged { .. })) {
+            break;
+        }
+    }
+    answer
+}
+
+/// Turns of the lateral axes, by 0, 0.7 and 2.1: ties that follow each other in a circle in one
+/// frame do not in another. Cosines and sines are stored, because libraries round them differently.
+const TURNS: [DVec2; 3] = [
+    DVec2::X,
+    DVec2::new(0.764_842_187_284_488_5, 0.644_217_687_237_691),
+    DVec2::new(-0.504_846_104_599_857_6, 0.863_209_366_648_873_7),
+];
+
+/// A followed portal that is this many exchanges from the lowest face was a bad place to start, or
+/// one where ties follow each other.
+const MOST_AFTER_FOLLOWING: usize = 30;
+
+/// One cast under way.
+struct Run<'a, 'o, O> {
+    difference: MinkowskiDifference<'a>,
+    moving_pose: &'a Pose,
+    graze_tolerance: f64,
+    solver: Solver,
+    narrowing: Narrowing,
+    watch: Watch<'o, O>,
+}
+
+impl<O: Observer> Run<'_, '_, O> {
+    fn run(
+        &mut self,
+        focus: &Focus,
+        last: &WarmStart,
+        next: &mut WarmStart,
+    ) -> Result<Outcome, QueryError> {
+        self.watch.begun(|| ShadowFrame {
+            world_from_shadow: self.difference.setting_from_shadow,
+            noise: self.difference.noise.point(),
+        });
+        let followed = if focus.features { self.follow(last) } else { None };
+        let enclosure = if followed.is_some() {
+            self.watch.steps.started_from = StartedFrom::Features;
+            followed
+        } else {
+            let start = self.start(focus.region, last);
+            self.watch.ended(Phase::Setup);
+            match self.approach(&start) {
+                None => portal::enclose(&self.difference, &start, &mut self.watch),
+                found => found,
+            }
+        };
+        self.watch.ended(Phase::Finish);
+        let noise = self.difference.noise.point();
+        match enclosure {
+            None => Err(self.not_converged()),
+            Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
+            Some(Enclosure::Beside(found)) if found.margin > noise => {
+                Ok(Outcome::Separated(self.separated(&found, next)))
+            }
+            Some(Enclosure::Beside(found)) => {
+                let widest = portal::widest_margin(&self.difference, found, &mut self.watch);
+                if widest.margin > noise {
+                    return Ok(Outcome::Separated(self.separated(&widest, next)));
+                }
+                self.touching(&widest, next).map(Outcome::Grazing)
+            }
+        }
+    }
+
+    /// Feature focus: a portal, or a separating direction, from those of the last answer.
+    fn follow(&mut self, last: &WarmStart) -> Option<Enclosure> {
+        match last {
+            WarmStart::Nothing => None,
+            WarmStart::Contact(portal) => {
+                match portal::follow(&self.difference, portal, &mut self.watch) {
+                    Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
+                    Followed::Rim { outward, near } => self.beside(-outward, near),
+                    Followed::Lost => None,
+                }
+            }
+            WarmStart::Apart { normals, pair } => {
+                let [p, q] = self.difference.shadow_from_bodies(*normals)?;
+                self.beside((p + q).truncate(), *pair)
+            }
+        }
+    }
+
+    /// A portal, or a separating direction, face by face from a guess that is not lateral.
+    #[inline]
+    fn approach(&mut self, start: &FirstNormal) -> Option<Enclosure> {
+        if start.normal.z <= 0.0 {
+            return None;
+        }
+        match portal::approach(&self.difference, start, &mut self.watch) {
+            Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
+            Followed::Rim { outward, near } => self.beside(-outward, near),
+            Followed::Lost => None,
+        }
+    }
+
+    /// Whether all of `M` lies beyond a lateral direction.
+    fn beside(&mut self, lateral: DVec2, near: VertexPair) -> Option<Enclosure> {
+        // Of a length fit to be normalised: shorter ones lose digits.
+        if lateral.length_squared() <= f64::MIN_POSITIVE {
+            return None;
+        }
+        let normal = lateral.try_normalize()?;
+        let least = -self.difference.touching();
+        if normal.dot(self.difference.vertex(near).shadow()) < least {
+            return None;
+        }
+        let point = self.difference.support_from(normal.extend(0.0), near);
+        self.watch.support(|| Support::of(normal.extend(0.0), &point));
+        let margin = normal.dot(point.shadow());
+        (margin >= least).then_some(Enclosure::Beside(SeparatingLine { normal, margin, point }))
+    }
+
+    /// The first guess of the contact normal.
+    fn start(&mut self, region: Region, last: &WarmStart) -> FirstNormal {
+        let setting = self.difference.setting;
+        let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
+        if self.solver != Solver::Cta || !solid {
+            return FirstNormal::new(&self.difference);
+        }
+        let ellipsoids = FirstNormal::from_ellipsoids(&self.difference);
+        let start = match self.cta_start(&ellipsoids, region, last) {
+            Ok(start) => start,
+            Err(extreme) => return ellipsoids.guided(ellipsoids.normal, extreme),
+        };
+        self.watch.ended(Phase::Setup);
+        let options = CtaOptions::new(start, self.narrowing.gap);
+        let narrowed = cta::minimise(setting, &options, &mut self.watch);
+        let [moving, fixed] = narrowed.vertices;
+        let near = VertexPair { moving: moving[0], fixed: fixed[0] };
+        let in_shadow = |normal| self.difference.setting_from_shadow.transpose() * normal;
+        match narrowed.guess {
+            Guess::Contact { normal } => ellipsoids.guided(in_shadow(normal), near),
+            Guess::Separation { direction } => {
+                ellipsoids.guided(in_shadow(direction).with_z(0.0), near)
+            }
+            Guess::Nothing => ellipsoids,
+        }
+    }
+
+    /// Where the minimisation starts; an error, with the pair extreme along it, if the ellipsoids'
+    /// normal already separates the bodies.
+    fn cta_start(
+        &mut self,
+        ellipsoids: &FirstNormal,
+        region: Region,
+        last: &WarmStart,
+    ) -> Result<Origin, VertexPair> {
+        let by_ellipsoids = self.narrowing.start == NarrowFrom::Ellipsoids;
+        let normal = ellipsoids.normal;
+        if by_ellipsoids && normal.z == 0.0 {
+            let support = self.difference.support(normal);
+            self.watch.support(|| Support::of(normal, &support));
+            if normal.dot(support.at) > 0.0 {
+                return Err(support.pair);
+            }
+        }
+        if let Some(focus) = self.region(region, last) {
+            self.watch.steps.started_from = StartedFrom::Region;
+            return Ok(Origin::Region(focus));
+        }
+        if !by_ellipsoids || normal.z == 0.0 {
+            return Ok(Origin::Center);
+        }
+        let support = self.difference.support(normal);
+        self.watch.support(|| Support::of(normal, &support));
+        Ok(Origin::Contact(ContactGuess {
+            normal: self.difference.setting_from_shadow * normal,
+            supports: [support.pair.moving, support.pair.fixed],
+            touching: ellipsoids.touching(&self.difference),
+        }))
+    }
+
+    /// Region focus: the last contact points, and the half-side of the square around them.
+    fn region(&self, region: Region, last: &WarmStart) -> Option<RegionFocus> {
+        let setting = self.difference.setting;
+        let (touching, normals) = match last {
+            WarmStart::Nothing => return None,
+            WarmStart::Contact(portal) => {
+                (setting.weighted(&portal.pairs, &portal.weights), portal.normals)
+            }
+            WarmStart::Apart { pair, normals } => (setting.vertices(*pair), *normals),
+        };
+        let half_side = match region {
+            Region::Everywhere => return None,
+            Region::Fixed(delta) => delta,
+            Region::Automatic => {
+                self.difference.shadow_from_bodies(normals)?;
+                setting.displacement(touching)
+            }
+        };
+        let worth = region != Region::Automatic || self.difference.is_near(half_side);
+        worth.then_some(RegionFocus { touching, half_side })
+    }
+
+    fn contact_or_grazing(
+        &mut self,
+        portal: &mut Portal,
+        next: &mut WarmStart,
+    ) -> Result<Outcome, QueryError> {
+        let most = match self.watch.steps.started_from {
+            StartedFrom::Features => MOST_AFTER_FOLLOWING,
+            StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
+        };
+        let optimum = match portal::refine(&self.difference, portal, most, &mut self.watch) {
+            Some(Refined::Optimum(optimum)) => optimum,
+            Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
+            None => return Err(self.not_converged()),
+        };
+        let tolerance = self.graze_tolerance.max(self.difference.touching());
+        let overlap = portal::overlap(&self.difference, portal, tolerance, &mut self.watch);
+        self.watch.ended(Phase::Finish);
+        let proven = Proven::new(&self.difference, portal, &optimum)?;
+        *next = WarmStart::Contact(proven.contact_portal());
+        match overlap {
+            Overlap::Ample => Ok(Outcome::Contact(proven.contact(
+                self.moving_pose,
+                self.solver,
+                self.watch.steps,
+            ))),
+            Overlap::Slight { inward, depth } => {
+                let contact = proven.contact(self.moving_pose, self.solver, self.watch.steps);
+                let grazing = proof::grazing(&self.difference, inward, depth, contact);
+                Ok(Outcome::Grazing(grazing))
+            }
+        }
+    }
+
+    /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
+    /// of the bodies widened sideways by a little more than that.
+    #[cold]
+    fn touching(
+        &mut self,
+        rim: &SeparatingLine,
+        next: &mut WarmStart,
+    ) -> Result<Grazing, QueryError> {
+        self.difference = self.difference.widened(rim.margin);
+        let start = FirstNormal::from_ellipsoids(&self.difference);
+        let Some(Enclosure::Portal(mut portal)) =
+            portal::enclose(&self.difference, &start, &mut self.watch)
+        else {
+            return Err(self.not_converged());
+        };
+        let Some(Refined::Optimum(optimum)) =
+            portal::refine(&self.difference, &mut portal, portal::MAX_PORTALS, &mut self.watch)
+        else {
+            return Err(self.not_converged());
+        };
+        let proven = Proven::new(&self.difference, &portal, &optimum)?;
+        let contact = proven.contact(self.moving_pose, self.solver, self.watch.steps);
+        let grazing = proof::grazing(&self.difference, rim.normal, -rim.margin, contact);
+        *next = self.apart(grazing.separating_direction, rim);
+        Ok(grazing)
+    }
+
+    fn separated(&self, found: &SeparatingLine, next: &mut WarmStart) -> Separated {
+        let separated = proof::separated(&self.difference, found, self.solver, self.watch.steps);
+        *next = self.apart(separated.certificate.normal, found);
+        separated
+    }
+
+    fn apart(&self, normal: DVec3, found: &SeparatingLine) -> WarmStart {
+        let setting = self.difference.setting;
+        let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+        WarmStart::Apart { normals, pair: found.point.pair }
+    }
+
+    fn not_converged(&self) -> QueryError {
+        QueryError::NotConverged {
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            tolerance: self.difference.noise.point(),
+        }
+    }
+}

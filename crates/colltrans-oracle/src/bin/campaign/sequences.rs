@@ -3,7 +3,7 @@
 
 use std::mem::discriminant;
 
-use colltrans::{Outcome, Path};
+use colltrans::{Outcome, StartedFrom};
 use colltrans_oracle::check::Proof;
 use colltrans_oracle::sequences::Walk;
 use colltrans_oracle::tracked::{Finding, Lanes};
@@ -29,7 +29,7 @@ pub(crate) struct Tally {
     queries: u64,
     /// Contacts, grazings, separations.
     outcomes: [u64; 3],
-    /// By [`Path`].
+    /// By [`StartedFrom`].
     paths: [u64; 3],
     /// Queries with another outcome than the lane's last.
     flips: u64,
@@ -104,9 +104,9 @@ impl Tally {
         match &finding.verdict {
             Ok(agreement) => {
                 self.paths[match agreement.path {
-                    Path::Features => 0,
-                    Path::Region => 1,
-                    Path::Scratch => 2,
+                    StartedFrom::Features => 0,
+                    StartedFrom::Region => 1,
+                    StartedFrom::Scratch => 2,
                 }] += 1;
                 self.rounding_decides += u64::from(agreement.rounding_decides);
                 self.worst = self.worst.worse(&agreement.proof);

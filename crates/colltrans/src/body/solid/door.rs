@@ -15,7 +15,7 @@ use super::exact::{between, collinear};
 use super::polygon::triangulate;
 use super::report::SolidReport;
 use super::weld::first_equals;
-use crate::error::in_exact_range;
+use crate::number::range::in_exact_range;
 
 /// Rounds of subdivision: each joins at least one pair of edges in every slit that can be closed.
 const MOST_ROUNDS: usize = 64;

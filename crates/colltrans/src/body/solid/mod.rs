@@ -20,7 +20,7 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use crate::polyhedron::ConvexPolyhedron;
+use crate::body::ConvexPolyhedron;
 pub(crate) use door::Surface;
 pub use error::SolidError;
 pub use report::{Shell, SolidReport};

@@ -24,7 +24,7 @@ use super::error::SolidError;
 use super::report::SolidReport;
 use super::tree::{self, Node};
 use super::{Solid, Surface};
-use crate::error::in_exact_range;
+use crate::number::range::in_exact_range;
 
 /// Facets less high than this share of the body's size are noise.
 const NOISE: f64 = 1e-6;
@@ -147,7 +147,7 @@ impl Solid {
 /// A vertex of the shrunk body. Coordinates too small for the exact range are zero.
 pub(crate) fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
     let moved = vertex + field * amount;
-    let kept = |c: f64| if c.abs() < crate::error::MIN_MAGNITUDE { 0.0 } else { c };
+    let kept = |c: f64| if c.abs() < crate::number::range::MIN_MAGNITUDE { 0.0 } else { c };
     DVec3::from_array(moved.to_array().map(kept))
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::leaf::Meeting;
 use super::scene::{Scene, Side};
 use super::search::Found;
-use crate::outcome::Feature;
+use crate::body::Feature;
 
 /// Where a solid is stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]

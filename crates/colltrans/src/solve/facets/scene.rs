@@ -15,7 +15,7 @@ use glam::{DMat3, DVec3};
 
 use super::wide::Wide;
 use crate::body::solid::{Shrinking, Solid, displace};
-use crate::pose::Pose;
+use crate::body::Pose;
 
 /// One of the two bodies.
 #[derive(Clone, Copy)]
@@ -81,7 +81,7 @@ impl<'a> Scene<'a> {
             length: direction.length(),
             frame,
             square: permutes(frame),
-            blur: 16.0 * f64::EPSILON * size.max(crate::error::MIN_MAGNITUDE),
+            blur: 16.0 * f64::EPSILON * size.max(crate::number::range::MIN_MAGNITUDE),
         }
     }
 

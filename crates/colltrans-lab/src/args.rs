@@ -1,0 +1,103 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Args, Parser, Subcommand};
+use colltrans_lab::experiments;
+use colltrans_lab::plan::{Plan, Scale};
+
+const RESULTS: &str = "\
+The paper is Mirolo, Carpin and Pagello, \"Incremental Convex Minimization for Computing Collision
+Translations of Convex Polyhedra\", IEEE Transactions on Robotics 23(3), 2007, section V.
+
+Results, in the folder given by --output (files of these names are replaced):
+  report.html              every figure and table beside the claims it supports or refutes, and
+                           where the numbers come from; one page that needs nothing else
+  figure-NN....csv         the data: series,x,y,low,high,count
+  figure-NN....svg, .png   the figure
+  table-N....csv           the table
+
+Times are of this machine: leave it alone while it measures.
+
+Exit codes:
+  0  measured (claims may hold or not)
+  2  the command line is wrong
+  5  the results cannot be written";
+
+/// The experiments of the paper, run anew on this machine
+#[derive(Debug, Parser)]
+#[command(name = "colltrans-lab", version, after_help = RESULTS)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Some of the figures
+    #[command(after_help = RESULTS)]
+    Figure {
+        /// The figures' numbers in the paper
+        #[arg(required = true, value_name = "NUMBER", value_parser = numbers_of("figure-"))]
+        numbers: Vec<String>,
+        #[command(flatten)]
+        options: Options,
+    },
+    /// Some of the tables
+    #[command(after_help = RESULTS)]
+    Table {
+        /// The tables' numbers in the paper
+        #[arg(required = true, value_name = "NUMBER", value_parser = numbers_of("table-"))]
+        numbers: Vec<String>,
+        #[command(flatten)]
+        options: Options,
+    },
+    /// All figures and tables
+    #[command(after_help = RESULTS)]
+    All {
+        #[command(flatten)]
+        options: Options,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// All sizes, few queries: everything in under five minutes (the default)
+    #[arg(long)]
+    quick: bool,
+    /// All sizes, many queries: everything in under an hour
+    #[arg(long, conflicts_with = "quick")]
+    full: bool,
+    /// Small bodies, for tests
+    #[arg(long, hide = true, conflicts_with_all = ["quick", "full"])]
+    tiny: bool,
+    /// What everything random is drawn from
+    ///
+    /// The same seed draws the same bodies, positions and directions. Times differ all the same.
+    #[arg(long, value_name = "S", default_value_t = 2007)]
+    seed: u64,
+    /// The folder of the results, made if it does not exist
+    #[arg(short, long, value_name = "DIR", default_value = "lab-results")]
+    pub(crate) output: PathBuf,
+}
+
+impl Options {
+    pub(crate) fn plan(&self) -> Plan {
+        let scale = match self {
+            Self { full: true, .. } => Scale::Full,
+            Self { tiny: true, .. } => Scale::Tiny,
+            _ => Scale::Quick,
+        };
+        Plan { scale, seed: self.seed }
+    }
+}
+
+/// The numbers of the experiments whose ids begin so; the help and errors list them.
+fn numbers_of(prefix: &'static str) -> PossibleValuesParser {
+    let numbers = experiments().iter().filter_map(|experiment| {
+        let number = experiment.id.strip_prefix(prefix)?;
+        Some(PossibleValue::new(number).help(experiment.title))
+    });
+    numbers.collect::<Vec<_>>().into()
+}

@@ -1,0 +1,408 @@
+//! Merging of vertices that were meant to be one.
+//!
+//! A program that computes a corner once for each face that meets there writes it several times,
+//! and rounding may write it differently. Such twins leave the surface open along the edges
+//! between them, so only vertices on open edges are looked at: a closed surface is left as it is,
+//! however fine its details are.
+//!
+//! Notation. `tol` is the tolerance, a Euclidean distance. A *representative* is a vertex that
+//! stands for all that are merged into it; it keeps its own coordinates.
+//!
+//! Invariant. Vertices are taken in their order; each is merged into the nearest representative
+//! within `tol`, or becomes one itself. So no vertex moves by more than `tol`, no two
+//! representatives are within `tol` of each other, and a chain of vertices, each near the next,
+//! is cut into pieces instead of shrinking to a point. Vertices for which more than one
+//! representative was near enough are counted ([`Merged::ambiguous`]).
+//!
+//! Default tolerance. Twins written in single precision differ by at most one unit in the last
+//! place per coordinate, `2^-23 m` with `m` the largest coordinate in magnitude, so by `sqrt(3)`
+//! times that: `2^-22 m` covers it. What was computed in double precision carries the errors of
+//! a few dozen roundings of `2^-53 m`: `2^-48 m` covers it.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use crate::mesh::Mesh;
+
+/// The precision of the numbers in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Precision {
+    /// Binary STL, and PLY with `float` coordinates.
+    Single,
+    /// All else. Text may hold any number of digits.
+    Double,
+}
+
+impl Precision {
+    /// The default tolerance for vertices of this precision.
+    fn tolerance(self, vertices: &[DVec3]) -> f64 {
+        let exponent = match self {
+            Self::Single => -22,
+            Self::Double => -48,
+        };
+        largest_magnitude(vertices) * 2.0_f64.powi(exponent)
+    }
+}
+
+/// What becomes of the place of a vertex that was merged into another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Places {
+    /// It stays, used by no face: indices are those of the file.
+    Kept,
+    /// It is closed, because the file does not number its vertices.
+    Closed,
+}
+
+/// What was merged when a file was read.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Merged {
+    /// The distance up to which vertices on open edges were merged, in the file's unit; 0 if only
+    /// equal ones were.
+    pub tolerance: f64,
+    /// How many vertices were replaced by another with different coordinates.
+    pub vertices: usize,
+    /// The largest distance between a vertex and the one that took its place.
+    pub largest_distance: f64,
+    /// How many vertices had more than one other to choose from: where there are any, the
+    /// tolerance is as large as details of the surface.
+    pub ambiguous: usize,
+    /// How many faces were left without area, as less than three different corners, and dropped.
+    pub dropped_faces: usize,
+}
+
+impl Mesh {
+    /// Merges twins along open edges. `None` is the default tolerance.
+    pub(crate) fn close(&mut self, asked: Option<f64>, precision: Precision, places: Places) {
+        self.merged.tolerance = asked.unwrap_or_else(|| precision.tolerance(&self.vertices));
+        let mut on_border: Vec<u32> = self.open_edges().into_iter().flatten().collect();
+        if !on_border.is_empty() {
+            on_border.sort_unstable();
+            on_border.dedup();
+            let mut names = self.representatives(&on_border);
+            if places == Places::Closed {
+                self.drop_replaced(&mut names);
+            }
+            for corner in self.faces.iter_mut().flatten() {
+                *corner = names[*corner as usize];
+            }
+        }
+        self.drop_flat_faces();
+    }
+
+    /// Drops the vertices that others take the place of; `names` is brought up to date.
+    fn drop_replaced(&mut self, names: &mut [u32]) {
+        let mut kept = 0;
+        for v in 0..names.len() {
+            // A representative comes before those it stands for.
+            names[v] = if names[v] as usize == v {
+                self.vertices[kept] = self.vertices[v];
+                kept += 1;
+                kept as u32 - 1
+            } else {
+                names[names[v] as usize]
+            };
+        }
+        self.vertices.truncate(kept);
+    }
+
+    /// Every edge that is not used equally often in both directions, once, from its first vertex
+    /// to its second along the face that uses it more often.
+    ///
+    /// A surface without open edges encloses a volume, if its faces are oriented outwards.
+    pub fn open_edges(&self) -> Vec<[u32; 2]> {
+        let mut edges = Vec::with_capacity(self.faces.iter().map(Vec::len).sum());
+        for face in &self.faces {
+            let next = face.iter().cycle().skip(1);
+            edges.extend(face.iter().zip(next).filter(|(a, b)| a != b).map(|(&a, &b)| {
+                let (low, high) = (a.min(b), a.max(b));
+                (u64::from(low) << 32 | u64::from(high), a > b)
+            }));
+        }
+        edges.sort_unstable();
+        let mut open = Vec::new();
+        for same in edges.chunk_by(|(a, _), (b, _)| a == b) {
+            let backward = same.iter().filter(|(_, backward)| *backward).count();
+            let [low, high] = [(same[0].0 >> 32) as u32, same[0].0 as u32];
+            match (same.len() - backward).cmp(&backward) {
+                std::cmp::Ordering::Equal => {}
+                std::cmp::Ordering::Greater => open.push([low, high]),
+                std::cmp::Ordering::Less => open.push([high, low]),
+            }
+        }
+        open
+    }
+
+    /// For every vertex the one that takes its place, itself for most.
+    fn representatives(&mut self, candidates: &[u32]) -> Vec<u32> {
+        let mut places: Vec<u32> = (0..self.vertices.len() as u32).collect();
+        let mut grid = Grid::new(self.merged.tolerance, &self.vertices);
+        for &v in candidates {
+            let position = self.vertices[v as usize];
+            let Some(near) = grid.near(position, &self.vertices) else {
+                grid.insert(v, position);
+                continue;
+            };
+            places[v as usize] = near.vertex;
+            if near.distance > 0.0 {
+                self.merged.vertices += 1;
+                self.merged.largest_distance = self.merged.largest_distance.max(near.distance);
+            }
+            self.merged.ambiguous += usize::from(near.choices > 1);
+        }
+        places
+    }
+
+    /// Takes back steps that a face makes to and fro, and drops faces of which nothing is left.
+    ///
+    /// What is taken out of a face are pairs of opposite uses of an edge, so the edges that
+    /// were closed stay closed.
+    pub(crate) fn drop_flat_faces(&mut self) {
+        let before = self.faces.len();
+        self.faces.retain_mut(|face| {
+            let kept = reduced(face);
+            if kept.len() < face.len() {
+                *face = kept;
+            }
+            face.len() >= 3
+        });
+        self.merged.dropped_faces += before - self.faces.len();
+    }
+}
+
+/// A cycle of corners without repeated corners in a row (`a a`) and without spikes (`a b a`).
+fn reduced(face: &[u32]) -> Vec<u32> {
+    let mut kept: Vec<u32> = Vec::with_capacity(face.len());
+    for &corner in face {
+        if kept.last() == Some(&corner) {
+            continue;
+        }
+        if kept.len() >= 2 && kept[kept.len() - 2] == corner {
+            kept.pop();
+        } else {
+            kept.push(corner);
+        }
+    }
+    // The same across the seam of the cycle.
+    let mut cycle = kept.as_slice();
+    loop {
+        let count = cycle.len();
+        cycle = match cycle {
+            [first, .., last] if first == last => &cycle[1..],
+            [first, _, .., before, _] if first == before => &cycle[..count - 2],
+            [_, second, .., last] if count > 2 && second == last => &cycle[2..],
+            _ => return cycle.to_vec(),
+        };
+    }
+}
+
+/// Representatives by the cell of a grid they lie in.
+///
+/// Cells are some tolerances wide, so that what is near a position mostly lies in one cell, and
+/// representatives are more than a tolerance apart, so that a cell holds a bounded number of them.
+struct Grid {
+    cell: f64,
+    tolerance: f64,
+    /// The representative of each cell that came last.
+    last: HashMap<[i64; 3], u32>,
+    /// For every vertex, the representative before it in its cell.
+    before: Vec<u32>,
+}
+
+/// The nearest representative, and how many were near enough.
+#[derive(Clone, Copy)]
+struct Near {
+    vertex: u32,
+    distance: f64,
+    choices: usize,
+}
+
+const NONE: u32 = u32::MAX;
+
+/// Tolerances a cell is wide.
+const CELL: f64 = 4.0;
+
+/// The length of a vector, also where its square is too small for a number.
+fn length(v: DVec3) -> f64 {
+    let largest = v.abs().max_element();
+    if largest == 0.0 { 0.0 } else { largest * (v / largest).length() }
+}
+
+impl Grid {
+    fn new(tolerance: f64, vertices: &[DVec3]) -> Self {
+        // The numbers of cells must fit in 64 bits.
+        let smallest = largest_magnitude(vertices) * f64::from_bits((1023 - 60) << 52);
+        let cell = (CELL * tolerance).max(smallest).max(f64::MIN_POSITIVE);
+        Self { cell, tolerance, last: HashMap::new(), before: vec![NONE; vertices.len()] }
+    }
+
+    fn cell_of(&self, position: DVec3) -> [i64; 3] {
+        position.to_array().map(|c| (c / self.cell).floor() as i64)
+    }
+
+    fn insert(&mut self, vertex: u32, position: DVec3) {
+        let last = self.last.entry(self.cell_of(position)).or_insert(NONE);
+        self.before[vertex as usize] = *last;
+        *last = vertex;
+    }
+
+    fn near(&self, position: DVec3, vertices: &[DVec3]) -> Option<Near> {
+        let low = self.cell_of(position - self.tolerance);
+        let high = self.cell_of(position + self.tolerance);
+        // No more than two cells a side, even where the sum is out of range.
+        let high: [i64; 3] = std::array::from_fn(|i| high[i].min(low[i].saturating_add(1)));
+        let mut found: Option<Near> = None;
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let Some(&last) = self.last.get(&[x, y, z]) else { continue };
+                    found = self.nearer(found, last, position, vertices);
+                }
+            }
+        }
+        found
+    }
+
+    /// The nearest of what was found and what a cell holds; of those as near, the first.
+    fn nearer(
+        &self,
+        mut found: Option<Near>,
+        last: u32,
+        position: DVec3,
+        vertices: &[DVec3],
+    ) -> Option<Near> {
+        let mut vertex = last;
+        while vertex != NONE {
+            let distance = length(vertices[vertex as usize] - position);
+            if distance <= self.tolerance {
+                let choices = found.map_or(1, |near| near.choices + 1);
+                let best = found.filter(|n| (n.distance, n.vertex) < (distance, vertex));
+                found =
+                    Some(Near { choices, ..best.unwrap_or(Near { vertex, distance, choices }) });
+            }
+            vertex = self.before[vertex as usize];
+        }
+        found
+    }
+}
+
+/// The largest magnitude of a finite coordinate.
+fn largest_magnitude(vertices: &[DVec3]) -> f64 {
+    let magnitudes = vertices.iter().flat_map(DVec3::to_array).map(f64::abs);
+    magnitudes.filter(|m| m.is_finite()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_lose_repeated_corners_and_spikes() {
+        let reduce = |face: &[u32]| reduced(face);
+        assert_eq!(reduce(&[0, 1, 2, 3]), [0, 1, 2, 3]);
+        assert_eq!(reduce(&[0, 0, 1, 2, 2]), [0, 1, 2]);
+        assert_eq!(reduce(&[0, 1, 2, 0]), [1, 2, 0]);
+        assert_eq!(reduce(&[0, 1, 2, 1, 3]), [0, 1, 3]);
+        assert_eq!(reduce(&[1, 2, 3, 4, 1, 5]), [1, 2, 3, 4], "a spike to 5 over the seam");
+        assert_eq!(reduce(&[5, 1, 2, 3, 4, 1]), [2, 3, 4, 1], "the same from 5");
+        for flat in [&[0, 1, 0][..], &[0, 1, 2, 1], &[0, 0, 0], &[0, 1, 2, 2, 1], &[]] {
+            assert!(reduce(flat).len() < 3, "{flat:?}");
+        }
+    }
+
+    /// Points on a line, `gap` apart, each the end of an open triangle of its own.
+    fn chain(count: u32, gap: f64) -> Mesh {
+        let mut vertices: Vec<DVec3> = Vec::new();
+        for i in 0..count {
+            vertices.push(DVec3::X * (f64::from(i) * gap));
+            vertices.push(DVec3::new(f64::from(i), 10.0, 0.0));
+            vertices.push(DVec3::new(f64::from(i), 10.0, 1.0));
+        }
+        let faces = (0..count).map(|i| vec![3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Mesh::new(vertices, faces)
+    }
+
+    #[test]
+    fn a_chain_is_cut_not_swallowed() {
+        let mut mesh = chain(10, 0.0625);
+        mesh.close(Some(0.1), Precision::Double, Places::Kept);
+        let ends: Vec<u32> = mesh.faces.iter().map(|face| face[0]).collect();
+        assert_eq!(ends, [0, 0, 6, 6, 12, 12, 18, 18, 24, 24]);
+        assert_eq!(mesh.merged.vertices, 5);
+        assert_eq!(mesh.merged.largest_distance, 0.0625);
+        assert_eq!(mesh.merged.ambiguous, 0);
+        let mut closed = chain(10, 0.0625);
+        closed.close(Some(0.1), Precision::Double, Places::Closed);
+        assert_eq!(closed.vertices.len(), 25);
+        for (a, b) in closed.faces.iter().flatten().zip(mesh.faces.iter().flatten()) {
+            assert_eq!(closed.vertices[*a as usize], mesh.vertices[*b as usize]);
+        }
+        let mut mesh = chain(3, 0.0625);
+        mesh.vertices.swap(3, 6);
+        mesh.close(Some(0.1), Precision::Double, Places::Kept);
+        assert_eq!(mesh.merged.ambiguous, 1, "the one in the middle came last");
+    }
+
+    #[test]
+    fn a_closed_surface_is_left_as_it_is() {
+        let (a, b, c, d) = (DVec3::ZERO, DVec3::X * 1e-3, DVec3::Y, DVec3::Z);
+        let faces = vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]];
+        let sliver = Mesh::new(vec![a, b, c, d], faces);
+        let mut closed = sliver.clone();
+        closed.close(Some(0.01), Precision::Double, Places::Kept);
+        assert_eq!(closed.faces, sliver.faces);
+        let mut open = sliver;
+        open.faces.pop();
+        assert_eq!(open.open_edges(), [[0, 2], [3, 0], [2, 3]]);
+        open.close(Some(0.01), Precision::Double, Places::Kept);
+        assert_eq!(open.merged.vertices, 0, "1 is on no open edge");
+    }
+
+    /// A grid with tolerance, against all pairs.
+    #[test]
+    fn the_grid_finds_what_all_pairs_find() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        for scale in [1.0, 1e-9, 1e9] {
+            let vertices: Vec<DVec3> = (0..600)
+                .map(|_| (DVec3::new(random(), random(), random()) - 0.5) * scale)
+                .collect();
+            let tolerance = 0.07 * scale;
+            let mut grid = Grid::new(tolerance, &vertices);
+            let mut representatives: Vec<u32> = Vec::new();
+            for (v, &position) in vertices.iter().enumerate() {
+                let distance = |&w: &u32| length(vertices[w as usize] - position);
+                let within = representatives.iter().filter(|w| distance(w) <= tolerance);
+                let nearest = within.clone().map(distance).fold(f64::INFINITY, f64::min);
+                if let Some(near) = grid.near(position, &vertices) {
+                    assert_eq!(near.distance, nearest);
+                    assert_eq!(near.choices, within.count());
+                } else {
+                    assert_eq!(within.count(), 0);
+                    grid.insert(v as u32, position);
+                    representatives.push(v as u32);
+                }
+            }
+            assert!((100..600).contains(&representatives.len()));
+        }
+    }
+
+    #[test]
+    fn tolerances_of_no_size_merge_equal_vertices_only() {
+        let mut mesh = chain(4, 1e-300);
+        mesh.vertices[9] = mesh.vertices[0];
+        mesh.close(Some(0.0), Precision::Single, Places::Kept);
+        assert_eq!(mesh.faces[3][0], 0);
+        assert_eq!((mesh.faces[1][0], mesh.merged.vertices), (3, 0));
+        mesh.vertices[3] = DVec3::NAN;
+        mesh.vertices[6] = DVec3::splat(f64::INFINITY);
+        mesh.close(None, Precision::Single, Places::Kept);
+        assert_eq!(mesh.faces[1][0], 3);
+        assert!(mesh.merged.tolerance.is_finite());
+    }
+}

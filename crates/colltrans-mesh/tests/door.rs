@@ -1,0 +1,361 @@
+//! Files as people have them: marks, line ends and names that mislead, files that are cut short,
+//! corners that are written in more than one way.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use colltrans_mesh::{Error, Format, Mesh, ReadOptions, parse, parse_with};
+use colltrans_mesh::{to_obj, to_off, to_stl};
+use glam::DVec3;
+
+fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Mesh, Error> {
+    parse(format, bytes.as_ref().to_vec(), Path::new("part"))
+}
+
+fn message(format: Format, bytes: impl AsRef<[u8]>) -> String {
+    read(format, bytes).unwrap_err().to_string()
+}
+
+/// A cube of triangles or of squares.
+fn cube(triangles: bool) -> Mesh {
+    let corner = |i: u32| DVec3::new((i & 1).into(), (i >> 1 & 1).into(), (i >> 2).into());
+    let sides: [[u32; 4]; 6] =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let split = |s: [u32; 4]| vec![vec![s[0], s[1], s[2]], vec![s[0], s[2], s[3]]];
+    let faces = sides.into_iter().flat_map(|s| if triangles { split(s) } else { vec![s.to_vec()] });
+    Mesh::new((0..8).map(corner).collect(), faces.collect())
+}
+
+/// The cube as text STL; `corner` may write each corner of each facet in its own way.
+fn text_stl(mut corner: impl FnMut(DVec3) -> String) -> String {
+    let mesh = cube(true);
+    let mut text = String::from("solid part\n");
+    for face in &mesh.faces {
+        text.push_str("facet normal 0 0 0\nouter loop\n");
+        for &v in face {
+            let _ = writeln!(text, "vertex {}", corner(mesh.vertices[v as usize]));
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    text + "endsolid part\n"
+}
+
+fn plain(v: DVec3) -> String {
+    format!("{} {} {}", v.x, v.y, v.z)
+}
+
+fn ply(mesh: &Mesh) -> String {
+    let (vertices, faces) = (mesh.vertices.len(), mesh.faces.len());
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty double x\nproperty double y\n\
+         property double z\nelement face {faces}\nproperty list uchar int vertex_indices\n\
+         end_header\n"
+    );
+    for v in &mesh.vertices {
+        let _ = writeln!(text, "{}", plain(*v));
+    }
+    for face in &mesh.faces {
+        let corners: Vec<String> = face.iter().map(u32::to_string).collect();
+        let _ = writeln!(text, "{} {}", corners.len(), corners.join(" "));
+    }
+    text
+}
+
+/// The same cube in every format that is text.
+fn texts() -> [(Format, String); 4] {
+    let mesh = cube(false);
+    [
+        (Format::Stl, text_stl(plain)),
+        (Format::Obj, to_obj(&mesh)),
+        (Format::Off, to_off(&mesh)),
+        (Format::Ply, ply(&mesh)),
+    ]
+}
+
+#[test]
+fn marks_and_line_ends_change_nothing() {
+    for (format, text) in texts() {
+        let expected = read(format, &text).unwrap();
+        assert_eq!((expected.vertices.len(), expected.open_edges().len()), (8, 0), "{format}");
+        for mark in ["", "\u{feff}"] {
+            for end in ["\n", "\r\n", "\r"] {
+                let variant = format!("{mark}{}", text.replace('\n', end));
+                let found = read(format, &variant).unwrap();
+                assert_eq!(found, expected, "{format} with {mark:?} and {end:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_count_lines_whatever_ends_them() {
+    for (format, text) in texts() {
+        let text = text.replacen("0 1 0\n", "0 x 0\n", 1);
+        let broken = text.lines().position(|l| l.ends_with("0 x 0")).unwrap() + 1;
+        for end in ["\n", "\r\n", "\r"] {
+            let message = message(format, text.replace('\n', end));
+            assert!(message.starts_with(&format!("part: line {broken}: ")), "{format}: {message}");
+        }
+    }
+}
+
+#[test]
+fn sixteen_bits_a_character_are_refused() {
+    for (format, text) in texts() {
+        let mut bytes = b"\xff\xfe".to_vec();
+        bytes.extend(text.encode_utf16().flat_map(u16::to_le_bytes));
+        let message = message(format, bytes);
+        assert!(message.contains("UTF-16"), "{message}");
+    }
+}
+
+/// In a binary PLY file the header may end in a lone CR, and what follows may look like LF.
+#[test]
+fn a_binary_ply_may_have_any_header() {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n\
+        property float y\nproperty float z\nelement face 1\n\
+        property list uchar uchar vertex_indices\nend_header\n";
+    for end in ["\n", "\r\n", "\r"] {
+        let mut bytes = header.replace('\n', end).into_bytes();
+        // The first byte of the first number is LF, and CR and LF are among the others.
+        let first = f32::from_le_bytes([0x0a, 0x0d, 0x0a, 0x41]);
+        for c in [first, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+            bytes.extend(c.to_le_bytes());
+        }
+        bytes.extend([3, 0, 1, 2]);
+        let mesh = read(Format::Ply, &bytes).unwrap();
+        assert_eq!(mesh.vertices[0].x, f64::from(first), "{end:?}");
+        assert_eq!(mesh.faces, [[0, 1, 2]]);
+    }
+}
+
+#[test]
+fn contents_are_held_against_the_name() {
+    let mesh = cube(true);
+    let files = [
+        (Format::Stl, "a binary STL file", to_stl(&mesh).unwrap()),
+        (Format::Stl, "a text STL file", text_stl(plain).into_bytes()),
+        (Format::Obj, "an OBJ file", to_obj(&mesh).into_bytes()),
+        (Format::Off, "an OFF file", to_off(&mesh).into_bytes()),
+        (Format::Ply, "a PLY file", ply(&mesh).into_bytes()),
+    ];
+    for (is, name, bytes) in &files {
+        for format in [Format::Stl, Format::Obj, Format::Off, Format::Ply] {
+            if *is == format {
+                assert!(read(format, bytes).is_ok(), "{name}");
+            } else {
+                let expected = format!("part: holds {name}, not {format} as its name says");
+                assert_eq!(message(format, bytes), expected);
+            }
+        }
+    }
+    for (bytes, name) in [
+        (&b"PK\x03\x04........"[..], "ZIP"),
+        (b"ISO-10303-21;\nHEADER;\n", "STEP"),
+        (b"\n <!doctype HTML><html>", "HTML"),
+        (b"\xef\xbb\xbf<?xml version=\"1.0\"?>", "XML"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"),
+    ] {
+        for format in [Format::Stl, Format::Obj, Format::Off, Format::Ply] {
+            let message = message(format, bytes);
+            assert!(message.contains(name), "{message}");
+        }
+    }
+}
+
+#[test]
+fn an_obj_keyword_is_known_or_refused() {
+    assert!(message(Format::Obj, "v 0 0 0\nV 1 0 0\n").ends_with("line 2: unknown keyword `V`"));
+    let curved = message(Format::Obj, "v 0 0 0\ncstype bezier\nsurf 0 1 0 1 1\n");
+    assert!(curved.contains("line 3: curved surfaces"), "{curved}");
+    let junk: Vec<u8> = (0..=255).collect();
+    assert!(read(Format::Obj, junk).is_err());
+}
+
+#[test]
+fn a_binary_stl_that_begins_with_solid_is_measured_too() {
+    let mut bytes = to_stl(&cube(true)).unwrap();
+    bytes[..80].fill(b' ');
+    bytes[..10].copy_from_slice(b"solid cube");
+    let length = bytes.len();
+    assert_eq!(read(Format::Stl, &bytes).unwrap().faces.len(), 12);
+    for end in [length - 1, length - 50, length - 51, 84 + 50, 90, 84, 83, 80] {
+        let message = message(Format::Stl, &bytes[..end]);
+        let said = message.contains("cut short: its header promises 12 triangles")
+            || end < 84 && message.contains("end of file");
+        assert!(said, "{end}: {message}");
+    }
+    // A little padding, or zeros, say nothing; whole triangles do.
+    for padding in [vec![0; 2000], vec![b' '; 49], vec![0x1a]] {
+        assert_eq!(read(Format::Stl, [bytes.clone(), padding].concat()).unwrap().faces.len(), 12);
+    }
+    let more = message(Format::Stl, [bytes.clone(), vec![1; 50]].concat());
+    assert!(more.contains("50 bytes follow the 12 triangles"), "{more}");
+}
+
+#[test]
+fn a_text_stl_is_whole_or_refused() {
+    let text = text_stl(plain);
+    // Wherever it is cut, except in the name after the last word.
+    for end in 0..text.find("endsolid").unwrap() + "endsolid".len() {
+        assert!(read(Format::Stl, &text[..end]).is_err(), "{:?}", &text[..end]);
+    }
+    let line = text.find("endsolid").unwrap();
+    let cut = message(Format::Stl, &text[..line]);
+    assert!(cut.contains("the last solid is not ended; the file is cut short"), "{cut}");
+    let odd = message(Format::Stl, text.replacen("endloop\n", "", 1));
+    assert!(odd.contains("line 7: `endfacet` inside a loop that was not ended"), "{odd}");
+}
+
+#[test]
+fn what_follows_the_last_element_is_refused() {
+    let mesh = cube(true);
+    let more = message(Format::Off, to_off(&mesh) + "\n# blank and comment\n3 0 1 2\n");
+    assert!(more.contains("line 25: more follows the 8 vertices and 12 faces"), "{more}");
+    assert!(read(Format::Off, to_off(&mesh) + "\n\n# the end\n").is_ok());
+    let more = message(Format::Ply, ply(&mesh) + "3 0 1 2\n");
+    assert!(more.contains("8 bytes follow"), "{more}");
+    assert!(read(Format::Ply, ply(&mesh) + "\n \n").is_ok());
+}
+
+#[test]
+fn faces_of_a_ply_file_are_not_missed() {
+    let text = ply(&cube(true));
+    let unnamed = message(Format::Ply, text.replace("vertex_indices", "corners"));
+    assert!(unnamed.contains("no list `vertex_indices`"), "{unnamed}");
+    let strips = message(Format::Ply, text.replace("element face", "element tristrips"));
+    assert!(strips.contains("triangle strips"), "{strips}");
+}
+
+/// Zeros that are rounding errors, as computed corners have them.
+#[test]
+fn twins_are_merged_and_counted() {
+    let mut written = 0;
+    let text = text_stl(|v| {
+        written += 1;
+        let x = if v.x == 0.0 && written % 2 == 0 { 5e-17 } else { v.x };
+        plain(DVec3::new(x, v.y, v.z))
+    });
+    let mesh = read(Format::Stl, &text).unwrap();
+    assert_eq!((mesh.vertices.len(), mesh.faces.len(), mesh.open_edges().len()), (8, 12, 0));
+    assert_eq!(mesh.merged.vertices, 4);
+    assert_eq!(mesh.merged.largest_distance, 5e-17);
+    assert_eq!((mesh.merged.ambiguous, mesh.merged.dropped_faces), (0, 0));
+
+    let equal_only = ReadOptions::default().with_merge_tolerance(Some(0.0));
+    let open = parse_with(Format::Stl, text.into(), Path::new("part"), equal_only).unwrap();
+    assert_eq!((open.vertices.len(), open.merged.vertices), (12, 0));
+    assert!(!open.open_edges().is_empty());
+}
+
+/// In formats with numbered vertices the numbers stay, so that answers name those of the file.
+#[test]
+fn numbered_vertices_keep_their_numbers() {
+    let square = cube(false);
+    let mut soup = Mesh::default();
+    for face in &square.faces {
+        let first = soup.vertices.len() as u32;
+        soup.vertices.extend(face.iter().map(|&v| square.vertices[v as usize]));
+        soup.faces.push((first..first + 4).collect());
+    }
+    soup.vertices[9].z += 1e-16;
+    for (format, text) in
+        [(Format::Obj, to_obj(&soup)), (Format::Off, to_off(&soup)), (Format::Ply, ply(&soup))]
+    {
+        let mesh = read(format, text).unwrap();
+        assert_eq!(mesh.vertices, soup.vertices, "{format}");
+        assert_eq!(mesh.open_edges().len(), 0, "{format}");
+        assert_eq!(mesh.faces[0], soup.faces[0], "the first are the ones that stay");
+        let mut used: Vec<u32> = mesh.faces.concat();
+        used.sort_unstable();
+        used.dedup();
+        assert_eq!(used.len(), 8);
+        assert_eq!(mesh.merged.vertices, 1, "equal ones are not counted");
+    }
+}
+
+#[test]
+fn slivers_between_twins_are_dropped_and_counted() {
+    // A tetrahedron with its edge 0-1 doubled: a sliver 0 1 4 lies between them, open at one side.
+    let (a, b, c, d) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
+    let twin = DVec3::new(1.0, 1e-16, 0.0);
+    let faces = vec![vec![0, 2, 1], vec![0, 4, 3], vec![0, 1, 4], vec![1, 2, 3], vec![0, 3, 2]];
+    let mesh = read(Format::Off, to_off(&Mesh::new(vec![a, b, c, d, twin], faces))).unwrap();
+    assert_eq!((mesh.faces.len(), mesh.open_edges().len()), (4, 0));
+    assert_eq!((mesh.merged.vertices, mesh.merged.dropped_faces), (1, 1));
+}
+
+#[test]
+fn the_tolerance_follows_the_precision_of_the_numbers() {
+    // One unit in the last place of single precision apart.
+    let ulp = f64::from(f32::EPSILON);
+    let mut written = 0;
+    let mut shifted = |v: DVec3| {
+        written += usize::from(v == DVec3::ONE);
+        if v == DVec3::ONE && written % 2 == 0 { v + ulp } else { v }
+    };
+    let mesh = cube(true);
+    let mut soup = Mesh::default();
+    for face in &mesh.faces {
+        let first = soup.vertices.len() as u32;
+        soup.vertices.extend(face.iter().map(|&v| shifted(mesh.vertices[v as usize])));
+        soup.faces.push((first..first + 3).collect());
+    }
+    let closed = |mesh: Result<Mesh, Error>| mesh.unwrap().open_edges().is_empty();
+    assert!(closed(read(Format::Stl, to_stl(&soup).unwrap())), "binary STL is single");
+    assert!(!closed(read(Format::Off, to_off(&soup))), "text may hold doubles");
+    assert!(!closed(read(Format::Ply, ply(&soup))), "these are doubles");
+    assert!(closed(read(Format::Ply, ply(&soup).replace("double", "float"))), "these are not");
+    let asked = ReadOptions::default().with_merge_tolerance(Some(1e-6));
+    let path = Path::new("part");
+    assert!(closed(parse_with(Format::Off, to_off(&soup).into(), path, asked)));
+    for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+        let asked = ReadOptions::default().with_merge_tolerance(Some(wrong));
+        let refused = parse_with(Format::Off, to_off(&soup).into(), path, asked);
+        assert!(matches!(refused, Err(Error::MergeTolerance { .. })));
+    }
+}
+
+/// A torus of single triangles, every corner of every one rounded in its own way.
+fn torus(around: usize, along: usize) -> Mesh {
+    let angle = |i: usize, n: usize| std::f64::consts::TAU * (i % n) as f64 / n as f64;
+    let at = |i: usize, j: usize| {
+        let (sin_i, cos_i) = angle(i, around).sin_cos();
+        let (sin_j, cos_j) = angle(j, along).sin_cos();
+        DVec3::new((3.0 + cos_j) * cos_i, (3.0 + cos_j) * sin_i, sin_j)
+    };
+    let mut state = 7_u64;
+    let mut rounded = |x: f64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let x = x as f32;
+        f64::from(if state >> 63 == 1 { x.next_up() } else { x })
+    };
+    let mut soup = Mesh::default();
+    for i in 0..around {
+        for j in 0..along {
+            let square = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            for corners in [[0, 1, 2], [0, 2, 3]] {
+                let first = soup.vertices.len() as u32;
+                soup.faces.push((first..first + 3).collect());
+                for c in corners {
+                    let corner = square[c].to_array().map(&mut rounded);
+                    soup.vertices.push(DVec3::from_array(corner));
+                }
+            }
+        }
+    }
+    soup
+}
+
+/// Nothing is quadratic, or this would take days.
+#[test]
+fn a_million_facets() {
+    let (around, along) = (1000, 500);
+    let bytes = to_stl(&torus(around, along)).unwrap();
+    let start = std::time::Instant::now();
+    let mesh = read(Format::Stl, bytes).unwrap();
+    println!("read in {:?}: {:?}", start.elapsed(), mesh.merged);
+    assert_eq!((mesh.vertices.len(), mesh.faces.len()), (around * along, 2 * around * along));
+    assert!(mesh.open_edges().is_empty());
+    assert_eq!((mesh.merged.ambiguous, mesh.merged.dropped_faces), (0, 0));
+}

@@ -1,0 +1,85 @@
+//! What a query answers: every case has a name and carries its proof.
+
+use glam::DVec3;
+
+use super::certificate::{Certificate, Separation};
+use super::steps::{Solver, Steps};
+use crate::body::Feature;
+
+/// The answer of [`cast`](crate::cast): do the bodies meet along the direction, and where.
+///
+/// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
+/// the graze tolerance, by no more than it, or not at all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// The moving body meets the fixed one at some translation (which may be negative).
+    Contact(Contact),
+    /// The shadows along the direction overlap sideways by no more than the graze tolerance:
+    /// the bodies slide along each other.
+    Grazing(Grazing),
+    /// The bodies never meet along the direction, however far one moves, forwards or backwards.
+    Separated(Separated),
+}
+
+impl Outcome {
+    /// The work done for it.
+    pub fn steps(&self) -> Steps {
+        match self {
+            Self::Contact(contact) | Self::Grazing(Grazing { contact, .. }) => contact.steps,
+            Self::Separated(separated) => separated.steps,
+        }
+    }
+}
+
+/// Where the bodies first meet along the direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// The collision translation in multiples of the direction (a length if the direction is a
+    /// unit vector): the smallest `t` at which the moving body, moved by `t * direction`, meets the
+    /// fixed one. Negative: the bodies overlap now, or the contact lies behind. It is the
+    /// certificate's upper bound.
+    pub translation: f64,
+    /// Unit contact normal in the world, from the moving body to the fixed one;
+    /// `normal . direction > 0`. Where corners meet, or parallel edges, it is one of several.
+    pub normal: DVec3,
+    /// Witness point on the moving body, in the world, at its *start* pose.
+    pub point_on_moving: DVec3,
+    /// Witness point on the fixed body, in the world: the contact point. It is
+    /// `point_on_moving + translation * direction` up to rounding. Where an edge or a face lies on
+    /// the other body, it is one of many.
+    pub point_on_fixed: DVec3,
+    /// The part of the moving body that lies in the contact plane, to within rounding error.
+    pub moving_feature: Feature,
+    /// The part of the fixed body that lies in the contact plane, to within rounding error.
+    pub fixed_feature: Feature,
+    /// Lower and upper bound with their proofs.
+    pub certificate: Certificate,
+    /// The solver asked for (never `Auto`); what the search began with is [`Steps::started_from`].
+    pub solver: Solver,
+    /// Work done.
+    pub steps: Steps,
+}
+
+/// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grazing {
+    /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the
+    /// fixed one's.
+    pub separating_direction: DVec3,
+    /// How far the shadows overlap along `separating_direction`, in world units: at most the graze
+    /// tolerance; negative when they miss each other by less than rounding error can tell.
+    pub overlap: f64,
+    /// The contact that results if the overlap is taken for real.
+    pub contact: Contact,
+}
+
+/// The bodies never meet along the direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Separated {
+    /// The proof: a unit normal orthogonal to the direction, and the margin along it.
+    pub certificate: Separation,
+    /// The solver that found it.
+    pub solver: Solver,
+    /// Work done.
+    pub steps: Steps,
+}

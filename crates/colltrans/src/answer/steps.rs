@@ -1,0 +1,51 @@
+//! By whom, and with how much work, an answer was found.
+
+/// How the search is narrowed. The answer, its certificate and its accuracy are the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Solver {
+    /// Whichever was measured to be fastest: at present portal refinement, for all bodies.
+    #[default]
+    Auto,
+    /// The collision translation algorithm (the paper, section III): convex minimisation over pairs
+    /// of planar sections, then portal refinement from the normal found. Bodies of lower dimension
+    /// have no sections to speak of: portal refinement does their work alone.
+    Cta,
+    /// Portal refinement from scratch, starting from what the contact of two ellipsoids would be.
+    Portal,
+}
+
+/// Work done for one answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Steps {
+    /// Planar problems solved (minimisation steps of the collision translation algorithm).
+    pub planar_problems: u32,
+    /// Supporting planes of the Minkowski difference computed (one support point on each body).
+    pub supports: u32,
+    /// Portals visited.
+    pub pivots: u32,
+    /// What the search began with.
+    pub started_from: StartedFrom,
+}
+
+impl Steps {
+    /// Counts another cast in; of both starts the one with more work stands.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.planar_problems += other.planar_problems;
+        self.supports += other.supports;
+        self.pivots += other.pivots;
+        self.started_from = self.started_from.max(other.started_from);
+    }
+}
+
+/// What the search for an answer began with, from the least work to the most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum StartedFrom {
+    /// The last answer's contact features or separating direction ([`Tracker`](crate::Tracker)
+    /// only).
+    Features,
+    /// The region around the last answer ([`Tracker`](crate::Tracker) only).
+    Region,
+    /// Nothing but the bodies.
+    #[default]
+    Scratch,
+}

@@ -1,0 +1,84 @@
+//! Meshes that already are their own convex hull, recognised exactly.
+//!
+//! A closed, oriented surface of triangles is the boundary of a convex body if it is nowhere bent
+//! inwards at an edge, a point is strictly inside all its planes, and one ray from that point passes
+//! one triangle only (Mehlhorn, Naeher, Seel, Seidel, Schilz, Schirra, Uhrig, "Checking geometric
+//! programs or verification of geometric structures", Computational Geometry 12, 1999: bent outwards
+//! everywhere, it covers the sphere around the point a whole number of times; one ray tells that
+//! number). All signs are exact. Where one of them fails nothing is claimed, and the hull is made
+//! from the points.
+
+use glam::DVec3;
+
+use super::quickhull::{Simplicial, Triangle, side};
+use crate::body::topology::Topology;
+use crate::number::plane::triangle_normal;
+
+/// The mesh as a simplicial hull, if its faces are triangles and it is convex, every vertex a
+/// corner.
+pub(super) fn simplicial(points: &[DVec3], topology: &Topology) -> Option<Simplicial> {
+    let mesh = Mesh { points, topology };
+    let count = topology.face_count() as u32;
+    if !(0..count).all(|f| topology.face(f).len() == 3) {
+        return None;
+    }
+    let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+    let convex = (0..count).all(|f| mesh.is_below(f, middle) && mesh.bends_outwards(f));
+    if !convex || mesh.times_covered(middle) != 1 {
+        return None;
+    }
+    let triangles = (0..count).map(|f| mesh.triangle(f)).collect();
+    Some(Simplicial { triangles, near: Vec::new() })
+}
+
+struct Mesh<'a> {
+    points: &'a [DVec3],
+    topology: &'a Topology,
+}
+
+impl Mesh<'_> {
+    fn corners(&self, face: u32) -> [u32; 3] {
+        let first = self.topology.face(face).start;
+        [first, first + 1, first + 2].map(|h| self.topology.half_edge(h).origin)
+    }
+
+    fn at(&self, face: u32) -> [DVec3; 3] {
+        self.corners(face).map(|v| self.points[v as usize])
+    }
+
+    /// Whether a point is strictly below a triangle's plane; never below one without area.
+    fn is_below(&self, face: u32, p: DVec3) -> bool {
+        let [a, b, c] = self.at(face);
+        side(a, b, c, p) < 0.0
+    }
+
+    /// Whether no neighbour's third corner is above a triangle's plane.
+    fn bends_outwards(&self, face: u32) -> bool {
+        let [a, b, c] = self.at(face);
+        self.topology.face(face).all(|h| {
+            let twin = self.topology.half_edge(h).twin;
+            let third = self.topology.target(self.topology.next(twin));
+            side(a, b, c, self.points[third as usize]) <= 0.0
+        })
+    }
+
+    /// How many triangles a ray from a point inside passes, in their interior or on their border.
+    fn times_covered(&self, from: DVec3) -> usize {
+        let through = self.at(0).into_iter().sum::<DVec3>() / 3.0;
+        let passes = |f: u32| {
+            let [a, b, c] = self.at(f);
+            side(from, b, a, through) <= 0.0
+                && side(from, c, b, through) <= 0.0
+                && side(from, a, c, through) <= 0.0
+        };
+        (0..self.topology.face_count() as u32).filter(|&f| passes(f)).count()
+    }
+
+    fn triangle(&self, face: u32) -> Triangle {
+        let neighbour = |h: u32| self.topology.half_edge(self.topology.half_edge(h).twin).face;
+        let first = self.topology.face(face).start;
+        let neighbours = [first, first + 1, first + 2].map(neighbour);
+        let normal = triangle_normal(self.at(face)).normalize_or_zero();
+        Triangle { corners: self.corners(face), neighbours, normal }
+    }
+}

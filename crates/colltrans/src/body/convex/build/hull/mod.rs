@@ -1,0 +1,211 @@
+//! The convex hull of a point cloud, of any dimension, with coplanar faces as polygons.
+//!
+//! The way: [`quickhull`] makes a simplicial hull on exact decisions, of the points that are
+//! outside by more than the tolerance (a mesh that is convex already is one: [`convex_mesh`]); [`merge`] joins its coplanar triangles and names the
+//! vertices that are then no corners; the hull is made again without those, until none is left;
+//! [`planar`] does the same for points in a plane.
+//!
+//! Tolerance. Points within [`noise::COPLANAR`] of the largest coordinate of a face are taken to lie
+//! on it.
+
+mod convex_mesh;
+mod merge;
+mod planar;
+mod quickhull;
+mod violation;
+
+use glam::DVec3;
+
+use crate::body::topology::Topology;
+use crate::error::{BuildError, TopologyError};
+use crate::number::noise;
+use crate::number::range::in_exact_range;
+use quickhull::Simplicial;
+pub(super) use violation::Locator;
+
+/// Which input points are vertices, and the faces over them.
+#[derive(Debug, Clone)]
+pub(crate) struct Hull {
+    /// Affine dimension of the points, 0 to 3.
+    pub(crate) dimension: u8,
+    /// Indices of the vertices in the input.
+    pub(crate) vertices: Vec<u32>,
+    /// The faces over positions in `vertices`. A flat polygon has a front and a back face.
+    pub(crate) topology: Topology,
+    /// Largest distance of an input point outside a face plane.
+    pub(crate) violation: f64,
+}
+
+/// Rounds of dropping vertices that are no corners; each is a hull of fewer points.
+const MAX_ROUNDS: usize = 16;
+
+/// Most points: vertex and half-edge numbers must fit 31 bits.
+const MAX_POINTS: usize = (u32::MAX / 16) as usize;
+
+/// Checks that points are finite, in range, and not too many.
+pub(super) fn check_points(points: &[DVec3]) -> Result<(), BuildError> {
+    if points.is_empty() {
+        return Err(BuildError::NoPoints);
+    }
+    if points.len() > MAX_POINTS {
+        return Err(BuildError::TooManyPoints { count: points.len(), limit: MAX_POINTS });
+    }
+    for (index, &point) in points.iter().enumerate() {
+        if !point.is_finite() {
+            return Err(BuildError::NotFinite { index, point });
+        }
+        if !in_exact_range(point) {
+            return Err(BuildError::OutOfRange { index, point });
+        }
+    }
+    Ok(())
+}
+
+/// Distance from a face within which points of this size are taken to lie on it.
+pub(super) fn tolerance(points: &[DVec3]) -> f64 {
+    let largest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    noise::COPLANAR * largest
+}
+
+/// The convex hull of points that [`check_points`] has passed.
+pub(super) fn convex_hull(points: &[DVec3]) -> Hull {
+    reduced_hull(points, None)
+}
+
+/// The convex hull of a closed surface's vertices, all in use: quicker where the surface is that
+/// hull already.
+pub(super) fn hull_of_mesh(points: &[DVec3], topology: &Topology) -> Hull {
+    reduced_hull(points, convex_mesh::simplicial(points, topology))
+}
+
+/// The hull without what is no corner, from a simplicial hull of all points if there is one.
+fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
+    let tolerance = tolerance(points);
+    let mut kept: Vec<u32> = (0..points.len() as u32).collect();
+    // Points near the surface: they are what the violation is measured on.
+    let mut near: Vec<u32> = Vec::new();
+    let mut forced: Vec<u32> = Vec::new();
+    for _ in 0..MAX_ROUNDS {
+        let simplicial = match known.take() {
+            Some(simplicial) => simplicial,
+            None => match quickhull::simplicial_hull(points, &kept, tolerance) {
+                Ok(simplicial) => simplicial,
+                Err(flat) => return planar::hull(points, &kept, flat, tolerance),
+            },
+        };
+        near.extend(&simplicial.near);
+        let regions = merge::regions(points, &simplicial, tolerance);
+        let redundant = merge::redundant(points, &simplicial, &regions, tolerance, &forced);
+        if redundant.is_empty() {
+            return finish(points, &simplicial, &regions, &near);
+        }
+        let mut rest: Vec<u32> = simplicial.vertices();
+        rest.retain(|v| redundant.binary_search(v).is_err());
+        near.extend(&redundant);
+        kept = rest;
+        // What is dropped must lie on the hull of the rest; what does not is kept for good.
+        let lost = merge::lost(points, &kept, &redundant, tolerance);
+        forced.extend(&lost);
+        forced.sort_unstable();
+        kept.extend(lost);
+        kept.sort_unstable();
+    }
+    // Rounds always end long before; if not, the triangles themselves are a correct answer.
+    let all: Vec<u32> = (0..points.len() as u32).collect();
+    match quickhull::simplicial_hull(points, &all, tolerance) {
+        Ok(simplicial) => {
+            let regions = merge::Regions::triangles(&simplicial);
+            finish(points, &simplicial, &regions, &simplicial.near)
+        }
+        Err(flat) => planar::hull(points, &all, flat, tolerance),
+    }
+}
+
+/// Polygons, vertex numbers and the measured violation.
+fn finish(
+    points: &[DVec3],
+    simplicial: &Simplicial,
+    regions: &merge::Regions,
+    near: &[u32],
+) -> Hull {
+    let (vertices, topology) = faces(points, simplicial, regions).unwrap_or_else(|_| {
+        // Rounding can make coplanar regions that do not fit together; the triangles always do.
+        faces(points, simplicial, &merge::Regions::triangles(simplicial))
+            .expect("the triangles of a simplicial hull are a closed surface")
+    });
+    let corners: Vec<DVec3> = vertices.iter().map(|&i| points[i as usize]).collect();
+    let violation = violation::measure(points, &corners, &topology, near);
+    Hull { dimension: 3, vertices, topology, violation }
+}
+
+/// The vertices, in the order of the input because whoever wrote it kept neighbours together, and
+/// the faces over them.
+fn faces(
+    points: &[DVec3],
+    simplicial: &Simplicial,
+    regions: &merge::Regions,
+) -> Result<(Vec<u32>, Topology), TopologyError> {
+    let (face_start, corners) = merge::polygons(simplicial, regions);
+    let mut vertices = corners.clone();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let large = vertices.len() > LARGE;
+    if large {
+        sort_by_place(points, &mut vertices);
+    }
+    let mut position = vec![0; points.len()];
+    for (k, &v) in vertices.iter().enumerate() {
+        position[v as usize] = k as u32;
+    }
+    let mut face_start = face_start;
+    let mut face_vertices: Vec<u32> = corners.iter().map(|&v| position[v as usize]).collect();
+    if large {
+        (face_start, face_vertices) = sorted_by_vertex(&face_start, &face_vertices);
+    }
+    let topology = Topology::sphere(vertices.len(), face_start, &face_vertices)?;
+    Ok((vertices, topology))
+}
+
+/// More vertices than this are numbered by place: what a query visits one after the other is then
+/// near in memory. Smaller bodies fit in the fastest cache in any order.
+const LARGE: usize = 500;
+
+/// Sorts points along a space-filling curve (Morton's).
+fn sort_by_place(points: &[DVec3], vertices: &mut [u32]) {
+    let at = |v: u32| points[v as usize];
+    let low = vertices.iter().map(|&v| at(v)).fold(DVec3::INFINITY, DVec3::min);
+    let high = vertices.iter().map(|&v| at(v)).fold(DVec3::NEG_INFINITY, DVec3::max);
+    let scale = f64::from(1 << 20) / (high - low);
+    // Casts saturate: an axis without extent is all zeros.
+    let key = |&v: &u32| {
+        let cell = (at(v) - low) * scale;
+        spread(cell.x as u32) | spread(cell.y as u32) << 1 | spread(cell.z as u32) << 2
+    };
+    vertices.sort_by_cached_key(key);
+}
+
+/// The lowest 21 bits, two places apart.
+fn spread(bits: u32) -> u64 {
+    let mut x = u64::from(bits) & 0x1f_ffff;
+    x = (x | x << 32) & 0x1f_0000_0000_ffff;
+    x = (x | x << 16) & 0x1f_0000_ff00_00ff;
+    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+/// The faces in the order of their lowest vertices.
+fn sorted_by_vertex(face_start: &[u32], face_vertices: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let face = |f: u32| {
+        &face_vertices[face_start[f as usize] as usize..face_start[f as usize + 1] as usize]
+    };
+    let mut order: Vec<u32> = (0..face_start.len() as u32 - 1).collect();
+    order.sort_by_cached_key(|&f| face(f).iter().min().copied());
+    let mut start = vec![0];
+    let mut vertices = Vec::with_capacity(face_vertices.len());
+    for f in order {
+        vertices.extend_from_slice(face(f));
+        start.push(vertices.len() as u32);
+    }
+    (start, vertices)
+}

@@ -1,0 +1,300 @@
+//! Bodies from meshes: closed, oriented, one sphere, convex.
+//!
+//! Convexity is judged by the *defect*: how deep the surface lies below its convex hull. A face
+//! whose vertices lie on one face of the hull has none. Unlike a face's own plane, depth does not
+//! depend on the normals of slivers, which rounding makes arbitrary.
+
+use std::cell::OnceCell;
+
+use glam::DVec3;
+
+use super::hull::{self, Hull, Locator};
+use crate::body::topology::Topology;
+use crate::body::{ConvexPolyhedron, Inertia};
+use crate::error::{BuildError, TopologyError};
+use crate::number::plane::polygon_normal;
+
+/// How far a mesh is from convex.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConvexityDefect {
+    /// The face that lies deepest below the convex hull.
+    pub face: usize,
+    /// How deep, in the units of the mesh; 0 if every face lies on the hull.
+    pub depth: f64,
+}
+
+/// How deep the surface of a closed mesh lies below its convex hull.
+///
+/// Vertices in any frame and unit, faces as in [`ConvexPolyhedron::from_mesh`], which refuses a
+/// mesh when this depth exceeds its tolerance.
+///
+/// # Errors
+/// What is wrong with the points, the topology or the orientation.
+///
+/// ```
+/// use colltrans::convexity_defect;
+/// use colltrans::glam::DVec3;
+///
+/// // An octahedron whose top is pushed in: its apex lies below the square of the other four.
+/// let rim = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+/// let vertices = [rim[0], rim[1], rim[2], rim[3], DVec3::Z * -1.0, DVec3::Z * -0.25];
+/// let faces: Vec<[u32; 3]> =
+///     (0..4).flat_map(|i| [[i, (i + 1) % 4, 5], [(i + 1) % 4, i, 4]]).collect();
+/// let defect = convexity_defect(&vertices, &faces)?;
+/// assert!((defect.depth - 0.25).abs() < 1e-12);
+/// # Ok::<(), colltrans::BuildError>(())
+/// ```
+pub fn convexity_defect<F: AsRef<[u32]>>(
+    vertices: &[DVec3],
+    faces: &[F],
+) -> Result<ConvexityDefect, BuildError> {
+    let surface = Surface::new(vertices, faces)?;
+    Ok(surface.defect(&surface.hull()))
+}
+
+pub(super) fn from_mesh<F: AsRef<[u32]>>(
+    vertices: &[DVec3],
+    faces: &[F],
+    tolerance: f64,
+) -> Result<ConvexPolyhedron, BuildError> {
+    let surface = Surface::new(vertices, faces)?;
+    let hull = surface.hull();
+    let ConvexityDefect { face, depth } = surface.defect(&hull);
+    // A tolerance that is no number tolerates nothing.
+    let tolerance = hull::tolerance(&surface.points).max(tolerance);
+    if depth > tolerance {
+        return Err(BuildError::NotConvex { face, depth, tolerance });
+    }
+    Ok(surface.body(hull))
+}
+
+/// A closed, oriented surface over the vertices in use.
+struct Surface {
+    /// Positions of the vertices in use.
+    points: Vec<DVec3>,
+    /// Their indices in the mesh.
+    index: Vec<u32>,
+    topology: Topology,
+}
+
+impl Surface {
+    fn new<F: AsRef<[u32]>>(vertices: &[DVec3], faces: &[F]) -> Result<Self, BuildError> {
+        hull::check_points(vertices)?;
+        let mut face_start = vec![0];
+        let mut corners = Vec::new();
+        let mut used = vec![false; vertices.len()];
+        for (face, list) in faces.iter().enumerate() {
+            for &v in list.as_ref() {
+                let vertex = v as usize;
+                *used.get_mut(vertex).ok_or(TopologyError::UnknownVertex {
+                    face,
+                    vertex,
+                    vertices: vertices.len(),
+                })? = true;
+                corners.push(v);
+            }
+            face_start.push(corners.len() as u32);
+        }
+        let topology = Topology::sphere(vertices.len(), face_start, &corners)?;
+        let surface = if used.iter().all(|&u| u) {
+            Self {
+                points: vertices.to_vec(),
+                index: (0..vertices.len() as u32).collect(),
+                topology,
+            }
+        } else {
+            Self::compact(vertices, &used, &topology)?
+        };
+        surface.check_orientation()?;
+        Ok(surface)
+    }
+
+    /// The same surface over the vertices in use alone.
+    fn compact(
+        vertices: &[DVec3],
+        used: &[bool],
+        topology: &Topology,
+    ) -> Result<Self, TopologyError> {
+        let index: Vec<u32> = (0..vertices.len() as u32).filter(|&v| used[v as usize]).collect();
+        let mut position = vec![0; vertices.len()];
+        for (k, &v) in index.iter().enumerate() {
+            position[v as usize] = k as u32;
+        }
+        let corners: Vec<u32> =
+            topology.half_edges().iter().map(|h| position[h.origin as usize]).collect();
+        let face_start = (0..topology.face_count() as u32).map(|f| topology.face(f).start);
+        let face_start = face_start.chain([corners.len() as u32]).collect();
+        let topology = Topology::sphere(index.len(), face_start, &corners)?;
+        Ok(Self { points: index.iter().map(|&v| vertices[v as usize]).collect(), index, topology })
+    }
+
+    /// Refuses a surface that encloses a negative volume, beyond what rounding can make of a flat
+    /// one.
+    fn check_orientation(&self) -> Result<(), BuildError> {
+        let signed_volume = Inertia::signed_volume(&self.points, &self.topology);
+        let extent = self.points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let thickness = hull::tolerance(&self.points);
+        if signed_volume < -thickness * extent * extent {
+            return Err(BuildError::InsideOut { signed_volume });
+        }
+        Ok(())
+    }
+
+    fn hull(&self) -> Hull {
+        hull::hull_of_mesh(&self.points, &self.topology)
+    }
+
+    fn body(&self, mut hull: Hull) -> ConvexPolyhedron {
+        let mut body_index = std::mem::take(&mut hull.vertices);
+        hull.vertices.clone_from(&body_index);
+        for v in &mut body_index {
+            *v = self.index[*v as usize];
+        }
+        let mut body = ConvexPolyhedron::from_hull(&self.points, hull);
+        body.input_index = body_index;
+        body
+    }
+
+    fn defect(&self, hull: &Hull) -> ConvexityDefect {
+        let depths = Depths::new(self, hull);
+        let mut worst = ConvexityDefect { face: 0, depth: 0.0 };
+        let mut near = 0;
+        for face in 0..self.topology.face_count() as u32 {
+            let depth = depths.of_face(face, worst.depth, &mut near);
+            if depth > worst.depth {
+                worst = ConvexityDefect { face: face as usize, depth };
+            }
+        }
+        worst
+    }
+}
+
+/// Depths below the faces of a hull; for a flat one, behind the edges of its polygon.
+struct Depths<'a> {
+    surface: &'a Surface,
+    hull: &'a Hull,
+    /// What measures a depth, made when the first face is found off the hull: most meshes have none.
+    gauge: OnceCell<Gauge>,
+    /// For each vertex of the surface, its number in the hull, if it is one of its vertices.
+    in_hull: Vec<Option<u32>>,
+}
+
+/// The planes to measure from.
+struct Gauge {
+    /// Unit normal, outwards, and offset of each face or edge.
+    planes: Vec<(DVec3, f64)>,
+    /// Neighbours of the faces, to walk along.
+    locator: Locator,
+}
+
+impl<'a> Depths<'a> {
+    fn new(surface: &'a Surface, hull: &'a Hull) -> Self {
+        let mut in_hull = vec![None; surface.points.len()];
+        for (k, &v) in hull.vertices.iter().enumerate() {
+            in_hull[v as usize] = Some(k as u32);
+        }
+        Self { surface, hull, gauge: OnceCell::new(), in_hull }
+    }
+
+    fn gauge(&self) -> &Gauge {
+        self.gauge.get_or_init(|| {
+            let (hull, points) = (self.hull, &self.surface.points);
+            let vertices: Vec<DVec3> = hull.vertices.iter().map(|&v| points[v as usize]).collect();
+            let locator = Locator::of_faces(&vertices, &hull.topology);
+            let planes = if hull.dimension == 2 {
+                edge_planes(&vertices, &hull.topology)
+            } else {
+                locator.planes_from_origin().collect()
+            };
+            Gauge { planes, locator }
+        })
+    }
+
+    /// Greatest depth of a face's corners, edge midpoints and centre, or any number up to `known`
+    /// if it is not greater than that; 0 if the corners lie on one face of the hull.
+    ///
+    /// A flat surface covers its inside twice; its edges are where it turns back.
+    fn of_face(&self, face: u32, known: f64, near: &mut usize) -> f64 {
+        let topology = &self.surface.topology;
+        let at = |v: u32| self.surface.points[v as usize];
+        let middle = |h: u32| (at(topology.half_edge(h).origin) + at(topology.target(h))) * 0.5;
+        match self.hull.dimension {
+            0 | 1 => 0.0,
+            2 => {
+                let rim = topology.face(face).filter(|&h| self.turns_back(h));
+                let points = rim.flat_map(|h| [at(topology.half_edge(h).origin), middle(h)]);
+                points.map(|p| self.of_point(p)).fold(0.0, f64::max)
+            }
+            _ if self.lies_on_hull(face) => 0.0,
+            _ => {
+                let corners = topology.face_vertices(face).map(at);
+                let center = corners.clone().sum::<DVec3>() / corners.len() as f64;
+                let points = corners.chain(topology.face(face).map(middle)).chain([center]);
+                points.fold(0.0, |worst, p| {
+                    // An upper bound of the depth is enough where it changes nothing.
+                    let bound = self.gauge().locator.depth_bound(p, near);
+                    let depth = if bound <= worst.max(known) { bound } else { self.of_point(p) };
+                    worst.max(depth)
+                })
+            }
+        }
+    }
+
+    fn of_point(&self, p: DVec3) -> f64 {
+        self.gauge().planes.iter().map(|(n, o)| o - n.dot(p)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether the faces at an edge of a flat surface look to opposite sides.
+    fn turns_back(&self, h: u32) -> bool {
+        let topology = &self.surface.topology;
+        let normal = |h: u32| {
+            let corners = topology.face_vertices(topology.half_edge(h).face);
+            area_vector(corners.map(|v| self.surface.points[v as usize]))
+        };
+        normal(h).dot(normal(topology.half_edge(h).twin)) < 0.0
+    }
+
+    fn lies_on_hull(&self, face: u32) -> bool {
+        let topology = &self.hull.topology;
+        let corners = self.surface.topology.face_vertices(face);
+        let corners = corners.map(|v| self.in_hull[v as usize]);
+        if !corners.clone().all(|v| v.is_some()) {
+            return false;
+        }
+        let corners = corners.flatten();
+        let Some(fewest) = corners.clone().min_by_key(|&v| topology.outgoing(v).len()) else {
+            return false;
+        };
+        let face_of = |h: &u32| topology.half_edge(*h).face;
+        // Whichever is shorter: the faces at a vertex (not at an apex) or the vertices of a face
+        // (not of a cap).
+        let contains = |f: u32, v: u32| {
+            if topology.outgoing(v).len() <= topology.face(f).len() {
+                topology.outgoing(v).iter().any(|h| face_of(h) == f)
+            } else {
+                topology.face_vertices(f).any(|w| w == v)
+            }
+        };
+        let faces = topology.outgoing(fewest).iter().map(face_of);
+        faces.into_iter().any(|f| corners.clone().all(|v| contains(f, v)))
+    }
+}
+
+/// The half-planes of a flat polygon, by its front face.
+fn edge_planes(vertices: &[DVec3], topology: &Topology) -> Vec<(DVec3, f64)> {
+    let corners: Vec<DVec3> = topology.face_vertices(0).map(|v| vertices[v as usize]).collect();
+    let up = polygon_normal(corners.iter().copied());
+    let next = corners.iter().cycle().skip(1);
+    let plane = |(a, b): (&DVec3, &DVec3)| {
+        let outward = (*b - *a).cross(up).normalize_or_zero();
+        (outward, outward.dot(*a))
+    };
+    corners.iter().zip(next).map(plane).collect()
+}
+
+/// Twice the area of a polygon times its unit normal, also of one that is not convex.
+fn area_vector(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
+    let Some(first) = corners.clone().next() else { return DVec3::ZERO };
+    let rest = corners.map(|c| c - first);
+    rest.clone().zip(rest.skip(1)).map(|(a, b)| a.cross(b)).sum()
+}

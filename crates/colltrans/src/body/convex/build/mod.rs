@@ -1,0 +1,119 @@
+//! The door: bodies from points, from meshes and from corners.
+
+mod hull;
+mod mesh;
+
+use glam::DVec3;
+
+use super::ConvexPolyhedron;
+use super::sections::SectionIndex;
+use super::support::SupportIndex;
+use crate::body::Inertia;
+#[cfg(test)]
+use crate::body::topology::Topology;
+use crate::error::BuildError;
+use hull::Hull;
+pub use mesh::{ConvexityDefect, convexity_defect};
+
+impl ConvexPolyhedron {
+    /// The convex hull of `points` (body frame, any unit).
+    ///
+    /// Coplanar triangles are merged into polygons and points within rounding error of a face
+    /// or an edge are no vertices; [`Self::hull_error`] says how far outside the faces any
+    /// input point was left. Takes `O(n log n)` for points in general.
+    ///
+    /// # Errors
+    /// No points, more than 32-bit indices can number, a point that is not finite, a coordinate
+    /// out of the exact range.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// // A grid of 3 x 3 x 3 points: a cube of 8 vertices and 6 faces.
+    /// let grid: Vec<DVec3> = (0..27)
+    ///     .map(|i| DVec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64))
+    ///     .collect();
+    /// let cube = ConvexPolyhedron::from_points(&grid)?;
+    /// assert_eq!((cube.vertices().len(), cube.edge_count(), cube.face_count()), (8, 12, 6));
+    /// assert_eq!(cube.volume(), 8.0);
+    ///
+    /// assert!(ConvexPolyhedron::from_points(&[DVec3::NAN]).is_err());
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    pub fn from_points(points: &[DVec3]) -> Result<Self, BuildError> {
+        hull::check_points(points)?;
+        Ok(Self::from_hull(points, hull::convex_hull(points)))
+    }
+
+    /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of
+    /// vertex indices, counter-clockwise as seen from outside.
+    ///
+    /// The surface must be closed, consistently oriented, one sphere, and nowhere more than
+    /// `tolerance` (a length; rounding error is tolerated in any case) below its convex hull; the
+    /// hull is what is kept. Vertices that no face uses are ignored.
+    ///
+    /// # Errors
+    /// What is wrong with the points, the topology, the orientation, or the convexity (with the
+    /// worst face and its depth).
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{BuildError, ConvexPolyhedron, TopologyError};
+    ///
+    /// let vertices = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    /// let tetrahedron = ConvexPolyhedron::from_mesh(&vertices, &faces, 0.0)?;
+    /// assert_eq!(tetrahedron.face_count(), 4);
+    ///
+    /// let open = ConvexPolyhedron::from_mesh(&vertices, &faces[..3], 0.0);
+    /// let Err(BuildError::Topology(TopologyError::OpenEdge { .. })) = open else {
+    ///     unreachable!("a face is missing")
+    /// };
+    /// # Ok::<(), BuildError>(())
+    /// ```
+    pub fn from_mesh<F: AsRef<[u32]>>(
+        vertices: &[DVec3],
+        faces: &[F],
+        tolerance: f64,
+    ) -> Result<Self, BuildError> {
+        mesh::from_mesh(vertices, faces, tolerance)
+    }
+
+    fn from_hull(points: &[DVec3], hull: Hull) -> Self {
+        let Hull { dimension, vertices: input_index, topology, violation } = hull;
+        let vertices: Vec<DVec3> = input_index.iter().map(|&i| points[i as usize]).collect();
+        let inertia = Inertia::new(&vertices, &topology, dimension);
+        let support = SupportIndex::build(&vertices, &topology, &inertia);
+        let sections = if dimension == 3 {
+            SectionIndex::build(&vertices, &topology)
+        } else {
+            SectionIndex::default()
+        };
+        Self {
+            vertices,
+            input_index,
+            dimension,
+            hull_error: violation,
+            topology,
+            inertia,
+            support,
+            sections,
+        }
+    }
+
+    /// A body of dimension 3 from its faces, which the caller knows to be convex.
+    #[cfg(test)]
+    pub(crate) fn from_convex_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Self {
+        let mut face_start = vec![0];
+        let mut face_vertices = Vec::new();
+        for face in faces {
+            face_vertices.extend_from_slice(face);
+            face_start.push(face_vertices.len() as u32);
+        }
+        let topology = Topology::sphere(vertices.len(), face_start, &face_vertices).unwrap();
+        let vertices_in_order = (0..vertices.len() as u32).collect();
+        let hull = Hull { dimension: 3, vertices: vertices_in_order, topology, violation: 0.0 };
+        Self::from_hull(vertices, hull)
+    }
+}

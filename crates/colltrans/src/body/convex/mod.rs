@@ -1,0 +1,169 @@
+//! Convex polyhedra, checked once at the door.
+//!
+//! The data's way: points, a mesh or two corners -> [`build`] (which vertices, which faces) ->
+//! [`topology`](crate::body::topology) (half-edges, no coordinates) -> the indices built on both
+//! ([`support`] points, [`sections`]).
+
+mod build;
+pub(crate) mod sections;
+mod support;
+#[cfg(test)]
+pub(crate) mod tests;
+
+use glam::DVec3;
+
+use crate::body::Inertia;
+use crate::body::topology::Topology;
+use crate::number::plane::polygon_normal;
+pub use build::{ConvexityDefect, convexity_defect};
+use sections::SectionIndex;
+use support::SupportIndex;
+
+/// A convex polyhedron in its own frame: the convex hull of finitely many points.
+///
+/// It may be of lower dimension: a flat polygon, a segment, a point. Immutable, `Send` and `Sync`;
+/// everything a query needs is built once, here, in `O(n)` space.
+///
+/// Vertices and faces are numbered from 0; [`Self::input_indices`] leads back to the input.
+#[derive(Debug, Clone)]
+pub struct ConvexPolyhedron {
+    vertices: Vec<DVec3>,
+    input_index: Vec<u32>,
+    dimension: u8,
+    hull_error: f64,
+    topology: Topology,
+    inertia: Inertia,
+    support: SupportIndex,
+    sections: SectionIndex,
+}
+
+impl ConvexPolyhedron {
+    /// The vertices, in the body frame.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// For each vertex, its index in the points or mesh vertices the polyhedron was made from.
+    pub fn input_indices(&self) -> &[u32] {
+        &self.input_index
+    }
+
+    /// 3 for a solid, 2 for a flat polygon (with a front and a back face), 1 for a segment, 0 for a
+    /// point.
+    pub fn dimension(&self) -> u8 {
+        self.dimension
+    }
+
+    /// Number of faces: 2 for a flat polygon, 0 for a segment or a point.
+    pub fn face_count(&self) -> usize {
+        self.topology.face_count()
+    }
+
+    /// Number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.topology.edge_count()
+    }
+
+    /// The vertices of a face, counter-clockwise as seen from outside.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
+        self.topology.face_vertices(face)
+    }
+
+    /// Unit normal of a face, outwards, in the body frame, rounded.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn face_normal(&self, face: u32) -> DVec3 {
+        polygon_normal(self.face_vertices(face).map(|v| self.vertices[v as usize]))
+    }
+
+    /// The vertices joined to `vertex` by an edge, clockwise as seen from outside.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn neighbours(&self, vertex: u32) -> &[u32] {
+        self.topology.neighbours(vertex)
+    }
+
+    /// The largest distance by which an input point lies outside a face plane: the hull's own
+    /// error, in the unit of the input.
+    pub fn hull_error(&self) -> f64 {
+        self.hull_error
+    }
+
+    /// The volume, in the cube of the input's unit; 0 for a body of lower dimension.
+    pub fn volume(&self) -> f64 {
+        self.inertia.volume
+    }
+
+    /// The vertex farthest along `direction` (body frame, any length): a support point, in
+    /// `O(log n)`. One of the farthest, to within rounding error, if there are several.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let needle = ConvexPolyhedron::from_points(&[DVec3::X * 100.0, DVec3::Y, DVec3::Z])?;
+    /// let tip = needle.support(DVec3::new(1.0, -0.5, 0.25));
+    /// assert_eq!(needle.vertices()[tip as usize], DVec3::new(100.0, 0.0, 0.0));
+    /// assert_eq!(needle.input_indices()[tip as usize], 0);
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    #[inline]
+    pub fn support(&self, direction: DVec3) -> u32 {
+        self.support.extreme(&self.vertices, &self.topology, direction)
+    }
+
+    /// A vertex near the support point.
+    #[inline]
+    pub(crate) fn support_guess(&self, direction: DVec3) -> u32 {
+        self.support.guess(direction)
+    }
+
+    /// The support point, from a guess.
+    #[inline]
+    pub(crate) fn support_from_guess(&self, direction: DVec3, guess: u32) -> u32 {
+        self.support.extreme_from_guess(&self.vertices, &self.topology, direction, guess)
+    }
+
+    /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a direction passed through memory stalls the scan: 7 %"
+    )]
+    pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
+        self.support.extreme_from(&self.vertices, &self.topology, direction, near)
+    }
+
+    /// Positions among the neighbours of `vertex` that may lie in its supporting plane along
+    /// `direction`: the first and how many.
+    pub(crate) fn plane_candidates(&self, vertex: u32, direction: DVec3) -> (usize, usize) {
+        self.support.plane_candidates(&self.vertices, &self.topology, vertex, direction)
+    }
+
+    /// Bytes of memory that the polyhedron occupies, on the heap and in itself.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.vertices.capacity() * size_of::<DVec3>()
+            + self.input_index.capacity() * size_of::<u32>()
+            + self.topology.heap_bytes()
+            + self.support.heap_bytes()
+            + self.sections.heap_bytes()
+    }
+
+    pub(crate) fn inertia(&self) -> &Inertia {
+        &self.inertia
+    }
+
+    pub(crate) fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    pub(crate) fn sections(&self) -> &SectionIndex {
+        &self.sections
+    }
+}

@@ -1,0 +1,343 @@
+//! Snapshots: the whole section, in cyclic order, at chosen levels.
+//!
+//! The first snapshot is at the lowest level. The next one comes after the vertices passed have as
+//! many edges as [`EDGES_PER_ENTRY`] times the edges of the current section, so all snapshots
+//! together have `O(n)` entries, and a vertex of very many edges (the apex of a cone) gets a
+//! snapshot of its own. A query at level `x` starts from the last snapshot at or below `x`: no such
+//! vertex lies between. An entry holds a crossing edge and, as `f32`, where it crosses; these
+//! positions only guide a search, whose end is decided on the mesh.
+
+use glam::DVec3;
+
+use super::walk::next_counter_clockwise;
+use crate::body::topology::Topology;
+
+/// Edges of vertices passed per entry of a snapshot: about two vertices' worth of upward and
+/// downward edges.
+const EDGES_PER_ENTRY: usize = 4;
+
+/// Candidates of one round of the search for an extreme entry.
+const CANDIDATES: usize = 16;
+
+/// A crossing edge of a snapshot.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    /// The half-edge that runs upwards.
+    up: u32,
+    /// Where it crosses, in the scaled coordinates of the section plane.
+    position: [f32; 2],
+}
+
+/// The sections across one axis.
+#[derive(Debug, Clone)]
+pub(crate) struct AxisSections {
+    /// Lowest and highest level of a vertex.
+    pub(crate) range: [f64; 2],
+    pub(crate) axis: DVec3,
+    /// An upper bound of the body's diameter.
+    pub(crate) diameter: f64,
+    /// Scaled coordinates of the section plane: `position_i = plane_i . v - origin_i`.
+    plane: [DVec3; 2],
+    origin: [f64; 2],
+    /// Level of each snapshot, ascending.
+    levels: Vec<f64>,
+    /// First entry of each snapshot, and one past the end.
+    starts: Vec<u32>,
+    /// Each snapshot counter-clockwise.
+    entries: Vec<Entry>,
+}
+
+impl AxisSections {
+    pub(super) fn build(vertices: &[DVec3], topology: &Topology, axis: DVec3) -> Self {
+        let vertex_levels: Vec<f64> = vertices.iter().map(|&v| axis.dot(v)).collect();
+        let mut order: Vec<(f64, u32)> =
+            vertex_levels.iter().zip(0..).map(|(&level, v)| (level, v)).collect();
+        order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0));
+        let (plane, origin) = scaled_plane(vertices, axis);
+        let range = [order[0].0, order[order.len() - 1].0];
+        let across = 1.0 / plane[0].length();
+        let mut sections = Self {
+            range,
+            diameter: (range[1] - range[0]) / axis.length() + 2.0 * across,
+            axis,
+            plane,
+            origin,
+            levels: Vec::new(),
+            starts: vec![0],
+            entries: Vec::new(),
+        };
+        sections.take_snapshots(vertices, topology, &vertex_levels, &order);
+        sections.levels.shrink_to_fit();
+        sections.starts.shrink_to_fit();
+        sections.entries.shrink_to_fit();
+        sections
+    }
+
+    fn take_snapshots(
+        &mut self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        vertex_levels: &[f64],
+        order: &[(f64, u32)],
+    ) {
+        let mut edges_passed = 0;
+        let mut edges_due = 0;
+        for (rank, &(level, vertex)) in order.iter().enumerate() {
+            edges_passed += topology.neighbours(vertex).len();
+            let Some(&(next_level, _)) = order.get(rank + 1) else { break };
+            if edges_passed < edges_due || next_level == level {
+                continue;
+            }
+            // A vertex below the top has an edge upwards; rounding may hide it, then its
+            // predecessor serves.
+            let first = order[..=rank].iter().rev().find_map(|&(_, v)| {
+                let mut outgoing = topology.outgoing(v).iter().copied();
+                outgoing.find(|&h| vertex_levels[topology.target(h) as usize] > level)
+            });
+            if let Some(first) = first {
+                self.take_snapshot(vertices, topology, vertex_levels, first, [level, next_level]);
+                edges_due = EDGES_PER_ENTRY
+                    * (self.entries.len() - self.starts[self.starts.len() - 2] as usize);
+                edges_passed = 0;
+            }
+        }
+    }
+
+    /// Appends the section between two successive levels of vertices, which `first` crosses.
+    fn take_snapshot(
+        &mut self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        vertex_levels: &[f64],
+        first: u32,
+        [level, next_level]: [f64; 2],
+    ) {
+        // Halfway no two of its vertices coincide.
+        let halfway = f64::midpoint(level, next_level);
+        let mut up = first;
+        // A section has no more entries than there are edges; rounding in the levels could make the
+        // walk miss its start.
+        for _ in 0..topology.edge_count() {
+            let (low, high) = (topology.half_edge(up).origin, topology.target(up));
+            let (low_level, high_level) =
+                (vertex_levels[low as usize], vertex_levels[high as usize]);
+            let s = (halfway - low_level) / (high_level - low_level);
+            let (low, high) = (vertices[low as usize], vertices[high as usize]);
+            self.entries.push(Entry { up, position: self.position(low + (high - low) * s) });
+            up = next_counter_clockwise(topology, up, |v| vertex_levels[v as usize] > level);
+            if up == first {
+                break;
+            }
+        }
+        self.levels.push(level);
+        self.starts.push(self.entries.len() as u32);
+    }
+
+    fn position(&self, v: DVec3) -> [f32; 2] {
+        [0, 1].map(|i| (self.plane[i].dot(v) - self.origin[i]) as f32)
+    }
+
+    /// The last snapshot at or below level `x >= range[0]`.
+    pub(crate) fn snapshot(&self, x: f64) -> Snapshot<'_> {
+        let index = self.levels.partition_point(|&level| level <= x).max(1) - 1;
+        let end = self.starts.get(index + 1).map_or(0, |&end| end as usize);
+        Snapshot { entries: &self.entries[self.starts[index] as usize..end] }
+    }
+
+    /// The linear form `covector . v + constant` of the body frame, on this axis' sections.
+    pub(crate) fn form(&self, covector: DVec3, constant: f64) -> SectionForm {
+        // The plane's coordinate vectors are orthogonal and equally long.
+        let scale_squared = self.plane[0].length_squared();
+        let slope = self.plane.map(|p| p.dot(covector) / scale_squared);
+        let size = slope[0].abs().max(slope[1].abs());
+        SectionForm {
+            slope: slope.map(|s| (s / size) as f32),
+            per_unit: 1.0 / size,
+            per_level: covector.dot(self.axis) / self.axis.length_squared(),
+            constant: constant + slope[0] * self.origin[0] + slope[1] * self.origin[1],
+        }
+    }
+
+    pub(crate) fn heap_bytes(&self) -> usize {
+        size_of::<f64>() * self.levels.capacity()
+            + size_of::<u32>() * self.starts.capacity()
+            + size_of::<Entry>() * self.entries.capacity()
+    }
+}
+
+/// Coordinates of the planes across `axis` in which the body has about unit size, right-handed with
+/// the axis.
+fn scaled_plane(vertices: &[DVec3], axis: DVec3) -> ([DVec3; 2], [f64; 2]) {
+    let first = axis.normalize().any_orthonormal_vector();
+    let second = axis.normalize().cross(first);
+    let plane = [first, second];
+    let mut low = [f64::INFINITY; 2];
+    let mut high = [f64::NEG_INFINITY; 2];
+    for v in vertices {
+        for i in 0..2 {
+            let coordinate = plane[i].dot(*v);
+            low[i] = low[i].min(coordinate);
+            high[i] = high[i].max(coordinate);
+        }
+    }
+    let scale = 1.0 / (high[0] - low[0]).max(high[1] - low[1]);
+    let origin = [0, 1].map(|i| scale * f64::midpoint(low[i], high[i]));
+    (plane.map(|p| p * scale), origin)
+}
+
+/// A linear form on the sections across one axis, scaled so that `f32` can hold it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SectionForm {
+    slope: [f32; 2],
+    /// Scaled units per unit of the form.
+    per_unit: f64,
+    per_level: f64,
+    constant: f64,
+}
+
+impl SectionForm {
+    /// Where the form has `value` on the section at level `x`, in scaled units.
+    fn scaled(&self, value: f64, x: f64) -> f32 {
+        ((value - self.constant - self.per_level * x) * self.per_unit) as f32
+    }
+
+    /// The form in scaled units at a position.
+    fn at(&self, [u, v]: [f32; 2]) -> f32 {
+        self.slope[0] * u + self.slope[1] * v
+    }
+}
+
+/// The two ways along a section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Turn {
+    CounterClockwise,
+    Clockwise,
+}
+
+impl Turn {
+    pub(crate) fn reversed(self) -> Self {
+        match self {
+            Self::CounterClockwise => Self::Clockwise,
+            Self::Clockwise => Self::CounterClockwise,
+        }
+    }
+}
+
+/// One snapshot: its entries in cyclic order, and searches in it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Snapshot<'a> {
+    entries: &'a [Entry],
+}
+
+impl Snapshot<'_> {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// The crossing edge of entry `index`.
+    pub(crate) fn up(&self, index: usize) -> u32 {
+        self.entries[index].up
+    }
+
+    fn value(&self, form: &SectionForm, index: usize) -> f32 {
+        form.at(self.entries[index].position)
+    }
+
+    /// The entry where `sign * form` is least, `sign` being 1 or -1.
+    ///
+    /// On a convex polygon the minimum lies within one stride of the best of every `stride`-th
+    /// entry. All candidates of a round are compared, without branches that hardware could not
+    /// predict.
+    pub(crate) fn extreme(&self, form: &SectionForm, sign: f32) -> usize {
+        let count = self.entries.len();
+        let slope = form.slope.map(|s| sign * s);
+        let value = |i: usize| {
+            let [u, v] = self.entries[i].position;
+            slope[0] * u + slope[1] * v
+        };
+        let mut stride = 1;
+        while stride * CANDIDATES < count {
+            stride *= CANDIDATES / 2;
+        }
+        let (mut best, mut least) = (0, value(0));
+        let mut consider = |from: usize, to: usize, stride: usize| {
+            for i in (from..to).step_by(stride) {
+                let candidate = value(i);
+                best = if candidate < least { i } else { best };
+                least = least.min(candidate);
+            }
+            best
+        };
+        let mut centre = consider(0, count, stride);
+        while stride > 1 {
+            let reach = stride;
+            stride = (stride / (CANDIDATES / 2)).max(1);
+            let (from, to) = (centre as isize - reach as isize, centre + reach);
+            if from < 0 {
+                consider((from + count as isize).max(0) as usize, count, stride);
+            }
+            if to > count {
+                consider(0, to - count, stride);
+            }
+            centre = consider(from.max(0) as usize, to.min(count), stride);
+        }
+        centre
+    }
+
+    /// The last entry on the way from `bottom` to `top`, which `form` ascends, where it is at most
+    /// `value` on the section at level `x`.
+    pub(crate) fn locate(
+        &self,
+        form: &SectionForm,
+        (bottom, top): (usize, usize),
+        turn: Turn,
+        (value, x): (f64, f64),
+    ) -> usize {
+        let count = self.entries.len();
+        let target = form.scaled(value, x);
+        let (from, to) = match turn {
+            Turn::CounterClockwise => (bottom, top),
+            Turn::Clockwise => (top, bottom),
+        };
+        let steps = if to >= from { to - from } else { to + count - from };
+        let entry = |offset: usize| match turn {
+            Turn::CounterClockwise if bottom + offset >= count => bottom + offset - count,
+            Turn::CounterClockwise => bottom + offset,
+            Turn::Clockwise if offset > bottom => bottom + count - offset,
+            Turn::Clockwise => bottom - offset,
+        };
+        // Halves the number of candidates without branches on the values.
+        let (mut low, mut candidates) = (0, steps + 1);
+        while candidates > 1 {
+            let half = candidates / 2;
+            let passed = self.value(form, entry(low + half)) <= target;
+            low += if passed { half } else { 0 };
+            candidates -= half;
+        }
+        entry(low)
+    }
+}
+
+#[cfg(test)]
+impl AxisSections {
+    /// Level and crossing edges of the snapshot for `x`.
+    pub(crate) fn snapshot_for_test(&self, x: f64) -> (f64, Vec<u32>) {
+        let index = self.levels.partition_point(|&level| level <= x) - 1;
+        (self.levels[index], self.snapshot(x).entries.iter().map(|entry| entry.up).collect())
+    }
+}
+
+#[cfg(test)]
+impl Snapshot<'_> {
+    pub(crate) fn values_for_test(&self, form: &SectionForm) -> Vec<f32> {
+        (0..self.entries.len()).map(|i| self.value(form, i)).collect()
+    }
+}
+
+#[cfg(test)]
+impl SectionForm {
+    /// The value that [`Self::scaled`] scales to `scaled`.
+    pub(crate) fn value_for_test(&self, scaled: f32, x: f64) -> f64 {
+        f64::from(scaled) / self.per_unit + self.constant + self.per_level * x
+    }
+}

@@ -1,0 +1,4 @@
+//! Sections and bodies, tested together.
+
+pub(crate) mod bodies;
+mod sections;

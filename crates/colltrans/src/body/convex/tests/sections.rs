@@ -1,0 +1,152 @@
+use glam::DVec3;
+
+use super::bodies::{Random, cone, cuboid, ellipsoid, prism};
+use crate::body::ConvexPolyhedron;
+use crate::body::convex::sections::{SectionIndex, Turn, next_clockwise, next_counter_clockwise};
+
+fn bodies() -> Vec<ConvexPolyhedron> {
+    vec![
+        cuboid(DVec3::ZERO, DVec3::ONE),
+        cuboid(DVec3::new(5.0, -3.0, 100.0), DVec3::new(1.0, 2.0, 3.0)),
+        ellipsoid(8, DVec3::ONE),
+        ellipsoid(500, DVec3::new(1.4, 0.6, 1.0)),
+        ellipsoid(500, DVec3::new(1000.0, 1.0, 1.0)),
+        ellipsoid(500, DVec3::new(1000.0, 1000.0, 1.0)),
+        prism(1000, DVec3::ONE),
+        prism(5, DVec3::new(1.0, 1.0, 1e-3)),
+        cone(300, DVec3::new(1.0, 2.0, 3.0)),
+    ]
+}
+
+/// Levels between and at the vertices.
+fn levels(body: &ConvexPolyhedron, axis: DVec3, random: &mut Random) -> Vec<f64> {
+    let of_vertices: Vec<f64> = body.vertices().iter().map(|&v| axis.dot(v)).collect();
+    let low = of_vertices.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = of_vertices.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut levels = vec![low];
+    for _ in 0..20 {
+        levels.push(random.within(low, high));
+        levels.push(of_vertices[random.index(of_vertices.len())]);
+    }
+    levels.retain(|&x| x < high);
+    levels
+}
+
+/// All half-edges that cross level `x` upwards.
+fn crossing(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
+    let topology = body.topology();
+    let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
+    let half_edges = 0..topology.half_edges().len() as u32;
+    half_edges
+        .filter(|&h| !above(topology.half_edge(h).origin) && above(topology.target(h)))
+        .collect()
+}
+
+#[test]
+fn walks_visit_the_whole_section_once_in_either_direction() {
+    let mut random = Random(1);
+    for body in bodies() {
+        let topology = body.topology();
+        for axis in crate::body::convex::sections::AXES {
+            for x in levels(&body, axis, &mut random) {
+                let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
+                let expected = crossing(&body, axis, x);
+                let mut visited = vec![expected[0]];
+                loop {
+                    let last = visited[visited.len() - 1];
+                    let next = next_counter_clockwise(topology, last, above);
+                    assert_eq!(next_clockwise(topology, next, above), last);
+                    if next == visited[0] {
+                        break;
+                    }
+                    visited.push(next);
+                    assert!(visited.len() <= expected.len());
+                }
+                visited.sort_unstable();
+                assert_eq!(visited, expected);
+            }
+        }
+    }
+}
+
+#[test]
+fn walks_are_counter_clockwise_from_the_tip_of_the_axis() {
+    for body in bodies() {
+        for axis in crate::body::convex::sections::AXES {
+            let centre = body.vertices().iter().sum::<DVec3>() / body.vertices().len() as f64;
+            let x = axis.dot(centre);
+            let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
+            let point = |h: u32| {
+                let low = body.vertices()[body.topology().half_edge(h).origin as usize];
+                let high = body.vertices()[body.topology().target(h) as usize];
+                low + (high - low) * ((x - axis.dot(low)) / axis.dot(high - low)) - centre
+            };
+            let first = crossing(&body, axis, x)[0];
+            let mut doubled_area = 0.0;
+            let mut up = first;
+            loop {
+                let next = next_counter_clockwise(body.topology(), up, above);
+                doubled_area += axis.dot(point(up).cross(point(next)));
+                up = next;
+                if up == first {
+                    break;
+                }
+            }
+            assert!(doubled_area > 0.0);
+        }
+    }
+}
+
+#[test]
+fn snapshots_hold_every_crossing_edge_in_linear_space() {
+    let mut random = Random(2);
+    for body in bodies() {
+        let index = SectionIndex::build(body.vertices(), body.topology());
+        let per_vertex = index.heap_bytes() as f64 / body.vertices().len() as f64;
+        assert!(body.vertices().len() < 100 || per_vertex < 75.0, "{per_vertex} bytes per vertex");
+        for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
+            let sections = index.axis(i);
+            for x in levels(&body, axis, &mut random) {
+                let (level, entries) = sections.snapshot_for_test(x);
+                assert!(level <= x);
+                let mut entries = entries;
+                entries.sort_unstable();
+                assert_eq!(entries, crossing(&body, axis, level));
+            }
+        }
+    }
+}
+
+#[test]
+fn snapshot_searches_agree_with_a_scan() {
+    let mut random = Random(3);
+    for body in bodies() {
+        let index = SectionIndex::build(body.vertices(), body.topology());
+        for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
+            for x in levels(&body, axis, &mut random) {
+                let form = index.axis(i).form(random.unit(), random.signed());
+                let snapshot = index.axis(i).snapshot(x);
+                let values = snapshot.values_for_test(&form);
+                let least = values.iter().copied().fold(f32::INFINITY, f32::min);
+                let greatest = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+                let (bottom, top) = (snapshot.extreme(&form, 1.0), snapshot.extreme(&form, -1.0));
+                // Positions are rounded to f32, so neighbours of the extreme may seem to rise
+                // again.
+                assert!(values[bottom] <= least + 1e-5, "{} {least}", values[bottom]);
+                assert!(values[top] >= greatest - 1e-5, "{} {greatest}", values[top]);
+                for turn in [Turn::CounterClockwise, Turn::Clockwise] {
+                    for target in [bottom, top, random.index(values.len())] {
+                        let h = form.value_for_test(values[target], x);
+                        let found = snapshot.locate(&form, (bottom, top), turn, (h, x));
+                        let next = match turn {
+                            Turn::CounterClockwise => (found + 1) % values.len(),
+                            Turn::Clockwise => (found + values.len() - 1) % values.len(),
+                        };
+                        assert!(values[found] <= values[target] + 1e-5);
+                        assert!(found == top || values[next] >= values[target] - 1e-5);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! The size of a body: how large its coordinates are, and the ellipsoid it resembles.
+//!
+//! The *inertia ellipsoid* `{c + x : x^T S^-1 x <= 1}` has the body's centroid `c` and `S = 5 cov`,
+//! where `cov` is the covariance of the body's volume; a solid ellipsoid is its own. It is only
+//! ever a guess: for the first normal of a query and for directions in which the body's normals
+//! spread evenly.
+
+use glam::{DMat3, DVec3};
+
+use super::topology::Topology;
+
+/// Size and resemblance of a body, in its own frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Inertia {
+    /// Largest distance of a vertex from the frame's origin.
+    pub(crate) reach: f64,
+    /// Centroid of the volume (of the vertices, for a body of lower dimension).
+    pub(crate) center: DVec3,
+    /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is
+    /// `c + L (unit ball)`.
+    pub(crate) factor: DMat3,
+    /// Root of the trace of `S`: the ellipsoid's mean size.
+    pub(crate) radius: f64,
+    /// Whether the ellipsoid is nearly a ball.
+    pub(crate) round: bool,
+    /// Volume.
+    pub(crate) volume: f64,
+}
+
+/// Least ratio of the ellipsoid's axes: keeps `S` positive definite for flat bodies.
+const LEAST_AXIS_RATIO: f64 = 1e-6;
+
+/// Least ratio of the geometric to the arithmetic mean of a round ellipsoid's squared semi-axes.
+const ROUND: f64 = 0.6;
+
+impl Inertia {
+    pub(crate) fn new(vertices: &[DVec3], topology: &Topology, dimension: u8) -> Self {
+        let reach = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let mean = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+        let solid = if dimension == 3 { solid_moments(vertices, topology, mean) } else { None };
+        let (volume, center, covariance) = solid.unwrap_or_else(|| {
+            let spread = |v: &DVec3| outer(*v - mean, *v - mean);
+            let sum = vertices.iter().map(spread).fold(DMat3::ZERO, |a, b| a + b);
+            (0.0, mean, sum * (1.0 / vertices.len() as f64))
+        });
+        // A one-point body of size zero still needs a positive matrix.
+        let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
+        let floor = (trace * LEAST_AXIS_RATIO * LEAST_AXIS_RATIO).max(f64::MIN_POSITIVE.sqrt());
+        let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
+        let radius = (0..3).map(|i| shape.col(i)[i]).sum::<f64>().sqrt();
+        let factor = cholesky(&shape);
+        let mean = (factor.x_axis.x * factor.y_axis.y * factor.z_axis.z).powf(2.0 / 3.0);
+        let round = mean > ROUND * radius * radius / 3.0;
+        Self { reach, center, factor, radius, round, volume }
+    }
+
+    /// The volume that a closed surface encloses: positive if its faces are counter-clockwise from
+    /// outside.
+    pub(crate) fn signed_volume(vertices: &[DVec3], topology: &Topology) -> f64 {
+        let apex = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+        (0..topology.face_count() as u32)
+            .map(|face| {
+                let mut corners = topology.face_vertices(face).map(|v| vertices[v as usize] - apex);
+                let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { return 0.0 };
+                let mut volume = 0.0;
+                for c in corners {
+                    volume += a.dot(b.cross(c)) / 6.0;
+                    b = c;
+                }
+                volume
+            })
+            .sum()
+    }
+
+    /// `L^T m`.
+    #[inline]
+    pub(crate) fn axes_by_factor(&self, m: &DMat3) -> DMat3 {
+        let l = &self.factor;
+        let column = |c: DVec3| {
+            DVec3::new(l.x_axis.dot(c), l.y_axis.y * c.y + l.y_axis.z * c.z, l.z_axis.z * c.z)
+        };
+        DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis))
+    }
+}
+
+/// Lower triangular `L` with `s = L L^T`.
+fn cholesky(s: &DMat3) -> DMat3 {
+    let floor = f64::MIN_POSITIVE;
+    let l00 = s.x_axis.x.max(floor).sqrt();
+    let (l10, l20) = (s.x_axis.y / l00, s.x_axis.z / l00);
+    let l11 = (s.y_axis.y - l10 * l10).max(floor).sqrt();
+    let l21 = (s.y_axis.z - l20 * l10) / l11;
+    let l22 = (s.z_axis.z - l20 * l20 - l21 * l21).max(floor).sqrt();
+    DMat3::from_cols(
+        DVec3::new(l00, l10, l20),
+        DVec3::new(0.0, l11, l21),
+        DVec3::new(0.0, 0.0, l22),
+    )
+}
+
+/// `a b^T`.
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+/// Volume, centroid and covariance by the tetrahedra between `apex` and the triangles of a fan of
+/// each face. `None` if rounding leaves no positive volume.
+fn solid_moments(
+    vertices: &[DVec3],
+    topology: &Topology,
+    apex: DVec3,
+) -> Option<(f64, DVec3, DMat3)> {
+    let (mut volume, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+    for face in 0..topology.face_count() as u32 {
+        let mut corners = topology.face_vertices(face).map(|v| vertices[v as usize] - apex);
+        let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { continue };
+        for c in corners {
+            let six = a.dot(b.cross(c));
+            let sum = a + b + c;
+            volume += six / 6.0;
+            first += sum * (six / 24.0);
+            let squares = outer(a, a) + outer(b, b) + outer(c, c) + outer(sum, sum);
+            second += squares * (six / 120.0);
+            b = c;
+        }
+    }
+    let mean = first / volume;
+    let covariance = second * (1.0 / volume) - outer(mean, mean);
+    let sound = volume > 0.0 && (0..3).all(|i| covariance.col(i)[i] >= 0.0);
+    (sound && covariance.is_finite()).then_some((volume, apex + mean, covariance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_has_its_known_moments() {
+        let vertices: Vec<DVec3> = (0..8)
+            .map(|i| {
+                DVec3::new(
+                    f64::from(i & 1) * 2.0,
+                    f64::from(i >> 1 & 1) * 4.0,
+                    f64::from(i >> 2) * 6.0,
+                )
+            })
+            .collect();
+        let faces: [[u32; 4]; 6] =
+            [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let topology =
+            Topology::sphere(8, (0..=6).map(|f| 4 * f).collect(), faces.as_flattened()).unwrap();
+        let m = Inertia::new(&vertices, &topology, 3);
+        assert!((m.volume - 48.0).abs() < 1e-12);
+        assert!((m.center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-12);
+        let expected = DVec3::new(1.0, 4.0, 9.0) / 3.0 * 5.0;
+        for i in 0..3 {
+            let s = m.factor * m.factor.transpose();
+            assert!((s.col(i)[i] / expected[i] - 1.0).abs() < 1e-9);
+            assert!((s.col(i)[(i + 1) % 3]).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,415 @@
+//! The topology of a convex polyhedron: half-edges, with no coordinates anywhere.
+//!
+//! Notation. The half-edges of a face lie one after the other in the order of its boundary,
+//! counter-clockwise as seen from outside, so `next` needs no link. Half-edge `h` runs from
+//! `origin(h)` to `origin(twin(h))`, with its own face on its left.
+//!
+//! Invariant (checked at the door): every half-edge has exactly one twin, which runs the other way;
+//! the faces around a vertex form one fan. Of a convex body the surface is one sphere, too.
+//! Bodies of lower dimension fit in: a flat polygon is a front and a back face; a segment is
+//! two vertices that are each other's neighbour, a point one vertex, both without faces.
+
+use crate::error::TopologyError;
+
+/// A directed edge along the boundary of its face.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HalfEdge {
+    /// The vertex it starts from.
+    pub(crate) origin: u32,
+    /// The half-edge that runs the other way, in the neighbouring face.
+    pub(crate) twin: u32,
+    /// The face on its left.
+    pub(crate) face: u32,
+}
+
+/// Vertices, half-edges and faces, by index.
+#[derive(Debug, Clone)]
+pub(crate) struct Topology {
+    half_edges: Vec<HalfEdge>,
+    /// First half-edge of each face, and one entry past the end.
+    face_start: Vec<u32>,
+    /// First entry of each vertex in `neighbours` and `outgoing`, and one entry past the end.
+    vertex_start: Vec<u32>,
+    /// The neighbours of each vertex, clockwise as seen from outside.
+    neighbours: Vec<u32>,
+    /// The half-edges to these neighbours, in the same order (empty without faces).
+    outgoing: Vec<u32>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Topology {
+    /// One sphere, from faces as in [`Self::from_faces`].
+    pub(crate) fn sphere(
+        vertex_count: usize,
+        face_start: Vec<u32>,
+        face_vertices: &[u32],
+    ) -> Result<Self, TopologyError> {
+        let topology = Self::from_faces(vertex_count, face_start, face_vertices)?;
+        topology.check_sphere()?;
+        Ok(topology)
+    }
+
+    /// Closed surfaces, of any number and with any handles, from faces as lists of vertices: face
+    /// `f` is `face_vertices[face_start[f]..face_start[f + 1]]`.
+    ///
+    /// Vertices that no face uses are allowed here and have no neighbours.
+    pub(crate) fn from_faces(
+        vertex_count: usize,
+        face_start: Vec<u32>,
+        face_vertices: &[u32],
+    ) -> Result<Self, TopologyError> {
+        check_faces(vertex_count, &face_start, face_vertices)?;
+        let mut half_edges = Vec::with_capacity(face_vertices.len());
+        for (face, bounds) in face_start.windows(2).enumerate() {
+            for &origin in &face_vertices[bounds[0] as usize..bounds[1] as usize] {
+                half_edges.push(HalfEdge { origin, twin: NONE, face: face as u32 });
+            }
+        }
+        let mut topology = Self {
+            half_edges,
+            face_start,
+            vertex_start: Vec::new(),
+            neighbours: Vec::new(),
+            outgoing: Vec::new(),
+        };
+        topology.pair_twins(vertex_count)?;
+        topology.link_vertices(vertex_count)?;
+        Ok(topology)
+    }
+
+    /// A segment (2 vertices) or a point (1 vertex).
+    pub(crate) fn without_faces(vertex_count: usize) -> Self {
+        debug_assert!(vertex_count == 1 || vertex_count == 2, "no faces only below dimension 2");
+        let segment = vertex_count == 2;
+        Self {
+            half_edges: Vec::new(),
+            face_start: vec![0],
+            vertex_start: if segment { vec![0, 1, 2] } else { vec![0, 0] },
+            neighbours: if segment { vec![1, 0] } else { Vec::new() },
+            outgoing: Vec::new(),
+        }
+    }
+
+    pub(crate) fn vertex_count(&self) -> usize {
+        self.vertex_start.len() - 1
+    }
+
+    pub(crate) fn face_count(&self) -> usize {
+        self.face_start.len() - 1
+    }
+
+    pub(crate) fn edge_count(&self) -> usize {
+        self.neighbours.len() / 2
+    }
+
+    pub(crate) fn half_edge(&self, h: u32) -> HalfEdge {
+        self.half_edges[h as usize]
+    }
+
+    pub(crate) fn half_edges(&self) -> &[HalfEdge] {
+        &self.half_edges
+    }
+
+    /// The half-edges of a face, in order.
+    pub(crate) fn face(&self, face: u32) -> std::ops::Range<u32> {
+        self.face_start[face as usize]..self.face_start[face as usize + 1]
+    }
+
+    /// The vertices of a face, in order.
+    pub(crate) fn face_vertices(
+        &self,
+        face: u32,
+    ) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
+        let range = self.face(face);
+        self.half_edges[range.start as usize..range.end as usize].iter().map(|h| h.origin)
+    }
+
+    /// The next half-edge along the same face.
+    pub(crate) fn next(&self, h: u32) -> u32 {
+        let range = self.face(self.half_edge(h).face);
+        if h + 1 == range.end { range.start } else { h + 1 }
+    }
+
+    /// The vertex a half-edge ends at.
+    pub(crate) fn target(&self, h: u32) -> u32 {
+        self.half_edge(self.half_edge(h).twin).origin
+    }
+
+    /// The neighbours of a vertex, clockwise as seen from outside.
+    pub(crate) fn neighbours(&self, vertex: u32) -> &[u32] {
+        let (start, end) = self.vertex_range(vertex);
+        &self.neighbours[start..end]
+    }
+
+    /// The half-edges that leave a vertex, in the order of [`Self::neighbours`].
+    pub(crate) fn outgoing(&self, vertex: u32) -> &[u32] {
+        if self.outgoing.is_empty() {
+            return &[];
+        }
+        let (start, end) = self.vertex_range(vertex);
+        &self.outgoing[start..end]
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        self.half_edges.capacity() * size_of::<HalfEdge>()
+            + 4 * (self.face_start.capacity()
+                + self.vertex_start.capacity()
+                + self.neighbours.capacity()
+                + self.outgoing.capacity())
+    }
+
+    fn vertex_range(&self, vertex: u32) -> (usize, usize) {
+        let v = vertex as usize;
+        (self.vertex_start[v] as usize, self.vertex_start[v + 1] as usize)
+    }
+
+    /// Finds the twins: edges are bucketed by their smaller vertex, then sorted by the larger.
+    fn pair_twins(&mut self, vertex_count: usize) -> Result<(), TopologyError> {
+        let ends: Vec<(u32, u32)> = (0..self.half_edges.len() as u32)
+            .map(|h| {
+                let (u, v) = (self.half_edge(h).origin, self.half_edge(self.next(h)).origin);
+                (u.min(v), u.max(v))
+            })
+            .collect();
+        let (start, mut order) = bucket(vertex_count, ends.iter().map(|e| e.0));
+        for v in 0..vertex_count {
+            let run = &mut order[start[v] as usize..start[v + 1] as usize];
+            run.sort_unstable_by_key(|&h| ends[h as usize].1);
+            for group in run.chunk_by(|&g, &h| ends[g as usize].1 == ends[h as usize].1) {
+                self.pair(group, ends[group[0] as usize])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes twins of the half-edges along one edge, if there are two and they run in opposite
+    /// directions.
+    fn pair(&mut self, group: &[u32], (from, to): (u32, u32)) -> Result<(), TopologyError> {
+        match *group {
+            [g, h] if self.half_edge(g).origin != self.half_edge(h).origin => {
+                self.half_edges[g as usize].twin = h;
+                self.half_edges[h as usize].twin = g;
+                Ok(())
+            }
+            [h] => {
+                let HalfEdge { origin, face, .. } = self.half_edge(h);
+                let end = if origin == from { to } else { from };
+                Err(TopologyError::OpenEdge {
+                    from: origin as usize,
+                    to: end as usize,
+                    face: face as usize,
+                })
+            }
+            _ => Err(TopologyError::NonManifoldEdge {
+                from: from as usize,
+                to: to as usize,
+                count: group.len(),
+            }),
+        }
+    }
+
+    /// Orders the half-edges around each vertex and checks that they form one fan.
+    fn link_vertices(&mut self, vertex_count: usize) -> Result<(), TopologyError> {
+        let (start, mut outgoing) = bucket(vertex_count, self.half_edges.iter().map(|h| h.origin));
+        for v in 0..vertex_count {
+            let (begin, end) = (start[v] as usize, start[v + 1] as usize);
+            if begin == end {
+                continue;
+            }
+            let first = outgoing[begin];
+            let mut h = first;
+            for slot in &mut outgoing[begin..end] {
+                *slot = h;
+                h = self.next(self.half_edge(h).twin);
+                if h == first {
+                    break;
+                }
+            }
+            let last = outgoing[end - 1];
+            if self.next(self.half_edge(last).twin) != first {
+                return Err(TopologyError::NonManifoldVertex { vertex: v });
+            }
+        }
+        self.neighbours = outgoing.iter().map(|&h| self.target(h)).collect();
+        self.outgoing = outgoing;
+        self.vertex_start = start;
+        Ok(())
+    }
+
+    fn check_sphere(&self) -> Result<(), TopologyError> {
+        let vertices = self.vertex_start.windows(2).filter(|w| w[0] != w[1]).count();
+        let (edges, faces) = (self.edge_count(), self.face_count());
+        let euler = vertices as i64 - edges as i64 + faces as i64;
+        let shells = self.count_shells();
+        if euler == 2 && shells == 1 {
+            Ok(())
+        } else {
+            Err(TopologyError::NotASphere { vertices, edges, faces, euler, shells })
+        }
+    }
+
+    /// Number of connected surfaces.
+    fn count_shells(&self) -> usize {
+        let mut seen = vec![false; self.vertex_count()];
+        let mut stack = Vec::new();
+        let mut shells = 0;
+        for start in self.half_edges.iter().map(|h| h.origin) {
+            if std::mem::replace(&mut seen[start as usize], true) {
+                continue;
+            }
+            shells += 1;
+            stack.push(start);
+            while let Some(v) = stack.pop() {
+                for &w in self.neighbours(v) {
+                    if !std::mem::replace(&mut seen[w as usize], true) {
+                        stack.push(w);
+                    }
+                }
+            }
+        }
+        shells
+    }
+}
+
+/// Counting sort: the indices of `keys` grouped by key, and where each group starts.
+fn bucket(key_count: usize, keys: impl Iterator<Item = u32> + Clone) -> (Vec<u32>, Vec<u32>) {
+    let mut start = vec![0_u32; key_count + 1];
+    for key in keys.clone() {
+        start[key as usize + 1] += 1;
+    }
+    for k in 0..key_count {
+        start[k + 1] += start[k];
+    }
+    let mut cursor = start.clone();
+    let mut order = vec![0_u32; start[key_count] as usize];
+    for (index, key) in keys.enumerate() {
+        order[cursor[key as usize] as usize] = index as u32;
+        cursor[key as usize] += 1;
+    }
+    (start, order)
+}
+
+fn check_faces(
+    vertex_count: usize,
+    face_start: &[u32],
+    face_vertices: &[u32],
+) -> Result<(), TopologyError> {
+    if face_start.len() < 2 {
+        return Err(TopologyError::NoFaces);
+    }
+    // The last face in which each vertex was seen.
+    let mut last_face = vec![NONE; vertex_count];
+    for (face, bounds) in face_start.windows(2).enumerate() {
+        let vertices = &face_vertices[bounds[0] as usize..bounds[1] as usize];
+        if vertices.len() < 3 {
+            return Err(TopologyError::DegenerateFace { face, count: vertices.len() });
+        }
+        for &v in vertices {
+            let vertex = v as usize;
+            let Some(seen) = last_face.get_mut(vertex) else {
+                return Err(TopologyError::UnknownVertex { face, vertex, vertices: vertex_count });
+            };
+            if std::mem::replace(seen, face as u32) == face as u32 {
+                return Err(TopologyError::RepeatedVertex { face, vertex });
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn build(vertex_count: usize, faces: &[&[u32]]) -> Result<Topology, TopologyError> {
+        let mut start = vec![0];
+        let mut vertices = Vec::new();
+        for face in faces {
+            vertices.extend_from_slice(face);
+            start.push(vertices.len() as u32);
+        }
+        Topology::sphere(vertex_count, start, &vertices)
+    }
+
+    const TETRAHEDRON: [&[u32]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
+
+    #[test]
+    fn tetrahedron_is_a_sphere_with_consistent_links() {
+        let t = build(4, &TETRAHEDRON).unwrap();
+        assert_eq!((t.vertex_count(), t.edge_count(), t.face_count()), (4, 6, 4));
+        for h in 0..12 {
+            let twin = t.half_edge(h).twin;
+            assert_eq!(t.half_edge(twin).twin, h);
+            assert_eq!(t.half_edge(t.next(h)).origin, t.target(h));
+        }
+        for v in 0..4 {
+            assert_eq!(t.neighbours(v).len(), 3);
+            for (&w, &h) in t.neighbours(v).iter().zip(t.outgoing(v)) {
+                assert_eq!((t.half_edge(h).origin, t.target(h)), (v, w));
+            }
+        }
+    }
+
+    #[test]
+    fn flat_polygon_has_two_faces() {
+        let t = build(3, &[&[0, 1, 2], &[0, 2, 1]]).unwrap();
+        assert_eq!((t.vertex_count(), t.edge_count(), t.face_count()), (3, 3, 2));
+    }
+
+    #[test]
+    fn defects_are_named() {
+        assert_eq!(build(4, &[]).unwrap_err(), TopologyError::NoFaces);
+        assert_eq!(
+            build(4, &TETRAHEDRON[..3]).unwrap_err(),
+            TopologyError::OpenEdge { from: 0, to: 2, face: 0 }
+        );
+        let mut flipped = TETRAHEDRON;
+        flipped[0] = &[0, 1, 2];
+        assert!(matches!(build(4, &flipped), Err(TopologyError::NonManifoldEdge { count: 2, .. })));
+        let mut repeated = TETRAHEDRON;
+        repeated[0] = &[0, 2, 2];
+        assert_eq!(
+            build(4, &repeated).unwrap_err(),
+            TopologyError::RepeatedVertex { face: 0, vertex: 2 }
+        );
+        let mut unknown = TETRAHEDRON;
+        unknown[0] = &[0, 2, 9];
+        assert_eq!(
+            build(4, &unknown).unwrap_err(),
+            TopologyError::UnknownVertex { face: 0, vertex: 9, vertices: 4 }
+        );
+        let twice: Vec<Vec<u32>> = TETRAHEDRON
+            .iter()
+            .map(|f| f.to_vec())
+            .chain(TETRAHEDRON.iter().map(|f| f.iter().map(|v| v + 4).collect()))
+            .collect();
+        let twice: Vec<&[u32]> = twice.iter().map(Vec::as_slice).collect();
+        let two = build(8, &twice).unwrap_err();
+        assert!(matches!(two, TopologyError::NotASphere { euler: 4, shells: 2, .. }));
+        assert!(two.to_string().contains("is 2 separate shells, not one sphere"), "{two}");
+        // Three by three squares, closed both ways: a hole through it.
+        let ring = |shift: u32| {
+            let vertex = move |i: u32, j: u32| shift + 3 * (i % 3) + j % 3;
+            (0..9).map(move |k| {
+                let (i, j) = (k / 3, k % 3);
+                [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)]
+            })
+        };
+        let rings: Vec<[u32; 4]> = ring(0).chain(ring(9)).collect();
+        let faces: Vec<&[u32]> = rings.iter().map(<[u32; 4]>::as_slice).collect();
+        let one = build(9, &faces[..9]).unwrap_err().to_string();
+        assert!(one.contains("is one body with a hole through it, not one sphere"), "{one}");
+        let both = build(18, &faces).unwrap_err().to_string();
+        assert!(both.contains("is 2 separate shells with 2 holes in all, not"), "{both}");
+        // Two tetrahedra that share one vertex.
+        let pinched: Vec<Vec<u32>> = TETRAHEDRON
+            .iter()
+            .map(|f| f.to_vec())
+            .chain(TETRAHEDRON.iter().map(|f| f.iter().map(|v| v + 3).collect()))
+            .collect();
+        let pinched: Vec<&[u32]> = pinched.iter().map(Vec::as_slice).collect();
+        assert_eq!(build(7, &pinched).unwrap_err(), TopologyError::NonManifoldVertex { vertex: 3 });
+    }
+}

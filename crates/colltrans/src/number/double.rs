@@ -1,0 +1,137 @@
+//! Numbers of twice the usual precision, with a bound on what they lost.
+
+#![expect(clippy::inline_always, reason = "these sums are meant to stay in registers")]
+
+use std::cmp::Ordering;
+
+use super::error_free::{product_error, split, sum_error};
+
+/// Products of this size or more have low parts that are not lost.
+const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
+
+/// The number `high + low`, up to `error`; exact if that is 0.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Double {
+    pub(super) high: f64,
+    pub(super) low: f64,
+    pub(super) error: f64,
+}
+
+impl Double {
+    pub(super) const ZERO: Self = Self { high: 0.0, low: 0.0, error: 0.0 };
+
+    #[inline(always)]
+    pub(super) fn add(&mut self, x: f64) {
+        let high = self.high + x;
+        self.add_low(sum_error(self.high, x, high));
+        self.high = high;
+    }
+
+    /// Adds what is small against the sum.
+    #[inline(always)]
+    pub(super) fn add_low(&mut self, x: f64) {
+        let low = self.low + x;
+        self.error += sum_error(self.low, x, low).abs();
+        self.low = low;
+    }
+
+    /// Adds a product of numbers that are not tiny.
+    #[inline(always)]
+    pub(super) fn add_product(&mut self, a: f64, b: f64) {
+        let p = a * b;
+        self.add(p);
+        self.add_low(product_error(a, b, p));
+    }
+
+    /// Adds a product.
+    #[inline(always)]
+    pub(super) fn add_scaled(&mut self, x: &Self, factor: f64) {
+        if x.is_zero() || factor == 0.0 {
+            return;
+        }
+        self.add_product(x.high, factor);
+        if x.low != 0.0 {
+            self.add_product(x.low, factor);
+        }
+        self.error += x.error * factor.abs();
+    }
+
+    /// Adds a product of two, with a sign.
+    #[inline(always)]
+    pub(super) fn add_double_product(&mut self, x: &Self, y: &Self, sign: f64) {
+        if x.is_zero() || y.is_zero() {
+            return;
+        }
+        for (a, b) in [(x.high, y.high), (x.low, y.high), (x.high, y.low), (x.low, y.low)] {
+            if a != 0.0 && b != 0.0 {
+                if (a * b).abs() < LEAST_PRODUCT {
+                    self.error = f64::INFINITY;
+                }
+                self.add_product(sign * a, b);
+            }
+        }
+        if x.error + y.error != 0.0 {
+            let (a, b) = (1.01 * x.high.abs(), 1.01 * y.high.abs());
+            self.error += x.error * (b + y.error) + y.error * a + LEAST_PRODUCT;
+        }
+    }
+
+    /// Whether the number is 0, certainly.
+    #[inline(always)]
+    pub(super) fn is_zero(&self) -> bool {
+        self.high == 0.0 && self.low == 0.0 && self.error == 0.0
+    }
+
+    /// The same with `low` less than a rounding of `high`.
+    #[inline(always)]
+    pub(super) fn tidy(self) -> Self {
+        let high = self.high + self.low;
+        Self { high, low: sum_error(self.high, self.low, high), ..self }
+    }
+
+    /// The sign, if it is certain.
+    pub(super) fn sign(&self) -> Option<Ordering> {
+        let sum = self.high + self.low;
+        // The rounding of the errors' sum and of this one.
+        if sum.abs() > 1.01 * self.error {
+            return sum.partial_cmp(&0.0);
+        }
+        (sum == 0.0 && self.error == 0.0).then_some(Ordering::Equal)
+    }
+}
+
+/// Several sums of the same shape at once, as [`Double`].
+#[derive(Clone, Copy)]
+pub(super) struct Sums<const L: usize> {
+    pub(super) high: [f64; L],
+    pub(super) low: [f64; L],
+    pub(super) error: [f64; L],
+}
+
+impl<const L: usize> Sums<L> {
+    pub(super) const ZERO: Self = Self { high: [0.0; L], low: [0.0; L], error: [0.0; L] };
+
+    /// Adds products with a common factor.
+    #[inline(always)]
+    pub(super) fn add_products(&mut self, entries: [f64; L], x: f64) {
+        let (x_high, x_low) = split(x);
+        for (k, e) in entries.into_iter().enumerate() {
+            let p = e * x;
+            let (e_high, e_low) = split(e);
+            let tail = e_low * x_low - (((p - e_high * x_high) - e_low * x_high) - e_high * x_low);
+            let high = self.high[k] + p;
+            let rest = sum_error(self.high[k], p, high);
+            self.high[k] = high;
+            let some = self.low[k] + rest;
+            let low = some + tail;
+            self.error[k] +=
+                sum_error(self.low[k], rest, some).abs() + sum_error(some, tail, low).abs();
+            self.low[k] = low;
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, k: usize) -> Double {
+        Double { high: self.high[k], low: self.low[k], error: self.error[k] }.tidy()
+    }
+}

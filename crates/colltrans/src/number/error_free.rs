@@ -1,0 +1,53 @@
+//! What rounding takes from a sum, a difference or a product, as a number of its own.
+
+#![expect(clippy::inline_always, reason = "these sums are meant to stay in registers")]
+
+/// The rounding error of the sum `s = fl(a + b)`, exactly (Knuth).
+#[inline(always)]
+pub(super) fn sum_error(a: f64, b: f64, s: f64) -> f64 {
+    let b_virtual = s - a;
+    let a_virtual = s - b_virtual;
+    (a - a_virtual) + (b - b_virtual)
+}
+
+/// The rounding error of `a - b`, exactly: `a - b = fl(a - b) + error`.
+#[inline]
+pub(crate) fn difference_error(a: f64, b: f64) -> f64 {
+    let difference = a - b;
+    let b_virtual = a - difference;
+    let a_virtual = difference + b_virtual;
+    (a - a_virtual) + (b_virtual - b)
+}
+
+/// The rounding error of the product `p = fl(a b)`, exactly (Dekker).
+#[inline]
+pub(super) fn product_error(a: f64, b: f64, p: f64) -> f64 {
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
+}
+
+/// `a` as a sum of two numbers with at most 26 significant bits (Veltkamp).
+#[inline]
+pub(super) fn split(a: f64) -> (f64, f64) {
+    const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
+    let c = SPLITTER * a;
+    let high = c - (c - a);
+    (high, a - high)
+}
+
+#[cfg(test)]
+mod tests {
+    use dashu_ratio::RBig;
+    use proptest::prelude::*;
+
+    use super::difference_error;
+    use crate::number::tests::{number, rational};
+
+    proptest! {
+        #[test]
+        fn difference_errors_are_exact(a in number(), b in number()) {
+            let sum: RBig = rational(a - b) + rational(difference_error(a, b));
+            prop_assert_eq!(sum, rational(a) - rational(b));
+        }
+    }
+}

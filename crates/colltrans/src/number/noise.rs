@@ -1,0 +1,130 @@
+//! Every bound on a rounding error, in one place.
+//!
+//! Notation. `u = 2^-53`. `S` is the size of a configuration: the reach of `P` (largest distance of
+//! a vertex from its frame's origin) plus that of `Q` plus the distance of the frames, so that no
+//! two points of the bodies are farther apart. `M = {q - p}`; `d` is the direction, `n` a unit normal.
+//!
+//! - *Point.* A coordinate of a point of `M` in the shadow frame is a sum of three dot products.
+//!   Rotating a lateral axis into a body costs a relative error of at most `3 u` in each component,
+//!   the dot product `3 u`, adding the three parts `2 u`, the axis itself `2 u`: together less than
+//!   `10 u S sqrt(3) < 18 u S`. The *noise* is `32 u S`, which also covers comparing two such
+//!   coordinates along a unit normal of the frame. A pose's nine entries may be off a rotation by
+//!   `1e-6`; they define where the body is, so this is no error, but it stretches lengths by up to
+//!   that share: the margin between 18 and 32 covers it.
+//! - *Touching.* Sideways distances below eight noises are not told apart: shadows that overlap by
+//!   less only touch, and triangles of shadows that are narrower have no plane. So directions
+//!   across such a distance are still known to better than 1/8.
+//! - *Widening.* When shadows only touch, `M` is widened sideways by a rectangle whose half-sides
+//!   are [`WIDENING`] times four touching distances and, if the line misses `M`, the margin (at most
+//!   one noise) more: the line then passes clearly inside. Its corners are at most
+//!   `|WIDENING| < 1.3` longer half-sides off.
+//! - *Plane.* A plane supports `M` when no support point is deeper below it than one noise; after
+//!   many exchanges ties follow each other, and what counts as touching is taken to lie on it.
+//! - *Gap.* The lower and the upper bound each add at most one noise to what the plane was accepted
+//!   with, over `n . d` if counted in multiples of `d`; widening by `w` adds what the rectangle's
+//!   corners make of it on both sides, `2 |WIDENING| w` times the part of `n` across `d`.
+//! - *Residual.* The witness points of a certificate may miss each other by the corner of the widest
+//!   rectangle, and by one noise for each body.
+//! - *Unit vector.* Normalising leaves `4 u`, rotating into the world `3 u sqrt(3)`, normalising
+//!   again `4 u`; an orthogonal one inherits the same from its axes. Tolerated is twice their sum.
+//! - *Gain.* A dot product of a direction with an edge vector, itself rounded, has an error of `4 u`
+//!   of its terms' magnitudes; a gain below twice that may not be real.
+//! - *Coplanar.* A point of a designed plane that was rotated and translated in double precision has
+//!   been rounded about eight times at the magnitude `r` of its coordinates, so it is off its plane
+//!   by up to `8 u r sqrt(3)`; a plane through three such points is off by as much again, more
+//!   beyond their triangle. Points within `64 u r` of a face are taken to lie on it.
+//! - *Section.* A sum of a few products in section coordinates, with a margin for the errors of
+//!   their factors. Only guesses hang on it.
+
+use crate::number::range::MIN_MAGNITUDE;
+
+/// `u`.
+const ROUNDING: f64 = 0.5 * f64::EPSILON;
+
+/// The noise of a point, in `u S`.
+const POINT: f64 = 32.0;
+
+/// What counts as touching, in noises.
+const TOUCHING: f64 = 8.0;
+
+/// By how many touching distances bodies that touch are widened.
+const WIDER: f64 = 4.0;
+
+/// The sides of the widening rectangle: not equal, because a diagonal of a square would often be
+/// parallel to an edge.
+pub(crate) const WIDENING: [f64; 2] = [1.0, 0.8];
+
+/// At least the length of [`WIDENING`].
+const WIDENING_CORNER: f64 = 1.3;
+
+/// The noises that the two bounds of an optimum cost.
+const BOUNDS: f64 = 2.0;
+
+/// Relative error of a unit vector's length and of its product with one it should be orthogonal to.
+pub(crate) const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
+
+/// Relative error of a gain along an edge, in which more is demanded of a climb.
+pub(crate) const GAIN: f64 = 8.0 * ROUNDING;
+
+/// Distance from a face, in multiples of the largest coordinate, within which points lie on it.
+pub(crate) const COPLANAR: f64 = 64.0 * ROUNDING;
+
+/// Relative rounding error of sums in section coordinates.
+pub(crate) const SECTION: f64 = 128.0 * ROUNDING;
+
+/// The rounding errors of a configuration of one size.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Noise(f64);
+
+impl Noise {
+    /// For the size `S`.
+    #[inline]
+    pub(crate) fn of(size: f64) -> Self {
+        // Two points in one place have no size; the least there can be stands for it.
+        Self(POINT * ROUNDING * size.max(MIN_MAGNITUDE))
+    }
+
+    /// Bound on the error of a coordinate of a point of `M`, and of comparing two along a unit
+    /// normal.
+    #[inline]
+    pub(crate) fn point(self) -> f64 {
+        self.0
+    }
+
+    /// Sideways distance below which points are not told apart.
+    #[inline]
+    pub(crate) fn touching(self) -> f64 {
+        TOUCHING * self.0
+    }
+
+    /// How deep below a plane a point may be that counts as lying on it; `late` if many portals
+    /// were visited.
+    #[inline]
+    pub(crate) fn plane(self, late: bool) -> f64 {
+        if late { self.touching() } else { self.0 }
+    }
+
+    /// The longer half-side of the widening rectangle for bodies whose shadows are `margin` apart.
+    pub(crate) fn widening(self, margin: f64) -> f64 {
+        margin.max(0.0) + WIDER * self.touching()
+    }
+
+    /// The largest of these: more than a noise apart, shadows are separated.
+    pub(crate) fn widest(self) -> f64 {
+        self.widening(self.0)
+    }
+
+    /// What rounding can make of `upper - lower` in units of length along `n`, for a normal with
+    /// this length across the direction and bodies widened by so much.
+    #[inline]
+    pub(crate) fn gap(self, across: f64, widening: f64) -> f64 {
+        // The plane as accepted among ties.
+        let bounds = self.plane(true) + BOUNDS * self.0;
+        if widening == 0.0 { bounds } else { bounds + across * (2.0 * WIDENING_CORNER * widening) }
+    }
+
+    /// By how much the witness points of a certificate may miss each other.
+    pub(crate) fn residual(self) -> f64 {
+        WIDENING_CORNER * self.widest() + BOUNDS * self.0
+    }
+}

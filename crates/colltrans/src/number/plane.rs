@@ -1,0 +1,63 @@
+//! Planes through points: normals that stay accurate for slivers and long, narrow faces.
+
+use glam::DVec3;
+
+use super::determinant::accurate_cross;
+
+/// Sine of the angle below which the product of two edges is formed without cancellation: above, it
+/// loses two bits at most.
+const NEARLY_PARALLEL: f64 = 0.1;
+
+/// Twice the area times the unit normal of the counter-clockwise triangle `a b c`.
+///
+/// Where the angle at `a` is small, or `a b c` is a sliver, from other edges.
+#[inline]
+pub(crate) fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
+    let [a, b, c] = corners;
+    let (u, v) = (b - a, c - a);
+    let normal = u.cross(v);
+    let size = u.length_squared() * v.length_squared();
+    if normal.length_squared() >= NEARLY_PARALLEL * NEARLY_PARALLEL * size {
+        return normal;
+    }
+    normal_of_sliver(corners)
+}
+
+/// From its two shorter edges, which determine it best: the product of two long, nearly parallel
+/// ones would lose the normal to rounding.
+fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
+    let edges = [b - a, c - b, a - c];
+    let lengths = edges.map(DVec3::length_squared);
+    let longest = if lengths[0] >= lengths[1] && lengths[0] >= lengths[2] {
+        0
+    } else if lengths[1] >= lengths[2] {
+        1
+    } else {
+        2
+    };
+    let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
+    let normal = edges[i].cross(edges[j]);
+    let size = lengths[i] * lengths[j];
+    if normal.length_squared() < NEARLY_PARALLEL * NEARLY_PARALLEL * size {
+        return accurate_cross(edges[i], edges[j]);
+    }
+    normal
+}
+
+/// Unit normal of a convex polygon, from a triangle of its corners that spans it widely; zero if it
+/// has no area.
+pub(crate) fn polygon_normal<I: Iterator<Item = DVec3> + Clone>(mut corners: I) -> DVec3 {
+    let all = corners.clone();
+    let Some(a) = corners.next() else { return DVec3::ZERO };
+    let farthest = |measure: &dyn Fn(DVec3) -> f64| {
+        all.clone().enumerate().fold((0, a, 0.0), |best, (k, p)| {
+            let value = measure(p);
+            if value > best.2 { (k, p, value) } else { best }
+        })
+    };
+    let (i, b, length) = farthest(&|p| p.distance_squared(a));
+    let axis = (b - a) / length.sqrt();
+    let (j, c, _) = farthest(&|p| (p - a).cross(axis).length_squared());
+    let normal = triangle_normal(if i < j { [a, b, c] } else { [a, c, b] });
+    normal.normalize_or_zero()
+}

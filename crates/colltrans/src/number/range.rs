@@ -1,0 +1,18 @@
+//! The range of numbers that is let in at the door.
+
+use glam::DVec3;
+
+/// Largest magnitude of a coordinate, a translation or a direction component: `2^200`.
+///
+/// Together with [`MIN_MAGNITUDE`] it keeps every product of three coordinates, and
+/// every rounding error of such a product, inside the range of an `f64`, so that the orientation
+/// predicates are exact.
+pub const MAX_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
+
+/// Smallest magnitude of a coordinate that is not zero: `2^-200`. See [`MAX_MAGNITUDE`].
+pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 200) << 52);
+
+/// Whether a coordinate is finite and inside the exact range.
+pub(crate) fn in_exact_range(v: DVec3) -> bool {
+    v.to_array().into_iter().all(|c| c == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&c.abs()))
+}

@@ -1,0 +1,280 @@
+//! The Minkowski difference `M = {q - p : p in P, q in Q}`, seen along the direction.
+//!
+//! Notation. The *shadow frame* has two lateral axes `e1, e2` and `d` at length 1; a point of `M`
+//! has the coordinates `(s1, s2, h)`: its shadow `s` and its height `h`. The line `t d` is the axis
+//! `s = 0`; the collision translation is the lowest height at which it meets `M`.
+//!
+//! Rounding. [`Noise`](crate::number::noise::Noise) bounds the error of a coordinate.
+
+use std::cell::Cell;
+use std::cmp::Ordering;
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::number::noise::{self, Noise};
+use crate::number::orientation::{self, Shadow};
+use crate::number::symmetric::Symmetric;
+use crate::setting::{Setting, VertexPair};
+
+/// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Point {
+    pub(crate) at: DVec3,
+    pub(crate) pair: VertexPair,
+}
+
+impl Point {
+    pub(crate) fn shadow(&self) -> DVec2 {
+        self.at.truncate()
+    }
+
+    pub(crate) fn height(&self) -> f64 {
+        self.at.z
+    }
+}
+
+/// Cosine of the largest angle by which bodies turn against each other between queries that have
+/// something in common (measured).
+const ALIGNED: f64 = 0.94;
+
+/// Largest displacement between such queries, as a share of both bodies' radii (measured).
+const NEAR: f64 = 0.1;
+
+/// `M` in the shadow frame: support points and orientations.
+#[derive(Debug, Clone)]
+pub(crate) struct MinkowskiDifference<'a> {
+    pub(crate) setting: &'a Setting<'a>,
+    /// Columns `e1, e2, d` in the setting frame.
+    pub(crate) setting_from_shadow: DMat3,
+    /// The same columns in the moving body's frame.
+    moving_from_shadow: DMat3,
+    /// The same columns in the fixed body's frame.
+    fixed_from_shadow: DMat3,
+    /// `offset` in the shadow frame.
+    offset: DVec3,
+    /// Bounds on rounding errors.
+    pub(crate) noise: Noise,
+    /// Half the longer side of a rectangle by which `M` is widened sideways: 0, or a little more
+    /// than the rounding error when shadows only touch, so that the line passes through the widened
+    /// body.
+    pub(crate) widening: f64,
+    /// The exact shadow that was needed last.
+    known: Cell<Option<(VertexPair, Shadow)>>,
+}
+
+impl<'a> MinkowskiDifference<'a> {
+    /// With the lateral axes turned by an angle, given by its cosine and sine.
+    #[cold]
+    pub(crate) fn turned_by(setting: &'a Setting<'a>, turn: DVec2) -> Self {
+        let e1 = setting.unit.any_orthonormal_vector();
+        Self::with_axis(setting, (e1 * turn.x + setting.unit.cross(e1) * turn.y).normalize())
+    }
+
+    /// With lateral axes along the world's where the direction is.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    pub(crate) fn new(setting: &'a Setting<'a>) -> Self {
+        Self::with_axis(setting, setting.unit.any_orthonormal_vector())
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    fn with_axis(setting: &'a Setting<'a>, e1: DVec3) -> Self {
+        let e2 = setting.unit.cross(e1);
+        let axes = DMat3::from_cols(e1, e2, setting.unit);
+        Self {
+            setting,
+            setting_from_shadow: axes,
+            moving_from_shadow: setting.moving_matrix.transpose() * axes,
+            fixed_from_shadow: setting.fixed_matrix.transpose() * axes,
+            offset: axes.transpose() * setting.offset,
+            noise: setting.noise(),
+            widening: 0.0,
+            known: Cell::new(None),
+        }
+    }
+
+    /// The same body, widened sideways, if the line misses it, by `margin` more: then the line
+    /// passes clearly inside.
+    pub(crate) fn widened(&self, margin: f64) -> Self {
+        Self { widening: self.noise.widening(margin), ..self.clone() }
+    }
+
+    /// Sideways distance below which points are not told apart.
+    #[inline]
+    pub(crate) fn touching(&self) -> f64 {
+        self.noise.touching()
+    }
+
+    /// The point of `M` that is lowest along `normal` (shadow frame, any length).
+    #[inline]
+    pub(crate) fn support(&self, normal: DVec3) -> Point {
+        let (p, q) = (self.setting.moving, self.setting.fixed);
+        let (in_moving, in_fixed) = (self.in_moving(normal), -self.in_fixed(normal));
+        // Both tables are asked before either climb, so that neither waits for the other's memory.
+        let (near_p, near_q) = (p.support_guess(in_moving), q.support_guess(in_fixed));
+        let moving = p.support_from_guess(in_moving, near_p);
+        let fixed = q.support_from_guess(in_fixed, near_q);
+        self.point(VertexPair { moving, fixed }, normal)
+    }
+
+    /// The same, climbing from a pair believed to be near.
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a direction passed through memory stalls the scan: 7 %"
+    )]
+    pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
+        let moving = self.setting.moving.support_from(self.in_moving(normal), near.moving);
+        let fixed = self.setting.fixed.support_from(-self.in_fixed(normal), near.fixed);
+        self.point(VertexPair { moving, fixed }, normal)
+    }
+
+    /// A normal of the shadow frame in the moving body's frame.
+    #[inline]
+    pub(crate) fn in_moving(&self, normal: DVec3) -> DVec3 {
+        self.moving_from_shadow * normal
+    }
+
+    /// One normal of an earlier query, kept in the frames of the moving and of the fixed body, in
+    /// the shadow frame: what each body has made of it since. `None` if the bodies have turned so
+    /// far against each other that nothing follows from it.
+    pub(crate) fn shadow_from_bodies(
+        &self,
+        [in_moving, in_fixed]: [DVec3; 2],
+    ) -> Option<[DVec3; 2]> {
+        let p = transposed(&self.moving_from_shadow, in_moving);
+        let q = transposed(&self.fixed_from_shadow, in_fixed);
+        (p.dot(q) > ALIGNED).then_some([p, q])
+    }
+
+    /// Whether points that met in an earlier query, and are a lateral distance apart now, are still
+    /// near each other as bodies of this size go.
+    pub(crate) fn is_near(&self, apart: f64) -> bool {
+        let size = self.setting.moving.inertia().radius + self.setting.fixed.inertia().radius;
+        apart < NEAR * size
+    }
+
+    /// A normal of the shadow frame in the fixed body's frame.
+    #[inline]
+    pub(crate) fn in_fixed(&self, normal: DVec3) -> DVec3 {
+        self.fixed_from_shadow * normal
+    }
+
+    /// The point of `M`, not widened, that a pair of vertices gives.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 3 %")]
+    pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
+        let p = self.setting.moving.vertices()[pair.moving as usize];
+        let q = self.setting.fixed.vertices()[pair.fixed as usize];
+        let at = (transposed(&self.fixed_from_shadow, q) - transposed(&self.moving_from_shadow, p))
+            + self.offset;
+        Point { at, pair }
+    }
+
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a direction passed through memory stalls the scan: 7 %"
+    )]
+    fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
+        let mut point = self.vertex(pair);
+        if self.widening != 0.0 {
+            let [along_x, along_y] = noise::WIDENING.map(|side| side * self.widening);
+            point.at.x -= along_x.copysign(normal.x);
+            point.at.y -= along_y.copysign(normal.y);
+        }
+        point
+    }
+
+    /// The corners that widening makes of a vertex, each lowest along one diagonal; four times the
+    /// vertex itself without widening.
+    pub(crate) fn corners(&self, vertex: &Point) -> [Point; 4] {
+        [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
+            .map(|(x, y)| self.point(vertex.pair, DVec3::new(x, y, 0.0)))
+    }
+
+    /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and
+    /// their matrices.
+    #[inline]
+    pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
+        let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
+        let a = Symmetric::gram(&moving.axes_by_factor(&self.moving_from_shadow));
+        let b = Symmetric::gram(&fixed.axes_by_factor(&self.fixed_from_shadow));
+        (self.center(), [a, b])
+    }
+
+    /// The difference of the bodies' centres in the shadow frame.
+    #[inline]
+    pub(crate) fn center(&self) -> DVec3 {
+        let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
+        (transposed(&self.fixed_from_shadow, fixed.center)
+            - transposed(&self.moving_from_shadow, moving.center))
+            + self.offset
+    }
+
+    /// Whether the line passes to the left (`true`) or to the right of the directed segment between
+    /// two shadows.
+    ///
+    /// Exact: a rounded determinant decides where its error allows, whole numbers otherwise. Where
+    /// the line meets the segment's carrier it is moved, in thought, by `(eps, eps^2)`: so it is
+    /// never *on* a segment, and three consistent answers always mean a triangle that contains it.
+    #[inline]
+    pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
+        let (a, b) = (from.shadow(), to.shadow());
+        let det = a.perp_dot(b);
+        let size = a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs();
+        if det.abs() > 2.0 * self.noise.point() * (size + self.noise.point()) {
+            return det > 0.0;
+        }
+        self.is_left_exactly(from, to)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn is_left_exactly(&self, from: &Point, to: &Point) -> bool {
+        if self.widening == 0.0 {
+            let setting = self.setting;
+            let (a, b) = (setting.terms(from.pair), setting.terms(to.pair));
+            // The line passes near one of the two again and again.
+            let from_is_near = from.shadow().length_squared() < to.shadow().length_squared();
+            let (near, terms) = if from_is_near { (from.pair, &a) } else { (to.pair, &b) };
+            let base = || match self.known.get() {
+                Some((pair, known)) if pair == near => known,
+                _ => {
+                    let new = orientation::shadow(terms, setting.direction);
+                    self.known.set(Some((near, new)));
+                    new
+                }
+            };
+            let way = to.shadow() - from.shadow();
+            if way.length_squared() > self.touching() * self.touching() {
+                let side = orientation::side(
+                    &base(),
+                    way,
+                    &self.setting_from_shadow,
+                    setting.direction,
+                    self.noise.point(),
+                );
+                if let Some(left) = side {
+                    return left;
+                }
+            }
+            return orientation::orientation(&a, &b, setting.direction, base) == Ordering::Greater;
+        }
+        // Widened bodies exist only in rounded coordinates; their determinant is exact for those.
+        let (a, b) = (from.shadow(), to.shadow());
+        let coord = |v: DVec2| robust::Coord { x: v.x, y: v.y };
+        let det = robust::orient2d(coord(a), coord(b), coord(DVec2::ZERO));
+        if det != 0.0 {
+            return det > 0.0;
+        }
+        if a.y == b.y { b.x > a.x } else { a.y > b.y }
+    }
+}
+
+/// `m^T v`.
+#[inline]
+fn transposed(m: &DMat3, v: DVec3) -> DVec3 {
+    DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))
+}

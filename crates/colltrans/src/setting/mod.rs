@@ -1,0 +1,141 @@
+//! The setting of a query: two placed bodies and a direction, in a frame that all solvers share.
+//!
+//! The *setting frame* has the axes of the world and its origin at the moving body's translation:
+//! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both
+//! bodies, however large, costs no accuracy.
+
+pub(crate) mod minkowski;
+
+use glam::{DMat3, DVec3};
+
+use crate::body::ConvexPolyhedron;
+use crate::body::Pose;
+use crate::error::QueryError;
+use crate::number::error_free::difference_error;
+use crate::number::noise::Noise;
+use crate::number::orientation::Terms;
+use crate::number::range::in_exact_range;
+
+/// One vertex of each body, by index into [`ConvexPolyhedron::vertices`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct VertexPair {
+    /// Index into the moving body's vertices.
+    pub moving: u32,
+    /// Index into the fixed body's vertices.
+    pub fixed: u32,
+}
+
+/// Two placed bodies and a direction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Setting<'a> {
+    /// The moving body P.
+    pub(crate) moving: &'a ConvexPolyhedron,
+    /// Its rotation `R_P`.
+    pub(crate) moving_matrix: DMat3,
+    /// The fixed body Q.
+    pub(crate) fixed: &'a ConvexPolyhedron,
+    /// Its rotation `R_Q`.
+    pub(crate) fixed_matrix: DMat3,
+    /// `t_Q - t_P`, rounded.
+    pub(crate) offset: DVec3,
+    /// What rounding took from `offset`, exactly.
+    offset_error: DVec3,
+    /// The direction as given.
+    pub(crate) direction: DVec3,
+    /// Its length.
+    pub(crate) length: f64,
+    /// `direction` at length 1.
+    pub(crate) unit: DVec3,
+}
+
+impl<'a> Setting<'a> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 2 %")]
+    pub(crate) fn new(
+        moving: &'a ConvexPolyhedron,
+        moving_pose: &Pose,
+        fixed: &'a ConvexPolyhedron,
+        fixed_pose: &Pose,
+        direction: DVec3,
+    ) -> Result<Self, QueryError> {
+        if direction == DVec3::ZERO || !in_exact_range(direction) {
+            return Err(QueryError::Direction { direction });
+        }
+        let length = direction.length();
+        let (t_p, t_q) = (moving_pose.translation(), fixed_pose.translation());
+        Ok(Self {
+            moving,
+            moving_matrix: moving_pose.matrix(),
+            fixed,
+            fixed_matrix: fixed_pose.matrix(),
+            offset: t_q - t_p,
+            offset_error: DVec3::new(
+                difference_error(t_q.x, t_p.x),
+                difference_error(t_q.y, t_p.y),
+                difference_error(t_q.z, t_p.z),
+            ),
+            direction,
+            length,
+            unit: direction * (1.0 / length),
+        })
+    }
+
+    /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
+    #[inline]
+    pub(crate) fn scale(&self) -> f64 {
+        self.moving.inertia().reach + self.fixed.inertia().reach + self.offset.length()
+    }
+
+    /// The bounds on rounding errors that belong to the size.
+    #[inline]
+    pub(crate) fn noise(&self) -> Noise {
+        Noise::of(self.scale())
+    }
+
+    /// A pair's vertices, in the frames of the moving and the fixed body.
+    #[inline]
+    pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
+        [self.moving.vertices()[pair.moving as usize], self.fixed.vertices()[pair.fixed as usize]]
+    }
+
+    /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory they stall their reader: 1 %")]
+    pub(crate) fn weighted(&self, pairs: &[VertexPair; 3], weights: &[f64; 3]) -> [DVec3; 2] {
+        let mut means = [DVec3::ZERO; 2];
+        for (pair, &weight) in pairs.iter().zip(weights) {
+            let [p, q] = self.vertices(*pair);
+            means = [means[0] + p * weight, means[1] + q * weight];
+        }
+        means
+    }
+
+    /// How far two points, in the frames of the moving and of the fixed body, are apart sideways:
+    /// for those that met in an earlier query, what poses and direction have changed since.
+    pub(crate) fn displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
+        let apart = self.fixed_matrix * q + self.offset - self.moving_matrix * p;
+        apart.reject_from_normalized(self.unit).length()
+    }
+
+    /// A normal of the setting frame in the moving body's frame: `n.(R v) = (R^T n).v`.
+    #[inline]
+    pub(crate) fn moving_normal(&self, normal: DVec3) -> DVec3 {
+        self.moving_matrix.transpose() * normal
+    }
+
+    /// A normal of the setting frame in the fixed body's frame.
+    #[inline]
+    pub(crate) fn fixed_normal(&self, normal: DVec3) -> DVec3 {
+        self.fixed_matrix.transpose() * normal
+    }
+
+    /// `q - p` for a pair of vertices, as the sum of products that defines it.
+    pub(crate) fn terms(&self, pair: VertexPair) -> Terms<'_> {
+        let [p, q] = self.vertices(pair);
+        Terms {
+            fixed: (&self.fixed_matrix, q),
+            moving: (&self.moving_matrix, p),
+            offset: [self.offset, self.offset_error],
+        }
+    }
+}

@@ -1,0 +1,378 @@
+//! The planar problem: the lowest point of the intersection of two convex polygons, or a line that
+//! separates them (the paper, section III-B).
+//!
+//! Notation. Body 0 is P with its section at `x`, body 1 is Q with its section at `y`, in the
+//! shadow plane `w = (h, g)`. The *upper* section is the one with the higher bottom, at height
+//! `h0`. If that bottom lies in the other section it is the answer. Otherwise one section is to the
+//! left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the
+//! right chain `r` of the one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive
+//! at `h0`: Newton's method from there never overshoots and ends on the pair of edges that meet
+//! first, or where the gap no longer falls. A guess of these edges is followed along the mesh
+//! first, from above or below. Pieces found earlier bound the answer from below: then Newton's
+//! method starts at that height.
+
+use glam::DVec2;
+
+use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
+use crate::number::noise;
+
+/// Halvings of a height: none are left between two numbers after so many.
+const HALVINGS: usize = 64;
+
+/// Steps from a guess of the edges that cross before the problem is solved from scratch.
+const STEPS_NEAR: usize = 24;
+
+/// Newton's method walks so far back down a chain before it searches the snapshot.
+const STEPS_DOWN: usize = 4;
+
+/// What the planar problem found.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Planar {
+    /// The bottom of one section lies in the other, between two edges of it.
+    Vertex { upper: usize, vertex: Crossing, left: Bracket, right: Bracket },
+    /// Two edges cross at the lowest common point.
+    Edges { edges: [Bracket; 2], contact: DVec2 },
+    /// Nothing in common: along `u` every point of section 1 is beyond every point of section 0;
+    /// `supports` are the closest.
+    Separated { u: DVec2, supports: [Crossing; 2] },
+}
+
+struct Problem<'a> {
+    sections: [Section<'a>; 2],
+    upper: usize,
+    h0: f64,
+}
+
+/// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is
+/// known not to lie below height `known`. `None` if rounding errors of the mesh hide a section.
+pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
+    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
+    let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
+    let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
+    let problem = Problem { sections, upper, h0: bottoms[upper].vertex.h() };
+    let shortcut = if known > problem.h0 { problem.slide_from(known, &bottoms) } else { None };
+    shortcut.or_else(|| problem.solve(&bottoms))
+}
+
+/// A guess of the two edges that cross.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    /// A crossing mesh edge of each body, as the half-edge that runs upwards.
+    pub(super) ups: [u32; 2],
+    /// The body on the right.
+    pub(super) right: usize,
+}
+
+/// The answer if it is a crossing of two edges or a separating line, few steps from the guess. It
+/// is certain, however it was found: where the edges of facing chains cross while the gap falls,
+/// nothing in common lies below, and where it is least and positive, nothing in common is anywhere.
+pub(super) fn solve_near(sides: &[Side; 2], levels: [f64; 2], near: &Near) -> Option<Planar> {
+    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
+    let slide = Slide::new(&sections, near.right);
+    let edge = |body: usize| sections[body].edge_at(slide.chains[body], near.ups[body]);
+    slide.settle([edge(0)?, edge(1)?])
+}
+
+impl Problem<'_> {
+    fn solve(&self, bottoms: &[Bottom; 2]) -> Option<Planar> {
+        let lower = 1 - self.upper;
+        let bottom = &bottoms[self.upper];
+        let left_end = self.sections[self.upper].bottom_end(bottom, Chain::Left);
+        let right_end = self.sections[self.upper].bottom_end(bottom, Chain::Right);
+        let nearer =
+            if right_end.g() < bottoms[lower].vertex.g() { Chain::Left } else { Chain::Right };
+        let mut found = [None; 2];
+        for chain in [nearer, nearer.opposite()] {
+            let edge = match self.sections[lower].locate(chain, self.h0)? {
+                Located::Edge(edge) => edge,
+                Located::Beyond(topmost) => {
+                    return Some(self.separated_by_height(&bottom.vertex, &topmost.high));
+                }
+                Located::Short => return None,
+            };
+            let g = edge.g_at(self.h0);
+            if chain == Chain::Left && right_end.g() < g {
+                return self.slide(right_end, chain, edge);
+            }
+            if chain == Chain::Right && left_end.g() > g {
+                return self.slide(left_end, chain, edge);
+            }
+            found[usize::from(chain == Chain::Right)] = Some(edge);
+        }
+        let (left, right) = (found[0]?, found[1]?);
+        let inside =
+            |end: &Crossing| left.g_at(self.h0) <= end.g() && end.g() <= right.g_at(self.h0);
+        if let Some(vertex) = [left_end, right_end].into_iter().find(inside) {
+            return Some(Planar::Vertex { upper: self.upper, vertex, left, right });
+        }
+        // The lower section is narrower than the flat bottom of the upper one.
+        let flat = Bracket::new(left_end, right_end);
+        Some(crossing_edges(&self.by_body(flat, left)))
+    }
+
+    /// Newton's method from height `known` if the sections are apart there and approach each other.
+    fn slide_from(&self, known: f64, bottoms: &[Bottom; 2]) -> Option<Planar> {
+        let likely = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
+        for right in [likely, 1 - likely] {
+            let slide = Slide::new(&self.sections, right);
+            let locate = |body: usize| self.sections[body].locate(slide.chains[body], known);
+            let Located::Edge(first) = locate(0)? else { break };
+            let Located::Edge(second) = locate(1)? else { break };
+            let edges = [first, second];
+            if slide.gap(&edges, known) > 0.0 {
+                return slide.closes(&edges).then(|| slide.solve(&edges, known)).flatten();
+            }
+        }
+        None
+    }
+
+    /// What belongs to the upper and to the lower section, by body.
+    fn by_body<T>(&self, of_upper: T, of_lower: T) -> [T; 2] {
+        if self.upper == 0 { [of_upper, of_lower] } else { [of_lower, of_upper] }
+    }
+
+    fn separated_by_height(&self, bottom: &Crossing, top: &Crossing) -> Planar {
+        let sign = if self.upper == 1 { 1.0 } else { -1.0 };
+        Planar::Separated { u: DVec2::new(sign, 0.0), supports: self.by_body(*bottom, *top) }
+    }
+
+    /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose
+    /// edge at `h0` is `edge`.
+    fn slide(&self, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
+        let facing = chain.opposite();
+        let first = Bracket::new(end, self.sections[self.upper].up(facing, &end));
+        // The body that shows its left chain is the one on the right.
+        let right = if chain == Chain::Left { 1 - self.upper } else { self.upper };
+        Slide::new(&self.sections, right).solve(&self.by_body(first, edge), self.h0)
+    }
+}
+
+/// Two edges that cross, and where.
+fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
+    Planar::Edges { edges: *edges, contact: crossing_of(edges) }
+}
+
+/// The body whose edge begins higher.
+fn higher(edges: &[Bracket; 2]) -> usize {
+    usize::from(edges[1].low.h() > edges[0].low.h())
+}
+
+/// Where the lines of two edges cross.
+fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
+    let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
+    r.low.w + r.direction * step
+}
+
+/// Newton's method up two chains that face each other.
+struct Slide<'a, 'b> {
+    sections: &'a [Section<'b>; 2],
+    /// The chain that each body shows to the other.
+    chains: [Chain; 2],
+    /// The body on the right.
+    right: usize,
+}
+
+impl<'a, 'b> Slide<'a, 'b> {
+    fn new(sections: &'a [Section<'b>; 2], right: usize) -> Self {
+        let mut chains = [Chain::Right; 2];
+        chains[right] = Chain::Left;
+        Self { sections, chains, right }
+    }
+
+    /// Up or down the chains to where they cross or the gap is least, if that is few steps away.
+    fn settle(&self, mut edges: [Bracket; 2]) -> Option<Planar> {
+        for _ in 0..STEPS_NEAR {
+            if !self.closes(&edges) {
+                let body = higher(&edges);
+                if self.gap(&edges, edges[body].low.h()) > 0.0 {
+                    return self.separated_at_least_gap(&edges, STEPS_NEAR);
+                }
+                edges[body] = self.retreat(body, &edges[body])?;
+                continue;
+            }
+            let contact = crossing_of(&edges);
+            let mut settled = true;
+            for body in 0..2 {
+                let edge = &edges[body];
+                if edge.direction.dot(contact - edge.high.w) > 0.0 {
+                    let Some(above) = self.proceed(body, edge) else {
+                        return self.separated_near_top(body, &edges);
+                    };
+                    edges[body] = above;
+                    settled = false;
+                } else if edge.direction.dot(contact - edge.low.w) < 0.0 {
+                    edges[body] = self.retreat(body, edge)?;
+                    settled = false;
+                }
+            }
+            if settled {
+                return Some(Planar::Edges { edges, contact });
+            }
+        }
+        None
+    }
+
+    /// [`Self::separated_at_top`] if the other chain has been followed up to there and has not met
+    /// this one.
+    fn separated_near_top(&self, body: usize, edges: &[Bracket; 2]) -> Option<Planar> {
+        let top = edges[body].high.h();
+        let other = &edges[1 - body];
+        let level = other.low.h() <= top && top <= other.high.h();
+        (level && self.gap(edges, top) > 0.0).then(|| self.separated_at_top(body, edges))
+    }
+
+    /// Whether the gap falls along these edges.
+    fn closes(&self, edges: &[Bracket; 2]) -> bool {
+        let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
+        let sine = r.perp_dot(*s);
+        sine < 0.0
+            && sine * sine
+                > noise::SECTION * noise::SECTION * r.length_squared() * s.length_squared()
+    }
+
+    /// From the edges at height `start`, where the gap is positive.
+    fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
+        let mut edges = *edges;
+        let mut h = start;
+        let mut closing = start;
+        for _ in 0..self.step_limit() {
+            if !self.closes(&edges) {
+                return self.separated_between(&edges, closing, h);
+            }
+            closing = h;
+            // The edge that ends first decides whether they have met, without a quotient.
+            let ending = usize::from(edges[1].high.h() < edges[0].high.h());
+            let end = &edges[ending].high;
+            let beyond = edges[1 - ending].side_of(end.w);
+            if if ending == self.right { beyond <= 0.0 } else { beyond >= 0.0 } {
+                return Some(crossing_edges(&edges));
+            }
+            let meet = (h - self.gap(&edges, h) / self.slope(&edges)).max(end.h());
+            let Some(next) = self.proceed(ending, &edges[ending]) else {
+                return Some(self.separated_at_top(ending, &edges));
+            };
+            edges[ending] = next;
+            h = meet;
+            for (body, edge) in edges.iter_mut().enumerate() {
+                let section = &self.sections[body];
+                *edge = match section.advance(self.chains[body], edge, meet)? {
+                    Located::Edge(edge) => edge,
+                    Located::Beyond(edge) => {
+                        h = h.min(edge.high.h());
+                        edge
+                    }
+                    Located::Short => return None,
+                };
+            }
+            if h < meet {
+                for (body, edge) in edges.iter_mut().enumerate() {
+                    *edge = self.down_to(body, *edge, h)?;
+                }
+            }
+            // NaN: an edge too flat for its slope to be a number.
+            if h.is_nan() {
+                return None;
+            }
+        }
+        None
+    }
+
+    fn step_limit(&self) -> usize {
+        self.sections[0].step_limit() + self.sections[1].step_limit()
+    }
+
+    fn slope(&self, edges: &[Bracket; 2]) -> f64 {
+        edges[self.right].slope() - edges[1 - self.right].slope()
+    }
+
+    fn gap(&self, edges: &[Bracket; 2], h: f64) -> f64 {
+        edges[self.right].g_at(h) - edges[1 - self.right].g_at(h)
+    }
+
+    fn proceed(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
+        self.sections[body].proceed(self.chains[body], edge)
+    }
+
+    fn retreat(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
+        self.sections[body].retreat(self.chains[body], edge)
+    }
+
+    /// Down to height `h`: a few steps along the mesh, or a search from scratch.
+    fn down_to(&self, body: usize, edge: Bracket, h: f64) -> Option<Bracket> {
+        let mut edge = edge;
+        for _ in 0..STEPS_DOWN {
+            if edge.low.h() <= h {
+                return Some(edge);
+            }
+            match self.retreat(body, &edge) {
+                Some(below) => edge = below,
+                None => return Some(edge),
+            }
+        }
+        match self.sections[body].locate(self.chains[body], h)? {
+            Located::Edge(edge) | Located::Beyond(edge) => Some(edge),
+            Located::Short => None,
+        }
+    }
+
+    /// The gap grows at height `high`, where `edges` are, falls at height `low`, and is positive
+    /// between: to where it is least, by halving and at the end in steps.
+    fn separated_between(
+        &self,
+        edges: &[Bracket; 2],
+        mut low: f64,
+        mut high: f64,
+    ) -> Option<Planar> {
+        let mut edges = *edges;
+        let mut lowered = true;
+        for _ in 0..HALVINGS {
+            if lowered && let Some(found) = self.separated_at_least_gap(&edges, STEPS_NEAR) {
+                return Some(found);
+            }
+            let h = f64::midpoint(low, high);
+            let locate = |body: usize| self.sections[body].locate(self.chains[body], h);
+            let (Located::Edge(p), Located::Edge(q)) = (locate(0)?, locate(1)?) else { break };
+            lowered = !self.closes(&[p, q]);
+            if lowered {
+                (edges, high) = ([p, q], h);
+            } else {
+                low = h;
+            }
+        }
+        self.separated_at_least_gap(&edges, self.step_limit())
+    }
+
+    /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one
+    /// chain, where a line along the other's edge separates best. `None` if that is more than
+    /// `limit` steps away.
+    fn separated_at_least_gap(&self, edges: &[Bracket; 2], limit: usize) -> Option<Planar> {
+        let mut edges = *edges;
+        for _ in 0..limit {
+            let body = higher(&edges);
+            let mut candidate = edges;
+            let below = self.retreat(body, &edges[body]);
+            if let Some(below) = below {
+                candidate[body] = below;
+            }
+            if below.is_none() || self.closes(&candidate) {
+                return Some(self.separated(&edges[1 - body], edges.map(|edge| edge.low)));
+            }
+            edges = candidate;
+        }
+        None
+    }
+
+    /// `body`'s chain ends, at the top of its section, before the gap closes.
+    fn separated_at_top(&self, body: usize, edges: &[Bracket; 2]) -> Planar {
+        let mut supports = edges.map(|edge| edge.low);
+        supports[body] = edges[body].high;
+        self.separated(&edges[1 - body], supports)
+    }
+
+    fn separated(&self, along: &Bracket, supports: [Crossing; 2]) -> Planar {
+        // Points to the right, where g grows, and from body 0 to body 1.
+        let sign = if self.right == 1 { 1.0 } else { -1.0 };
+        let u = sign * DVec2::new(-along.direction.y, along.direction.x).normalize();
+        Planar::Separated { u, supports }
+    }
+}

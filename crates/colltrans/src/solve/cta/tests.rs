@@ -1,0 +1,378 @@
+//! The minimisation against brute force.
+
+use glam::{DQuat, DVec3};
+
+use super::minimise::{Narrowed, minimise};
+use super::{CtaOptions, Guess, Origin};
+use crate::body::ConvexPolyhedron;
+use crate::body::Pose;
+use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism};
+use crate::setting::Setting;
+use crate::solve::observe::{Nobody, Watch};
+
+/// The result of a minimisation, and how many planar problems it took.
+fn minimised(setting: &Setting, options: &CtaOptions) -> (Narrowed, u32) {
+    let mut nobody = Nobody;
+    let mut watch = Watch::new(&mut nobody);
+    let narrowed = minimise(setting, options, &mut watch);
+    (narrowed, watch.steps.planar_problems)
+}
+
+/// What is to be found.
+#[derive(Debug)]
+enum Truth {
+    Contact(f64),
+    Separated,
+    /// The shadows only touch: rounding decides.
+    Grazing,
+}
+
+struct Placed {
+    vertices: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    edges: Vec<DVec3>,
+}
+
+impl Placed {
+    fn new(body: &ConvexPolyhedron, pose: &Pose) -> Self {
+        let vertices: Vec<DVec3> =
+            body.vertices().iter().map(|&v| pose.transform_point(v)).collect();
+        let normals = (0..body.face_count() as u32)
+            .map(|face| {
+                let corners: Vec<DVec3> =
+                    body.face_vertices(face).map(|v| vertices[v as usize]).collect();
+                let pairs =
+                    corners.windows(2).map(|w| (w[0] - corners[0]).cross(w[1] - corners[0]));
+                pairs.sum::<DVec3>().normalize()
+            })
+            .collect();
+        let edges = (0..vertices.len() as u32)
+            .flat_map(|v| body.neighbours(v).iter().map(move |&w| (v, w)))
+            .filter(|(v, w)| v < w)
+            .map(|(v, w)| (vertices[w as usize] - vertices[v as usize]).normalize())
+            .collect();
+        Self { vertices, normals, edges }
+    }
+}
+
+/// The greatest lower bound over all normals that can be optimal: of faces and of pairs of edges.
+fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
+    let margin = |n: DVec3| {
+        let of_p = p.vertices.iter().map(|v| n.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+        q.vertices.iter().map(|v| n.dot(*v)).fold(f64::INFINITY, f64::min) - of_p
+    };
+    let mut apart = f64::NEG_INFINITY;
+    for e in p.edges.iter().chain(&q.edges) {
+        let n = e.cross(d);
+        if n.length() > 1e-9 {
+            let n = n.normalize();
+            apart = apart.max(margin(n)).max(margin(-n));
+        }
+    }
+    if apart.abs() < 1e-12 {
+        return Truth::Grazing;
+    }
+    if apart > 0.0 {
+        return Truth::Separated;
+    }
+    let mut candidates: Vec<DVec3> = p.normals.clone();
+    candidates.extend(&q.normals);
+    for e in &p.edges {
+        candidates.extend(q.edges.iter().map(|f| e.cross(*f)));
+    }
+    let bounds = candidates.into_iter().filter_map(|n| {
+        let n = n.try_normalize()?;
+        let n = if n.dot(d) < 0.0 { -n } else { n };
+        (n.dot(d) > 1e-9).then(|| margin(n) / n.dot(d))
+    });
+    Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
+}
+
+const EXACT: CtaOptions =
+    CtaOptions { start: Origin::Center, max_steps: super::MAX_STEPS, gap: 1e-10 };
+
+/// Compares with brute force to `tolerance`; returns the result.
+fn check(
+    (p, p_pose): (&ConvexPolyhedron, &Pose),
+    (q, q_pose): (&ConvexPolyhedron, &Pose),
+    d: DVec3,
+    tolerance: f64,
+    name: &str,
+) -> Narrowed {
+    let setting = Setting::new(p, p_pose, q, q_pose, d).unwrap();
+    let narrowed = minimised(&setting, &EXACT).0;
+    let truth = brute_force(&Placed::new(p, p_pose), &Placed::new(q, q_pose), setting.unit);
+    match (&truth, narrowed.guess) {
+        (Truth::Contact(t), Guess::Contact { normal }) => {
+            assert!((narrowed.upper - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
+            assert!((narrowed.lower - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
+            assert!((normal.dot(setting.unit) - 1.0).abs() < 1e-6, "{name}: {narrowed:?}");
+            // The normal proves the lower bound.
+            let world = Placed::new(p, p_pose);
+            let fixed = Placed::new(q, q_pose);
+            let of_p =
+                world.vertices.iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+            let of_q = fixed.vertices.iter().map(|v| normal.dot(*v)).fold(f64::INFINITY, f64::min);
+            assert!(
+                (of_q - of_p - t).abs() <= tolerance,
+                "{name}: {truth:?} {narrowed:?} {}",
+                of_q - of_p
+            );
+        }
+        (Truth::Separated, Guess::Separation { .. }) | (Truth::Grazing, _) => {}
+        _ => panic!("{name}: {truth:?} {narrowed:?}"),
+    }
+    narrowed
+}
+
+fn random_pose(random: &mut Random, spread: f64) -> Pose {
+    let translation = DVec3::new(random.signed(), random.signed(), random.signed()) * spread;
+    Pose::new(random.rotation(), translation).unwrap()
+}
+
+#[test]
+fn random_bodies_agree_with_brute_force() {
+    let mut random = Random(7);
+    for round in 0..2000 {
+        let mut body = || {
+            let axes = DVec3::new(
+                random.within(0.6, 1.4),
+                random.within(0.6, 1.4),
+                random.within(0.6, 1.4),
+            );
+            match random.index(4) {
+                0 => ellipsoid(8 + random.index(30), axes),
+                1 => prism(3 + random.index(6), axes),
+                2 => cone(3 + random.index(6), axes),
+                _ => cuboid(axes, axes),
+            }
+        };
+        let (p, q) = (body(), body());
+        let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
+        let d = random.unit();
+        check((&p, &p_pose), (&q, &q_pose), d, 1e-8, &format!("round {round}"));
+    }
+}
+
+#[test]
+fn tied_bodies_agree_with_brute_force() {
+    let mut random = Random(13);
+    let bodies = [
+        cuboid(DVec3::ZERO, DVec3::ONE),
+        cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)),
+        cuboid(DVec3::ONE, DVec3::ONE),
+        prism(4, DVec3::ONE),
+        prism(6, DVec3::ONE),
+        cone(4, DVec3::ONE),
+        ellipsoid(8, DVec3::ONE),
+        ellipsoid(32, DVec3::ONE),
+    ];
+    let directions =
+        [DVec3::Z, DVec3::NEG_X, DVec3::new(1.0, 1.0, 0.0), DVec3::ONE, DVec3::new(1.0, 2.0, 0.0)];
+    let rotations = [
+        DQuat::IDENTITY,
+        DQuat::from_rotation_z(std::f64::consts::FRAC_PI_4),
+        DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
+    ];
+    for (i, p) in bodies.iter().enumerate() {
+        for (j, q) in bodies.iter().enumerate() {
+            for d in directions {
+                for rotation in rotations {
+                    for shift in [
+                        DVec3::ZERO,
+                        DVec3::X,
+                        DVec3::new(0.5, 0.0, 3.0),
+                        DVec3::new(1.0, 1.0, 0.25),
+                        DVec3::new(2.0, 0.0, 5.0),
+                    ] {
+                        let pose = Pose::new(rotation, shift).unwrap();
+                        let name = format!("bodies {i} {j} {d} {rotation} {shift}");
+                        let setting = Setting::new(p, &Pose::IDENTITY, q, &pose, d).unwrap();
+                        check_planar(&setting, &mut random, &name);
+                        check((p, &Pose::IDENTITY), (q, &pose), d, 1e-8, &name);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Lower bound of the collision translation that a normal proves, by a scan of all vertices.
+fn bound_by(normal: DVec3, p: &Placed, q: &Placed, d: DVec3) -> f64 {
+    let of_p = p.vertices.iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+    let of_q = q.vertices.iter().map(|v| normal.dot(*v)).fold(f64::INFINITY, f64::min);
+    (of_q - of_p) / normal.dot(d)
+}
+
+#[test]
+fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
+    let mut random = Random(17);
+    let bodies = [
+        ellipsoid(3000, DVec3::ONE),
+        ellipsoid(3000, DVec3::new(1000.0, 1.0, 1.0)),
+        ellipsoid(3000, DVec3::new(1000.0, 1000.0, 1.0)),
+        prism(1000, DVec3::ONE),
+        prism(1000, DVec3::new(1.0, 1.0, 1e-3)),
+        cone(1000, DVec3::new(1.0, 1.0, 3.0)),
+    ];
+    for round in 0..400 {
+        let p = &bodies[random.index(bodies.len())];
+        let q = &bodies[random.index(bodies.len())];
+        let d = random.unit();
+        let poses = [0.0, 3.0].map(|t| Pose::new(random.rotation(), d * t).unwrap());
+        let setting = Setting::new(p, &poses[0], q, &poses[1], d).unwrap();
+        let narrowed = minimised(&setting, &EXACT).0;
+        let (p, q) = (Placed::new(p, &poses[0]), Placed::new(q, &poses[1]));
+        let size = p.vertices.iter().chain(&q.vertices).map(|v| v.length()).fold(0.0, f64::max);
+        // Both centres lie on the line: they meet.
+        let Guess::Contact { normal } = narrowed.guess else {
+            panic!("round {round}: {narrowed:?}")
+        };
+        let proven = bound_by(normal, &p, &q, setting.unit);
+        let (lower, upper) = (narrowed.lower, narrowed.upper);
+        assert!((proven - lower).abs() < 1e-9 * size, "round {round}: {narrowed:?} {proven}");
+        assert!(upper - lower < 1e-6 * size, "round {round}: {narrowed:?}");
+        assert!(upper - lower > -1e-9 * size, "round {round}: {narrowed:?}");
+    }
+}
+
+#[test]
+fn steps_do_not_grow_with_the_bodies() {
+    for count in [8, 128, 2000, 20_000] {
+        let mut random = Random(19);
+        let [p, q] = [0, 1].map(|_| {
+            let axes = [0, 1, 2].map(|_| random.within(0.6, 1.4));
+            ellipsoid(count, DVec3::from_array(axes))
+        });
+        let mut steps = 0;
+        let options = CtaOptions { gap: 2.5e-3, ..EXACT };
+        for _ in 0..300 {
+            let e = colliding(&mut random);
+            let setting = Setting::new(&p, &e.poses[0], &q, &e.poses[1], e.d).unwrap();
+            steps += minimised(&setting, &options).1;
+        }
+        assert!(
+            steps <= 300 * 10,
+            "{count} vertices: {} steps on average",
+            f64::from(steps) / 300.0
+        );
+    }
+}
+
+/// A colliding setting of two ellipsoids of `count` vertices.
+struct Example {
+    poses: [Pose; 2],
+    d: DVec3,
+}
+
+fn colliding(random: &mut Random) -> Example {
+    let d = random.unit();
+    let across = random.unit().cross(d).normalize() * random.within(0.0, 1.0);
+    let poses = [DVec3::ZERO, d * 5.0 + across]
+        .map(|translation| Pose::new(random.rotation(), translation).unwrap());
+    Example { poses, d }
+}
+
+/// All vertices of a section in order, from the bottom up the left chain.
+fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
+    let section = side.section(x);
+    let first = section.bottom().unwrap().vertex;
+    let mut all = vec![first];
+    loop {
+        let next = section.up(super::side::Chain::Left, &all[all.len() - 1]);
+        if next.up == first.up {
+            return all;
+        }
+        all.push(next);
+    }
+}
+
+#[test]
+fn planar_problems_agree_with_brute_force() {
+    let mut random = Random(5);
+    for round in 0..3000 {
+        let mut body = || match random.index(4) {
+            0 => ellipsoid(8 + random.index(60), DVec3::ONE),
+            1 => prism(3 + random.index(6), DVec3::ONE),
+            2 => cone(3 + random.index(6), DVec3::ONE),
+            _ => cuboid(DVec3::ZERO, DVec3::ONE),
+        };
+        let (p, q) = (body(), body());
+        let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
+        let setting = Setting::new(&p, &p_pose, &q, &q_pose, random.unit()).unwrap();
+        check_planar(&setting, &mut random, &format!("round {round}"));
+    }
+}
+
+fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
+    use super::planar::{Planar, solve};
+    let query = super::minimise::SectionPair::new(setting);
+    let levels = [0, 1].map(|i| {
+        let [low, high] = query.sides[i].range();
+        random.within(low, high)
+    });
+    let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
+    for (i, polygon) in polygons.iter().enumerate() {
+        let least = polygon.iter().map(super::side::Crossing::h).fold(f64::INFINITY, f64::min);
+        assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
+    }
+    let edges = |i: usize| {
+        let of: &Vec<super::side::Crossing> = &polygons[i];
+        (0..of.len()).map(move |k| (of[k].w, of[(k + 1) % of.len()].w))
+    };
+    // Clockwise with g to the right and h upwards.
+    let inside =
+        |i: usize, w: glam::DVec2| edges(i).all(|(s, t)| (t - s).perp_dot(w - s) >= -1e-12);
+    let mut least = f64::INFINITY;
+    for (i, polygon) in polygons.iter().enumerate() {
+        for c in polygon {
+            if inside(1 - i, c.w) {
+                least = least.min(c.h());
+            }
+        }
+    }
+    for (a, b) in edges(0) {
+        for (c, e) in edges(1) {
+            let (r, s) = (b - a, e - c);
+            let cross = r.perp_dot(s);
+            if cross.abs() < 1e-9 * r.length() * s.length() {
+                continue;
+            }
+            let (u, v) = ((c - a).perp_dot(s) / cross, (c - a).perp_dot(r) / cross);
+            if (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v) {
+                least = least.min((a + r * u).x);
+            }
+        }
+    }
+    let height = |known: f64| match solve(&query.sides, levels, known).unwrap() {
+        Planar::Vertex { vertex, .. } => vertex.h(),
+        Planar::Edges { contact, .. } => contact.x,
+        Planar::Separated { .. } => f64::INFINITY,
+    };
+    // A bound from below changes the way, not the answer.
+    let unguided = height(f64::NEG_INFINITY);
+    for known in [1e-6, 1e-2, 1.0] {
+        let found = height(least.min(10.0) - known);
+        assert!(found == unguided || (found - unguided).abs() < 1e-9, "{name}: {found} {unguided}");
+    }
+    let answer = solve(&query.sides, levels, f64::NEG_INFINITY).unwrap();
+    match answer {
+        Planar::Vertex { vertex, .. } => {
+            assert!((vertex.h() - least).abs() < 1e-9, "{name}: {least} {}", vertex.h());
+        }
+        Planar::Edges { contact, .. } => {
+            assert!((contact.x - least).abs() < 1e-9, "{name}: {least} {contact}");
+        }
+        Planar::Separated { u, supports } => {
+            // Sections that touch each other may be taken for either.
+            let apart = u.dot(supports[1].w - supports[0].w);
+            assert!(apart >= -1e-12 && (least == f64::INFINITY || apart < 1e-12), "{name}");
+            for c in &polygons[0] {
+                assert!(u.dot(c.w - supports[0].w) < 1e-9, "{name}");
+            }
+            for c in &polygons[1] {
+                assert!(u.dot(c.w - supports[1].w) > -1e-9, "{name}");
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Everything that a query did, kept for a picture or a replay.
+
+use glam::DVec3;
+
+use super::{Cut, Observer, Phase, PlanarProblem, ShadowFrame, Support};
+
+/// One thing that happened.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Event {
+    /// A search began.
+    Begun(ShadowFrame),
+    /// A support point was computed.
+    Support(Support),
+    /// A portal was reached: its corners, in the shadow frame.
+    Portal([DVec3; 3]),
+    /// A planar problem was solved.
+    PlanarProblem(PlanarProblem),
+    /// The region of levels was cut.
+    Cut(Cut),
+    /// A part of the work ended.
+    Ended(Phase),
+}
+
+/// An [`Observer`] that keeps all events, in their order.
+///
+/// ```
+/// # use colltrans::glam::DVec3;
+/// # use colltrans::observe::{Event, Recording};
+/// # use colltrans::{ConvexPolyhedron, Options, Outcome, Pose, Solver, cast_observed};
+/// let body = ConvexPolyhedron::from_points(&[DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO])?;
+/// let start = Pose::from_translation(DVec3::new(-5.0, 0.1, 0.1))?;
+/// let mut recording = Recording::default();
+/// let (world, options) = (Pose::IDENTITY, Options { solver: Solver::Cta, ..Options::default() });
+/// let outcome = cast_observed(&body, &start, &body, &world, DVec3::X, &options, &mut recording)?;
+/// let planar = recording.events().iter().filter(|e| matches!(e, Event::PlanarProblem(_)));
+/// assert_eq!(planar.count(), outcome.steps().planar_problems as usize);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Recording {
+    events: Vec<Event>,
+}
+
+impl Recording {
+    /// What happened so far.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.events.clear();
+    }
+}
+
+impl Observer for Recording {
+    fn begun(&mut self, frame: impl FnOnce() -> ShadowFrame) {
+        self.events.push(Event::Begun(frame()));
+    }
+
+    fn support(&mut self, support: impl FnOnce() -> Support) {
+        self.events.push(Event::Support(support()));
+    }
+
+    fn portal(&mut self, corners: impl FnOnce() -> [DVec3; 3]) {
+        self.events.push(Event::Portal(corners()));
+    }
+
+    fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
+        self.events.push(Event::PlanarProblem(problem()));
+    }
+
+    fn cut(&mut self, cut: impl FnOnce() -> Cut) {
+        self.events.push(Event::Cut(cut()));
+    }
+
+    fn ended(&mut self, phase: Phase) {
+        self.events.push(Event::Ended(phase));
+    }
+}

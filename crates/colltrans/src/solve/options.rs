@@ -1,0 +1,99 @@
+//! Choices of a query.
+
+use crate::answer::Solver;
+use crate::error::QueryError;
+
+/// Choices of a query; the default is right for most.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Options {
+    /// How the search is narrowed.
+    pub solver: Solver,
+    /// Sideways overlap (world units) up to which a contact counts as grazing. `0`, the default,
+    /// stands for the rounding error of the configuration, which is the least that is ever used:
+    /// eight noises, `256 u S` (see [the crate's introduction](crate#accuracy)).
+    pub graze_tolerance: f64,
+    /// How [`Solver::Cta`] narrows the search; of no effect on the others.
+    pub narrowing: Narrowing,
+}
+
+impl Options {
+    pub(crate) fn check(&self) -> Result<(), QueryError> {
+        let tolerance = self.graze_tolerance;
+        if !tolerance.is_finite() || tolerance < 0.0 {
+            return Err(QueryError::GrazeTolerance { tolerance });
+        }
+        let gap = self.narrowing.gap;
+        if gap.is_nan() || gap < 0.0 {
+            return Err(QueryError::NarrowingGap { gap });
+        }
+        Ok(())
+    }
+}
+
+/// From where, and how far, the collision translation algorithm narrows the search before portal
+/// refinement takes over; the defaults were measured to be fastest. Answers do not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Narrowing {
+    /// Where the minimisation starts, if not in the region of a [`Tracker`](crate::Tracker)'s last
+    /// solution.
+    pub start: NarrowFrom,
+    /// It ends when its upper and lower bound are apart by no more than this share of the extent of
+    /// both bodies along the direction.
+    pub gap: f64,
+}
+
+impl Default for Narrowing {
+    /// Ellipsoids, and a fifth.
+    fn default() -> Self {
+        Self { start: NarrowFrom::default(), gap: 0.2 }
+    }
+}
+
+/// Where a minimisation starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum NarrowFrom {
+    /// Where the bodies would meet if they were ellipsoids; from there two planar problems at most
+    /// pay off.
+    #[default]
+    Ellipsoids,
+    /// At the centre of all section levels (the paper, section III-A).
+    Center,
+}
+
+/// What a [`Tracker`](crate::Tracker) makes of its last answer. Answers and certificates do not
+/// depend on it, only the work does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Focus {
+    /// Feature focus (the paper, section V-F): try first to end with the last contact features or
+    /// their neighbours, and with the last separating direction.
+    pub features: bool,
+    /// Region focus (the paper, section III-D), where the collision translation algorithm narrows
+    /// the search ([`Solver::Cta`]): start from the sections through the last contact points.
+    pub region: Region,
+}
+
+impl Focus {
+    /// Every query from scratch.
+    pub const NONE: Self = Self { features: false, region: Region::Everywhere };
+}
+
+impl Default for Focus {
+    /// Features first, then the region.
+    fn default() -> Self {
+        Self { features: true, region: Region::Automatic }
+    }
+}
+
+/// The neighbourhood `N(p)` of the last solution `p`, a square in the plane of the two section
+/// levels, to which the minimisation is confined while nothing speaks against it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Region {
+    /// All levels: no focus.
+    Everywhere,
+    /// Half-side by what changed: how far the last contact points have moved apart sideways. If that
+    /// is a large part of the bodies, or they have turned far against each other, all levels.
+    #[default]
+    Automatic,
+    /// This half-side `delta`, in world units along the section axes.
+    Fixed(f64),
+}

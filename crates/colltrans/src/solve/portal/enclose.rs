@@ -1,0 +1,277 @@
+//! The first portal: three points of `M` whose shadows contain the line, or a proof that there are
+//! none.
+//!
+//! Invariant. The search holds one or two points; two of them, `from` and `to`, have the line on
+//! their left. The next point is sought beyond the line. A tilted normal is tried first, which
+//! finds one near the lowest face, so that the first portal is small; if that one does not pass the
+//! line, a lateral normal decides: either its support point passes the line, or the whole of `M`
+//! lies on this side of it and the normal separates. Every step widens the angle under which the
+//! line sees the points, so the search ends.
+
+use glam::{DVec2, DVec3};
+
+use super::start::steep;
+use super::{FirstNormal, Portal, normal_of};
+use crate::number::determinant::accurate_det;
+use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::solve::observe::{Observer, Support, Watch};
+
+/// What the search for a first portal ends with.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Enclosure {
+    /// A portal.
+    Portal(Portal),
+    /// All of `M` lies on one side.
+    Beside(SeparatingLine),
+}
+
+/// `normal . s >= margin` for every shadow `s` of `M`, up to rounding. The margin may be negative
+/// by what counts as touching, when the shadow of `M` ends at the line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SeparatingLine {
+    /// Unit normal in the shadow plane.
+    pub(crate) normal: DVec2,
+    /// The margin.
+    pub(crate) margin: f64,
+    /// The support point that gives it.
+    pub(crate) point: Point,
+}
+
+/// A point of `M` and the slope along which it was found lowest.
+#[derive(Debug, Clone, Copy)]
+struct Tangent {
+    point: Point,
+    slope: DVec2,
+}
+
+/// How far beyond the line the model aims, in multiples of the distance to it, try by try.
+const OVERSHOOT: [f64; 2] = [1.6, 6.0];
+
+/// Bound on the number of points: far beyond what any body needs; reaching it is reported, never
+/// hidden.
+const MAX_POINTS: usize = 10_000;
+
+/// Finds a first portal. `None` if rounding makes the search run in a circle.
+pub(crate) fn enclose<O: Observer>(
+    difference: &MinkowskiDifference,
+    start: &FirstNormal,
+    watch: &mut Watch<O>,
+) -> Option<Enclosure> {
+    let mut search = Enclosing { difference, guide: Guide::First(start), watch };
+    let first = match search.first(start) {
+        Ok(tangent) => tangent,
+        Err(line) => return Some(Enclosure::Beside(line)),
+    };
+    let second = match search.beyond(&[first], first.point.shadow(), first.slope) {
+        Ok(tangent) => tangent,
+        Err(line) => return Some(Enclosure::Beside(line)),
+    };
+    search.close([first, second])
+}
+
+/// A portal that begins with an edge which the line passes, completed by wide points: for edges
+/// that a narrow portal left behind. `None` if rounding makes the search run in a circle.
+pub(super) fn complete<O: Observer>(
+    difference: &MinkowskiDifference,
+    edge: [Point; 2],
+    guide: Guide,
+    watch: &mut Watch<O>,
+) -> Option<Enclosure> {
+    // Slopes are interpolated only where a start guides the search.
+    let tangents = edge.map(|point| Tangent { point, slope: DVec2::ZERO });
+    Enclosing { difference, guide, watch }.close(tangents)
+}
+
+/// Which normals are tried before the lateral one.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Guide<'a> {
+    /// Those that should move the shadow of the support point beyond the line.
+    First(&'a FirstNormal),
+    /// The normal through the edge, tilted outwards by half a right angle.
+    Tilt,
+    /// None.
+    Lateral,
+}
+
+struct Enclosing<'a, 'o, O> {
+    difference: &'a MinkowskiDifference<'a>,
+    guide: Guide<'a>,
+    watch: &'a mut Watch<'o, O>,
+}
+
+impl<O: Observer> Enclosing<'_, '_, O> {
+    /// Adds points until they enclose the line. `None` if rounding makes the search run in a
+    /// circle.
+    fn close(&mut self, [first, second]: [Tangent; 2]) -> Option<Enclosure> {
+        let difference = self.difference;
+        let mut edge = if difference.is_left(&first.point, &second.point) {
+            [first, second]
+        } else {
+            [second, first]
+        };
+        for _ in 0..MAX_POINTS {
+            let (toward_edge, slope) = nearest_on(&edge);
+            let third = match self.beyond(&edge, toward_edge, slope) {
+                Ok(tangent) => tangent,
+                Err(line) => return Some(Enclosure::Beside(line)),
+            };
+            let [from, to] = edge;
+            if !difference.is_left(&to.point, &third.point) {
+                edge = [third, to];
+            } else if !difference.is_left(&third.point, &from.point) {
+                edge = [from, third];
+            } else {
+                return Some(Enclosure::Portal([from, to, third].map(|t| t.point)));
+            }
+        }
+        None
+    }
+
+    /// The support point along the guess; if the guess is lateral, it may already separate.
+    fn first(&mut self, start: &FirstNormal) -> Result<Tangent, SeparatingLine> {
+        let normal = start.normal;
+        let point = match start.near {
+            Some(near) => self.difference.support_from(normal, near),
+            None => self.difference.support(normal),
+        };
+        self.watch.support(|| Support::of(normal, &point));
+        if normal.z != 0.0 {
+            return Ok(Tangent { point, slope: normal.truncate() / normal.z });
+        }
+        let lateral = normal.truncate().normalize_or_zero();
+        let margin = lateral.dot(point.shadow());
+        if margin > 0.0 {
+            return Err(SeparatingLine { normal: lateral, margin, point });
+        }
+        Ok(Tangent { point, slope: steep(lateral) })
+    }
+
+    /// A point on the other side of the line than `near_side`, the point nearest to the line of
+    /// what is known.
+    ///
+    /// `slope` is the slope that belongs to `near_side` by interpolation.
+    fn beyond(
+        &mut self,
+        known: &[Tangent],
+        near_side: DVec2,
+        slope: DVec2,
+    ) -> Result<Tangent, SeparatingLine> {
+        let outward = outward(known, near_side);
+        // Points closer to the line than this may be on either side of it.
+        let clearly = -self.difference.touching();
+        let clearly_scaled = clearly * outward.length();
+        let near = known[known.len() - 1].point.pair;
+        let tries = match self.guide {
+            Guide::First(start) => {
+                OVERSHOOT.map(|factor| Some(slope + start.slope_per_shadow * near_side * factor))
+            }
+            Guide::Tilt => [tilted(known, outward), None],
+            Guide::Lateral => [None; 2],
+        };
+        for slope in tries.into_iter().flatten() {
+            if !slope.is_finite() {
+                break;
+            }
+            let point = self.difference.support_from(normal_of(slope), near);
+            self.watch.support(|| Support::of(normal_of(slope), &point));
+            if outward.dot(point.shadow()) < clearly_scaled {
+                return Ok(Tangent { point, slope });
+            }
+        }
+        let outward = outward.normalize();
+        let point = self.difference.support(outward.extend(0.0));
+        self.watch.support(|| Support::of(outward.extend(0.0), &point));
+        let margin = outward.dot(point.shadow());
+        if margin >= clearly {
+            return Err(SeparatingLine { normal: outward, margin, point });
+        }
+        Ok(Tangent { point, slope })
+    }
+}
+
+/// From the line towards what is known: the candidate for a separating normal, of a length fit to
+/// be normalised.
+fn outward(known: &[Tangent], near_side: DVec2) -> DVec2 {
+    if let [from, to] = known {
+        // The line is on the left of the edge, so the edge is on the right of the line.
+        let right = -(to.point.shadow() - from.point.shadow()).perp();
+        if can_normalize(right) {
+            return right;
+        }
+    }
+    if can_normalize(near_side) { near_side } else { DVec2::X }
+}
+
+/// The slope of a normal through an edge that rises by 1 outwards.
+fn tilted(known: &[Tangent], outward: DVec2) -> Option<DVec2> {
+    let [from, to] = known else { return None };
+    let along = to.point.shadow() - from.point.shadow();
+    let rise = to.point.height() - from.point.height();
+    Some(outward.try_normalize()? - along * (rise / along.length_squared()))
+}
+
+fn can_normalize(v: DVec2) -> bool {
+    v.length_squared() > f64::MIN_POSITIVE
+}
+
+/// The point of the edge's shadow nearest to the line, and the slope interpolated there.
+fn nearest_on(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
+    let [from, to] = edge;
+    let (a, b) = (from.point.shadow(), to.point.shadow());
+    let share = nearest_share([a, b]);
+    (a + (b - a) * share, from.slope + (to.slope - from.slope) * share)
+}
+
+/// Where on a segment the line passes nearest, from 0 at its start to 1 at its end.
+pub(super) fn nearest_share([from, to]: [DVec2; 2]) -> f64 {
+    let along = to - from;
+    let square = along.length_squared();
+    if square > 0.0 { (-from.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// The lateral normal along which the shadow of `M` keeps the largest distance from the line, from
+/// any that separates it.
+///
+/// Used when the margin found is too small to tell separation from touching: it converges to the
+/// true distance of the line from the shadow (Gilbert's algorithm with segments).
+pub(crate) fn widest_margin<O: Observer>(
+    difference: &MinkowskiDifference,
+    found: SeparatingLine,
+    watch: &mut Watch<O>,
+) -> SeparatingLine {
+    let mut segment = [found.point; 2];
+    let mut best = found;
+    for _ in 0..MAX_POINTS {
+        let Some((normal, distance)) = from_segment(&segment) else { break };
+        let lateral: DVec3 = normal.extend(0.0);
+        let point = difference.support_from(lateral, segment[0].pair);
+        watch.support(|| Support::of(lateral, &point));
+        let margin = normal.dot(point.shadow());
+        if margin > best.margin {
+            best = SeparatingLine { normal, margin, point };
+        }
+        let options = [[segment[0], point], [segment[1], point]];
+        let away = options.map(|s| from_segment(&s).map_or(0.0, |(_, distance)| distance));
+        let nearer = usize::from(away[1] < away[0]);
+        if distance - margin <= difference.noise.point() || away[nearer] >= distance {
+            break;
+        }
+        segment = options[nearer];
+    }
+    best
+}
+
+/// Unit normal from the line towards a segment of shadows, and the distance; without cancellation,
+/// also where a long segment passes the line closely. `None` if it touches it.
+fn from_segment(segment: &[Point; 2]) -> Option<(DVec2, f64)> {
+    let [a, b] = segment.map(|p| p.shadow());
+    let along = b - a;
+    if a.dot(along) < 0.0 && b.dot(along) > 0.0 {
+        let length = along.length();
+        let distance = accurate_det(a, b) / length;
+        let right = -along.perp() / length;
+        return (distance != 0.0).then(|| (right * distance.signum(), distance.abs()));
+    }
+    let end = if a.dot(along) >= 0.0 { a } else { b };
+    Some((end.try_normalize()?, end.length()))
+}

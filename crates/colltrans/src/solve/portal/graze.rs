@@ -1,0 +1,172 @@
+//! How far the shadows overlap sideways: the distance from the line to the rim of the shadow of
+//! `M`.
+//!
+//! Invariant: a polygon of shadows of points of `M` contains the line, so the distance to its
+//! nearest edge is a lower bound of the overlap; the support point beyond that edge gives an upper
+//! bound, and becomes a corner. The polygon is the convex hull of its points.
+
+use glam::DVec2;
+
+use crate::number::determinant::accurate_det;
+use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::solve::observe::{Observer, Support, Watch};
+
+/// The sideways overlap, as far as it had to be known.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Overlap {
+    /// More than the tolerance.
+    Ample,
+    /// At most the tolerance: `inward . s >= -depth` for every shadow, with equality up to
+    /// rounding.
+    Slight {
+        /// Unit vector from the rim inwards.
+        inward: DVec2,
+        /// The overlap.
+        depth: f64,
+    },
+}
+
+/// Corners the polygon can have. A tolerance of rounding size needs a few; a large one on a smooth
+/// body about 20.
+const MAX_CORNERS: usize = 64;
+
+/// Compares the overlap with `tolerance`, from a portal around the line.
+#[inline]
+pub(crate) fn overlap<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &[Point; 3],
+    tolerance: f64,
+    watch: &mut Watch<O>,
+) -> Overlap {
+    if is_ample(portal, tolerance) {
+        return Overlap::Ample;
+    }
+    let mut corners = [portal[0]; MAX_CORNERS];
+    corners[..3].copy_from_slice(portal);
+    let mut count = if is_triangle(portal) { 3 } else { hull(&mut corners[..3]) };
+    let mut slightest = Overlap::Ample;
+    for _ in 0..MAX_ROUNDS {
+        let Some((edge, outward, reach)) = nearest_edge(&corners[..count]) else {
+            return Overlap::Slight { inward: DVec2::X, depth: 0.0 };
+        };
+        if reach > tolerance {
+            return Overlap::Ample;
+        }
+        let inward = (-outward).extend(0.0);
+        let point = difference.support_from(inward, corners[edge].pair);
+        watch.support(|| Support::of(inward, &point));
+        let depth = outward.dot(point.shadow());
+        if depth - reach <= difference.noise.point() || count == MAX_CORNERS {
+            return if depth > tolerance {
+                Overlap::Ample
+            } else {
+                Overlap::Slight { inward: -outward, depth }
+            };
+        }
+        if depth <= tolerance {
+            slightest = Overlap::Slight { inward: -outward, depth };
+        }
+        count = insert(&mut corners, count, edge, point);
+    }
+    slightest
+}
+
+/// Bound on the rounds: each adds a corner, unless rounding makes them repeat; then the last
+/// overlap found within the tolerance stands.
+const MAX_ROUNDS: usize = 200;
+
+/// Whether the shadows are in counter-clockwise order.
+fn is_triangle(portal: &[Point; 3]) -> bool {
+    let [a, b, c] = portal.map(|p| p.shadow());
+    accurate_det(b - a, c - a) > 0.0
+}
+
+/// Adds a corner beyond the edge that follows corner `edge` of a counter-clockwise polygon, takes
+/// away those that are no corners any more, and returns the number left.
+fn insert(corners: &mut [Point; MAX_CORNERS], count: usize, edge: usize, new: Point) -> usize {
+    let new_at = new.shadow();
+    let mut count = count;
+    // First the corners after the new one, in a polygon turned so that the edge is the last one.
+    corners[..count].rotate_left(edge + 1);
+    let mut skip = 0;
+    while count - skip > 2 {
+        let [a, b] = [corners[skip], corners[skip + 1]].map(|p| p.shadow());
+        if accurate_det(a - new_at, b - new_at) > 0.0 {
+            break;
+        }
+        skip += 1;
+    }
+    while count - skip > 2 {
+        let [a, b] = [corners[count - 2], corners[count - 1]].map(|p| p.shadow());
+        if accurate_det(b - a, new_at - a) > 0.0 {
+            break;
+        }
+        count -= 1;
+    }
+    corners.copy_within(skip..count, 0);
+    count -= skip;
+    corners[count] = new;
+    count + 1
+}
+
+/// Moves the corners of the convex hull to the front, counter-clockwise, and returns their number.
+#[cold]
+fn hull(points: &mut [Point]) -> usize {
+    let at = |p: &Point| p.shadow();
+    points.sort_unstable_by(|p, q| {
+        let (p, q) = (at(p), at(q));
+        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
+    });
+    let mut chain = [points[0]; 2 * MAX_CORNERS];
+    let mut count = 0;
+    // The lower chain from left to right, then the upper one back.
+    for (base, upper) in [(0, false), (1, true)] {
+        let first = if upper { count - base } else { 0 };
+        for k in 0..points.len() {
+            let new = points[if upper { points.len() - 1 - k } else { k }];
+            while count > first + 1 {
+                let [a, b] = [chain[count - 2], chain[count - 1]].map(|p| at(&p));
+                if accurate_det(b - a, at(&new) - a) > 0.0 {
+                    break;
+                }
+                count -= 1;
+            }
+            if count > first && at(&chain[count - 1]) == at(&new) {
+                continue;
+            }
+            chain[count] = new;
+            count += 1;
+        }
+    }
+    // The upper chain ends where the lower one began.
+    let count = if count > 1 { count - 1 } else { 1 };
+    points[..count].copy_from_slice(&chain[..count]);
+    count
+}
+
+/// Whether all edges of the portal are farther from the line than `tolerance`.
+#[inline]
+fn is_ample(portal: &[Point; 3], tolerance: f64) -> bool {
+    [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
+        let (a, b) = (portal[i].shadow(), portal[j].shadow());
+        let area = a.perp_dot(b);
+        area > 0.0 && area * area > tolerance * tolerance * (b - a).length_squared()
+    })
+}
+
+/// The edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal and
+/// distance.
+fn nearest_edge(corners: &[Point]) -> Option<(usize, DVec2, f64)> {
+    let mut nearest: Option<(usize, DVec2, f64)> = None;
+    for (i, corner) in corners.iter().enumerate() {
+        let a = corner.shadow();
+        let b = corners[(i + 1) % corners.len()].shadow();
+        let Some(along) = (b - a).try_normalize() else { continue };
+        let outward = -along.perp();
+        let reach = outward.dot(a);
+        if nearest.is_none_or(|(_, _, least)| reach < least) {
+            nearest = Some((i, outward, reach));
+        }
+    }
+    nearest
+}

@@ -1,0 +1,35 @@
+//! Portal refinement: the exact lowest face of `M` on the line, from a guess of its normal.
+//!
+//! Notation. A *tangent* is a point of `M` with the slope `a` of the normal `n = (a, 1)` (shadow
+//! frame) along which it is lowest. A *portal* is a triangle of points of `M` whose shadow contains
+//! the line. With `f(a) = min_M n.m` (concave, piecewise linear) the collision translation is `max
+//! f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
+//!
+//! The way: [`mod@start`] guesses a slope, [`mod@enclose`] finds a first portal or a separating
+//! direction, [`mod@refine`] exchanges one point of the portal after another until its plane
+//! supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
+//! bounds; the exchange is the dual of the simplex method with two variables.
+
+mod enclose;
+mod follow;
+mod graze;
+mod refine;
+mod start;
+
+use glam::{DVec2, DVec3};
+
+pub(crate) use enclose::{Enclosure, SeparatingLine, enclose, widest_margin};
+pub(crate) use follow::{ContactPortal, Followed, approach, follow};
+pub(crate) use graze::{Overlap, overlap};
+pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, refine};
+pub(crate) use start::FirstNormal;
+
+use crate::setting::minkowski::Point;
+
+/// Three points of `M` whose shadows, counter-clockwise, contain the line.
+pub(crate) type Portal = [Point; 3];
+
+/// `(a, 1)`.
+fn normal_of(slope: DVec2) -> DVec3 {
+    slope.extend(1.0)
+}

@@ -1,0 +1,204 @@
+//! A first guess of the contact normal: what it would be if both bodies were ellipsoids.
+//!
+//! Notation. `A`, `B` are the matrices of the bodies' inertia ellipsoids and `c` the difference of
+//! their centres, all in the shadow frame; `n = (a, 1)`. The difference of the ellipsoids has
+//! `f(a) = c.n - sqrt(n^T A n) - sqrt(n^T B n)`, whose maximum is sought: first with both replaced
+//! by one ellipsoid `K = (1 + r) A + (1 + 1/r) B`, which contains their sum for any `r > 0` and
+//! which the line enters where a quadratic equation says; then by one Newton step on `f`.
+//! `r^2 = tr B / tr A` makes the mean size of `K` least; `r^2 = n^T B n / n^T A n` makes it touch
+//! the sum along `n`, so `r` is fitted to the normal found until both agree.
+
+use glam::{DMat2, DVec2, DVec3};
+
+use crate::body::ConvexPolyhedron;
+use crate::number::symmetric::Symmetric;
+use crate::setting::VertexPair;
+use crate::setting::minkowski::MinkowskiDifference;
+
+/// Where to begin, and how the shadow of the support point answers to a change of slope.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FirstNormal {
+    /// Guess of the contact normal in the shadow frame: `(a, 1)`, or lateral (height 0) if the
+    /// bodies seem to pass each other.
+    pub(crate) normal: DVec3,
+    /// A pair near the contact, if one is known.
+    pub(crate) near: Option<VertexPair>,
+    /// The change of slope that moves the shadow of the support point by minus a given vector: the
+    /// inverse Hessian of the ellipsoids' support functions.
+    pub(crate) slope_per_shadow: DMat2,
+}
+
+/// Least share of a contact normal along the direction that is guessed: a steeper guess
+/// would say nothing about where the walls of the body are.
+const LEAST_INCLINATION: f64 = 0.05;
+
+/// Mean semi-axis of an ellipsoid over the root of its trace.
+const MEAN_RADIUS: f64 = 0.577_350_269_189_625_8;
+
+/// Newton's step is taken if it is shorter than this share of the normal; a longer one leaves the
+/// region it knows.
+const LONGEST_STEP: f64 = 0.5;
+
+/// The first ellipsoid is good enough for bodies of like shape, whose `r` would change by less than this
+/// share; flat ones across each other are fitted until it changes by less than the second, or this often.
+const LIKE: f64 = 0.5;
+const FITTED: f64 = 0.1;
+const MAX_FITS: usize = 12;
+
+/// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
+const FEW: usize = 20;
+
+impl FirstNormal {
+    /// The guess that suits the bodies.
+    #[inline]
+    pub(crate) fn new(difference: &MinkowskiDifference) -> Self {
+        let setting = difference.setting;
+        let simple = |body: &ConvexPolyhedron| body.vertices().len() <= FEW && body.inertia().round;
+        if simple(setting.moving) && simple(setting.fixed) {
+            Self::from_spheres(difference)
+        } else {
+            Self::from_ellipsoids(difference)
+        }
+    }
+
+    /// The guess for bodies that resemble balls: their inertia ellipsoids replaced by balls of the
+    /// same mean size.
+    #[inline]
+    fn from_spheres(difference: &MinkowskiDifference) -> Self {
+        let setting = difference.setting;
+        let radius =
+            (setting.moving.inertia().radius + setting.fixed.inertia().radius) * MEAN_RADIUS;
+        let lateral = difference.center().truncate();
+        let square = radius * radius - lateral.length_squared();
+        let meets = square > 0.0;
+        let slope =
+            if meets { tempered(lateral.extend(square.sqrt())).truncate() } else { steep(lateral) };
+        // The support function `r |n|` has the Hessian `r (I / |n| - a a^T / |n|^3)`.
+        let scale = (1.0 + slope.length_squared()).sqrt() / radius;
+        let slope_per_shadow = DMat2::from_cols(
+            DVec2::new(1.0 + slope.x * slope.x, slope.x * slope.y) * scale,
+            DVec2::new(slope.x * slope.y, 1.0 + slope.y * slope.y) * scale,
+        );
+        let passes = !meets && lateral != DVec2::ZERO;
+        let normal = if passes { lateral.extend(0.0) } else { slope.extend(1.0) };
+        Self { normal, near: None, slope_per_shadow }
+    }
+
+    /// The guess from the inertia ellipsoids.
+    #[inline]
+    pub(crate) fn from_ellipsoids(difference: &MinkowskiDifference) -> Self {
+        let (center, [a, b]) = difference.ellipsoids();
+        let mut r =
+            difference.setting.fixed.inertia().radius / difference.setting.moving.inertia().radius;
+        let mut normal = DVec3::Z;
+        let mut enough = LIKE;
+        for _ in 0..MAX_FITS {
+            let k = a.combine(1.0 + r, &b, 1.0 + 1.0 / r);
+            normal = entry_normal(&k, center);
+            let (along_a, along_b) = (a.square(normal), b.square(normal));
+            let [least, most] = [1.0 - enough, 1.0 + enough].map(|f| f * f * r * r * along_a);
+            if normal.z == 0.0 || (least < along_b && along_b < most) {
+                break;
+            }
+            (r, enough) = ((along_b / along_a).sqrt(), FITTED);
+        }
+        let sloped = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
+        let ((shadow_a, hessian_a), (shadow_b, hessian_b)) =
+            (response(&a, sloped), response(&b, sloped));
+        let slope_per_shadow = (hessian_a + hessian_b).inverse();
+        if normal.z > 0.0 {
+            let step = slope_per_shadow * (center.truncate() - shadow_a - shadow_b);
+            if step.length_squared() < LONGEST_STEP * LONGEST_STEP * normal.length_squared() {
+                normal += step.extend(0.0);
+            }
+        }
+        Self { normal, near: None, slope_per_shadow }
+    }
+
+    /// Where the ellipsoids have their supporting planes across the normal, in the frames of the
+    /// moving and of the fixed body.
+    pub(crate) fn touching(&self, difference: &MinkowskiDifference) -> [DVec3; 2] {
+        let setting = difference.setting;
+        let normal = self.normal;
+        let away = |k: &Symmetric| {
+            let kn = k.apply(normal);
+            difference.setting_from_shadow * (kn * (1.0 / normal.dot(kn).sqrt()))
+        };
+        let (_, [a, b]) = difference.ellipsoids();
+        [
+            setting.moving.inertia().center + setting.moving_normal(away(&a)),
+            setting.fixed.inertia().center - setting.fixed_normal(away(&b)),
+        ]
+    }
+
+    /// With a normal (shadow frame) and a pair that another solver found.
+    pub(crate) fn guided(&self, normal: DVec3, near: VertexPair) -> Self {
+        Self { normal: tempered(normal), near: Some(near), ..*self }
+    }
+}
+
+/// The normal where the axis enters the ellipsoid around `center` with matrix `k`, or, if it misses
+/// it, where it passes closest in the ellipsoid's metric.
+///
+/// With `J = det K^-1` the axis is inside for the heights `h` with `J_zz h^2 - 2 (J c)_z h + c.J c <
+/// det`; up to its length the normal is `J c - h J e_z`.
+#[inline]
+fn entry_normal(k: &Symmetric, center: DVec3) -> DVec3 {
+    let (j, det) = k.adjugate();
+    let jc = j.apply(center);
+    let square = jc.z * jc.z - j.zz * (center.dot(jc) - det);
+    let root = square.max(0.0).sqrt();
+    let lateral = jc.truncate() - DVec2::new(j.xz, j.yz) * ((jc.z - root) / j.zz);
+    if square > 0.0 {
+        return tempered(lateral.extend(root));
+    }
+    // Of a length fit to be normalised; out of range, any normal will do.
+    let lateral = lateral / lateral.abs().max_element();
+    if lateral.is_finite() { lateral.extend(0.0) } else { DVec3::Z }
+}
+
+/// `(a, 1)` along `normal`, or along the nearest direction that is not too steep.
+#[inline]
+fn tempered(normal: DVec3) -> DVec3 {
+    if normal.z == 0.0 {
+        return normal;
+    }
+    let lateral = normal.truncate();
+    let steepest = LEAST_INCLINATION * LEAST_INCLINATION * normal.length_squared();
+    if normal.z > 0.0 && normal.z * normal.z >= steepest {
+        return (lateral * (1.0 / normal.z)).extend(1.0);
+    }
+    if steepest > 0.0 { (lateral / steepest.sqrt()).extend(1.0) } else { DVec3::Z }
+}
+
+/// The steepest slope that is guessed, along a lateral direction.
+pub(super) fn steep(lateral: DVec2) -> DVec2 {
+    lateral.normalize_or_zero() / LEAST_INCLINATION
+}
+
+/// Where the line meets `M`, from where it met before: the slope that brings the point of contact
+/// back to the line.
+///
+/// Before, P touched along slope `a_P` and Q along `a_Q` (equal then, and turned with the bodies
+/// since), at points of contact whose difference has the shadow `s` now. With the Hessians `A`, `B`
+/// of the ellipsoids' support functions the shadow at slope `a` is `s - A (a - a_P) - B (a - a_Q)`.
+pub(super) fn continued(
+    difference: &MinkowskiDifference,
+    shadow: DVec2,
+    slopes: [DVec2; 2],
+) -> DVec2 {
+    let (_, ellipsoids) = difference.ellipsoids();
+    let n = ((slopes[0] + slopes[1]) * 0.5).extend(1.0);
+    let [a, b] = [response(&ellipsoids[0], n).1, response(&ellipsoids[1], n).1];
+    (a + b).inverse() * (shadow + a * slopes[0] + b * slopes[1])
+}
+
+/// Gradient and Hessian of an ellipsoid's support function in the lateral components of a normal.
+#[inline]
+fn response(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
+    let kn = k.apply(normal);
+    let inverse_length = 1.0 / normal.dot(kn).sqrt();
+    let g = kn.truncate() * inverse_length;
+    let lateral = DMat2::from_cols(DVec2::new(k.xx, k.xy), DVec2::new(k.xy, k.yy));
+    (g, (lateral - DMat2::from_cols(g * g.x, g * g.y)) * inverse_length)
+}

@@ -1,0 +1,23 @@
+//! What a cast leaves to the next one: the features it ended with.
+
+use glam::DVec3;
+
+use crate::setting::VertexPair;
+use crate::solve::portal::ContactPortal;
+
+/// Where the next cast may start.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) enum WarmStart {
+    /// Nothing yet.
+    #[default]
+    Nothing,
+    /// The bodies met.
+    Contact(ContactPortal),
+    /// They passed each other, or grazed.
+    Apart {
+        /// The separating direction, in the frames of the moving and of the fixed body.
+        normals: [DVec3; 2],
+        /// A pair of vertices extreme along it.
+        pair: VertexPair,
+    },
+}

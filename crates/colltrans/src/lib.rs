@@ -128,12 +128,16 @@ pub use answer::{
     Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
     Intersection, Outcome, Proof, Separated, Separation, Solver, StartedFrom, Steps,
 };
+pub use body::solid::{Shell, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{Body, ConvexPolyhedron, ConvexityDefect, Feature, Placed, Pose, convexity_defect};
 pub use cast::{CaseError, Cast, Features, WitnessPoints, cast};
 pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;
+pub use solve::facets::{
+    SolidCast, SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace,
+};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
 pub use tracker::Tracker;

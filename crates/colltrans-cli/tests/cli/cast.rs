@@ -212,7 +212,7 @@ fn info_says_what_is_there_and_what_is_wrong() {
         &[
             "vertices     9",
             "surface      closed",
-            "no; --hull takes its hull: face 1 lies 0.25 below",
+            "no; `clear` takes it as it is, --hull takes its hull: face 1 lies 0.25 below",
             "volume       0.9166",
             "hull volume  1\n",
             "hull exceeds 0.0833333 of its volume 1 is not the part (8.333 %); the part's surface \

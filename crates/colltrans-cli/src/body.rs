@@ -76,7 +76,8 @@ fn hint(error: &BuildError) -> &'static str {
             "; --merge-tolerance closes gaps, --hull takes the convex hull of its vertices"
         }
         BuildError::Topology(_) | BuildError::InsideOut { .. } => {
-            "; --hull takes the convex hull of its vertices"
+            "; `colltrans clear` takes parts that are not convex, --hull takes the convex hull of \
+             its vertices"
         }
         _ => "",
     }

@@ -41,7 +41,8 @@ struct Query {
     #[serde(default)]
     fixed_pose: PoseSource,
     direction: [f64; 3],
-    query: Option<Asked>,
+    #[serde(rename = "query")]
+    asked: Option<Asked>,
     graze_tolerance: Option<f64>,
     #[serde(default)]
     solver: SolverName,
@@ -115,7 +116,7 @@ impl Desk {
         let Query { id, .. } = &query;
         let id = id.clone();
         // A bug must not take the other lines with it.
-        let solved = catch_unwind(AssertUnwindSafe(|| self.solve(query)));
+        let solved = catch_unwind(AssertUnwindSafe(|| self.solve(&query)));
         let record = match solved {
             Ok(Ok(record)) => record,
             Ok(Err(message)) => Record::of_error(format!("line {number}: {message}")),
@@ -124,7 +125,7 @@ impl Desk {
         (id, record)
     }
 
-    fn solve(&self, query: Query) -> Result<Record, String> {
+    fn solve(&self, query: &Query) -> Result<Record, String> {
         let moving = self.body(&query.moving).map_err(|e| format!("moving: {e}"))?;
         let fixed = self.body(&query.fixed).map_err(|e| format!("fixed: {e}"))?;
         let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
@@ -212,7 +213,7 @@ impl Query {
         };
         let answer = || {
             let cast = query.cast()?;
-            Ok(match self.query.unwrap_or(Asked::Contact) {
+            Ok(match self.asked.unwrap_or(Asked::Contact) {
                 Asked::Contact => Record::of_answer(&cast.contact_range()?, &cast),
                 Asked::Clearance => Record::of_clearance(&cast.clearance()?, &cast),
             })
@@ -223,7 +224,7 @@ impl Query {
 
     /// At least one of the bodies is a solid.
     fn of_solids(&self, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Record, String> {
-        if self.query == Some(Asked::Contact) {
+        if self.asked == Some(Asked::Contact) {
             return Err(r#"solids are asked for their clearance: "query": "clearance""#.into());
         }
         if self.graze_tolerance.is_some() {

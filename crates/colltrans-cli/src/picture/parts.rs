@@ -3,8 +3,8 @@
 //! Which faces are seen, and which pieces of which edges, is decided by a buffer of depths
 //! ([`super::raster`]), to half a pixel: for any surfaces, in any position, in time that grows with
 //! faces and pixels. Drawn are outlines (edges between faces that look towards the viewer and away)
-//! and creases (edges that bend by more than [`SMOOTH`]), and the creases behind as dashes where there
-//! are few.
+//! and creases (edges that bend by more than [`SMOOTH`]), and what of them is hidden as dashes where
+//! there are few.
 
 use std::collections::HashMap;
 
@@ -20,8 +20,8 @@ use super::view::View;
 use super::{Cast, FIXED, MOVING};
 use crate::solid::{Answer, Kind, Question, Stop};
 
-/// Hidden creases are drawn if there are no more of them than this.
-const FEW_CREASES: usize = 120;
+/// Hidden edges are drawn if no more edges than this are drawn at all.
+const FEW_EDGES: usize = 200;
 /// Depths may be off by this part of the size of what is shown.
 const SLACK: f64 = 1e-4;
 /// Shades of the moving part follow those of the fixed one.
@@ -171,7 +171,6 @@ impl Eye<'_> {
         slack: f64,
     ) {
         let drawn = self.drawn(body, edges);
-        let is_few = drawn.creases.len() <= FEW_CREASES;
         let split = |edges: &[[DVec3; 2]]| -> [Vec<[DVec2; 2]>; 2] {
             let mut parts = [Vec::new(), Vec::new()];
             for &edge in edges {
@@ -182,9 +181,10 @@ impl Eye<'_> {
             parts
         };
         let [creases, hidden] = split(&drawn.creases);
-        let [outline, _] = split(&drawn.outline);
-        if is_few {
-            page.segments(Stroke::dashed(paint.fine, 0.6, "2.5 3"), hidden);
+        let [outline, behind] = split(&drawn.outline);
+        if drawn.outline.len() + drawn.creases.len() <= FEW_EDGES {
+            let dashes = Stroke::dashed(paint.fine, 0.6, "2.5 3");
+            page.segments(dashes, hidden.into_iter().chain(behind));
         }
         page.segments(Stroke::solid(paint.line, 0.9), creases);
         page.segments(Stroke::solid(paint.line, 1.5), outline);

@@ -137,9 +137,13 @@ impl Raster {
                 }
                 open.push((tone, [left, first, right, bottom]));
             }
-            above.for_each(|(tone, rect)| done[usize::from(tone)].push(rect));
+            for (tone, rect) in above {
+                done[usize::from(tone)].push(rect);
+            }
         }
-        open.into_iter().for_each(|(tone, rect)| done[usize::from(tone)].push(rect));
+        for (tone, rect) in open {
+            done[usize::from(tone)].push(rect);
+        }
         done
     }
 

@@ -168,7 +168,9 @@ fn gaps(report: &SolidReport) -> Option<String> {
     let edges = report.open_edges;
     (edges > 0).then(|| {
         let edges = counted(edges, "open edge", "open edges");
-        format!("an open surface ({edges}): it blocks, but nothing counts as inside it")
+        format!(
+            "an open surface ({edges}): it blocks from its front, and nothing counts as inside it"
+        )
     })
 }
 

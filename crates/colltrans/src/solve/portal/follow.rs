@@ -19,6 +19,7 @@ use std::hint::select_unpredictable;
 use glam::{DVec2, DVec3};
 
 use super::enclose::nearest_share;
+use super::flat::{Flat, across, has_large_faces};
 use super::refine::lowest_face;
 use super::start::continued;
 use super::{FirstNormal, Optimum, Portal, normal_of};
@@ -183,6 +184,16 @@ pub(crate) fn approach<O: Observer>(
         if edge.distance() <= FAR * edge.width() {
             return walk(difference, edge, FEW_CROSSINGS, optimum, watch);
         }
+        if has_large_faces(difference) {
+            match across(difference, portal, from, optimum, watch) {
+                Flat::Portal(portal) => return Followed::Portal(portal),
+                Flat::Corner(normal, corner) => {
+                    (slope, vertex) = (normal.truncate() / normal.z, corner);
+                    continue;
+                }
+                Flat::No => {}
+            }
+        }
         slope += start.slope_per_shadow * shadow;
         if !slope.is_finite() {
             break;
@@ -313,9 +324,9 @@ fn slopes(
 const NEXT: [usize; 3] = [1, 2, 0];
 
 /// A directed edge of a portal with the third corner on its left and the line on its right.
-struct Edge {
-    from: Point,
-    to: Point,
+pub(super) struct Edge {
+    pub(super) from: Point,
+    pub(super) to: Point,
     third: Point,
 }
 
@@ -337,7 +348,7 @@ fn crossed<O: Observer>(
 
 /// The same, if the line is known to be on the left of the first edge.
 #[inline]
-fn left_behind<O: Observer>(
+pub(super) fn left_behind<O: Observer>(
     difference: &MinkowskiDifference,
     portal: &Portal,
     optimum: &mut Option<Optimum>,
@@ -380,13 +391,13 @@ fn crossed_or_tied<O: Observer>(
 impl Edge {
     /// The edge that begins at a corner.
     #[inline]
-    fn of(portal: &Portal, from: usize) -> Self {
+    pub(super) fn of(portal: &Portal, from: usize) -> Self {
         let [to, third] = [NEXT[from], NEXT[NEXT[from]]];
         Self { from: portal[from], to: portal[to], third: portal[third] }
     }
 
     /// From the edge away from the triangle, as long as the edge.
-    fn outward(&self) -> DVec2 {
+    pub(super) fn outward(&self) -> DVec2 {
         -(self.to.shadow() - self.from.shadow()).perp()
     }
 

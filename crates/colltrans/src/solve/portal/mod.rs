@@ -11,6 +11,7 @@
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
 mod enclose;
+mod flat;
 mod follow;
 mod graze;
 mod refine;

@@ -195,7 +195,7 @@ fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -
 /// The upward normal of the plane through the three points; `None` if the portal is too narrow to
 /// have one.
 #[inline]
-fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
+pub(super) fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
     let [a, b, c] = portal.map(|p| p.shadow());
     let longest = (b - a).length_squared().max((c - b).length_squared());
     let longest = longest.max((a - c).length_squared());

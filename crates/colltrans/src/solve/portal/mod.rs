@@ -16,6 +16,8 @@ mod follow;
 mod graze;
 mod refine;
 mod start;
+mod tied;
+mod wrap;
 
 use glam::{DVec2, DVec3};
 

@@ -31,7 +31,8 @@ const BAND: f64 = 32.0 * noise::GAIN;
 /// The largest `s` that is not worth a look at all vertices.
 const ENOUGH: f64 = 8.0 * noise::GAIN;
 
-/// Up to this many vertices, looking at each is faster than at edges and diagonals one by one.
+/// Up to this many vertices, looking at each is faster than at edges and diagonals one by one, if
+/// there are any diagonals.
 const FEW: usize = 128;
 
 impl ConvexPolyhedron {
@@ -47,7 +48,7 @@ impl ConvexPolyhedron {
     }
 
     fn excess_of_climb(&self, normal: DVec3, vertex: u32) -> f64 {
-        if self.vertices.len() <= FEW {
+        if self.flatness > 0.0 && self.vertices.len() <= FEW {
             let here = self.vertices[vertex as usize];
             let tied = |&w: &u32| {
                 let edge = self.vertices[w as usize] - here;

@@ -5,4 +5,5 @@ mod cast;
 mod door;
 mod example_parts;
 mod picture;
+mod replay;
 mod support;

@@ -25,6 +25,9 @@ use crate::number::plane::polygon_normal;
 /// Vertices of a plateau that are visited one by one; a larger one is taken to be the whole body.
 const VISITED: usize = 16;
 
+/// Of bodies with up to this many vertices each is looked at: that is faster than to visit some.
+const SMALL: usize = 128;
+
 /// A face with more corners is measured at three.
 const FEW: usize = 8;
 
@@ -68,6 +71,9 @@ impl ConvexPolyhedron {
 
     #[inline(never)]
     fn excess_of_plateau(&self, normal: DVec3, vertex: u32) -> f64 {
+        if self.vertices.len() <= SMALL {
+            return self.excess_of_all(normal, vertex);
+        }
         if !self.large_faces.is_empty()
             && let Some(excess) = self.excess_of_large_face(normal, vertex)
         {
@@ -85,14 +91,24 @@ impl ConvexPolyhedron {
                     continue;
                 }
                 if count == VISITED {
-                    let all = 0..self.vertices.len() as u32;
-                    return all.map(gain).fold(0.0, f64::max) + noise::GAIN * self.inertia.reach;
+                    return self.excess_of_all(normal, vertex);
                 }
                 plateau[count] = w;
                 count += 1;
                 most = most.max(gained);
             }
             next += 1;
+        }
+        most + noise::GAIN * self.inertia.reach
+    }
+
+    /// The same by a look at all vertices.
+    fn excess_of_all(&self, normal: DVec3, vertex: u32) -> f64 {
+        let here = self.vertices[vertex as usize];
+        let mut most = 0.0;
+        for v in &self.vertices {
+            let gain = normal.dot(*v - here);
+            most = if gain > most { gain } else { most };
         }
         most + noise::GAIN * self.inertia.reach
     }

@@ -21,6 +21,7 @@ mod picture;
 mod progress;
 mod query;
 mod record;
+mod replay;
 mod report;
 mod solid;
 
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Command::Clear(arguments) => clear::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -6,4 +6,6 @@ mod clear;
 mod door;
 mod example_parts;
 mod picture;
+mod readme;
+mod replay;
 mod support;

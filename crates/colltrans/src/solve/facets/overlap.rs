@@ -20,7 +20,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::bound::Shade;
+use super::bound::{Shade, apart, beyond};
 use super::inside;
 use super::scene::{Corner, Scene, Side, Spot};
 use super::search::{children, splits_moving};
@@ -45,7 +45,9 @@ pub(super) fn find(scene: &Scene) -> Option<Overlap> {
         return None;
     }
     let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
-    if (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k]) || slabs_apart(scene, &a, &b) {
+    let (p, q) = (&scene.moving, &scene.fixed);
+    let disjoint = beyond(scene, (p, &a), (q, &b)) || beyond(scene, (q, &b), (p, &a));
+    if disjoint || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k]) {
         return None;
     }
     if let Some((f, g)) = descend(scene, [0, 0], &a, &b, meet) {
@@ -71,23 +73,6 @@ pub(super) fn touches(scene: &Scene) -> bool {
 
 /// What is asked of two triangles.
 type Judge = fn(&Scene, &Plate, &Plate) -> bool;
-
-/// Whether two nodes' slabs or boxes are apart: no point of one is a point of the other.
-fn apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
-    (0..3).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k]) || slabs_apart(scene, a, b)
-}
-
-fn slabs_apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
-    let beyond = |a: &Shade, b: &Shade| {
-        if a.slab[1] == f64::INFINITY {
-            return false;
-        }
-        let (middle, half) = ((b.low + b.high) * 0.5, (b.high - b.low) * 0.5);
-        let (value, spread) = (a.axis.dot(middle), a.axis.abs().dot(half) + 4.0 * scene.blur);
-        value - spread > a.slab[1] || value + spread < a.slab[0]
-    };
-    beyond(a, b) || beyond(b, a)
-}
 
 /// A pair of triangles for which `judge` holds, of all that are not certainly apart.
 fn descend(

@@ -152,7 +152,7 @@ impl<'a> Side<'a> {
 
     /// The largest distance of a point of the body from its origin.
     fn reach(&self) -> f64 {
-        let farthest = self.shrinking.map_or(0.0, |s| f64::from(s.nodes[0][0]));
+        let farthest = self.shrinking.map_or(0.0, |s| s.farthest);
         self.solid.reach() + farthest * self.amount.abs()
     }
 

@@ -143,10 +143,8 @@ impl Solid {
             let moved = corners.map(|v| displace(self.vertices[v], shrinking.field[v], amount));
             tree::normal(moved).0.dot(before) <= 0.0
         };
-        let mut facets: Vec<u32> = (0..self.triangles.len())
-            .filter(inverted)
-            .map(|t| self.facet_index[t])
-            .collect();
+        let mut facets: Vec<u32> =
+            (0..self.triangles.len()).filter(inverted).map(|t| self.facet_index[t]).collect();
         facets.sort_unstable();
         facets.dedup();
         ShrinkReport {
@@ -187,8 +185,7 @@ impl Shrinking {
                 });
             }
         });
-        let stuck =
-            (0..field.len() as u32).filter(|&v| field[v as usize] == DVec3::ZERO).collect();
+        let stuck = (0..field.len() as u32).filter(|&v| field[v as usize] == DVec3::ZERO).collect();
         let most = MOST * solid.reach;
         let nodes = (0..solid.nodes.len()).map(|k| bound_node(solid, &field, most, k)).collect();
         let farthest = field.iter().map(|x| x.length()).fold(0.0, f64::max);
@@ -317,7 +314,8 @@ fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
                 let normal = (q - p).cross(r - p);
                 normal.dot(s - p) * normal.dot(-p) >= 0.0
             };
-            let inside = side(a, b, c, d) && side(b, c, d, a) && side(c, d, a, b) && side(d, a, b, c);
+            let inside =
+                side(a, b, c, d) && side(b, c, d, a) && side(c, d, a, b) && side(d, a, b, c);
             inside.then_some(DVec3::ZERO)
         }
         _ => None,
@@ -382,7 +380,8 @@ mod tests {
         let x = shortest(&[DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
         assert!((x + DVec3::ONE).length() < 1e-15);
         assert!(shortest(&[DVec3::X, DVec3::NEG_X]).is_none());
-        let saddle = [DVec3::X, DVec3::Y, DVec3::new(-1.0, -1.0, 1.0), DVec3::new(-1.0, -1.0, -1.0)];
+        let saddle =
+            [DVec3::X, DVec3::Y, DVec3::new(-1.0, -1.0, 1.0), DVec3::new(-1.0, -1.0, -1.0)];
         assert!(shortest(&saddle.map(DVec3::normalize)).is_none());
     }
 

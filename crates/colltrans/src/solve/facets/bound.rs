@@ -70,6 +70,18 @@ impl Shade {
         }
     }
 
+    /// Whether both nodes lie in one plane, exactly, and look at each other. Boxes without thickness are
+    /// exact: others are rounded outwards.
+    pub(super) fn is_face_to_face(&self, other: &Self) -> bool {
+        let flat = |k: usize| {
+            self.low[k] == self.high[k]
+                && other.low[k] == other.high[k]
+                && self.low[k] == other.low[k]
+                && self.axis[k] * other.axis[k] < 0.0
+        };
+        self.spread < 1.0 && other.spread < 1.0 && (0..3).any(flat)
+    }
+
     /// The range of the box along an axis of the body, in the query frame.
     fn local_range(&self, side: &Side, k: usize) -> [f64; 2] {
         let shift = side.view.col(k).dot(side.view_offset);

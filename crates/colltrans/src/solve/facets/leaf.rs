@@ -148,13 +148,7 @@ impl Turns {
 
 /// Whether the interiors of the shadows overlap, and if so the gap over them; `limit` is what a pair
 /// has to stay below to be of interest. The sign of the least gap is only right if it is `needed`.
-pub(super) fn gap(
-    scene: &Scene,
-    f: &Facet,
-    g: &Facet,
-    limit: f64,
-    needed: bool,
-) -> Option<Gap> {
+pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, needed: bool) -> Option<Gap> {
     let blur = 4.0 * scene.blur;
     let apart = |k: usize| g.low[k] - f.high[k] > blur || f.low[k] - g.high[k] > blur;
     if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {

@@ -50,7 +50,7 @@ pub(super) fn find(scene: &Scene) -> Option<Overlap> {
     if disjoint || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k]) {
         return None;
     }
-    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, meet) {
+    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, Judge::OVERLAP) {
         return Some(Overlap::Facets(f, g));
     }
     let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
@@ -63,7 +63,7 @@ pub(super) fn touches(scene: &Scene) -> bool {
     if apart(scene, &a, &b) {
         return false;
     }
-    if descend(scene, [0, 0], &a, &b, share_a_point).is_some() {
+    if descend(scene, [0, 0], &a, &b, Judge::TOUCH).is_some() {
         return true;
     }
     let closed = |side: &Side| side.solid.is_closed();
@@ -71,8 +71,24 @@ pub(super) fn touches(scene: &Scene) -> bool {
         || closed(&scene.moving) && inside::shell_inside(scene, false).is_some()
 }
 
-/// What is asked of two triangles.
-type Judge = fn(&Scene, &Plate, &Plate) -> bool;
+/// What is asked of two triangles, and whether nodes that lie face to face are of interest.
+#[derive(Clone, Copy)]
+struct Judge {
+    holds: fn(&Scene, &Plate, &Plate) -> bool,
+    faces: bool,
+}
+
+impl Judge {
+    const OVERLAP: Self = Self { holds: meet, faces: false };
+    const TOUCH: Self = Self { holds: share_a_point, faces: true };
+
+    /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show
+    /// no overlap: at their edges one half-space of material touches another, or else the wedge's
+    /// other facet is in a node of its own, and shows it.
+    fn dismisses(self, scene: &Scene, a: &Shade, b: &Shade) -> bool {
+        apart(scene, a, b) || !self.faces && a.is_face_to_face(b)
+    }
+}
 
 /// A pair of triangles for which `judge` holds, of all that are not certainly apart.
 fn descend(
@@ -89,7 +105,7 @@ fn descend(
     if splits_moving(m, n) {
         for part in children(m, nodes[0] as u32).map(|c| c as usize) {
             let shade = Shade::new(scene, &scene.moving, part);
-            if !apart(scene, &shade, b) {
+            if !judge.dismisses(scene, &shade, b) {
                 let found = descend(scene, [part, nodes[1]], &shade, b, judge);
                 if found.is_some() {
                     return found;
@@ -99,7 +115,7 @@ fn descend(
     } else {
         for part in children(n, nodes[1] as u32).map(|c| c as usize) {
             let shade = Shade::new(scene, &scene.fixed, part);
-            if !apart(scene, a, &shade) {
+            if !judge.dismisses(scene, a, &shade) {
                 let found = descend(scene, [nodes[0], part], a, &shade, judge);
                 if found.is_some() {
                     return found;
@@ -115,7 +131,7 @@ fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)>
         let g = Plate::new(&scene.fixed, t);
         for s in a.facets() {
             let f = Plate::new(&scene.moving, s);
-            if judge(scene, &f, &g) {
+            if (judge.holds)(scene, &f, &g) {
                 return Some((s as u32, t as u32));
             }
         }

@@ -14,8 +14,8 @@
 use glam::{DMat3, DVec3};
 
 use super::wide::Wide;
-use crate::body::solid::{Shrinking, Solid, displace};
 use crate::body::Pose;
+use crate::body::solid::{Shrinking, Solid, displace};
 
 /// One of the two bodies.
 #[derive(Clone, Copy)]

@@ -140,7 +140,8 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
         let queue = &mut workspace.queue;
         queue.clear();
         let (a, b) = (self.shade(true, 0), self.shade(false, 0));
-        let mut next = self.judge([0, 0], &a, &b).map(|bound| Entry { bound, number: 0, nodes: [0, 0] });
+        let mut next =
+            self.judge([0, 0], &a, &b).map(|bound| Entry { bound, number: 0, nodes: [0, 0] });
         let mut number = 0;
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
@@ -148,8 +149,10 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
                 continue;
             }
             let nodes = entry.nodes.map(|n| n as usize);
-            let (a, b) =
-                (&self.scene.moving.solid.nodes()[nodes[0]], &self.scene.fixed.solid.nodes()[nodes[1]]);
+            let (a, b) = (
+                &self.scene.moving.solid.nodes()[nodes[0]],
+                &self.scene.fixed.solid.nodes()[nodes[1]],
+            );
             if a.is_leaf() && b.is_leaf() {
                 self.leaves(a, b);
                 (self.cut)(Cut { nodes: entry.nodes, reason: None });

@@ -84,8 +84,7 @@ pub fn washer([hole, outside]: [f64; 2], [low, high]: [f64; 2], sides: usize) ->
 
 /// A bolt: a shaft from `low` to `seat` and a head from there to `top`.
 pub fn bolt([shaft, head]: [f64; 2], [low, seat, top]: [f64; 3], sides: usize) -> Mesh {
-    let profile =
-        [[0.0, low], [shaft, low], [shaft, seat], [head, seat], [head, top], [0.0, top]];
+    let profile = [[0.0, low], [shaft, low], [shaft, seat], [head, seat], [head, top], [0.0, top]];
     turned(&profile, sides)
 }
 

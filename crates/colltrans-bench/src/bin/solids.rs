@@ -152,8 +152,7 @@ impl Placement {
         let reach = radii[0] + radii[1];
         let aside = random.direction().reject_from_normalized(direction);
         let start = -direction * reach * 1.05 + aside * (0.7 * reach * random.unit());
-        let pose =
-            |rotation, at| Pose::new(rotation, at).unwrap_or(Pose::IDENTITY);
+        let pose = |rotation, at| Pose::new(rotation, at).unwrap_or(Pose::IDENTITY);
         let poses = [pose(random.rotation(), start), pose(random.rotation(), DVec3::ZERO)];
         Self { poses, direction }
     }
@@ -163,9 +162,13 @@ impl Pair {
     fn measure(&self, arguments: &Arguments) -> Value {
         let [a, b] = &self.bodies;
         let (Some(p), Some(q)) = (solid(a), solid(b)) else { return Value::Null };
-        let (r, s) = (TriangleMesh::new(p.vertices(), p.triangles()), TriangleMesh::new(q.vertices(), q.triangles()));
+        let (r, s) = (
+            TriangleMesh::new(p.vertices(), p.triangles()),
+            TriangleMesh::new(q.vertices(), q.triangles()),
+        );
         let radii = [radius(a), radius(b)];
-        let mut random = Random::new(arguments.seed, &[self.name.len() as u64, p.triangles().len() as u64]);
+        let mut random =
+            Random::new(arguments.seed, &[self.name.len() as u64, p.triangles().len() as u64]);
         let count = if arguments.quick { 60 } else { 300 };
         let stopwatch = Stopwatch::new();
         let (mut ours, mut theirs) = (Times::default(), Times::default());

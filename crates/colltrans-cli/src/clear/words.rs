@@ -18,6 +18,11 @@ pub(super) fn answer(answer: &Answer<'_>, direction: DVec3, is_default: bool) ->
         Kind::Blocked(stop) => {
             text.push_str("blocked\n");
             blocked(&mut text, answer, stop, direction);
+            if is_default && stop.distance * direction.length() <= HARDLY * answer.tolerance {
+                let fit =
+                    "if a fit is meant to slide here, give the chord errors of both as --tolerance";
+                line(&mut text, "", fit);
+            }
         }
         Kind::Overlapping => text.push_str("overlapping: the bodies overlap now\n"),
     }
@@ -47,11 +52,6 @@ fn blocked(text: &mut String, answer: &Answer<'_>, stop: &Stop<'_>, direction: D
     line(text, "fixed", &touched(&stop.fixed));
     line(text, "normal", &unit_vector(stop.normal));
     line(text, "point", &known_vector(stop.point, answer.error));
-    if stop.distance * direction.length() > HARDLY * answer.tolerance {
-        return;
-    }
-    let fit = "if a fit is meant to slide here, give the chord errors of both as --tolerance";
-    line(text, "", fit);
 }
 
 fn touched(touch: &Touch<'_>) -> String {

@@ -7,6 +7,7 @@
 //! there are few.
 
 use std::collections::HashMap;
+use std::path::Path;
 
 use colltrans::glam::{DVec2, DVec3};
 
@@ -21,7 +22,7 @@ use super::{Cast, FIXED, MOVING};
 use crate::solid::{Answer, Kind, Question, Stop};
 
 /// Hidden edges are drawn if no more edges than this are drawn at all.
-const FEW_EDGES: usize = 200;
+const FEW_EDGES: usize = 600;
 /// Depths may be off by this part of the size of what is shown.
 const SLACK: f64 = 1e-4;
 /// Shades of the moving part follow those of the fixed one.
@@ -64,7 +65,7 @@ fn story(question: &Question<'_>, answer: &Answer<'_>) -> Story {
         }
         Kind::Blocked(stop) => {
             touching = Some(stop);
-            let (moving, fixed) = (stop.moving.file.display(), stop.fixed.file.display());
+            let [moving, fixed] = [stop.moving.file, stop.fixed.file].map(name);
             details
                 .push(format!("{moving} touches {fixed}; normal n = {}", components(stop.normal)));
             format!("Blocked at {}", quantity(nominal(stop, answer), length))
@@ -84,6 +85,11 @@ fn story(question: &Question<'_>, answer: &Answer<'_>) -> Story {
         headline,
         details,
     }
+}
+
+/// A file without its folder.
+fn name(file: &Path) -> String {
+    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// Without the rounding error of a touch.

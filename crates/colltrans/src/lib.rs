@@ -51,7 +51,7 @@
 //! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
 //! convex hull) or from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked), and then asked
 //! as often as one likes, from any thread. Flat polygons, segments and single points are bodies
-//! too. Bodies that are not convex are not supported: cut them into convex pieces first.
+//! too. Bodies that are not convex are [`Solid`]s, asked by [`SolidCast`].
 //!
 //! # Frames and units
 //!
@@ -142,3 +142,8 @@ pub use tracker::Tracker;
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
+
+/// The examples of `docs/solids.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/solids.md")]
+pub struct Solids;

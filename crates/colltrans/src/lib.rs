@@ -47,7 +47,8 @@
 //! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
 //! convex hull), from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
 //! ([`ConvexPolyhedron::cuboid`]), and then asked as often as one likes, from any thread. Flat
-//! polygons, segments and single points are bodies too.
+//! polygons, segments and single points are bodies too. Bodies that are not convex are [`Solid`]s,
+//! asked by [`SolidCast`].
 //!
 //! # Frames and units
 //!
@@ -148,3 +149,8 @@ pub use tracker::Tracker;
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
+
+/// The examples of `docs/solids.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/solids.md")]
+pub struct Solids;

@@ -191,6 +191,16 @@ fn a_bolt_stops_where_its_head_does() {
 }
 
 #[test]
+fn the_page_shows_what_is_printed() {
+    let root = data().join("..");
+    let page = std::fs::read_to_string(root.join("docs/clear.md")).unwrap();
+    let (_, rest) = page.split_once("```sh\ncolltrans clear ").unwrap();
+    let (command, rest) = rest.split_once(" --picture bolt.svg\n```\n\n```text\n").unwrap();
+    let (shown, _) = rest.split_once("```").unwrap();
+    assert_eq!(stdout(&run(&root, command, &[])), shown);
+}
+
+#[test]
 fn a_pin_goes_through_a_hole_of_its_size_with_the_chord_errors_as_tolerance() {
     let folder = folder();
     let words = "pin.off --from plate.off --direction -z --moving-pose 0,0,3";

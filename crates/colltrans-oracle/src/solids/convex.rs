@@ -1,8 +1,6 @@
 //! Convex bodies as solids, against the convex core and against the rule over all pairs of facets.
 
-use colltrans::{
-    ConvexPolyhedron, Options, Outcome, Solid, SolidCast, SolidClearance, SolidOptions, cast_with,
-};
+use colltrans::{Cast, ConvexPolyhedron, Outcome, Solid, SolidCast, SolidClearance, SolidOptions};
 
 use super::facets::{rule, triangles};
 use super::settings::Seen;
@@ -35,7 +33,7 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
     if let Some(found) = &found {
         against_rule(setting, &a, &b, found)?;
     }
-    let core = cast_with(&p, s, &q, t, setting.direction, &Options::default());
+    let core = Cast::new(p.at(*s), q.at(*t), setting.direction).and_then(|c| c.first_contact());
     against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), noise(setting, &a, &b))
 }
 

@@ -97,7 +97,7 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
     }
     building(&mut page, &table)?;
     for (kind, (name, text)) in &runs {
-        if name.ends_with(".txt") {
+        if Path::new(name).extension().is_some_and(|ending| ending == "txt") {
             write!(
                 page,
                 "\n## {}\n\n[{name}](measurements/{name})\n\n```text\n{}\n```\n",

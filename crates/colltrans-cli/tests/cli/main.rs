@@ -2,6 +2,9 @@
 
 mod batch;
 mod cast;
+mod door;
 mod example_parts;
 mod picture;
+mod readme;
+mod replay;
 mod support;

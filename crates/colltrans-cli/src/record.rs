@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::excess::Excess;
-use crate::numbers::{about, unit_vector};
+use crate::numbers::{six_digits, unit_vector};
 use crate::query::exit_of;
 
 /// One result; fields that do not apply are left out.
@@ -244,7 +244,7 @@ fn coordinates(v: DVec3) -> [f64; 3] {
 }
 
 fn describe(grazing: &Grazing) -> String {
-    let (overlap, along) = (about(grazing.overlap), unit_vector(grazing.separating_direction));
+    let (overlap, along) = (six_digits(grazing.overlap), unit_vector(grazing.separating_direction));
     format!("the shadows overlap by {overlap} along [{along}]")
 }
 

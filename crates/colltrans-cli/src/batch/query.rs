@@ -16,6 +16,7 @@ use crate::body::{self, Part};
 use crate::inputs::FilesRead;
 use crate::query;
 use crate::record::{Hulls, Name, Record};
+use crate::replay;
 
 /// Where lines are answered.
 pub(crate) struct Desk {
@@ -133,7 +134,8 @@ impl Desk {
             options,
         };
         let cast = query.cast().map_err(|e| e.to_string())?;
-        let answer = cast.contact_range().map_err(|e| e.to_string())?;
+        let answered = cast.contact_range();
+        let answer = answered.map_err(|e| replay::failure(e, &query).into_message())?;
         let hull = Hulls::of(moving.excess, fixed.excess);
         Ok(Record { hull, ..Record::of_answer(&answer, &cast) })
     }

@@ -67,6 +67,11 @@ pub(crate) fn about(value: f64) -> String {
     format!("{:.0e}", value + 0.5 * 10.0_f64.powi(exponent).copysign(value))
 }
 
+/// How many there are of something.
+pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,6 +5,7 @@ mod feature;
 pub(crate) mod inertia;
 mod placed;
 mod pose;
+pub(crate) mod solid;
 pub(crate) mod topology;
 
 pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};

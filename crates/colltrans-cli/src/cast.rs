@@ -178,7 +178,7 @@ fn scan<'a>(
     for query in queries {
         let record = match ask(asked, &query, parts) {
             Ok((_, record)) => record,
-            Err(error) => Record::of_error(error.to_string()),
+            Err(error) => Record::of_error(replay::failure(error, &query).into_message()),
         };
         failed += usize::from(record.outcome == Name::Error);
         let record = Record { direction: Some(query.direction.to_array()), ..record };

@@ -51,6 +51,11 @@ impl Failure {
         Self { code: Code::Output, message }
     }
 
+    /// What is said, for a line among others.
+    pub(crate) fn into_message(self) -> String {
+        self.message.unwrap_or_default()
+    }
+
     pub(crate) fn report(self) -> ExitCode {
         let Some(message) = self.message else { return ExitCode::SUCCESS };
         // Not `eprintln!`, which panics when standard error is closed.

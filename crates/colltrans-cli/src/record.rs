@@ -12,7 +12,7 @@ use serde_json::value::RawValue;
 
 use crate::excess::Excess;
 use crate::failure::{Code, Failure};
-use crate::numbers::{about, unit_vector};
+use crate::numbers::{six_digits, unit_vector};
 use crate::query::exit_of;
 use crate::solid::{Answer, Kind};
 
@@ -319,7 +319,7 @@ fn coordinates(v: DVec3) -> [f64; 3] {
 }
 
 fn describe(grazing: &Grazing) -> String {
-    let (overlap, along) = (about(grazing.overlap), unit_vector(grazing.separating_direction));
+    let (overlap, along) = (six_digits(grazing.overlap), unit_vector(grazing.separating_direction));
     format!("the shadows overlap by {overlap} along [{along}]")
 }
 

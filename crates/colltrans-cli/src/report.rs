@@ -167,7 +167,7 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
 
 fn overlap(text: &mut String, grazing: &Grazing) {
     let direction = unit_vector(grazing.separating_direction);
-    line(text, "overlap", &format!("{} sideways, along {direction}", about(grazing.overlap)));
+    line(text, "overlap", &format!("{} sideways, along {direction}", six_digits(grazing.overlap)));
     text.push_str("  the contact, if the overlap is taken for real:\n");
 }
 

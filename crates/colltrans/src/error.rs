@@ -192,7 +192,8 @@ pub enum PoseError {
     NotARotationMatrix {
         /// The columns as given.
         columns: [[f64; 3]; 3],
-        /// The largest entry of `R^T R - I` by magnitude, or 2 for a reflection.
+        /// The largest entry of `R^T R - I` by magnitude; at least 2 for a reflection, infinite if an
+        /// entry is not finite.
         defect: f64,
         /// The defect that would have been accepted.
         tolerance: f64,

@@ -16,6 +16,7 @@ use crate::body::{self, Part};
 use crate::inputs::FilesRead;
 use crate::query;
 use crate::record::{Hulls, Name, Record};
+use crate::replay;
 use crate::solid::{self, Question};
 
 /// Where lines are answered.
@@ -218,7 +219,7 @@ impl Query {
                 Asked::Clearance => Record::of_clearance(&cast.clearance()?, &cast),
             })
         };
-        let record = answer().map_err(|e: QueryError| e.to_string())?;
+        let record = answer().map_err(|e: QueryError| replay::failure(e, &query).into_message())?;
         Ok(Record { hull: Hulls::of(moving.excess, fixed.excess), ..record })
     }
 

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::draw::{Picture, draw};
+use crate::claims::PaperClaim;
 use crate::error::LabError;
 use crate::finding::Finding;
 use crate::plan::{Plan, Progress};
@@ -129,9 +130,11 @@ impl fmt::Display for Summary {
         for done in &self.done {
             writeln!(f, "{}: {}", done.experiment.name(), done.experiment.title)?;
             for claim in &done.finding.claims {
-                let verdict = report::verdict(claim.holds);
-                writeln!(f, "  {verdict:13}  {}", claim.statement)?;
-                writeln!(f, "  {:13}  measured: {}", "", claim.measured)?;
+                let PaperClaim { id, statement, paper, criteria, .. } = claim.paper;
+                writeln!(f, "  {:21}  {id}: {statement} (The paper: {paper}.)", claim.verdict)?;
+                for (criterion, measured) in criteria.iter().zip(&claim.measured) {
+                    writeln!(f, "  {:21}  {measured}: {}", "", criterion.what)?;
+                }
             }
         }
         if !self.provenance.is_optimised {

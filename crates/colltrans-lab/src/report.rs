@@ -157,9 +157,9 @@ fn write_reasons(page: &mut String, done: &[Done]) -> fmt::Result {
 
 /// The claims with a verdict, with the ids of their experiments.
 fn claims_of(done: &[Done], verdict: Verdict) -> impl Iterator<Item = (&'static str, &Claim)> {
-    let claims = done.iter().flat_map(|done| {
-        done.finding.claims.iter().map(|claim| (done.experiment.id, claim))
-    });
+    let claims = done
+        .iter()
+        .flat_map(|done| done.finding.claims.iter().map(|claim| (done.experiment.id, claim)));
     claims.filter(move |(_, claim)| claim.verdict == verdict)
 }
 

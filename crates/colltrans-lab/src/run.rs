@@ -9,8 +9,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::draw::{Picture, draw};
 use crate::claims::PaperClaim;
+use crate::draw::{Picture, draw};
 use crate::error::LabError;
 use crate::finding::Finding;
 use crate::plan::{Plan, Progress};

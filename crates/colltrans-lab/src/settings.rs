@@ -9,7 +9,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans::{Cast, ConvexPolyhedron, Options, Pose, QueryError};
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::shadow::Shadow;
@@ -57,6 +57,17 @@ const AHEAD: [f64; 2] = [0.05, 1.0];
 const AHEAD_OF_SEQUENCES: [f64; 2] = [0.75, 1.25];
 
 impl Setting {
+    /// The query about two bodies.
+    ///
+    /// # Errors
+    /// As [`Cast::new`] and [`Cast::with_options`].
+    #[inline]
+    pub fn cast<'a>(&self, bodies: &'a Bodies, options: &Options) -> Result<Cast<'a>, QueryError> {
+        let [moving, fixed] = &bodies.pair;
+        Cast::new(moving.at(self.moving), fixed.at(self.fixed), self.direction)?
+            .with_options(*options)
+    }
+
     /// A random setting of bodies that are apart at the start, in random orientations.
     ///
     /// # Panics
@@ -65,12 +76,7 @@ impl Setting {
         Self::draw_ahead(bodies, meeting, AHEAD, random)
     }
 
-    fn draw_ahead(
-        bodies: &Bodies,
-        meeting: Meeting,
-        ahead: [f64; 2],
-        random: &mut Random,
-    ) -> Self {
+    fn draw_ahead(bodies: &Bodies, meeting: Meeting, ahead: [f64; 2], random: &mut Random) -> Self {
         let [p, q] = &bodies.pair;
         let (turn_p, turn_q) = (random.rotation(), random.rotation());
         let direction = random.direction();
@@ -87,7 +93,8 @@ impl Setting {
             let [p, q] = [(p, turn_p), (q, turn_q)].map(|(b, turn)| Shadow::of(b, turn, plane));
             let here = DVec2::from_array(plane.map(|axis| axis.dot(offset)));
             let way = DVec2::X;
-            offset += lateral * p.differences(&q.displaced(here)).ray_to_distance(-way, gap * bodies.diameter);
+            offset += lateral
+                * p.differences(&q.displaced(here)).ray_to_distance(-way, gap * bodies.diameter);
         }
         let now = gap_along(direction, (p, turn_p), (q, turn_q)) + offset.dot(direction);
         offset += direction * (random.range(ahead[0], ahead[1]) * bodies.diameter - now);
@@ -122,8 +129,7 @@ impl Setting {
         count: usize,
         random: &mut Random,
     ) -> Vec<Self> {
-        let middle =
-            Self::draw_ahead(bodies, Meeting::Colliding, AHEAD_OF_SEQUENCES, random);
+        let middle = Self::draw_ahead(bodies, Meeting::Colliding, AHEAD_OF_SEQUENCES, random);
         middle.moved(bodies, motion, delta, count, random)
     }
 

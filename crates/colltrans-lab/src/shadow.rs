@@ -61,9 +61,8 @@ impl Shadow {
         let mut corners = Vec::with_capacity(a.len() + b.len());
         while i < a.len() || j < b.len() {
             corners.push(a[i % a.len()] + b[j % b.len()]);
-            let [p, q] = [(&a, i), (&b, j)].map(|(polygon, k)| {
-                polygon[(k + 1) % polygon.len()] - polygon[k % polygon.len()]
-            });
+            let [p, q] = [(&a, i), (&b, j)]
+                .map(|(polygon, k)| polygon[(k + 1) % polygon.len()] - polygon[k % polygon.len()]);
             let turn = p.perp_dot(q);
             let (first, second) = (j >= b.len() || turn >= 0.0, i >= a.len() || turn <= 0.0);
             i += usize::from(first && i < a.len());
@@ -156,7 +155,8 @@ mod tests {
     #[test]
     fn shadows_are_hulls_of_all_vertices() {
         let mut random = Random::new(3, &[]);
-        for kind in [Kind::Balanced, Kind::Thin, Kind::Prism, Kind::HalfEllipsoid, Kind::RandomHull] {
+        for kind in [Kind::Balanced, Kind::Thin, Kind::Prism, Kind::HalfEllipsoid, Kind::RandomHull]
+        {
             let bodies = bodies(3, kind, 200, 0);
             for _ in 0..20 {
                 let (turn, along) = (random.rotation(), random.direction());

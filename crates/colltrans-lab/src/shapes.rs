@@ -187,7 +187,9 @@ mod tests {
 
     #[test]
     fn bodies_have_the_vertices_and_faces_asked_for() {
-        for kind in [Kind::Balanced, Kind::Thin, Kind::ThinMeridians, Kind::Triangles, Kind::Spheres] {
+        for kind in
+            [Kind::Balanced, Kind::Thin, Kind::ThinMeridians, Kind::Triangles, Kind::Spheres]
+        {
             for n in [50, 200, 800, 3_200] {
                 if kind == Kind::ThinMeridians && n < 800 {
                     continue;

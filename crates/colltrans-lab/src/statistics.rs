@@ -133,7 +133,8 @@ mod tests {
 
     #[test]
     fn numbers_for_people() {
-        for (value, expected) in [(0.123, "0.12"), (-4.5, "-4.50"), (12.34, "12.3"), (123.4, "123")] {
+        for (value, expected) in [(0.123, "0.12"), (-4.5, "-4.50"), (12.34, "12.3"), (123.4, "123")]
+        {
             assert_eq!(short(value), expected);
         }
     }

@@ -37,7 +37,8 @@ struct Measured {
 }
 
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let sizes = plan.by_scale(&[50, 200][..], &[200, 3_200, 12_800], &[200, 800, 3_200, 12_800, 51_200]);
+    let sizes =
+        plan.by_scale(&[50, 200][..], &[200, 3_200, 12_800], &[200, 800, 3_200, 12_800, 51_200]);
     let (found, refused) = plan.parts.as_deref().map_or_else(Default::default, read_parts);
     let all = KINDS.len() as f64 * super::shares(sizes) + found.len() as f64;
     let mut progress = Parts::new(progress, all);
@@ -86,7 +87,12 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     Finding { figures: vec![figure], tables, claims: Vec::new() }
 }
 
-fn measure(plan: &Plan, name: String, (kind, n): (Kind, usize), given: Option<Arc<Bodies>>) -> Measured {
+fn measure(
+    plan: &Plan,
+    name: String,
+    (kind, n): (Kind, usize),
+    given: Option<Arc<Bodies>>,
+) -> Measured {
     let who: Vec<_> = WHO.into_iter().chain([Who::Cta(Until::End)]).collect();
     let race = Race {
         plan,

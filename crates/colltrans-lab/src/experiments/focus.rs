@@ -235,8 +235,7 @@ impl At {
     }
 
     fn points(&self, who: usize) -> Vec<Point> {
-        let point =
-            |(delta, s): (&f64, Sample)| Point::mean(100.0 * delta, &s.values());
+        let point = |(delta, s): (&f64, Sample)| Point::mean(100.0 * delta, &s.values());
         DELTAS.iter().zip(self.steps(who)).map(point).collect()
     }
 

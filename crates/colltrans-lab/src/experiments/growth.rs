@@ -185,7 +185,8 @@ fn cost_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
         axis("time(thin) / time(balanced)", true),
         [lines(CTA), lines(PORTAL)].concat(),
     );
-    let limit = |name: &str, y: f64| super::reference(name, balanced.sizes().into_iter(), move |_| y);
+    let limit =
+        |name: &str, y: f64| super::reference(name, balanced.sizes().into_iter(), move |_| y);
     figure.references = vec![limit("the paper: 1.2", 1.2), limit("the paper: 1.8", 1.8)];
     figure
 }
@@ -209,7 +210,8 @@ fn steps_grow(balanced: &Grown) -> Claim {
 }
 
 fn few_steps(balanced: &Grown) -> Claim {
-    let largest = |who: usize| balanced.races.iter().rev().take(1).map(|at| at.steps(who)).collect();
+    let largest =
+        |who: usize| balanced.races.iter().rev().take(1).map(|at| at.steps(who)).collect();
     let steps: Vec<Sample> = largest(TO_THE_END);
     let near = mean(&balanced.races[balanced.races.len() - 1].steps(CTA).values());
     let at = |who: usize| time(median(&balanced.races[balanced.races.len() - 1].times(who)));

@@ -4,8 +4,8 @@ use colltrans::Region;
 use colltrans_yardsticks::egjk::SupportSearch;
 
 use super::{
-    Coherence, Parts, Race, Results, against_size, axis, median, medians, middle, reference, series,
-    share, shares, thousands, time,
+    Coherence, Parts, Race, Results, against_size, axis, median, medians, middle, reference,
+    series, share, shares, thousands, time,
 };
 use crate::Experiment;
 use crate::claims::judged;

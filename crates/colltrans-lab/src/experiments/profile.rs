@@ -2,7 +2,6 @@
 
 use std::hint::black_box;
 
-use colltrans::cast_observed;
 use colltrans::observe::{Clock, Profile};
 
 use super::{Parts, share, shares, thousands};
@@ -50,15 +49,13 @@ fn measure(plan: &Plan, n: usize) -> Profiled {
     let queries: usize = plan.by_scale(20, 1_500, 10_000);
     let settings: Vec<_> =
         (0..queries).map(|_| Setting::draw(&bodies, Meeting::Colliding, &mut random)).collect();
-    let [moving, fixed] = &bodies.pair;
     let options = Until::Near.options();
     let mut profiles: Vec<_> = settings
         .iter()
         .map(|s| {
             let mut clock = Clock::new();
-            let (p, q) = (&s.moving, &s.fixed);
-            let _ =
-                black_box(cast_observed(moving, p, fixed, q, s.direction, &options, &mut clock));
+            let cast = s.cast(&bodies, &options);
+            let _ = black_box(cast.and_then(|cast| cast.first_contact_observed(&mut clock)));
             clock.profile()
         })
         .collect();
@@ -72,9 +69,8 @@ fn measure(plan: &Plan, n: usize) -> Profiled {
     let of = |p: &Profile, name: &str| {
         p.phases().iter().filter(|(phase, _)| *phase == name).map(|(_, t)| t).sum::<f64>()
     };
-    let three = |(k, p): (u32, &Profile)| {
-        [of(p, PLANAR), of(p, REGION), p.total()].map(|time| (k, time))
-    };
+    let three =
+        |(k, p): (u32, &Profile)| [of(p, PLANAR), of(p, REGION), p.total()].map(|time| (k, time));
     let each = Sample::of((0..).zip(&profiles).flat_map(three));
     Profiled { vertices: bodies.vertices(), shares, each, queries }
 }
@@ -140,7 +136,8 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
              caches (figure 11); what a step does besides touches no body at all."
                 .into()
         } else {
-            let rest = ["portal refinement", "answer", "lower bound"].map(|phase| middle.part(phase));
+            let rest =
+                ["portal refinement", "answer", "lower bound"].map(|phase| middle.part(phase));
             format!(
                 "Less than half: a proven lower bound, portal refinement and the certificate, which \
                  the paper does not have, take {:.0} % of the query.",

@@ -242,7 +242,10 @@ fn thin(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         ("the paper, PQP: over 100", 100.0),
     ];
     let beside = |text: String| {
-        format!("Faces of a fixed stretch of 100. {text} With 16 meridians at any size: {}", meridians.all_ratios())
+        format!(
+            "Faces of a fixed stretch of 100. {text} With 16 meridians at any size: {}",
+            meridians.all_ratios()
+        )
     };
     let egjk = vec![
         field.ratio_at(CLIMBING, 0.0),
@@ -275,7 +278,8 @@ fn thin(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         ],
         tables: vec![
             field.table("figure-16-times", "Thin trapezoids, a stretch of 100, collisions"),
-            meridians.table("figure-16-times-meridians", "Thin trapezoids, 16 meridians, collisions"),
+            meridians
+                .table("figure-16-times-meridians", "Thin trapezoids, 16 meridians, collisions"),
         ],
         claims,
     }

@@ -96,7 +96,8 @@ fn passes(all: &[Measured], id: &str, gap: usize) -> Claim {
     let of = |results: fn(&Measured, usize) -> &Results| {
         all.iter().map(move |m| results(m, gap).time_sample(0))
     };
-    let samples: Vec<Sample> = of(|m, gap| &m.passing[gap]).chain(of(|m, _| &m.colliding)).collect();
+    let samples: Vec<Sample> =
+        of(|m, gap| &m.passing[gap]).chain(of(|m, _| &m.colliding)).collect();
     let measured = estimate(&samples, |s| {
         let (passing, colliding) = s.split_at(s.len() / 2);
         let ratios = passing.iter().zip(colliding).map(|(p, c)| median(p) / median(c));

@@ -70,8 +70,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 }
 
 fn sweep(plan: &Plan, n: usize, parts: &mut Parts) -> Sweeps {
-    let mut who: Vec<_> =
-        HALF_SIDES.map(|h| Who::CtaRegion(Region::Fixed(h), Until::End)).to_vec();
+    let mut who: Vec<_> = HALF_SIDES.map(|h| Who::CtaRegion(Region::Fixed(h), Until::End)).to_vec();
     who.extend(LAYERS.map(Who::HWalk));
     let race = |alpha: &f64| {
         parts.begin(share(n), &format!("{} vertices, {alpha} degrees", thousands(n as f64)));
@@ -134,8 +133,7 @@ impl Sweeps {
         for (name, sweep) in ["CTA, half-side", "H-Walk, layer"].iter().zip(self.both()) {
             for k in 0..PARAMETERS {
                 let parameter = if sweep.first == 0 { HALF_SIDES[k] } else { LAYERS[k] };
-                let cell =
-                    |alpha: usize| time(median(&self.results[alpha].times(sweep.first + k)));
+                let cell = |alpha: usize| time(median(&self.results[alpha].times(sweep.first + k)));
                 let head = format!("{name} {parameter}");
                 rows.push(std::iter::once(head).chain((0..ALPHAS_DEG.len()).map(cell)).collect());
             }

@@ -36,9 +36,9 @@ pub struct Picture {
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 500.0;
 /// Where the label of the vertical axis begins.
-const LABEL_AT: [f64; 2] = [16.0, 62.0];
+const LABEL_AT: [f64; 2] = [16.0, 66.0];
 /// Room for the title and that label.
-const TOP: f64 = 76.0;
+const TOP: f64 = 82.0;
 /// Room for the ticks' labels.
 const LEFT: f64 = 64.0;
 /// Pixels of the PNG for each of the SVG.

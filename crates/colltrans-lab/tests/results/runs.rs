@@ -8,7 +8,7 @@ use colltrans_lab::{LabError, Summary, run};
 
 use crate::made_up::experiments;
 
-const PLAN: Plan = Plan { scale: Scale::Tiny, seed: 31 };
+const PLAN: Plan = Plan { scale: Scale::Tiny, seed: 31, parts: None };
 
 #[derive(Default)]
 struct Heard(Vec<(f64, f64, String)>);
@@ -66,11 +66,11 @@ fn the_summary_lists_the_claims() {
     let folder = tempfile::tempdir().unwrap();
     let text = run_in(folder.path()).unwrap().to_string();
     assert!(
-        text.starts_with("Figure 12: time against <size>\n  holds          Time grows"),
+        text.starts_with("Figure 12: time against <size>\n  holds                  12-grows: Time"),
         "{text}"
     );
-    assert!(text.contains("\n  does not hold  It is faster than the others\n"), "{text}");
-    assert!(text.lines().last().unwrap().starts_with("2 of 4 claims hold, "), "{text}");
+    assert!(text.contains("\n  does not hold          12-faster: It is faster than the others."), "{text}");
+    assert!(text.lines().last().unwrap().starts_with("4 of 8 claims hold, "), "{text}");
 }
 
 #[test]

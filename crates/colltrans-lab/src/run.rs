@@ -1,7 +1,7 @@
 //! Runs experiments and leaves what they find in a folder.
 //!
-//! The folder gets, for each figure, `ID.csv`, `ID.svg` and `ID.png`, for each table `ID.csv`, and
-//! one `report.html`. Everything is written as soon as it is known: a long run that is interrupted
+//! The folder gets, for each figure, `ID.csv`, `ID.svg` and `ID.png`, for each table `ID.csv`, the
+//! verdicts in `claims.csv`, and one `report.html`. Everything is written as soon as it is known: a long run that is interrupted
 //! leaves a report about what was finished, and a folder that cannot be written to is found out
 //! before anything is measured.
 
@@ -64,6 +64,8 @@ pub fn run(
     let write_report = |done: &[Done]| {
         let (all, wall) = (experiments.len(), start.elapsed());
         let report = Report { provenance: &provenance, plan, done, all, wall };
+        let claims = csv::claims(done.iter().flat_map(|done| &done.finding.claims));
+        write(&directory.join("claims.csv"), claims.as_bytes())?;
         write(&path, report::html(&report).as_bytes())
     };
     std::fs::create_dir_all(directory)

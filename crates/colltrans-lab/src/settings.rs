@@ -82,7 +82,8 @@ impl Setting {
         let direction = random.direction();
         let lateral = direction.cross(random.direction()).normalize();
         // First so that a point inside P is opposite to one inside Q.
-        let mut offset = turn_p * inside(p, random) - turn_q * inside(q, random);
+        let [inside_p, inside_q] = [0, 1].map(|k| inside(bodies, k, random));
+        let mut offset = turn_p * inside_p - turn_q * inside_q;
         let least_distance = match meeting {
             Meeting::Colliding => None,
             Meeting::Passing(gap) => Some(gap),
@@ -190,9 +191,9 @@ fn pose(rotation: DQuat, translation: DVec3) -> Pose {
 }
 
 /// A point inside a body: between its middle and a vertex.
-fn inside(body: &ConvexPolyhedron, random: &mut Random) -> DVec3 {
-    let vertices = body.vertices();
-    let middle = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+fn inside(bodies: &Bodies, which: usize, random: &mut Random) -> DVec3 {
+    let vertices = bodies.pair[which].vertices();
+    let middle = bodies.middles[which];
     middle.lerp(vertices[random.index(vertices.len())], 0.95 * random.unit().sqrt())
 }
 

@@ -20,18 +20,32 @@ impl Shadow {
     /// Of a body turned about the origin, in the plane of two orthogonal unit vectors.
     pub(crate) fn of(body: &ConvexPolyhedron, turn: DQuat, plane: [DVec3; 2]) -> Self {
         let [e, f] = plane.map(|axis| turn.inverse() * axis);
-        let along = e.cross(f);
-        // A vertex is on the rim if it has faces that look to either side, or across.
-        let mut sides = vec![0_u8; body.vertices().len()];
-        for face in 0..body.face_count() as u32 {
-            let height = body.face_normal(face).dot(along);
-            let side = u8::from(height >= -ACROSS) | u8::from(height <= ACROSS) << 1;
-            for vertex in body.face_vertices(face) {
-                sides[vertex as usize] |= side;
+        let at = |vertex: u32| {
+            let v = body.vertices()[vertex as usize];
+            DVec2::new(e.dot(v), f.dot(v))
+        };
+        let heights = body.vertices().iter().map(|v| f.dot(*v));
+        let lowest = (0..).zip(heights).min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(v, _)| v);
+        let mut rim = Vec::new();
+        let mut vertex = lowest;
+        for _ in body.vertices() {
+            let here = at(vertex);
+            rim.push(here);
+            // Edges of the rim are edges of the body: the next one has all neighbours on its left.
+            let mut next = (vertex, DVec2::ZERO);
+            for &neighbour in body.neighbours(vertex) {
+                let way = at(neighbour) - here;
+                let turn = way.perp_dot(next.1);
+                if turn > 0.0 || turn == 0.0 && way.length_squared() > next.1.length_squared() {
+                    next = (neighbour, way);
+                }
+            }
+            vertex = next.0;
+            if vertex == lowest {
+                break;
             }
         }
-        let rim = body.vertices().iter().zip(&sides).filter(|(_, side)| **side == 3);
-        Self::hull(rim.map(|(v, _)| DVec2::new(e.dot(*v), f.dot(*v))).collect())
+        Self::hull(rim)
     }
 
     pub(crate) fn displaced(mut self, by: DVec2) -> Self {
@@ -95,9 +109,6 @@ impl Shadow {
         farthest
     }
 }
-
-/// Faces as steep as this are on both sides.
-const ACROSS: f64 = 1e-12;
 
 /// From the first to the last of points in the order of a coordinate, always turning left.
 fn half_hull<'p>(points: impl Iterator<Item = &'p DVec2>) -> Vec<DVec2> {

@@ -118,6 +118,8 @@ pub struct Bodies {
     /// `D`: the mean of both diameters, a diameter being twice the largest distance of a vertex
     /// from the centre.
     pub diameter: f64,
+    /// The means of the vertices.
+    pub(crate) middles: [DVec3; 2],
     soups: OnceLock<[Soup; 2]>,
     hierarchies: OnceLock<[Hierarchy; 2]>,
 }
@@ -125,8 +127,13 @@ pub struct Bodies {
 impl Bodies {
     /// With their diameter.
     pub fn new(pair: [ConvexPolyhedron; 2]) -> Self {
-        let diameter = pair.iter().map(radius).sum();
-        Self { pair, diameter, soups: OnceLock::new(), hierarchies: OnceLock::new() }
+        let mean = |body: &ConvexPolyhedron| {
+            body.vertices().iter().sum::<DVec3>() / body.vertices().len() as f64
+        };
+        let middles = pair.each_ref().map(mean);
+        let diameter = pair.iter().zip(middles).map(|(body, middle)| radius(body, middle)).sum();
+        let (soups, hierarchies) = (OnceLock::new(), OnceLock::new());
+        Self { pair, diameter, middles, soups, hierarchies }
     }
 
     /// The bodies triangulated, with bounding volumes.
@@ -176,8 +183,7 @@ pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies>
 }
 
 /// The largest distance of a vertex from the mean of all.
-fn radius(body: &ConvexPolyhedron) -> f64 {
-    let middle = body.vertices().iter().sum::<DVec3>() / body.vertices().len() as f64;
+fn radius(body: &ConvexPolyhedron, middle: DVec3) -> f64 {
     body.vertices().iter().map(|v| v.distance(middle)).fold(0.0, f64::max)
 }
 

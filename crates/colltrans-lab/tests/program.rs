@@ -32,7 +32,8 @@ fn help_says_what_there_is() {
     }
     for what in ["figure", "table", "beyond", "all"] {
         let text = help(&[what, "--help"]);
-        for word in ["--quick", "--full", "--seed", "--parts", "--output", "[default: lab-results]"] {
+        for word in ["--quick", "--full", "--seed", "--parts", "--output", "[default: lab-results]"]
+        {
             assert!(text.contains(word), "{what}: {word}");
         }
         assert!(!text.contains("--tiny"), "{what}: for tests only");

@@ -68,7 +68,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         axis("time / time(CTA)", true),
         ratios.collect(),
     );
-    let shapes = table("beyond-shapes", "Other shapes".into(), rows.iter().flatten());
+    let shapes = table("beyond-shapes", "Other shapes", rows.iter().flatten());
     let mut tables = vec![shapes];
     if plan.parts.is_some() {
         let measured: Vec<_> = found
@@ -82,7 +82,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         let title = format!(
             "Hulls of real parts, each against itself ({refused} files hold no solid and are left out)"
         );
-        tables.push(table("beyond-parts", title, measured.iter()));
+        tables.push(table("beyond-parts", &title, measured.iter()));
     }
     Finding { figures: vec![figure], tables, claims: Vec::new() }
 }
@@ -105,16 +105,14 @@ fn measure(
         length: plan.by_scale(5, 30, 100),
         blocks: plan.by_scale(2, 8, 36),
     };
-    let run = |purpose: u64, meeting: Meeting| {
-        race.run(purpose, |bodies, count, random| {
-            (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
-        })
-    };
-    let (colliding, passing) = (run(0, Meeting::Colliding), run(1, Meeting::Passing(NEAR)));
+    let [colliding, passing] = race.run_in_turns(0, |variant, bodies, count, random| {
+        let meeting = [Meeting::Colliding, Meeting::Passing(NEAR)][variant];
+        (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
+    });
     Measured { name, colliding, passing }
 }
 
-fn table<'m>(id: &str, title: String, rows: impl Iterator<Item = &'m Measured>) -> Table {
+fn table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) -> Table {
     let rivals = 1..WHO.len();
     let mut columns = vec!["shape, vertices".to_owned(), "CTA".into(), "steps to the end".into()];
     columns.push(format!("passing at {NEAR} D / colliding"));

@@ -91,7 +91,8 @@ fn sequence_figure(n: usize, change: usize, results: &Results) -> Figure {
     };
     let percent = 100.0 * CHANGES[change];
     let scratch = curve(SCRATCH[END]);
-    let at: Vec<_> = scratch.iter().map(|p| p.x).collect();
+    // From end to end: dashes of many short pieces would flow together.
+    let at: Vec<_> = scratch.iter().take(1).chain(scratch.last()).map(|p| p.x).collect();
     Figure {
         id: ["figure-13-1", "figure-13-0.25"][change].into(),
         title: format!(

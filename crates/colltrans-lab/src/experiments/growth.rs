@@ -33,8 +33,14 @@ struct Grown {
 
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let mut parts = Parts::new(progress, 3.0 * shares(plan.sizes()));
-    let [balanced, thin, meridians] = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians]
-        .map(|kind| Grown::measure(plan, kind, &mut parts));
+    let kinds = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians];
+    let mut all = kinds.map(|_| Grown { races: Vec::new(), again: Vec::new() });
+    for &n in plan.sizes() {
+        for (kind, grown) in kinds.iter().zip(&mut all) {
+            grown.measure(plan, *kind, n, &mut parts);
+        }
+    }
+    let [balanced, thin, meridians] = all;
     let figures = vec![
         steps_figure(&balanced, &thin),
         time_figure(&balanced, &thin),
@@ -50,28 +56,24 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 }
 
 impl Grown {
-    fn measure(plan: &Plan, kind: Kind, parts: &mut Parts) -> Self {
-        let (mut races, mut again) = (Vec::new(), Vec::new());
-        for &n in plan.sizes() {
-            let doing = format!("{} bodies, {} vertices", kind.name(), thousands(n as f64));
-            parts.begin(share(n), &doing);
-            let race = Race {
-                plan,
-                figure: 11,
-                kind,
-                n,
-                given: None,
-                who: &WHO,
-                coherence: Coherence::Scratch,
-                length: plan.by_scale(5, 50, 100),
-                blocks: plan.by_scale(2, 24, 96),
-            };
-            races.push(race.run(0, |bodies, count, random| {
-                (0..count).map(|_| Setting::draw(bodies, Meeting::Colliding, random)).collect()
-            }));
-            again.push(ask_again(&race));
-        }
-        Self { races, again }
+    fn measure(&mut self, plan: &Plan, kind: Kind, n: usize, parts: &mut Parts) {
+        let doing = format!("{} bodies, {} vertices", kind.name(), thousands(n as f64));
+        parts.begin(share(n), &doing);
+        let race = Race {
+            plan,
+            figure: 11,
+            kind,
+            n,
+            given: None,
+            who: &WHO,
+            coherence: Coherence::Scratch,
+            length: plan.by_scale(5, 50, 100),
+            blocks: plan.by_scale(2, 24, 96),
+        };
+        self.races.push(race.run(0, |bodies, count, random| {
+            (0..count).map(|_| Setting::draw(bodies, Meeting::Colliding, random)).collect()
+        }));
+        self.again.push(ask_again(&race));
     }
 
     fn sizes(&self) -> Vec<f64> {

@@ -130,27 +130,47 @@ impl Race<'_> {
         purpose: u64,
         draw: impl Fn(&Bodies, usize, &mut Random) -> Vec<Setting>,
     ) -> Results {
+        let [results] =
+            self.run_in_turns(purpose, |_, bodies, count, random| draw(bodies, count, random));
+        results
+    }
+
+    /// As [`run`](Self::run) for `N` variants of settings, which `draw` is told: a block of each in
+    /// turn, so that whatever disturbs the machine disturbs all alike.
+    fn run_in_turns<const N: usize>(
+        &self,
+        purpose: u64,
+        draw: impl Fn(usize, &Bodies, usize, &mut Random) -> Vec<Setting>,
+    ) -> [Results; N] {
         let pairs = if self.given.is_some() { 1 } else { self.plan.pairs(self.n) };
-        let mut lanes = vec![Vec::new(); self.who.len()];
-        let (mut vertices, mut diameter) = (0.0, 0.0);
+        let mut all = [(); N].map(|()| Results {
+            vertices: 0.0,
+            diameter: 0.0,
+            lanes: vec![Vec::new(); self.who.len()],
+        });
         for which in 0..pairs {
             let bodies = self.bodies(which);
-            vertices += bodies.vertices() / pairs as f64;
-            diameter += bodies.diameter / pairs as f64;
             let labels = [self.figure, self.kind as u64, self.n as u64, which, purpose];
             let mut random = Random::new(self.plan.seed, &labels);
             let mut field: Vec<_> = self.who.iter().map(|who| who.enter(&bodies)).collect();
+            for results in &mut all {
+                results.vertices += bodies.vertices() / pairs as f64;
+                results.diameter += bodies.diameter / pairs as f64;
+            }
             let blocks = self.blocks.div_ceil(pairs as usize);
             for turn in 0..blocks {
-                let block = draw(&bodies, self.length, &mut random);
-                for k in 0..field.len() {
-                    let who = (turn + k) % field.len();
-                    let first = (which as usize * blocks + turn) * self.length;
-                    self.follow(field[who].as_mut(), &block, first as u32, &mut lanes[who]);
+                let first = (which as usize * blocks + turn) * self.length;
+                for (variant, results) in all.iter_mut().enumerate() {
+                    let block = draw(variant, &bodies, self.length, &mut random);
+                    for k in 0..field.len() {
+                        let who = (turn + k) % field.len();
+                        let lane = &mut results.lanes[who];
+                        self.follow(field[who].as_mut(), &block, first as u32, lane);
+                    }
                 }
             }
         }
-        Results { vertices, lanes, diameter }
+        all
     }
 
     fn bodies(&self, which: u64) -> Arc<Bodies> {

@@ -36,11 +36,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         .iter()
         .map(|&n| {
             parts.begin(share(n), &format!("{} vertices", thousands(n as f64)));
-            let passing = |k: usize| measure(plan, n, 1 + k as u64, Meeting::Passing(GAPS[k]));
-            Measured {
-                colliding: measure(plan, n, 0, Meeting::Colliding),
-                passing: std::array::from_fn(passing),
-            }
+            measure(plan, n)
         })
         .collect();
     // All distances for the paper's algorithm, the least and largest for ours.
@@ -64,7 +60,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     Finding { figures: vec![figure], tables: Vec::new(), claims }
 }
 
-fn measure(plan: &Plan, n: usize, purpose: u64, meeting: Meeting) -> Results {
+fn measure(plan: &Plan, n: usize) -> Measured {
     let race = Race {
         plan,
         figure: 12,
@@ -76,9 +72,14 @@ fn measure(plan: &Plan, n: usize, purpose: u64, meeting: Meeting) -> Results {
         length: plan.by_scale(5, 50, 100),
         blocks: plan.by_scale(2, 12, 60),
     };
-    race.run(purpose, |bodies, count, random| {
+    let [colliding, a, b, c, d] = race.run_in_turns(0, |variant, bodies, count, random| {
+        let meeting = match variant {
+            0 => Meeting::Colliding,
+            gap => Meeting::Passing(GAPS[gap - 1]),
+        };
         (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
-    })
+    });
+    Measured { colliding, passing: [a, b, c, d] }
 }
 
 /// Times of separations over the median time of collisions, at every size.

@@ -66,7 +66,7 @@ fn write_page(page: &mut String, report: &Report) -> fmt::Result {
          <title>Collision translations: the paper's experiments</title>\n\
          <style>\n{style}</style>\n</head>\n<body>\n<header>\n\
          <h1>Collision translations: the paper’s experiments, run anew</h1>\n\
-         <p>The paper: Mirolo, Carpin and Pagello, “Incremental Convex Minimization for Computing \
+         <p class=\"faint\">The paper: Mirolo, Carpin and Pagello, “Incremental Convex Minimization for Computing \
          Collision Translations of Convex Polyhedra”, IEEE Transactions on Robotics 23(3), 2007, \
          section V.</p>\n"
     )?;

@@ -30,7 +30,7 @@ pub struct Estimate {
 pub(crate) struct Sample(Vec<Vec<f64>>);
 
 /// How often a statistic is computed anew.
-const REPLICATES: u64 = 300;
+const REPLICATES: u64 = 200;
 
 impl Sample {
     /// From values with the numbers of their groups.
@@ -49,7 +49,7 @@ impl Sample {
 
     fn drawn(&self, replicate: u64) -> Vec<f64> {
         let mut random = Random::new(replicate, &[self.0.len() as u64]);
-        let mut values = Vec::new();
+        let mut values = Vec::with_capacity(self.0.iter().map(Vec::len).sum());
         for _ in 0..self.0.len() {
             values.extend_from_slice(&self.0[random.index(self.0.len())]);
         }

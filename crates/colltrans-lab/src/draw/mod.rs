@@ -58,7 +58,7 @@ const SHAPES: [MarkerShape; 7] = [
 ];
 /// Greys and dashes of curves to compare with. In PNG the dashes have pixels for their unit: short
 /// ones would flow together.
-const GREYS: [(&str, &str); 3] = [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "14 5 3 5")];
+const GREYS: [(&str, &str); 3] = [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "9 4 2 4")];
 
 /// Draws a figure.
 ///
@@ -121,11 +121,11 @@ fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: 
     render_multiple(plots, layout)
 }
 
-/// Curves with the same places side by side by a pixel or three, so that marks and bars of one do not
+/// Curves with the same places side by side by a few pixels, so that marks and bars of one do not
 /// hide those of another. Where the curve is dense its places are the data: it stays.
 fn aside(figure: &Figure, x: (f64, f64), k: usize, count: usize) -> impl Fn(f64) -> f64 + use<> {
-    const SPREAD: f64 = 0.018;
-    let share = SPREAD * (k as f64 / (count.max(2) - 1) as f64 - 0.5);
+    const SPREAD: f64 = 0.035;
+    let share = SPREAD * ((k as f64 + 0.5) / count as f64 - 0.5);
     let log = figure.x.log;
     move |at| if log { at * (x.1 / x.0).powf(share) } else { at + (x.1 - x.0) * share }
 }

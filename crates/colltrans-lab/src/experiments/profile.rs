@@ -131,16 +131,16 @@ fn planar_problems(profiled: &[Profiled]) -> Claim {
     );
     judged("table-1-planar", vec![middle.estimated(0)], details, || {
         if middle.part(PLANAR) > 0.5 {
-            "More than half. Here a planar problem includes finding the edges of both sections, and \
-             its part grows with the bodies as that finds less and less of them in the processor's \
-             caches (figure 11); what a step does besides touches no body at all."
+            "Here a planar problem includes finding the edges of both sections, and its part grows with \
+             the bodies as less and less of them is found in the processor's caches (figure 11). What a \
+             step does besides touches no body at all."
                 .into()
         } else {
             let rest =
                 ["portal refinement", "answer", "lower bound"].map(|phase| middle.part(phase));
             format!(
-                "Less than half: a proven lower bound, portal refinement and the certificate, which \
-                 the paper does not have, take {:.0} % of the query.",
+                "A proven lower bound, portal refinement and the certificate, which the paper does not \
+                 have, take {:.0} % of the query.",
                 100.0 * rest.iter().sum::<f64>()
             )
         }

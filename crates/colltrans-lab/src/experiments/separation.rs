@@ -128,9 +128,10 @@ fn why(all: &[Measured]) -> String {
     let passing: Vec<_> =
         GAPS.iter().zip(&m.passing).map(|(gap, r)| format!("{} at {gap} D", each(r))).collect();
     format!(
-        "At {} vertices a collision takes as many planar problems as this, down to a gap of \
-         {PAPER_GAP}, where portal refinement takes over: {}, all the rest of the query shared out \
-         among them. A separation: {}.",
+        "Planar problems at {} vertices, and the time of a query shared out among them: {} for a \
+         collision, down to a gap of {PAPER_GAP}, where portal refinement takes over; {}. What tells \
+         that two shadows just miss each other lies near the ends of their levels, and bounds of a \
+         separation come only from its own cuts.",
         thousands(m.colliding.vertices),
         each(&m.colliding),
         passing.join("; ")

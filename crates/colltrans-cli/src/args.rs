@@ -105,7 +105,7 @@ pub(crate) struct PlaceArguments {
     /// The rotation of the moving mesh as angles in degrees, instead of a quaternion
     ///
     /// About the world's x axis, then about y, then about z (as in URDF files), about the mesh's
-    /// own origin, before the translation. Multiples of 90 are exact up to the last bits.
+    /// own origin, before the translation. Multiples of 90 are exact.
     #[arg(long, value_name = "ROLL,PITCH,YAW", allow_hyphen_values = true, value_parser = angles)]
     pub(crate) moving_rpy: Option<Angles>,
     /// The rotation of the fixed mesh, written like --moving-rpy

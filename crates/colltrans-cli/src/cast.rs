@@ -5,14 +5,14 @@ use std::io::{self, Read as _, Write};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{ContactRange, Options};
+use colltrans::{Clearance, ContactRange, Options};
 
 use crate::args::{self, PairArguments};
 use crate::body::{self, Part};
 use crate::failure::{Code, Failure, note};
 use crate::inputs::overwritten;
 use crate::picture::{Scene, draw};
-use crate::query::{Clearance, Query};
+use crate::query::Query;
 use crate::record::{Hulls, Name, Record};
 use crate::report;
 

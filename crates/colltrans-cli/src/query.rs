@@ -2,7 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Cast, Contact, ContactRange, ConvexPolyhedron, Grazing, Options, Pose, QueryError, Separated,
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Pose, QueryError,
 };
 
 /// Two placed bodies and a direction.
@@ -14,20 +14,6 @@ pub(crate) struct Query<'a> {
     pub(crate) fixed_pose: Pose,
     pub(crate) direction: DVec3,
     pub(crate) options: Options,
-}
-
-/// How far the moving body can go from where it is.
-pub(crate) enum Clearance {
-    /// No further than a contact ahead.
-    Blocked(Contact),
-    /// As far as one likes: the bodies slide along each other.
-    Slides(Grazing),
-    /// As far as one likes: the bodies only meet behind.
-    Behind(Contact),
-    /// As far as one likes: the bodies never meet.
-    Separated(Separated),
-    /// Nowhere: the bodies overlap where they are.
-    Overlapping { first: Contact, last: Contact },
 }
 
 impl Query<'_> {
@@ -42,17 +28,9 @@ impl Query<'_> {
         self.cast()?.contact_range()
     }
 
-    /// How far the moving body can go.
+    /// How far the moving body can go from where it is.
     pub(crate) fn clearance(&self) -> Result<Clearance, QueryError> {
-        Ok(match self.contact_range()? {
-            ContactRange::Contact { first, last } => match when(&first, &last) {
-                When::Ahead => Clearance::Blocked(first),
-                When::Now => Clearance::Overlapping { first, last },
-                When::Behind => Clearance::Behind(first),
-            },
-            ContactRange::Grazing { first, .. } => Clearance::Slides(first),
-            ContactRange::Separated(separated) => Clearance::Separated(separated),
-        })
+        self.cast()?.clearance()
     }
 }
 
@@ -77,12 +55,6 @@ pub(crate) fn when(first: &Contact, last: &Contact) -> When {
     } else {
         When::Behind
     }
-}
-
-/// How far the moving body can go for certain before a contact ahead, in multiples of the
-/// direction.
-pub(crate) fn safe_distance(contact: &Contact) -> f64 {
-    contact.certificate.lower.max(0.0)
 }
 
 /// The translation of the last contact, which its own cast counts backwards.

@@ -54,7 +54,7 @@ impl Pose {
         }
         check_translation(translation)?;
         let rotation = if length == 1.0 { rotation } else { rotation * (1.0 / length) };
-        Ok(Self { matrix: flush_tiny(DMat3::from_quat(rotation)), translation })
+        Ok(Self { matrix: flush_tiny(matrix_of(rotation)), translation })
     }
 
     /// The nine entries of a rotation matrix, taken as they are, then translation.
@@ -167,6 +167,23 @@ impl Default for Pose {
     }
 }
 
+/// The rotation matrix of a quaternion of any length near 1.
+///
+/// Divided by the square of the length as it is computed, the entries of a quarter turn, or of a
+/// half turn about a diagonal, come out as 0 and 1: the roots of 1/2 that make it are rounded, but
+/// the same rounding is above and below.
+fn matrix_of(rotation: DQuat) -> DMat3 {
+    let [x, y, z, w] = rotation.to_array();
+    let scale = 2.0 / ((x * x + y * y) + (z * z + w * w));
+    let off = |a: f64, b: f64| (a + b) * scale;
+    let diagonal = |a: f64, b: f64| 1.0 - (a * a + b * b) * scale;
+    DMat3::from_cols(
+        DVec3::new(diagonal(y, z), off(x * y, w * z), off(x * z, -w * y)),
+        DVec3::new(off(x * y, -w * z), diagonal(x, z), off(y * z, w * x)),
+        DVec3::new(off(x * z, w * y), off(y * z, -w * x), diagonal(x, y)),
+    )
+}
+
 fn check_translation(translation: DVec3) -> Result<(), PoseError> {
     if in_exact_range(translation) { Ok(()) } else { Err(PoseError::Translation { translation }) }
 }
@@ -177,4 +194,34 @@ fn flush_tiny(m: DMat3) -> DMat3 {
     DMat3::from_cols_array(
         &m.to_cols_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_that_map_the_axes_to_each_other_are_exact() {
+        let axes = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+        let mut count = 0;
+        for x in axes.clone() {
+            for y in axes.clone().filter(|y| x.dot(*y) == 0.0) {
+                let turn = DMat3::from_cols(x, y, x.cross(y));
+                let pose = Pose::new(DQuat::from_mat3(&turn), DVec3::ZERO).unwrap();
+                assert_eq!(pose.matrix(), turn);
+                count += 1;
+            }
+        }
+        assert_eq!(count, 24);
+    }
+
+    #[test]
+    fn the_matrix_is_that_of_the_quaternion() {
+        for k in 0..100 {
+            let angle = f64::from(k);
+            let q = DQuat::from_euler(glam::EulerRot::ZYX, angle, 2.0 * angle, 3.0 * angle);
+            let m = Pose::new(q, DVec3::ZERO).unwrap().matrix();
+            assert!((m - DMat3::from_quat(q)).to_cols_array().iter().all(|e| e.abs() < 1e-15));
+        }
+    }
 }

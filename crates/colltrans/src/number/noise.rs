@@ -51,6 +51,9 @@ const ROUNDING: f64 = 0.5 * f64::EPSILON;
 /// The noise of a point, in `u S`.
 const POINT: f64 = 32.0;
 
+/// The length of two coordinates' errors, `18 u S` each, in noises.
+const LATERAL: f64 = 0.8;
+
 /// What counts as touching, in noises.
 const TOUCHING: f64 = 8.0;
 
@@ -99,6 +102,12 @@ impl Noise {
     #[inline]
     pub(crate) fn point(self) -> f64 {
         self.0
+    }
+
+    /// Bound on the distance by which the shadow of a point of `M` may be off.
+    #[inline]
+    pub(crate) fn lateral(self) -> f64 {
+        LATERAL * self.0
     }
 
     /// Sideways distance below which points are not told apart.

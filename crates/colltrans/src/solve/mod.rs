@@ -22,7 +22,7 @@ use crate::setting::{Setting, VertexPair};
 use cta::{ContactGuess, CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
-use portal::{Enclosure, FirstNormal, Followed, Overlap, Portal, Refined, SeparatingLine};
+use portal::{Enclosure, FirstNormal, Followed, Optimum, Overlap, Portal, Refined, SeparatingLine};
 use proof::Proven;
 pub(crate) use warm_start::WarmStart;
 
@@ -45,6 +45,7 @@ pub(crate) fn search<O: Observer>(
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
+        optimum: None,
         watch: Watch::new(observer),
     };
     let mut answer = first.run(focus, &last, warm_start);
@@ -97,6 +98,8 @@ struct Run<'a, 'o, O> {
     graze_tolerance: f64,
     solver: Solver,
     narrowing: Narrowing,
+    /// The optimum in the first portal, if that is known to be the lowest.
+    optimum: Option<Optimum>,
     watch: Watch<'o, O>,
 }
 
@@ -145,7 +148,8 @@ impl<O: Observer> Run<'_, '_, O> {
         match last {
             WarmStart::Nothing => None,
             WarmStart::Contact(portal) => {
-                match portal::follow(&self.difference, portal, &mut self.watch) {
+                let optimum = &mut self.optimum;
+                match portal::follow(&self.difference, portal, optimum, &mut self.watch) {
                     Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
                     Followed::Rim { outward, near } => self.beside(-outward, near),
                     Followed::Lost => None,
@@ -164,7 +168,8 @@ impl<O: Observer> Run<'_, '_, O> {
         if start.normal.z <= 0.0 {
             return None;
         }
-        match portal::approach(&self.difference, start, &mut self.watch) {
+        let optimum = &mut self.optimum;
+        match portal::approach(&self.difference, start, optimum, &mut self.watch) {
             Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
             Followed::Rim { outward, near } => self.beside(-outward, near),
             Followed::Lost => None,
@@ -279,10 +284,13 @@ impl<O: Observer> Run<'_, '_, O> {
             StartedFrom::Features => MOST_AFTER_FOLLOWING,
             StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
         };
-        let optimum = match portal::refine(&self.difference, portal, most, &mut self.watch) {
-            Some(Refined::Optimum(optimum)) => optimum,
-            Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
-            None => return Err(stalled(Stalled::Cycle)),
+        let optimum = match self.optimum.take() {
+            Some(optimum) => optimum,
+            None => match portal::refine(&self.difference, portal, most, &mut self.watch) {
+                Some(Refined::Optimum(optimum)) => optimum,
+                Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
+                None => return Err(stalled(Stalled::Cycle)),
+            },
         };
         let tolerance = self.graze_tolerance.max(self.difference.touching());
         let overlap = portal::overlap(&self.difference, portal, tolerance, &mut self.watch);

@@ -31,6 +31,9 @@ const BAND: f64 = 32.0 * noise::GAIN;
 /// The largest `s` that is not worth a look at all vertices.
 const ENOUGH: f64 = 8.0 * noise::GAIN;
 
+/// Up to this many vertices, looking at each is faster than at edges and diagonals one by one.
+const FEW: usize = 128;
+
 impl ConvexPolyhedron {
     /// Bound on how far the body reaches beyond `vertex`, a support point found along the unit vector
     /// `normal` (body frame).
@@ -44,6 +47,18 @@ impl ConvexPolyhedron {
     }
 
     fn excess_of_climb(&self, normal: DVec3, vertex: u32) -> f64 {
+        if self.vertices.len() <= FEW {
+            let here = self.vertices[vertex as usize];
+            let tied = |&w: &u32| {
+                let edge = self.vertices[w as usize] - here;
+                self.is_tied(edge, normal.dot(edge))
+            };
+            return if self.neighbours(vertex).iter().any(tied) {
+                self.excess_of_all(normal, vertex)
+            } else {
+                2.0 * self.flatness
+            };
+        }
         let mut sum = DVec3::ZERO;
         self.each_tie(normal, vertex, |edge, _| sum += edge * (1.0 / edge.length()));
         if sum == DVec3::ZERO {
@@ -63,10 +78,26 @@ impl ConvexPolyhedron {
         if tilt <= ENOUGH {
             return 2.0 * (self.flatness + tilt * self.inertia.reach);
         }
+        self.excess_of_all(normal, vertex)
+    }
+
+    /// The same by a look at all vertices.
+    fn excess_of_all(&self, normal: DVec3, vertex: u32) -> f64 {
         let here = self.vertices[vertex as usize];
-        let gain = |v: &DVec3| normal.dot(*v - here);
-        let most = self.vertices.iter().map(gain).fold(0.0, f64::max);
+        let mut most = 0.0;
+        for v in &self.vertices {
+            let gain = normal.dot(*v - here);
+            most = if gain > most { gain } else { most };
+        }
         most + 2.0 * noise::GAIN * self.inertia.reach
+    }
+
+    /// Whether an edge may gain more than a little less than nothing.
+    #[inline]
+    fn is_tied(&self, edge: DVec3, gain: f64) -> bool {
+        // Squares: most edges are not tied, and a root for each costs more than the rest.
+        let low = (gain + 2.0 * self.flatness).min(0.0);
+        low * low <= BAND * BAND * edge.length_squared()
     }
 
     /// Reports the tied edges, and the diagonals of tied faces, with what they gain.
@@ -78,10 +109,7 @@ impl ConvexPolyhedron {
         for (k, &w) in neighbours.iter().enumerate() {
             let edge = self.vertices[w as usize] - here;
             let gain = normal.dot(edge);
-            let least = 2.0 * self.flatness;
-            // Squares: most edges are not tied, and a root for each costs more than the rest.
-            let low = (gain + least).min(0.0);
-            if low * low > BAND * BAND * edge.length_squared() {
+            if !self.is_tied(edge, gain) {
                 continue;
             }
             report(edge, gain);

@@ -58,7 +58,8 @@ const SHAPES: [MarkerShape; 7] = [
 ];
 /// Greys and dashes of curves to compare with. In PNG the dashes have pixels for their unit: short
 /// ones would flow together.
-const GREYS: [(&str, &str); 3] = [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "9 4 2 4")];
+const GREYS: [(&str, &str); 4] =
+    [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "9 4 2 4"), ("#aaaaaa", "16 4")];
 
 /// Draws a figure.
 ///

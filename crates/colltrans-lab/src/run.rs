@@ -15,7 +15,7 @@ use crate::error::LabError;
 use crate::finding::Finding;
 use crate::plan::{Plan, Progress};
 use crate::report::{self, Report};
-use crate::{Experiment, csv};
+use crate::{Experiment, csv, shapes};
 use colltrans_kit::provenance::{Provenance, for_people};
 
 /// An experiment that was run.
@@ -81,6 +81,7 @@ pub fn run(
             whole: &mut *progress,
         };
         let finding = (experiment.run)(plan, &mut part);
+        shapes::forget_large();
         let wall = began.elapsed();
         let pictures = write_finding(&finding, directory)?;
         done.push(Done { experiment, finding, pictures, wall });

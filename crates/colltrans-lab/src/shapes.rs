@@ -166,7 +166,7 @@ fn both<T: Send>(make: impl Fn(usize) -> T + Sync) -> [T; 2] {
 /// What tells the bodies of a run from each other: seed, kind, size, and which pair.
 type Key = (u64, Kind, usize, u64);
 
-/// All bodies of the run: figures share them, and large ones take seconds.
+/// All bodies of an experiment, and smaller ones of the run: figures share them.
 static BUILT: Mutex<BTreeMap<Key, Arc<Bodies>>> = Mutex::new(BTreeMap::new());
 
 /// The `which`-th pair of bodies of a kind with about `n` vertices.
@@ -180,6 +180,16 @@ pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies>
         Arc::new(Bodies::new(pair))
     };
     Arc::clone(built.entry((seed, kind, n, which)).or_insert_with(build))
+}
+
+/// Bodies beyond this size are built anew for each experiment: with trees and layers all those of a
+/// run would take several gigabytes.
+const MOST_KEPT: usize = 20_000;
+
+/// An experiment is over: its large bodies go.
+pub(crate) fn forget_large() {
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    built.retain(|(_, _, n, _), _| *n <= MOST_KEPT);
 }
 
 /// The largest distance of a vertex from the mean of all.

@@ -221,6 +221,11 @@ impl Results {
         self.sample(who, |m| f64::from(m.work.steps))
     }
 
+    /// Iterations of all loops, on average.
+    fn iterations(&self, who: usize) -> f64 {
+        mean(&self.sample(who, |m| f64::from(m.work.iterations)).values())
+    }
+
     fn time_sample(&self, who: usize) -> Sample {
         self.sample(who, |m| m.nanoseconds)
     }

@@ -205,8 +205,8 @@ fn grow(field: &Field) -> Claim {
     );
     judged("15-growth", measured, details, || {
         format!(
-            "Once the vertices of both bodies no longer fit the processor's caches, a look at all of \
-             them takes more than linear time. {}",
+            "Looks at all vertices take more than linear time here, perhaps because those of large \
+             bodies do not fit the processor's caches. {}",
             field.why_egjk()
         )
     })
@@ -223,11 +223,9 @@ fn egjk_rises(field: &Field) -> Claim {
 /// The paper's 20,000 vertices lie between two of the sizes here: judged is the one above.
 fn fastest(ids: [&str; 2], field: &Field) -> [Claim; 2] {
     let at = |who: &[usize]| who.iter().map(|who| field.ratio_at(*who, 51_200.0)).collect();
-    let reason = "What grows in EGJK is the way to a support point: climbing takes a small part of the \
-                  time of CTA at any size.";
     [
         judged(ids[0], at(&[LINEAR, PQP]), field.all_ratios(), || field.why_egjk()),
-        judged(ids[1], at(&[CLIMBING]), field.all_ratios(), || reason.into()),
+        judged(ids[1], at(&[CLIMBING]), field.all_ratios(), || field.why_egjk()),
     ]
 }
 

@@ -123,15 +123,14 @@ fn why(all: &[Measured]) -> String {
     let Some(m) = all.get(all.len() / 2) else { return String::new() };
     let each = |r: &Results| {
         let steps = mean(&r.steps(0).values());
-        format!("{steps:.1}, {} each", time(median(&r.times(0)) / steps))
+        let (each, inner) = (time(median(&r.times(0)) / steps), r.iterations(0) / steps);
+        format!("{steps:.1}, {each} and {inner:.0} iterations each")
     };
     let passing: Vec<_> =
         GAPS.iter().zip(&m.passing).map(|(gap, r)| format!("{} at {gap} D", each(r))).collect();
     format!(
         "Planar problems at {} vertices, and the time of a query shared out among them: {} for a \
-         collision, down to a gap of {PAPER_GAP}, where portal refinement takes over; {}. What tells \
-         that two shadows just miss each other lies near the ends of their levels, and bounds of a \
-         separation come only from its own cuts.",
+         collision, down to a gap of {PAPER_GAP}, where portal refinement takes over; {}.",
         thousands(m.colliding.vertices),
         each(&m.colliding),
         passing.join("; ")

@@ -46,6 +46,11 @@ pub(crate) enum Command {
     /// Say what a mesh file holds, and whether it is convex
     #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
     Info(InfoArguments),
+    /// Answer a saved query once more
+    ///
+    /// A query that ends without an answer is saved as colltrans-case-1.json, exact in bits.
+    #[command(after_help = EXIT_CODES)]
+    Replay(ReplayArguments),
 }
 
 #[derive(Debug, Args)]
@@ -201,6 +206,16 @@ pub(crate) struct BatchArguments {
     pub(crate) hull: bool,
     #[command(flatten)]
     pub(crate) body: BodyArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArguments {
+    /// The saved query
+    #[arg(value_name = "CASE.json")]
+    pub(crate) case: PathBuf,
+    /// Answer as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -14,6 +14,7 @@ use crate::inputs::overwritten;
 use crate::picture::{Scene, draw};
 use crate::query::Query;
 use crate::record::{Hulls, Name, Record};
+use crate::replay;
 use crate::report;
 
 /// Which question is asked.
@@ -155,7 +156,8 @@ fn answer_one(
     query: &Query<'_>,
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
-    let (answer, record) = ask(asked, query, parts)?;
+    let answered = ask(asked, query, parts);
+    let (answer, record) = answered.map_err(|error| replay::failure(error, query))?;
     let text = if arguments.json {
         json(&record)?
     } else {

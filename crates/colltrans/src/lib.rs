@@ -129,7 +129,9 @@ pub use answer::{
     Intersection, Outcome, Proof, Separated, Separation, Solver, StartedFrom, Steps,
 };
 pub use body::{Body, ConvexPolyhedron, ConvexityDefect, Feature, Placed, Pose, convexity_defect};
-pub use cast::{CaseError, Cast, Features, WitnessPoints, cast};
+#[cfg(feature = "json")]
+pub use cast::{Case, CaseError};
+pub use cast::{Cast, Features, WitnessPoints, cast};
 pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};

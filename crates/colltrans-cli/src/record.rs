@@ -308,7 +308,7 @@ impl FeatureRecord {
 impl StepCounts {
     fn of(steps: Steps) -> Self {
         // One-off queries start from scratch.
-        let Steps { planar_problems, supports, pivots, started_from: _ } = steps;
+        let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
         Self { planar_problems, supports, pivots }
     }
 }

@@ -256,6 +256,6 @@ fn feature(feature: &FeatureRecord) -> String {
 
 fn work(solver: &str, steps: Steps) -> String {
     // One-off queries start from scratch.
-    let Steps { planar_problems, supports, pivots, started_from: _ } = steps;
+    let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
     format!("{solver}: {planar_problems} planar problems, {supports} supports, {pivots} pivots")
 }

@@ -125,7 +125,10 @@ pub(crate) fn minimise<O: Observer>(
 ) -> Narrowed {
     let sections = SectionPair::new(setting);
     watch.ended(Phase::Setup);
-    sections.minimise(setting, options, watch)
+    let narrowed = sections.minimise(setting, options, watch);
+    let inner = sections.sides.each_ref().map(|side| side.iterations.get());
+    watch.steps.iterations += inner[0] + inner[1];
+    narrowed
 }
 
 /// A setting in section coordinates.

@@ -6,7 +6,7 @@
 //! *right* chain where `g` is greater. The *drift* of a crossing edge is how its section vertex
 //! moves per unit of level.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 
 use glam::{DVec2, DVec3};
 
@@ -168,6 +168,9 @@ pub(super) struct Side<'a> {
     height: SectionForm,
     /// The turn that leads up the left chain.
     left_turn: Turn,
+    /// Iterations of the loops of planar problems so far: section vertices computed, mesh vertices
+    /// climbed over, halvings of a snapshot.
+    pub(super) iterations: Cell<u32>,
 }
 
 impl<'a> Side<'a> {
@@ -191,7 +194,12 @@ impl<'a> Side<'a> {
             // counter-clockwise leads from +h to +g, and from the bottom, at -h, to -g: up the left
             // chain.
             left_turn: if along > 0.0 { Turn::CounterClockwise } else { Turn::Clockwise },
+            iterations: Cell::new(0),
         }
+    }
+
+    fn count(&self, iterations: u32) {
+        self.iterations.set(self.iterations.get() + iterations);
     }
 
     /// Lowest and highest level.
@@ -293,6 +301,7 @@ impl<'a> Section<'a> {
     }
 
     fn crossing(&self, up: u32) -> Crossing {
+        self.side.count(1);
         let topology = self.side.topology;
         let vertices = [topology.half_edge(up).origin, topology.target(up)];
         let (low, high) = (self.side.point(vertices[0]), self.side.point(vertices[1]));
@@ -347,6 +356,7 @@ impl<'a> Section<'a> {
             if self.side.level(vertex) > self.x {
                 return Some(up);
             }
+            self.side.count(1);
             let start = self.side.point(vertex);
             let mut best = f64::INFINITY;
             let mut next = None;
@@ -399,6 +409,7 @@ impl<'a> Section<'a> {
         let (snapshot, lowest) = self.lowest()?;
         let highest = *self.highest.get_or_init(|| snapshot.extreme(height, -1.0));
         let turn = self.side.turn_up(chain);
+        self.side.count(snapshot.halvings());
         let index = snapshot.locate(height, (lowest, highest), turn, (h, self.x));
         let up = self.climb(snapshot.up(index), |height| (height - h).abs())?;
         let start = self.crossing(up);

@@ -30,6 +30,9 @@ pub enum StartOverlap {
     Refuse,
     /// Facets that cross now do not block; contacts that begin later do.
     Ignore,
+    /// There is none: the caller has asked before, for the same bodies, poses and tolerance. Whoever
+    /// asks one pair along many directions asks once whether it overlaps.
+    Apart,
 }
 
 /// Choices of a query between solids.
@@ -133,13 +136,14 @@ impl<'a> SolidCast<'a> {
     /// The same with a queue that is kept.
     pub fn clearance_in(&self, workspace: &mut Workspace) -> SolidClearance {
         let scene = self.asked();
-        let overlapping = overlap::find(&scene).is_some();
+        let known = self.options.start_overlap == StartOverlap::Apart;
+        let overlapping = !known && overlap::find(&scene).is_some();
         let aim = match (overlapping, self.options.start_overlap) {
             (true, StartOverlap::Refuse) => {
                 return SolidClearance::Overlapping { depth: self.depth() };
             }
             (true, StartOverlap::Ignore) => Aim::LaterStop,
-            (false, _) => Aim::Stop,
+            (false, _) | (_, StartOverlap::Apart) => Aim::Stop,
         };
         let limit = self.options.before.map_or(f64::INFINITY, |t| t * scene.length);
         match first(&scene, aim, limit, workspace, |_| ()) {

@@ -71,11 +71,12 @@ impl Times {
     }
 }
 
-/// Writes the rows with what they were measured on, if a file was named.
-pub fn write(arguments: &Arguments, rows: &[Value]) -> ExitCode {
+/// Writes the rows with what they were measured on, and by which program, if a file was named.
+pub fn write(program: &str, arguments: &Arguments, rows: &[Value]) -> ExitCode {
     let Some(path) = &arguments.json else { return ExitCode::SUCCESS };
     let here = Provenance::of_this_process("parry3d-f64 0.31.1");
     let report = json!({
+        "program": program,
         "date": here.date,
         "command": here.command,
         "machine": { "cpu": here.processor, "cores": here.cores, "system": here.system },

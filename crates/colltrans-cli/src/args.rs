@@ -3,27 +3,24 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+mod help;
+mod values;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Pose, Solver};
+use colltrans::Solver;
+use colltrans::glam::DVec3;
 
-const EXIT_CODES: &str = "\
-Exit codes:
-  0  answered (contact, grazing and separated are all answers)
-  1  batch: some lines have no answer; the results say which and why
-  2  the command line is wrong
-  3  an input file cannot be read, or a body is not what it should be
-  4  the query has no certified answer (please report the case)
-  5  the output cannot be written";
+use crate::body::Recipe;
+use help::{BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, FORMATS};
+pub(crate) use values::{Angles, Place, direction};
+use values::{angles, bytes, factor, length, picture, place, threads};
 
-const FORMATS: &str = "\
-Mesh files: STL (binary or text), OBJ, PLY and OFF, told by their extension. Vertex indices in
-answers count from 0 in the order of the file; the corners of STL triangles are merged where they
-are equal, in the order of their first appearance.";
-
-/// How far can one convex body translate before it touches another? Certified.
+/// How far can one convex body move along a direction before it touches another?
+///
+/// Every answer comes with proven bounds. Start with `colltrans info MESH` to see whether a mesh can
+/// be used, then `colltrans cast MOVING FIXED --direction -z`.
 #[derive(Debug, Parser)]
-#[command(version, about, after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
+#[command(version, after_help = EXIT_CODES, after_long_help = format!("{CAST_EXAMPLES}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -32,8 +29,17 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Move one mesh along a direction until it touches another
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
-    Cast(Box<CastArguments>),
+    ///
+    /// The answer is the translation at which they first meet, wherever the moving mesh is now:
+    /// negative if they overlap, or if the contact lies behind.
+    #[command(after_help = EXIT_CODES, after_long_help = format!("{CAST_EXAMPLES}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
+    Cast(Box<PairArguments>),
+    /// Say how far one mesh can move from where it is before another blocks it
+    ///
+    /// Takes what `cast` takes. Contacts behind do not block, and neither does a mesh along which
+    /// the moving one slides.
+    #[command(after_help = EXIT_CODES, after_long_help = format!("{CLEARANCE_ANSWERS}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
+    Clearance(Box<PairArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = EXIT_CODES, after_long_help = format!("{BATCH_FORMAT}\n\n{EXIT_CODES}"))]
     Batch(BatchArguments),
@@ -43,25 +49,23 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct CastArguments {
+pub(crate) struct PairArguments {
     /// The mesh that moves
     pub(crate) moving: PathBuf,
     /// The mesh that stays
     pub(crate) fixed: PathBuf,
-    /// Where to: three numbers, not all zero
+    /// Where to: three numbers, not all zero, or an axis: x, -x, y, -y, z, -z
     ///
-    /// The answer is in multiples of this vector: a length if it has length 1.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
-    pub(crate) direction: DVec3,
-    /// Where the moving mesh starts: x,y,z or x,y,z,qx,qy,qz,qw
+    /// The answer is in multiples of this vector: a length, in the unit of the meshes, if it has
+    /// length 1, as the axes have.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction, required_unless_present = "directions")]
+    pub(crate) direction: Option<DVec3>,
+    /// Many directions: a file with one a line, `-` for standard input; one answer a line
     ///
-    /// A translation, and a rotation before it, as a quaternion of length 1 (to within 1e-6). A
-    /// quarter turn about z, then one unit up: 0,0,1,0,0,0.7071067811865476,0.7071067811865476
-    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = pose, default_value = "0,0,0")]
-    pub(crate) moving_pose: Pose,
-    /// Where the fixed mesh is, written like --moving-pose
-    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = pose, default_value = "0,0,0")]
-    pub(crate) fixed_pose: Pose,
+    /// Written as for --direction; blank lines and what follows a `#` mean nothing. All answers are
+    /// given even if some directions have none (exit code 1).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["direction", "picture"])]
+    pub(crate) directions: Option<PathBuf>,
     /// How the search is narrowed; the answer is the same
     #[arg(long, value_enum, default_value_t = SolverName::Auto)]
     pub(crate) solver: SolverName,
@@ -70,30 +74,108 @@ pub(crate) struct CastArguments {
     /// In the unit of the meshes. 0 stands for the rounding error of the configuration.
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, default_value = "0")]
     pub(crate) graze_tolerance: f64,
-    #[command(flatten)]
-    pub(crate) body: BodyArguments,
-    /// Print the answer as one JSON object, as `batch` does
+    /// Print the answer as one JSON object, as `batch` does (see `batch --help` for its fields)
     #[arg(long)]
     pub(crate) json: bool,
     /// Draw both bodies and the contact as an SVG picture
-    #[arg(long, value_name = "OUT.svg")]
+    #[arg(long, value_name = "OUT.svg", value_parser = picture)]
     pub(crate) picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) places: PlaceArguments,
+    #[command(flatten)]
+    pub(crate) hulls: HullArguments,
+    #[command(flatten)]
+    pub(crate) body: BodyArguments,
 }
 
-/// What to do with meshes that are not convex.
+/// Where the bodies are.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Where the meshes are")]
+pub(crate) struct PlaceArguments {
+    /// Where the moving mesh starts: x,y,z or x,y,z,qx,qy,qz,qw
+    ///
+    /// A translation, in the unit of the meshes, and a rotation before it, as a quaternion of
+    /// length 1; one of few digits is normalised, which is said. A quarter turn about z, then
+    /// one unit up: 0,0,1,0,0,0.7071067811865476,0.7071067811865476
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0")]
+    pub(crate) moving_pose: Place,
+    /// Where the fixed mesh is, written like --moving-pose
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0")]
+    pub(crate) fixed_pose: Place,
+    /// The rotation of the moving mesh as angles in degrees, instead of a quaternion
+    ///
+    /// About the world's x axis, then about y, then about z (as in URDF files), about the mesh's
+    /// own origin, before the translation. Multiples of 90 are exact.
+    #[arg(long, value_name = "ROLL,PITCH,YAW", allow_hyphen_values = true, value_parser = angles)]
+    pub(crate) moving_rpy: Option<Angles>,
+    /// The rotation of the fixed mesh, written like --moving-rpy
+    #[arg(long, value_name = "ROLL,PITCH,YAW", allow_hyphen_values = true, value_parser = angles)]
+    pub(crate) fixed_rpy: Option<Angles>,
+    /// Multiply the moving mesh by this before it is placed: 0.001 makes metres of millimetres
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = factor, default_value = "1")]
+    pub(crate) moving_scale: f64,
+    /// Multiply the fixed mesh by this before it is placed
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = factor, default_value = "1")]
+    pub(crate) fixed_scale: f64,
+}
+
+/// Whose convex hull is to be taken.
 #[derive(Debug, Clone, Copy, Args)]
-pub(crate) struct BodyArguments {
-    /// Take the convex hull of all vertices of a mesh, whatever its faces are
+#[command(next_help_heading = "Meshes that are not convex, closed or clean")]
+pub(crate) struct HullArguments {
+    /// Take the convex hull of all vertices of both meshes, whatever their faces are
+    ///
+    /// By how much a hull exceeds its part is said with the answer. `separated` is then a proof for
+    /// the parts too; a contact of hulls is only a bound: the parts meet no earlier.
     #[arg(long)]
-    pub(crate) hull: bool,
-    /// How deep a face may lie below the convex hull, in the unit of the mesh [default: 1e-5 of
+    hull: bool,
+    /// Take the convex hull of the moving mesh only
+    #[arg(long)]
+    hull_moving: bool,
+    /// Take the convex hull of the fixed mesh only
+    #[arg(long)]
+    hull_fixed: bool,
+}
+
+/// What is tolerated of meshes.
+#[derive(Debug, Clone, Copy, Args)]
+#[command(next_help_heading = "Meshes that are not convex, closed or clean")]
+pub(crate) struct BodyArguments {
+    /// How deep a face may lie below the convex hull, in the unit of the file [default: 1e-5 of
     /// the mesh's extent]
     ///
     /// Files round coordinates: STL to single precision (about 6e-8 of the largest coordinate), OBJ
     /// often to six digits. That alone makes faces of convex parts slightly concave. Whatever
     /// is tolerated, the body is the convex hull.
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
-    pub(crate) convex_tolerance: Option<f64>,
+    convex_tolerance: Option<f64>,
+    /// How far apart vertices on open edges may be to be merged, in the unit of the file [default:
+    /// a few roundings of the largest coordinate]
+    ///
+    /// The default is 2.4e-7 of the largest coordinate for binary STL and PLY with float
+    /// coordinates, else 3.6e-15 of it. 0 merges equal ones only. What was merged is said. A closed
+    /// surface is left as it is.
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
+    merge_tolerance: Option<f64>,
+}
+
+impl BodyArguments {
+    /// How a mesh of its own size becomes a body.
+    pub(crate) const fn recipe(&self, hull: bool, scale: f64) -> Recipe {
+        let Self { convex_tolerance, merge_tolerance } = *self;
+        Recipe { hull, scale, convex_tolerance, merge_tolerance }
+    }
+}
+
+impl PairArguments {
+    /// How the mesh files become bodies.
+    pub(crate) fn recipes(&self) -> [Recipe; 2] {
+        let HullArguments { hull, hull_moving, hull_fixed } = self.hulls;
+        [
+            self.body.recipe(hull || hull_moving, self.places.moving_scale),
+            self.body.recipe(hull || hull_fixed, self.places.fixed_scale),
+        ]
+    }
 }
 
 #[derive(Debug, Args)]
@@ -108,34 +190,18 @@ pub(crate) struct BatchArguments {
     /// The results are the same, byte for byte and in the order of the queries.
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
+    /// How much memory bodies may take that are kept for when they occur again
+    ///
+    /// Those used last are kept, and never fewer than two. A body of n vertices takes about 250 n
+    /// bytes. Units: kB, MB, GB, KiB, MiB, GiB; 0 keeps the last two.
+    #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "2GiB")]
+    pub(crate) cache_bytes: usize,
+    /// Take the convex hull of all vertices of every mesh, whatever its faces are
+    #[arg(long)]
+    pub(crate) hull: bool,
     #[command(flatten)]
     pub(crate) body: BodyArguments,
 }
-
-const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
-  {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,
-   "direction": [x,y,z], "graze_tolerance": L, "solver": "auto"|"cta"|"portal"}
-  BODY = {"points": [[x,y,z],...]} (their convex hull) or {"mesh": "path"}
-  POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
-moving, fixed and direction are required. Paths are relative to the folder of the query file, or to
-the current folder for standard input. Blank lines are skipped, unknown fields are errors.
-
-Each result is one JSON object with those of these fields that apply:
-  id           as in the query (null if it cannot be read)
-  outcome      "contact", "grazing", "separated" or "error"
-  translation  first contact, in multiples of the direction; negative: behind, or overlapping
-  exit         last contact
-  normal       unit normal from moving to fixed: of the contact plane, or of the separating plane
-  point        the contact point on the fixed body, in the world
-  lower upper  the proven bounds of translation
-  features     {"moving": {"kind": "vertex"|"edge"|"face", "vertices": [...]}, "fixed": ...} by the
-               indices of the points or mesh vertices in the input
-  margin       gap between the shadows along the direction; grazing: minus their overlap
-  solver steps what narrowed the search, and how much work it was
-  message      what is wrong; grazing: along which direction the shadows overlap
-
-Bodies that occur again are built once, as long as the last ones together have no more than 500,000
-input vertices (about 250 MB). A line may have up to 64 MiB."#;
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArguments {
@@ -145,6 +211,10 @@ pub(crate) struct InfoArguments {
     /// How deep a face may lie below the convex hull [default: 1e-5 of the mesh's extent]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) convex_tolerance: Option<f64>,
+    /// How far apart vertices on open edges may be to be merged [default: a few roundings of the
+    /// largest coordinate]
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) merge_tolerance: Option<f64>,
 }
 
 /// The name of a solver, on the command line and in queries.
@@ -170,49 +240,6 @@ impl From<SolverName> for Solver {
     }
 }
 
-fn direction(text: &str) -> Result<DVec3, String> {
-    match numbers(text)?.as_slice() {
-        &[x, y, z] => Ok(DVec3::new(x, y, z)),
-        other => Err(format!("{} numbers, not 3 (x,y,z)", other.len())),
-    }
-}
-
-fn pose(text: &str) -> Result<Pose, String> {
-    let (translation, rotation) = match numbers(text)?.as_slice() {
-        &[x, y, z] => (DVec3::new(x, y, z), DQuat::IDENTITY),
-        &[x, y, z, qx, qy, qz, qw] => (DVec3::new(x, y, z), DQuat::from_xyzw(qx, qy, qz, qw)),
-        other => {
-            let count = other.len();
-            return Err(format!("{count} numbers, not 3 (x,y,z) or 7 (x,y,z,qx,qy,qz,qw)"));
-        }
-    };
-    Pose::new(rotation, translation).map_err(|e| e.to_string())
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(length) if length.is_finite() && length >= 0.0 => Ok(length),
-        Ok(_) => Err("must be finite and not negative".into()),
-        Err(_) => Err("is no number".into()),
-    }
-}
-
-fn numbers(text: &str) -> Result<Vec<f64>, String> {
-    text.split(',')
-        .map(|word| word.trim().parse().map_err(|_| format!("`{}` is no number", word.trim())))
-        .collect()
-}
-
-/// Most threads that make sense to ask for.
-const MOST_THREADS: usize = 1024;
-
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
-    match text.parse::<NonZeroUsize>() {
-        Ok(count) if count.get() <= MOST_THREADS => Ok(count),
-        _ => Err(format!("a number from 1 to {MOST_THREADS} is needed")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -220,14 +247,5 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         <Arguments as clap::CommandFactory>::command().debug_assert();
-    }
-
-    #[test]
-    fn poses() {
-        assert_eq!(pose("1, -2,3e0").unwrap().translation(), DVec3::new(1.0, -2.0, 3.0));
-        assert_eq!(pose("0,0,0,0,0,1,0").unwrap().matrix().x_axis, -DVec3::X);
-        for bad in ["", "1,2", "1,2,3,4", "1,2,x", "0,0,0,0,0,0,2", "nan,0,0", "1e300,0,0"] {
-            assert!(pose(bad).is_err(), "{bad}");
-        }
     }
 }

@@ -1,54 +1,221 @@
-//! `colltrans cast`: one query on two mesh files.
+//! `colltrans cast` and `colltrans clearance`: queries on two mesh files.
 
-use std::io::{self, Write};
+use std::fs;
+use std::io::{self, Read as _, Write};
+use std::path::Path;
 
-use colltrans::{Options, contact_range};
+use colltrans::glam::DVec3;
+use colltrans::{Clearance, ContactRange, Options};
 
-use crate::args::CastArguments;
-use crate::body;
-use crate::failure::{Code, Failure};
+use crate::args::{self, PairArguments};
+use crate::body::{self, Part};
+use crate::failure::{Code, Failure, note};
+use crate::inputs::overwritten;
 use crate::picture::{Scene, draw};
-use crate::record::Record;
+use crate::query::Query;
+use crate::record::{Hulls, Name, Record};
 use crate::report;
 
-pub(crate) fn run(arguments: &CastArguments) -> Result<(), Failure> {
-    let moving = body::load_or_fail(&arguments.moving, arguments.body)?;
-    let fixed = body::load_or_fail(&arguments.fixed, arguments.body)?;
+/// Which question is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asked {
+    /// Where the bodies meet.
+    Contact,
+    /// How far the moving one can go.
+    Clearance,
+}
+
+/// One answer, to either question.
+enum Answer {
+    Contact(ContactRange),
+    Clearance(Clearance),
+}
+
+pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure> {
+    refuse_own_input(arguments)?;
+    let places = &arguments.places;
+    let usage = |message| Failure::new(Code::Usage, message);
+    let moving_pose = places.moving_pose.pose(places.moving_rpy, "--moving").map_err(usage)?;
+    let fixed_pose = places.fixed_pose.pose(places.fixed_rpy, "--fixed").map_err(usage)?;
+    let directions = directions(arguments)?;
+    let [moving_recipe, fixed_recipe] = arguments.recipes();
+    let moving = body::load_or_fail(&arguments.moving, moving_recipe)?;
+    let fixed = body::load_or_fail(&arguments.fixed, fixed_recipe)?;
+    let notes = [places.moving_pose.note("--moving"), places.fixed_pose.note("--fixed")];
+    let merged = [&moving.note, &fixed.note].map(Clone::clone);
+    notes.into_iter().chain(merged).flatten().for_each(|text| note(&text));
     let options = Options {
         solver: arguments.solver.into(),
         graze_tolerance: arguments.graze_tolerance,
         ..Options::default()
     };
-    let answer = contact_range(
-        &moving,
-        &arguments.moving_pose,
-        &fixed,
-        &arguments.fixed_pose,
-        arguments.direction,
-        &options,
-    )?;
-    let record = Record::of_answer(&answer, &moving, &fixed);
-    let text = if arguments.json {
-        let json = serde_json::to_string(&record)
-            .map_err(|e| Failure::new(Code::Output, e.to_string()))?;
-        json + "\n"
-    } else {
-        report::text(&answer, &record, arguments.direction)
+    let [moving_body, fixed_body] = [&moving.body, &fixed.body];
+    let query = |direction| Query {
+        moving: moving_body,
+        moving_pose,
+        fixed: fixed_body,
+        fixed_pose,
+        direction,
+        options,
     };
-    io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(|error| Failure::output("standard output", &error))?;
-    if let Some(path) = &arguments.picture {
-        let scene = Scene {
-            moving: &moving,
-            moving_pose: arguments.moving_pose,
-            fixed: &fixed,
-            fixed_pose: arguments.fixed_pose,
-            direction: arguments.direction,
-            answer: &answer,
+    let parts = [&moving, &fixed];
+    match directions {
+        Directions::One(direction) => answer_one(arguments, asked, &query(direction), parts),
+        Directions::Many(all) => scan(arguments.json, asked, all.into_iter().map(query), parts),
+    }
+}
+
+/// The picture must not take the place of what is read.
+fn refuse_own_input(arguments: &PairArguments) -> Result<(), Failure> {
+    let Some(picture) = &arguments.picture else { return Ok(()) };
+    let inputs: [&Path; 2] = [&arguments.moving, &arguments.fixed];
+    match overwritten(picture, &inputs) {
+        Some(input) => Err(Failure::new(
+            Code::Input,
+            format!(
+                "{}: is the same file as {}, which would be lost; give the picture another name",
+                picture.display(),
+                input.display()
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
+enum Directions {
+    One(DVec3),
+    Many(Vec<DVec3>),
+}
+
+fn directions(arguments: &PairArguments) -> Result<Directions, Failure> {
+    match (&arguments.direction, &arguments.directions) {
+        (_, Some(file)) => read_directions(file).map(Directions::Many),
+        (Some(direction), None) => Ok(Directions::One(*direction)),
+        (None, None) => Err(Failure::new(Code::Usage, "give --direction or --directions")),
+    }
+}
+
+/// One direction a line; the first line that is none ends the command.
+fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
+    let input = |what: String| Failure::new(Code::Input, format!("{}: {what}", file.display()));
+    let mut text = String::new();
+    let read = if file == Path::new("-") {
+        io::stdin().read_to_string(&mut text).map(|_| ())
+    } else {
+        fs::read_to_string(file).map(|read| text = read)
+    };
+    read.map_err(|error| input(format!("cannot be read: {error}")))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text).replace("\r\n", "\n");
+    let mut found = Vec::new();
+    for (number, line) in text.split(['\n', '\r']).enumerate() {
+        let content = line.split('#').next().unwrap_or_default().trim();
+        if content.is_empty() {
+            continue;
+        }
+        // Commas or blanks between the numbers.
+        let commas = if content.contains(',') {
+            content.to_owned()
+        } else {
+            content.split_whitespace().collect::<Vec<_>>().join(",")
         };
-        std::fs::write(path, draw(&scene))
-            .map_err(|error| Failure::output(path.display(), &error))?;
+        let direction = args::direction(&commas)
+            .map_err(|what| input(format!("line {}: {what}", number + 1)))?;
+        found.push(direction);
+    }
+    if found.is_empty() {
+        return Err(input("holds no directions".into()));
+    }
+    Ok(found)
+}
+
+/// An answer, and what is said about it.
+fn ask(
+    asked: Asked,
+    query: &Query<'_>,
+    [moving, fixed]: [&Part; 2],
+) -> Result<(Answer, Record), colltrans::QueryError> {
+    let (answer, record) = match asked {
+        Asked::Contact => {
+            let answer = query.contact_range()?;
+            let record = Record::of_answer(&answer, &query.cast()?);
+            (Answer::Contact(answer), record)
+        }
+        Asked::Clearance => {
+            let answer = query.clearance()?;
+            let record = Record::of_clearance(&answer, &query.cast()?);
+            (Answer::Clearance(answer), record)
+        }
+    };
+    Ok((answer, Record { hull: Hulls::of(moving.excess, fixed.excess), ..record }))
+}
+
+fn answer_one(
+    arguments: &PairArguments,
+    asked: Asked,
+    query: &Query<'_>,
+    parts: [&Part; 2],
+) -> Result<(), Failure> {
+    let (answer, record) = ask(asked, query, parts)?;
+    let text = if arguments.json {
+        json(&record)?
+    } else {
+        match &answer {
+            Answer::Contact(answer) => report::cast(answer, &record, query.direction),
+            Answer::Clearance(answer) => report::clearance(answer, &record, query.direction),
+        }
+    };
+    print(&text)?;
+    let Some(path) = &arguments.picture else { return Ok(()) };
+    let range = match answer {
+        Answer::Contact(range) => range,
+        Answer::Clearance(_) => query.contact_range()?,
+    };
+    fs::write(path, draw(&Scene { query, cast: &query.cast()?, answer: &range }))
+        .map_err(|error| Failure::output(path.display(), &error))
+}
+
+/// One line for each query, also for those without an answer.
+fn scan<'a>(
+    as_json: bool,
+    asked: Asked,
+    queries: impl ExactSizeIterator<Item = Query<'a>>,
+    parts: [&Part; 2],
+) -> Result<(), Failure> {
+    let (count, mut failed) = (queries.len(), 0);
+    if !as_json {
+        print(&report::scan_head())?;
+        for (name, excess) in
+            Hulls::of(parts[0].excess, parts[1].excess).iter().flat_map(Hulls::named)
+        {
+            note(&format!("{name}: {}", report::exceeds(&excess)));
+        }
+    }
+    for query in queries {
+        let record = match ask(asked, &query, parts) {
+            Ok((_, record)) => record,
+            Err(error) => Record::of_error(error.to_string()),
+        };
+        failed += usize::from(record.outcome == Name::Error);
+        let record = Record { direction: Some(query.direction.to_array()), ..record };
+        let text =
+            if as_json { json(&record)? } else { report::scan_line(&record, query.direction) };
+        print(&text)?;
+    }
+    if failed > 0 {
+        let message = format!("{failed} of {count} directions have no answer");
+        return Err(Failure::new(Code::Lines, message));
     }
     Ok(())
+}
+
+fn json(record: &Record) -> Result<String, Failure> {
+    let text =
+        serde_json::to_string(record).map_err(|e| Failure::new(Code::Output, e.to_string()))?;
+    Ok(text + "\n")
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    io::stdout()
+        .write_all(text.as_bytes())
+        .map_err(|error| Failure::output("standard output", &error))
 }

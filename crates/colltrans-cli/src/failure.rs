@@ -19,6 +19,12 @@ pub(crate) enum Code {
     Output = 5,
 }
 
+/// Says something on standard error that does not end the command.
+pub(crate) fn note(text: &str) {
+    // Not `eprintln!`, which panics when standard error is closed.
+    let _ = io::Write::write_all(&mut io::stderr(), format!("note: {text}\n").as_bytes());
+}
+
 /// Why a command did not succeed.
 #[derive(Debug)]
 pub(crate) struct Failure {

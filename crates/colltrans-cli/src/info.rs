@@ -3,18 +3,21 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use colltrans::{BuildError, ConvexPolyhedron, TopologyError};
-use colltrans_mesh::Mesh;
+use colltrans::{BuildError, ConvexPolyhedron};
+use colltrans_mesh::{Mesh, ReadOptions};
 
 use crate::args::InfoArguments;
 use crate::body;
+use crate::excess::Excess;
 use crate::failure::{Code, Failure};
-use crate::report::{line, number, vector};
+use crate::numbers::{about, known, six_digits, vector};
+use crate::report::{exceeds, line};
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut unreadable = Vec::new();
     for path in &arguments.meshes {
-        match colltrans_mesh::read(path) {
+        let options = ReadOptions::default().with_merge_tolerance(arguments.merge_tolerance);
+        match colltrans_mesh::read_with(path, options) {
             Ok(mesh) if mesh.vertices.is_empty() => {
                 unreadable.push(format!("{}: holds no vertices", path.display()));
             }
@@ -39,45 +42,45 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     line(&mut text, "vertices", &mesh.vertices.len().to_string());
     line(&mut text, "faces", &faces(mesh));
     if let Some([low, high]) = mesh.bounds() {
-        let [x, y, z] = (high - low).to_array().map(number);
+        let [x, y, z] = (high - low).to_array().map(|c| known(c, 1e-14 * mesh.extent()));
         line(&mut text, "extent", &format!("{x} x {y} x {z}"));
         line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
     }
+    if let Some(merged) = body::merged(mesh) {
+        line(&mut text, "merged", &merged);
+    }
+    if !mesh.faces.is_empty() {
+        line(&mut text, "surface", &surface(mesh));
+    }
+    let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
+    let volume = if is_closed {
+        computed(mesh.signed_volume())
+    } else {
+        "none: the faces do not enclose a body".into()
+    };
+    line(&mut text, "volume", &volume);
     // Tolerance 0 makes the library say how deep the worst face lies, however little.
     match ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 0.0) {
-        Ok(_) => {
-            line(&mut text, "volume", &number(mesh.signed_volume()));
-            line(&mut text, "convex", "yes, to rounding error");
-        }
+        Ok(_) => line(&mut text, "convex", "yes, to rounding error"),
         Err(BuildError::NotConvex { face, depth, .. }) => {
-            line(&mut text, "volume", &number(mesh.signed_volume()));
             line(&mut text, "convex", &not_quite(mesh, face, depth, asked_tolerance));
         }
-        Err(error) => {
-            // Such a surface is closed and oriented all the same.
-            let is_closed = matches!(
-                error,
-                BuildError::InsideOut { .. }
-                    | BuildError::Topology(TopologyError::NotASphere { .. })
-            );
-            let volume = if is_closed {
-                number(mesh.signed_volume())
-            } else {
-                "none: the faces do not enclose a body".into()
-            };
-            line(&mut text, "volume", &volume);
-            line(&mut text, "convex", &format!("no: {error}"));
-        }
+        Err(error) => line(&mut text, "convex", &format!("no: {error}")),
     }
     match ConvexPolyhedron::from_points(&mesh.vertices) {
         Ok(hull) => {
             line(&mut text, "hull", &counts(&hull));
-            line(&mut text, "hull volume", &number(hull.volume()));
-            let error = hull.hull_error();
+            line(&mut text, "hull volume", &computed(hull.volume()));
+            let excess = Excess::of(mesh, &hull);
+            let tolerance = body::tolerance(mesh, asked_tolerance);
+            if !mesh.faces.is_empty() && !excess.is_within(tolerance, mesh.extent()) {
+                line(&mut text, "hull exceeds", &exceeds(&excess));
+            }
+            let error = about(hull.hull_error());
             line(
                 &mut text,
                 "hull error",
-                &format!("{error:e} (largest distance of a vertex outside a face of the hull)"),
+                &format!("{error} (largest distance of a vertex outside a face of the hull)"),
             );
         }
         Err(error) => line(&mut text, "hull", &format!("none: {error}")),
@@ -98,14 +101,33 @@ fn faces(mesh: &Mesh) -> String {
     }
 }
 
+/// A sum of many products.
+fn computed(volume: f64) -> String {
+    known(volume, 1e-13 * volume)
+}
+
+fn surface(mesh: &Mesh) -> String {
+    let open = mesh.open_edges();
+    match open.as_slice() {
+        [] => "closed".into(),
+        [[a, b], ..] => format!(
+            "not closed: {} edges have no partner that runs the other way, one of them from \
+             vertex {a} to vertex {b}",
+            open.len()
+        ),
+    }
+}
+
 fn not_quite(mesh: &Mesh, face: usize, depth: f64, asked_tolerance: Option<f64>) -> String {
     let tolerance = body::tolerance(mesh, asked_tolerance);
     let relative = depth / mesh.extent();
     let verdict =
         if depth <= tolerance { "yes, within tolerance" } else { "no; --hull takes its hull" };
     format!(
-        "{verdict}: face {face} lies {depth:e} below the hull, {relative:e} of the extent \
-         (tolerated: {tolerance:e})"
+        "{verdict}: face {face} lies {} below the hull, {} of the extent (tolerated: {})",
+        six_digits(depth),
+        about(relative),
+        about(tolerance)
     )
 }
 

@@ -3,101 +3,248 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
-use colltrans::{Contact, ContactRange, Steps};
+use colltrans::{Clearance, Contact, ContactRange, Grazing, Separated, Steps};
 
-use crate::record::{FeatureRecord, Record, exit_of, solver_name};
+use crate::excess::Excess;
+use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
+use crate::query::{When, exit_of, when};
+use crate::record::{FeatureRecord, Hulls, Name, Record, solver_name};
 
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;
 
 /// The readable answer of `colltrans cast`.
-pub(crate) fn text(answer: &ContactRange, record: &Record, direction: DVec3) -> String {
+pub(crate) fn cast(answer: &ContactRange, record: &Record, direction: DVec3) -> String {
     let mut text = String::new();
     match answer {
         ContactRange::Contact { first, last } => {
             text.push_str("contact\n");
-            contact(&mut text, first, last, record, direction);
+            range(&mut text, first, last, direction);
+            contact(&mut text, first, record, direction);
         }
         ContactRange::Grazing { first, last } => {
             text.push_str("grazing: the bodies slide along each other\n");
-            line(&mut text, "overlap", &format!("{:e} sideways", first.overlap));
-            line(&mut text, "along", &vector(first.separating_direction));
-            text.push_str("  the contact, if the overlap is taken for real:\n");
-            contact(&mut text, &first.contact, &last.contact, record, direction);
+            overlap(&mut text, first);
+            range(&mut text, &first.contact, &last.contact, direction);
+            contact(&mut text, &first.contact, record, direction);
         }
-        ContactRange::Separated(separated) => {
+        ContactRange::Separated(answer) => {
             text.push_str("separated: the bodies never meet along this direction\n");
-            line(&mut text, "margin", &number(separated.certificate.margin));
-            line(
-                &mut text,
-                "normal",
-                &format!("{} of the separating plane", vector(separated.certificate.normal)),
-            );
-            line(&mut text, "solver", &work(solver_name(separated.solver), separated.steps));
+            separated(&mut text, answer);
         }
     }
+    hulls(&mut text, record);
     text
 }
 
-fn contact(text: &mut String, first: &Contact, last: &Contact, record: &Record, direction: DVec3) {
+/// The readable answer of `colltrans clearance`.
+pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -> String {
+    let mut text = String::new();
+    match answer {
+        Clearance::Blocked { distance, contact: first } => {
+            text.push_str("blocked\n");
+            let touch = first.translation.abs() <= first.certificate.tolerance;
+            let remark = if touch { " (the bodies touch)" } else { "" };
+            let free = along(first.translation.max(0.0), first.certificate.tolerance, direction);
+            line(&mut text, "free", &format!("{free}{remark}"));
+            line(&mut text, "certain", &times(*distance));
+            contact(&mut text, first, record, direction);
+        }
+        Clearance::Slides(grazing) => {
+            text.push_str("slides: free, the bodies slide along each other\n");
+            overlap(&mut text, grazing);
+            contact(&mut text, &grazing.contact, record, direction);
+        }
+        Clearance::Behind(last) => {
+            text.push_str("behind: free, the bodies only meet behind\n");
+            let exit = along(exit_of(last), last.certificate.tolerance, direction);
+            line(&mut text, "last contact", &exit);
+        }
+        Clearance::Separated(answer) => {
+            text.push_str("separated: free, the bodies never meet along this direction\n");
+            separated(&mut text, answer);
+        }
+        Clearance::Overlapping { first, last } => {
+            text.push_str("overlapping: the bodies overlap now\n");
+            // The last contact is the first one of the way back.
+            for (name, contact, way) in [("free after", first, "back"), ("or after", last, "on")] {
+                let far = along(-contact.translation, contact.certificate.tolerance, direction);
+                line(&mut text, name, &format!("{far}, {way}"));
+                line(&mut text, "certain", &times(-contact.certificate.lower));
+            }
+        }
+    }
+    hulls(&mut text, record);
+    text
+}
+
+/// One line of a scan, under [`SCAN_HEAD`].
+pub(crate) fn scan_line(record: &Record, direction: DVec3) -> String {
+    let (length, error) = (direction.length(), record.tolerance.unwrap_or_default());
+    let translation = record.distance.or(record.translation).or(record.exit);
+    let mut columns = vec![record.outcome.text().to_owned()];
+    match (record.outcome, translation) {
+        (Name::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
+        (_, Some(t)) => {
+            columns.push(known(t, error));
+            columns.push(known(t * length, error * length));
+        }
+        (_, None) => columns.extend(["-".to_owned(), "-".to_owned()]),
+    }
+    if let Some(normal) = record.normal {
+        columns.push(unit_vector(DVec3::from_array(normal)));
+    }
+    let d = known_vector(direction, 0.0);
+    format!("{d:<24} {}\n", align(&columns))
+}
+
+/// The names of the columns of a scan.
+pub(crate) fn scan_head() -> String {
+    let columns = ["outcome", "translation", "length", "normal"].map(str::to_owned);
+    format!("{:<24} {}\n", "direction", align(&columns))
+}
+
+fn align(columns: &[String]) -> String {
+    let mut text = String::new();
+    for (column, width) in columns.iter().zip([11, 19, 19, 0]) {
+        let _ = write!(text, "{column:<width$} ");
+    }
+    text.truncate(text.trim_end().len());
+    text
+}
+
+/// A translation, which has an error, and its length.
+fn along(t: f64, error: f64, direction: DVec3) -> String {
     let length = direction.length();
-    let exit = exit_of(last);
-    let along =
-        |t: f64| format!("{} times the direction, a length of {}", number(t), number(t * length));
-    let remark = if first.translation > 0.0 {
-        ""
-    } else if exit < 0.0 {
-        " (the contact lies behind)"
-    } else if first.translation == 0.0 {
-        " (the bodies touch)"
-    } else {
-        " (the bodies overlap)"
+    let shown = known(t * length, error * length);
+    format!("{} times the direction, a length of {shown}", known(t, error))
+}
+
+/// A proven bound, with all its digits.
+fn times(t: f64) -> String {
+    format!("{} times the direction", number(t))
+}
+
+fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
+    let remark = match when(first, last) {
+        When::Behind => " (the contact lies behind)",
+        When::Now => " (the bodies overlap now)",
+        When::Ahead if first.translation.abs() <= first.certificate.tolerance => {
+            " (the bodies touch)"
+        }
+        When::Ahead => "",
     };
-    line(text, "translation", &format!("{}{remark}", along(first.translation)));
-    line(text, "exit", &along(exit));
-    line(text, "normal", &vector(first.normal));
-    line(text, "point", &vector(first.point_on_fixed));
+    let translation = along(first.translation, first.certificate.tolerance, direction);
+    line(text, "translation", &format!("{translation}{remark}"));
+    line(text, "exit", &along(exit_of(last), last.certificate.tolerance, direction));
+}
+
+fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3) {
+    let proof = &first.certificate;
+    line(text, "normal", &unit_vector(first.normal));
+    if let Some(point) = record.point {
+        let point = DVec3::from_array(point);
+        line(text, "point", &known_vector(point, proof.tolerance * direction.length()));
+    }
     if let Some(features) = &record.features {
         line(text, "moving", &feature(&features.moving));
         line(text, "fixed", &feature(&features.fixed));
     }
-    let proof = &first.certificate;
-    line(
-        text,
-        "bounds",
-        &format!(
-            "{} to {}, gap {:e} (rounding alone: up to {:e})",
+    let bounds = if proof.upper.is_finite() {
+        format!(
+            "{} to {}, gap {} (rounding alone: up to {})",
             number(proof.lower),
             number(proof.upper),
-            proof.upper - proof.lower,
-            proof.tolerance
-        ),
-    );
+            about(proof.gap()),
+            about(proof.tolerance)
+        )
+    } else {
+        format!("at least {}; whether they touch is beyond rounding", number(proof.lower))
+    };
+    line(text, "bounds", &bounds);
     line(text, "solver", &work(solver_name(first.solver), first.steps));
+}
+
+fn overlap(text: &mut String, grazing: &Grazing) {
+    let direction = unit_vector(grazing.separating_direction);
+    line(text, "overlap", &format!("{} sideways, along {direction}", about(grazing.overlap)));
+    text.push_str("  the contact, if the overlap is taken for real:\n");
+}
+
+fn separated(text: &mut String, separated: &Separated) {
+    let margin = separated.certificate.margin;
+    let shown = known(margin, 1e-14 * margin);
+    line(text, "margin", &format!("{shown}, the gap between the shadows along this normal"));
+    let normal = unit_vector(separated.certificate.normal);
+    line(text, "normal", &format!("{normal} of the separating plane"));
+    line(text, "solver", &work(solver_name(separated.solver), separated.steps));
+}
+
+/// By how much hulls exceed their parts, and what the answer then means.
+fn hulls(text: &mut String, record: &Record) {
+    let Some(hulls) = &record.hull else { return };
+    for (name, excess) in hulls.named() {
+        line(text, name, &exceeds(&excess));
+    }
+    let Hulls { moving, fixed } = hulls;
+    let whose = match (moving, fixed) {
+        (Some(_), Some(_)) => "the parts themselves",
+        (Some(_), None) => "the moving part itself",
+        _ => "the fixed part itself",
+    };
+    let meaning = match record.outcome {
+        Name::Separated => format!("proven for {whose} too"),
+        Name::Behind => format!("proven for {whose} too: free ahead"),
+        Name::Grazing | Name::Slides => {
+            format!("a bound for {whose}: no more overlap sideways, perhaps none")
+        }
+        Name::Overlapping => {
+            format!("a bound for {whose}: free after these ways, perhaps no overlap at all")
+        }
+        Name::Contact | Name::Blocked | Name::Error => {
+            format!("a bound for {whose}: no contact before this one, perhaps later or none")
+        }
+    };
+    line(text, "so this is", &meaning);
+}
+
+/// By how much a hull exceeds its part.
+pub(crate) fn exceeds(excess: &Excess) -> String {
+    let volume = match excess.part_volume {
+        Some(part) => {
+            let more = (excess.hull_volume - part).max(0.0);
+            let share = 100.0 * more / excess.hull_volume;
+            format!(
+                "{} of its volume {} is not the part ({share:.3} %)",
+                six_digits(more),
+                six_digits(excess.hull_volume)
+            )
+        }
+        None => {
+            format!(
+                "volume {}, the part's is unknown (it is not closed)",
+                six_digits(excess.hull_volume)
+            )
+        }
+    };
+    match excess.depth {
+        Some(depth) => {
+            format!("{volume}; the part's surface lies up to {} below it", six_digits(depth))
+        }
+        None => volume,
+    }
 }
 
 pub(crate) fn line(text: &mut String, name: &str, value: &str) {
     let _ = writeln!(text, "  {name:<12} {value}");
 }
 
-/// All digits, with an exponent where there would be many zeros.
-pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
-}
-
-pub(crate) fn vector(v: DVec3) -> String {
-    v.to_array().map(number).join(",")
-}
-
 fn feature(feature: &FeatureRecord) -> String {
     let count = feature.vertices.len();
-    let mut text = format!("{} {}", feature.kind, if count == 1 { "" } else { "of vertices" });
-    let text_trimmed = text.trim_end().len();
-    text.truncate(text_trimmed);
+    let mut text = feature.kind.to_owned();
+    if count != 1 {
+        text.push_str(" of vertices");
+    }
     for vertex in feature.vertices.iter().take(LISTED) {
         let _ = write!(text, " {vertex}");
     }

@@ -359,3 +359,55 @@ fn a_million_facets() {
     assert!(mesh.open_edges().is_empty());
     assert_eq!((mesh.merged.ambiguous, mesh.merged.dropped_faces), (0, 0));
 }
+
+/// What is promised of every mesh: indices exist, and faces are cycles of three corners and more.
+fn assert_sound(mesh: &Mesh) {
+    let count = mesh.vertices.len();
+    for face in &mesh.faces {
+        assert!(face.len() >= 3, "{face:?}");
+        assert!(face.iter().all(|&v| (v as usize) < count), "{face:?} of {count}");
+        assert!(face.iter().zip(face.iter().cycle().skip(1)).all(|(a, b)| a != b), "{face:?}");
+    }
+    let merged = mesh.merged;
+    assert!(merged.largest_distance <= merged.tolerance, "{merged:?}");
+}
+
+/// Pieces cut out, doubled, moved and overwritten: a mesh that keeps its promises, or an error.
+#[test]
+fn mangled_files_give_sound_meshes_or_errors() {
+    let mut files: Vec<(Format, Vec<u8>)> =
+        texts().into_iter().map(|(format, text)| (format, text.into_bytes())).collect();
+    files.push((Format::Stl, to_stl(&cube(true)).unwrap()));
+    let mut state = 11_u64;
+    let mut random = |below: usize| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let pieces: [&[u8]; 10] =
+        [b"\r", b"\n", b" 0 ", b"-1", b"1e300", b"nan", b"\xef\xbb\xbf", b"\0", b"#", b"\\\n"];
+    let mut read_well = 0;
+    for round in 0..40_000 {
+        let (format, original) = &files[round % files.len()];
+        let mut bytes = original.clone();
+        for _ in 0..=random(3) {
+            let start = random(bytes.len());
+            let end = start + random((bytes.len() - start).min(40));
+            match random(4) {
+                0 => drop(bytes.drain(start..end)),
+                1 => {
+                    let piece = bytes[start..end].to_vec();
+                    let at = random(bytes.len());
+                    bytes.splice(at..at, piece);
+                }
+                2 => drop(bytes.splice(start..end, pieces[random(10)].iter().copied())),
+                _ => bytes[start] = random(256) as u8,
+            }
+        }
+        if let Ok(mesh) = read(*format, &bytes) {
+            assert_sound(&mesh);
+            read_well += 1;
+        }
+    }
+    assert!((1000..39_000).contains(&read_well), "{read_well}");
+}

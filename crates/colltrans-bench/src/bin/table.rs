@@ -9,9 +9,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
-use colltrans::{
-    BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver, Steps, cast_with,
-};
+use colltrans::{BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver, Steps};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParrySetting};
 use colltrans_bench::report::{self, Times};
@@ -82,7 +80,7 @@ fn main() -> ExitCode {
             }
         }
     }
-    report::write(&arguments, &rows)
+    report::write("table", &arguments, &rows)
 }
 
 /// Which shapes in which sizes: all sizes of ellipsoids; of the others some.
@@ -164,9 +162,7 @@ fn tied(tie: Tie, placement: Placement, arguments: &Arguments) -> Row {
 
 /// Asks `colltrans`.
 fn ask(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, QueryError> {
-    let [moving, fixed] = &bodies.pair;
-    let options = Options { solver, ..Options::default() };
-    cast_with(moving, &setting.moving, fixed, &setting.fixed, setting.direction, &options)
+    setting.cast(bodies, &Options { solver, ..Options::default() })?.first_contact()
 }
 
 /// Measurements of one solver in one row.

@@ -1,29 +1,33 @@
 //! Bodies that occur again are built once.
 //!
-//! Invariant: the weights of all entries but the last used one sum to no more than the capacity.
-//! Entries leave in the order of their last use. Building happens outside the lock; whoever
+//! Invariant: the bytes of all entries sum to no more than the capacity, or there are only as many
+//! as one query needs. Entries leave in the order of their last use. Building happens outside the lock; whoever
 //! wants a body that another thread is building waits for that body only.
 
 use std::collections::{BTreeMap, HashMap};
+use std::mem::size_of;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use colltrans::ConvexPolyhedron;
+use crate::body::Part;
 
 /// What a body is made from.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Key {
-    /// A mesh file.
-    Mesh(PathBuf),
+    /// A mesh file, whether its hull is taken, and the bits of its scale.
+    Mesh { path: PathBuf, hull: bool, scale: u64 },
     /// Points, by the exact bits of their coordinates.
     Points(Vec<[u64; 3]>),
 }
 
 /// A body, or why there is none.
-pub(crate) type Built = Result<Arc<ConvexPolyhedron>, String>;
+pub(crate) type Built = Result<Arc<Part>, String>;
 
-/// What an entry weighs beyond its vertices, as a number of vertices.
-const OVERHEAD: usize = 16;
+/// Bytes that an entry takes beyond its body and its points.
+const OVERHEAD: usize = 512;
+
+/// Bodies of one query, which are kept whatever they weigh.
+const KEPT: usize = 2;
 
 /// Keeps the bodies that were used last.
 pub(crate) struct Cache {
@@ -46,7 +50,7 @@ struct Entry {
 }
 
 impl Cache {
-    /// A cache of bodies with `capacity` vertices together.
+    /// A cache of bodies of `capacity` bytes together.
     pub(crate) fn new(capacity: usize) -> Self {
         Self { capacity, state: Mutex::default() }
     }
@@ -72,9 +76,11 @@ impl Cache {
 }
 
 fn weight(key: &Key, body: &Built) -> usize {
-    let points = if let Key::Points(points) = key { points.len() } else { 0 };
-    let vertices = body.as_ref().map_or(0, |b| b.vertices().len());
-    points.max(vertices) + OVERHEAD
+    let key = match key {
+        Key::Points(points) => points.len() * size_of::<[u64; 3]>(),
+        Key::Mesh { path, .. } => path.as_os_str().len(),
+    };
+    key + body.as_ref().map_or(0, |part| part.body.memory_bytes()) + OVERHEAD
 }
 
 impl State {
@@ -102,7 +108,7 @@ impl State {
             self.total = self.total - entry.weight + weight;
             entry.weight = weight;
         }
-        while self.total > capacity && self.entries.len() > 1 {
+        while self.total > capacity && self.entries.len() > KEPT {
             let Some((_, oldest)) = self.by_last_use.pop_first() else { break };
             if let Some(entry) = self.entries.remove(&oldest) {
                 self.total -= entry.weight;
@@ -114,32 +120,47 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use colltrans::ConvexPolyhedron;
     use colltrans::glam::DVec3;
 
     fn key(x: f64) -> Key {
         Key::Points(vec![[x.to_bits(), 0, 0]])
     }
 
-    #[test]
-    fn bodies_are_built_once_while_they_fit() {
-        let one = ConvexPolyhedron::from_points(&[DVec3::ONE]).map(Arc::new);
-        let one = one.map_err(|e| e.to_string());
-        // Room for two entries of one vertex.
-        let cache = Cache::new(2 * (OVERHEAD + 1));
-        let builds = std::cell::Cell::new(0);
-        let get = |x: f64| {
+    /// How often bodies of one vertex were built after each of these uses.
+    fn builds(capacity: usize, uses: &[f64]) -> Vec<u32> {
+        let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
+        let one: Built = Ok(Arc::new(Part { body, excess: None, note: None }));
+        let cache = Cache::new(capacity);
+        let mut builds = 0;
+        let count = |&x: &f64| {
             let _ = cache.get(key(x), |_| {
-                builds.set(builds.get() + 1);
+                builds += 1;
                 one.clone()
             });
-            builds.get()
+            builds
         };
-        assert_eq!([get(1.0), get(2.0), get(1.0), get(2.0)], [1, 2, 2, 2]);
-        assert_eq!([get(1.0), get(3.0)], [2, 3], "the third takes the place of the second");
-        assert_eq!([get(1.0), get(2.0)], [3, 4]);
+        let counts = uses.iter().map(count).collect();
         let state = cache.lock();
-        assert_eq!(state.entries.len(), 2);
-        assert_eq!(state.by_last_use.len(), 2);
-        assert_eq!(state.total, 2 * (OVERHEAD + 1));
+        assert_eq!(state.by_last_use.len(), state.entries.len());
+        assert_eq!(state.total, state.entries.len() * weight(&key(0.0), &one));
+        counts
+    }
+
+    #[test]
+    fn bodies_are_built_once_while_they_fit() {
+        let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
+        let bytes = body.memory_bytes() + size_of::<[u64; 3]>() + OVERHEAD;
+        let uses = [1.0, 2.0, 3.0, 1.0, 2.0, 3.0, 4.0, 2.0, 1.0];
+        // The fourth takes the place of the first, which takes that of the third.
+        assert_eq!(builds(3 * bytes, &uses), [1, 2, 3, 3, 3, 3, 4, 4, 5]);
+        assert_eq!(builds(4 * bytes, &uses), [1, 2, 3, 3, 3, 3, 4, 4, 4]);
+        assert_eq!(builds(3 * bytes - 1, &uses[..4]), [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn the_two_bodies_of_a_query_are_kept_however_large() {
+        assert_eq!(builds(0, &[1.0, 2.0, 1.0, 2.0, 1.0]), [1, 2, 2, 2, 2]);
+        assert_eq!(builds(0, &[1.0, 2.0, 3.0, 2.0, 1.0]), [1, 2, 3, 3, 4]);
     }
 }

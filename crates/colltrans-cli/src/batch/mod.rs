@@ -2,14 +2,16 @@
 //!
 //! The data's way: [`pipeline`] hands chunks of lines to threads and puts their results back in
 //! order, holding only a bounded number of chunks; [`query`] reads and answers one line;
-//! [`cache`] builds bodies that occur again once.
+//! [`cache`] builds bodies that occur again once; [`results`] keeps what is read from being
+//! overwritten.
 
 mod cache;
 mod pipeline;
 mod query;
+mod results;
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, IsTerminal, Read, Write};
+use std::io::{self, BufReader, IsTerminal, Read};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
@@ -17,24 +19,28 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::BatchArguments;
 use crate::failure::{Code, Failure};
+use crate::inputs::{FilesRead, overwritten};
 use cache::Cache;
 use pipeline::Pipeline;
 use query::Desk;
 
-/// Input vertices of all bodies that are kept for when they occur again.
-const CACHED_VERTICES: usize = 500_000;
-
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     refuse_own_input(&arguments.queries, arguments.output.as_deref())?;
     let (queries, size, folder) = open_queries(&arguments.queries)?;
-    let (results, results_name) = open_results(arguments.output.as_deref())?;
+    let (writer, results) = results::open(arguments.output.as_deref())?;
     let threads = arguments
         .threads
         .or_else(|| std::thread::available_parallelism().ok())
         .map_or(1, NonZeroUsize::get);
-    let desk = Desk { folder, body: arguments.body, cache: Cache::new(CACHED_VERTICES) };
+    let desk = Desk {
+        folder,
+        hull: arguments.hull,
+        body: arguments.body,
+        cache: Cache::new(arguments.cache_bytes),
+        read: FilesRead::default(),
+    };
     let bar = progress_bar(size);
-    let pipeline = Pipeline::new(queries, results, threads);
+    let pipeline = Pipeline::new(queries, writer, threads);
     let work = || pipeline.work(|number, line| desk.answer(number, line), &bar);
     std::thread::scope(|scope| {
         for _ in 1..threads {
@@ -45,8 +51,11 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     let end = pipeline.finish();
     if let Some(error) = end.write_error {
-        return Err(Failure::output(results_name, &error));
+        let failure = Failure::output(&results.name, &error);
+        results.discard();
+        return Err(failure);
     }
+    results.finish(&desk.read)?;
     if let Some(error) = end.read_error {
         let name = arguments.queries.display();
         return Err(Failure::new(Code::Input, format!("{name}: cannot be read: {error}")));
@@ -60,16 +69,13 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
 
 /// Writing the results over the queries would lose both.
 fn refuse_own_input(queries: &Path, output: Option<&Path>) -> Result<(), Failure> {
-    let same = output.is_some_and(|output| {
-        let (a, b) = (queries.canonicalize(), output.canonicalize());
-        matches!((a, b), (Ok(a), Ok(b)) if a == b && a.is_file())
-    });
-    if same {
-        let name = queries.display();
-        let message = format!("{name}: holds the queries; give the results another file");
-        return Err(Failure::new(Code::Input, message));
-    }
-    Ok(())
+    // Standard input may be a file too.
+    let file = if queries == Path::new("-") { Path::new("/dev/stdin") } else { queries };
+    let Some(output) = output.filter(|output| overwritten(output, &[file]).is_some()) else {
+        return Ok(());
+    };
+    let message = format!("{}: holds the queries; give the results another file", output.display());
+    Err(Failure::new(Code::Input, message))
 }
 
 type Queries = BufReader<Box<dyn Read + Send>>;
@@ -90,18 +96,6 @@ fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure>
     let size = metadata.is_file().then_some(metadata.len());
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     Ok((BufReader::with_capacity(1 << 16, Box::new(file)), size, folder))
-}
-
-type Results = BufWriter<Box<dyn Write + Send>>;
-
-fn open_results(path: Option<&Path>) -> Result<(Results, String), Failure> {
-    match path {
-        Some(path) if path != Path::new("-") => {
-            let file = File::create(path).map_err(|e| Failure::output(path.display(), &e))?;
-            Ok((BufWriter::new(Box::new(file)), path.display().to_string()))
-        }
-        _ => Ok((BufWriter::new(Box::new(io::stdout())), "standard output".into())),
-    }
 }
 
 /// Bytes of the query file that were read; nothing where nobody looks at it.

@@ -10,7 +10,8 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use indicatif::ProgressBar;
 
-use super::{Queries, Results};
+use super::Queries;
+use super::results::Writer;
 
 /// A line may have this many bytes.
 const LINE_LIMIT: u64 = 64 << 20;
@@ -54,7 +55,7 @@ struct Input {
 }
 
 struct Output {
-    results: Results,
+    results: Writer,
     /// Number of the chunk that is to be written next.
     next: u64,
     waiting: BTreeMap<u64, Answers>,
@@ -80,7 +81,7 @@ struct Chunk {
 }
 
 impl Pipeline {
-    pub(crate) fn new(queries: Queries, results: Results, threads: usize) -> Self {
+    pub(crate) fn new(queries: Queries, results: Writer, threads: usize) -> Self {
         Self {
             input: Mutex::new(Input {
                 queries,
@@ -123,12 +124,13 @@ impl Pipeline {
 
     pub(crate) fn finish(self) -> End {
         let input = self.input.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let output = self.output.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut output = self.output.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let write_error = output.error.take().or_else(|| output.results.flush().err());
         End {
             answered: output.answered,
             failed: output.failed,
             read_error: input.error,
-            write_error: output.error,
+            write_error,
         }
     }
 

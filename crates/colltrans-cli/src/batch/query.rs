@@ -1,26 +1,32 @@
 //! One line: a query read, its bodies found, its answer written.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{ConvexPolyhedron, Options, Pose, contact_range};
+use colltrans::{ConvexPolyhedron, Options, Pose};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
 use super::cache::{Built, Cache, Key};
 use super::pipeline::Line;
 use crate::args::{BodyArguments, SolverName};
-use crate::body;
-use crate::record::{Name, Record};
+use crate::body::{self, Part};
+use crate::inputs::FilesRead;
+use crate::query;
+use crate::record::{Hulls, Name, Record};
 
 /// Where lines are answered.
 pub(crate) struct Desk {
     /// What mesh paths are relative to.
     pub(crate) folder: PathBuf,
+    /// Whether the hull is taken of meshes that do not say.
+    pub(crate) hull: bool,
     pub(crate) body: BodyArguments,
     pub(crate) cache: Cache,
+    /// The mesh files.
+    pub(crate) read: FilesRead,
 }
 
 #[derive(Deserialize)]
@@ -45,6 +51,8 @@ struct Query {
 struct BodySource {
     points: Option<Vec<[f64; 3]>>,
     mesh: Option<PathBuf>,
+    hull: Option<bool>,
+    scale: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -115,30 +123,54 @@ impl Desk {
             graze_tolerance: query.graze_tolerance,
             ..Options::default()
         };
-        let answer = contact_range(&moving, &moving_pose, &fixed, &fixed_pose, direction, &options)
-            .map_err(|e| e.to_string())?;
-        Ok(Record::of_answer(&answer, &moving, &fixed))
+        let (moving_body, fixed_body) = (&moving.body, &fixed.body);
+        let query = query::Query {
+            moving: moving_body,
+            moving_pose,
+            fixed: fixed_body,
+            fixed_pose,
+            direction,
+            options,
+        };
+        let cast = query.cast().map_err(|e| e.to_string())?;
+        let answer = cast.contact_range().map_err(|e| e.to_string())?;
+        let hull = Hulls::of(moving.excess, fixed.excess);
+        Ok(Record { hull, ..Record::of_answer(&answer, &cast) })
     }
 
     fn body(&self, source: BodySource) -> Built {
         match source {
-            BodySource { points: Some(points), mesh: None } => {
+            BodySource { points: Some(points), mesh: None, hull: None, scale: None } => {
                 let bits = points.iter().map(|p| p.map(f64::to_bits)).collect();
                 self.cache.get(Key::Points(bits), |_| hull(&points))
             }
-            BodySource { points: None, mesh: Some(path) } => {
-                let path = self.folder.join(path);
-                self.cache
-                    .get(Key::Mesh(path.clone()), |_| body::load(&path, self.body).map(Arc::new))
+            BodySource { points: None, mesh: Some(path), hull, scale } => {
+                self.mesh(&path, hull.unwrap_or(self.hull), scale.unwrap_or(1.0))
+            }
+            BodySource { points: Some(_), mesh: None, .. } => {
+                Err("`hull` and `scale` are for meshes".into())
             }
             _ => Err("a body has either `points` or `mesh`".into()),
         }
+    }
+
+    fn mesh(&self, path: &Path, hull: bool, scale: f64) -> Built {
+        if !scale.is_finite() || scale <= 0.0 {
+            return Err(format!("the scale {scale} is not finite and positive"));
+        }
+        let path = self.folder.join(path);
+        let key = Key::Mesh { path: path.clone(), hull, scale: scale.to_bits() };
+        self.cache.get(key, |_| {
+            self.read.note(&path);
+            body::load(&path, self.body.recipe(hull, scale)).map(Arc::new)
+        })
     }
 }
 
 fn hull(points: &[[f64; 3]]) -> Built {
     let points: Vec<DVec3> = points.iter().copied().map(DVec3::from_array).collect();
-    ConvexPolyhedron::from_points(&points).map(Arc::new).map_err(|e| e.to_string())
+    let body = ConvexPolyhedron::from_points(&points).map_err(|e| e.to_string())?;
+    Ok(Arc::new(Part { body, excess: None, note: None }))
 }
 
 impl PoseSource {

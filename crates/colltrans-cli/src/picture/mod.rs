@@ -22,9 +22,10 @@ mod story;
 mod svg;
 mod view;
 
+use colltrans::ContactRange;
 use colltrans::glam::{DVec2, DVec3};
-use colltrans::{ContactRange, ConvexPolyhedron, Pose};
 
+use crate::query::Query;
 use layout::Layout;
 use notes::Notes;
 use solid::{Paint, Solid};
@@ -34,11 +35,9 @@ use view::View;
 
 /// A query and its answer.
 pub(crate) struct Scene<'a> {
-    pub(crate) moving: &'a ConvexPolyhedron,
-    pub(crate) moving_pose: Pose,
-    pub(crate) fixed: &'a ConvexPolyhedron,
-    pub(crate) fixed_pose: Pose,
-    pub(crate) direction: DVec3,
+    pub(crate) query: &'a Query<'a>,
+    /// The query as the library sees it.
+    pub(crate) cast: &'a colltrans::Cast<'a>,
     pub(crate) answer: &'a ContactRange,
 }
 
@@ -76,16 +75,16 @@ struct Cast {
 pub(crate) fn draw(scene: &Scene<'_>) -> String {
     let story = Story::of(scene);
     let cast = Cast::of(scene, &story);
-    let unit = scene.direction.normalize();
+    let unit = scene.query.direction.normalize();
     let view = View::choose([&cast.stop, &cast.fixed], unit, story.looked_along());
     let layout = Layout::of(&cast, &story, &view);
     let on_page = |p: DVec3| layout.on_page(view.project(p));
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
     cast.draw(&mut page, &view, &story, on_page);
-    if let Some(contact) = story.contact {
-        cast.fixed.mark_hidden(&mut page, contact.fixed_feature, FIXED_MARK, on_page);
-        cast.stop.mark_hidden(&mut page, contact.moving_feature, MOVING_MARK, on_page);
+    if let Some(features) = story.features {
+        cast.fixed.mark_hidden(&mut page, features.fixed, FIXED_MARK, on_page);
+        cast.stop.mark_hidden(&mut page, features.moving, MOVING_MARK, on_page);
     }
     page.close_group();
     let notes = Notes { cast: &cast, story: &story, layout: &layout, view: &view };
@@ -100,10 +99,11 @@ fn fixed_is_nearer(story: &Story<'_>, view: &View) -> bool {
 
 impl Cast {
     fn of(scene: &Scene<'_>, story: &Story<'_>) -> Self {
-        let unit = scene.direction.normalize();
-        let fixed = Solid::new(scene.fixed, &scene.fixed_pose, story.origin);
+        let query = scene.query;
+        let unit = query.direction.normalize();
+        let fixed = Solid::new(query.fixed, &query.fixed_pose, story.origin);
         let stop =
-            Solid::new(scene.moving, &scene.moving_pose, story.origin).moved(unit * story.stop);
+            Solid::new(query.moving, &query.moving_pose, story.origin).moved(unit * story.stop);
         let size = layout::working_size(stop.ball().1, fixed.ball().1, story.stop.abs());
         let longest = 5.0 * size;
         let shown = story.stop.clamp(-longest, longest);
@@ -133,8 +133,8 @@ impl Cast {
                 draw_start(page);
             }
             self.stop.draw(page, view, &MOVING, on_page);
-            if let Some(contact) = story.contact {
-                self.stop.mark(page, view, contact.moving_feature, MOVING_MARK, on_page);
+            if let Some(features) = story.features {
+                self.stop.mark(page, view, features.moving, MOVING_MARK, on_page);
             }
             if !stop_is_nearer && !is_behind {
                 draw_start(page);
@@ -142,8 +142,8 @@ impl Cast {
         };
         let draw_fixed = |page: &mut Page| {
             self.fixed.draw(page, view, &FIXED, on_page);
-            if let Some(contact) = story.contact {
-                self.fixed.mark(page, view, contact.fixed_feature, FIXED_MARK, on_page);
+            if let Some(features) = story.features {
+                self.fixed.mark(page, view, features.fixed, FIXED_MARK, on_page);
             }
         };
         let draw_plane = |page: &mut Page| {
@@ -172,7 +172,7 @@ impl Cast {
 mod tests {
     use super::*;
     use colltrans::glam::DQuat;
-    use colltrans::{Options, contact_range};
+    use colltrans::{ConvexPolyhedron, Options, Pose};
 
     /// Numbers from -1 to 1.
     fn random(state: &mut u64) -> f64 {
@@ -224,23 +224,17 @@ mod tests {
             let fixed_pose = random_pose(state, 1.0);
             let towards = fixed_pose.translation() - moving_pose.translation();
             let direction = towards + 0.7 * random_vector(state);
-            let answer = contact_range(
-                &moving,
-                &moving_pose,
-                &fixed,
-                &fixed_pose,
-                direction,
-                &Options::default(),
-            )
-            .unwrap();
-            let scene = Scene {
+            let query = Query {
                 moving: &moving,
                 moving_pose,
                 fixed: &fixed,
                 fixed_pose,
                 direction,
-                answer: &answer,
+                options: Options::default(),
             };
+            let answer = query.contact_range().unwrap();
+            let question = query.cast().unwrap();
+            let scene = Scene { query: &query, cast: &question, answer: &answer };
             let story = Story::of(&scene);
             if story.stop < 0.0 {
                 continue;

@@ -1,9 +1,10 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Certificate, Contact, ContactRange, Feature, Separated};
+use colltrans::{Contact, ContactRange, Feature, Features, Separated};
 
 use super::{Cast, Scene, Solid, layout};
+use crate::query::{When, when};
 
 /// What is shown and said.
 pub(super) struct Story<'a> {
@@ -14,6 +15,8 @@ pub(super) struct Story<'a> {
     /// The contact normal, or that of the separating plane.
     pub(super) normal: DVec3,
     pub(super) contact: Option<&'a Contact>,
+    /// What touches there.
+    pub(super) features: Option<Features>,
     pub(super) margin: Option<f64>,
     /// What the way is labelled with.
     pub(super) way: String,
@@ -24,11 +27,14 @@ pub(super) struct Story<'a> {
 impl<'a> Story<'a> {
     pub(super) fn of(scene: &Scene<'a>) -> Self {
         match scene.answer {
-            ContactRange::Contact { first, .. } => Self::of_contact(scene, first, "Contact", None),
-            ContactRange::Grazing { first, .. } => {
+            ContactRange::Contact { first, last } => {
+                Self::of_contact(scene, first, "Contact", when(first, last), None)
+            }
+            ContactRange::Grazing { first, last } => {
                 let overlap = short(first.overlap);
                 let also = format!("the bodies slide along each other, overlapping by {overlap}");
-                Self::of_contact(scene, &first.contact, "Grazing", Some(also))
+                let when = when(&first.contact, &last.contact);
+                Self::of_contact(scene, &first.contact, "Grazing", when, Some(also))
             }
             ContactRange::Separated(separated) => Self::of_separated(scene, separated),
         }
@@ -38,33 +44,40 @@ impl<'a> Story<'a> {
         scene: &Scene<'_>,
         contact: &'a Contact,
         name: &str,
+        when: When,
         also: Option<String>,
     ) -> Self {
-        let length = scene.direction.length();
+        let length = scene.query.direction.length();
+        let (features, points) = (contact.features(scene.cast), contact.points(scene.cast));
         let way = quantity(contact.translation, length);
-        let Certificate { lower, upper, .. } = contact.certificate;
-        let features = format!(
+        let proof = &contact.certificate;
+        let touch = format!(
             "{} of the moving body on {} of the fixed body",
-            contact.moving_feature.kind(),
-            contact.fixed_feature.kind()
+            features.moving.kind(),
+            features.fixed.kind()
         );
         let mut details: Vec<String> = also.into_iter().collect();
-        details.push(features);
-        let agreement = match (upper - lower).abs() {
-            0.0 => "are equal".into(),
-            gap => format!("agree to {}", short(gap)),
+        details.push(touch);
+        let agreement = if proof.upper.is_finite() {
+            // The gap itself changes with the last bits of a search.
+            let within = proof.gap().max(proof.tolerance);
+            format!("proven lower and upper bound of t agree to {within:.0e}")
+        } else {
+            "t is a proven lower bound".into()
         };
-        details.push(format!(
-            "normal n = {}; proven lower and upper bound of t {agreement}",
-            components(contact.normal)
-        ));
+        details.push(format!("normal n = {}; {agreement}", components(contact.normal)));
         Self {
-            origin: contact.point_on_fixed,
+            origin: points.on_fixed,
             stop: contact.translation * length,
             normal: contact.normal,
             contact: Some(contact),
+            features: Some(features),
             margin: None,
-            headline: format!("{name} at {way}"),
+            headline: match when {
+                When::Ahead => format!("{name} at {way}"),
+                When::Now => format!("{name}: the bodies overlap now, first contact at {way}"),
+                When::Behind => format!("{name}: lies behind, at {way}"),
+            },
             way,
             details,
         }
@@ -73,10 +86,11 @@ impl<'a> Story<'a> {
     /// The bodies pass each other: shown where they are side by side.
     fn of_separated(scene: &Scene<'_>, separated: &Separated) -> Self {
         let normal = separated.certificate.normal;
-        let origin = scene.fixed_pose.transform_point(scene.fixed.vertices()[0]);
-        let moving = Solid::new(scene.moving, &scene.moving_pose, origin);
-        let fixed = Solid::new(scene.fixed, &scene.fixed_pose, origin);
-        let unit = scene.direction.normalize();
+        let query = scene.query;
+        let origin = query.fixed_pose.transform_point(query.fixed.vertices()[0]);
+        let moving = Solid::new(query.moving, &query.moving_pose, origin);
+        let fixed = Solid::new(query.fixed, &query.fixed_pose, origin);
+        let unit = query.direction.normalize();
         let ahead = (fixed.support(-normal) - moving.support(normal)).dot(unit);
         let margin = separated.certificate.margin;
         Self {
@@ -84,11 +98,12 @@ impl<'a> Story<'a> {
             stop: ahead.max(0.0),
             normal,
             contact: None,
+            features: None,
             margin: Some(margin),
             way: "d".into(),
             headline: "Separated: the bodies never meet along d".into(),
             details: vec![format!(
-                "margin {} across the separating plane, normal n = {}",
+                "margin (gap along the normal n) {}, n = {} of the separating plane",
                 short(margin),
                 components(normal)
             )],
@@ -99,8 +114,8 @@ impl<'a> Story<'a> {
     /// seen from its own side, and the body that has only a vertex or an edge there hides less.
     pub(super) fn looked_along(&self) -> DVec3 {
         let is_face = |feature| matches!(feature, Feature::Face(_));
-        match self.contact {
-            Some(c) if is_face(c.moving_feature) && !is_face(c.fixed_feature) => -self.normal,
+        match self.features {
+            Some(f) if is_face(f.moving) && !is_face(f.fixed) => -self.normal,
             _ => self.normal,
         }
     }

@@ -137,6 +137,7 @@ fn a_result_has_the_documented_fields() {
         "point",
         "lower",
         "upper",
+        "tolerance",
         "features",
         "solver",
         "steps",

@@ -2,6 +2,7 @@
 
 mod batch;
 mod cast;
+mod door;
 mod example_parts;
 mod picture;
 mod support;

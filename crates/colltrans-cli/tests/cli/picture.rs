@@ -78,10 +78,17 @@ fn other_outcomes() {
         picture(folder.path(), &more)
     };
     let separated = at("1.5,0,9");
-    assert!(separated.contains("margin 0.5") && separated.contains("separating plane"));
+    assert!(
+        separated.contains("margin (gap along the normal n) 0.5")
+            && separated.contains("separating plane")
+    );
     assert!(at("1,0,9").contains("Grazing at t = 8"));
-    assert!(at("0,0.5,0.5").contains("Contact at t = -0.5"), "overlapping at the start");
-    assert!(at("0,0.5,-30").contains("drawn shortened"), "behind");
+    let overlapping = at("0,0.5,0.5");
+    assert!(overlapping.contains("the bodies overlap now, first contact at t = -0.5"));
+    let behind = at("0,0.5,-30");
+    assert!(behind.contains("drawn shortened"));
+    assert!(behind.contains("Contact: lies behind, at t = -31"));
+    assert!(!overlapping.contains("lies behind") && !behind.contains("overlap now"));
     assert!(at("0,0.5,1").contains("Contact at t = 0"), "touching");
     assert!(at("0,0,1e6").contains("drawn shortened"), "far away");
 }

@@ -1,6 +1,7 @@
 //! Choices of a query.
 
 use crate::answer::Solver;
+use crate::body::{Body, ConvexPolyhedron};
 use crate::error::QueryError;
 
 /// Choices of a query; the default is right for most.
@@ -14,6 +15,10 @@ pub struct Options {
     pub graze_tolerance: f64,
     /// How [`Solver::Cta`] narrows the search; of no effect on the others.
     pub narrowing: Narrowing,
+}
+
+impl Body for ConvexPolyhedron {
+    type Options = Options;
 }
 
 impl Options {

@@ -5,6 +5,7 @@
 //! ([`support`] points, [`sections`]).
 
 mod build;
+mod excess;
 pub(crate) mod sections;
 mod support;
 #[cfg(test)]
@@ -31,6 +32,8 @@ pub struct ConvexPolyhedron {
     input_index: Vec<u32>,
     dimension: u8,
     hull_error: f64,
+    /// The largest distance of a corner from its polygon's plane.
+    flatness: f64,
     topology: Topology,
     inertia: Inertia,
     support: SupportIndex,

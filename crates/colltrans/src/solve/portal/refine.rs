@@ -75,6 +75,30 @@ pub(crate) fn refine<O: Observer>(
     None
 }
 
+/// The optimum in a portal that contains the line up to rounding, if its plane supports `M` and the
+/// line is so deep inside the shadow of `M` that rounding does not matter.
+pub(super) fn lowest_face<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    watch: &mut Watch<O>,
+) -> Option<Optimum> {
+    let normal = plane_normal(difference, portal)?;
+    let weights = weights(portal);
+    let contact = portal.iter().zip(weights).map(|(corner, w)| corner.at * w).sum::<DVec3>();
+    let residual = contact.truncate().length();
+    let least = 2 - largest([weights[2], weights[1], weights[0]].map(|w| -w));
+    let edge = [&portal[(least + 1) % 3], &portal[(least + 2) % 3]];
+    if residual > difference.noise.point() || !difference.is_met_on(edge, contact, residual, normal)
+    {
+        return None;
+    }
+    let point = difference.support_from(normal, portal[2].pair);
+    watch.support(|| Support::of(normal, &point));
+    let is_lowest =
+        depth_below(portal, normal, &point) <= difference.noise.point() * normal.length();
+    is_lowest.then_some(Optimum { normal, lowest: point.pair, weights })
+}
+
 /// A portal with a plane in place of one too narrow to have one: over the edge that the line passes
 /// lowest or, if that gives the new portal no width, around its lower point. `None` if there is
 /// none.

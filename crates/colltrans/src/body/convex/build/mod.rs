@@ -46,6 +46,27 @@ impl ConvexPolyhedron {
         Ok(Self::from_hull(points, hull::convex_hull(points)))
     }
 
+    /// The box from corner `min` to corner `max`, of 8 vertices and 6 faces; a flat one if they have a
+    /// coordinate in common.
+    ///
+    /// # Errors
+    /// A corner that is not finite or out of range.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let plate = ConvexPolyhedron::cuboid(DVec3::new(-2.0, -2.0, -1.0), DVec3::new(2.0, 2.0, 0.0))?;
+    /// assert_eq!((plate.vertices().len(), plate.face_count()), (8, 6));
+    /// assert_eq!(plate.volume(), 16.0);
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    pub fn cuboid(min: DVec3, max: DVec3) -> Result<Self, BuildError> {
+        let of = |high: bool, axis: usize| if high { max[axis] } else { min[axis] };
+        let corner = |i: usize| DVec3::new(of(i & 1 > 0, 0), of(i & 2 > 0, 1), of(i & 4 > 0, 2));
+        Self::from_points(&std::array::from_fn::<DVec3, 8, _>(corner))
+    }
+
     /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of
     /// vertex indices, counter-clockwise as seen from outside.
     ///
@@ -90,16 +111,19 @@ impl ConvexPolyhedron {
         } else {
             SectionIndex::default()
         };
-        Self {
+        let mut body = Self {
             vertices,
             input_index,
             dimension,
             hull_error: violation,
+            flatness: 0.0,
             topology,
             inertia,
             support,
             sections,
-        }
+        };
+        body.flatness = body.measure_flatness();
+        body
     }
 
     /// A body of dimension 3 from its faces, which the caller knows to be convex.

@@ -1,0 +1,370 @@
+//! What newcomers do: outputs on top of inputs, parts that are not convex, poses by hand, scans.
+
+use std::path::Path;
+use std::process::Output;
+
+use crate::support::{CAST, colltrans, folder, json, stderr, stdout};
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    colltrans(folder).args(arguments).output().unwrap()
+}
+
+fn answered(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    stdout(&output)
+}
+
+fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    let output = run(folder, arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in {message}");
+    }
+}
+
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .map(|path| (path.display().to_string(), std::fs::read(&path).unwrap()))
+        .collect();
+    files.sort();
+    files
+}
+
+/// Other names of a file: the same, a symbolic link, a hard link.
+#[cfg(unix)]
+fn names_of(folder: &Path, file: &str, extension: &str) -> Vec<String> {
+    let (symbolic, hard) = (format!("symbolic.{extension}"), format!("hard.{extension}"));
+    let _ = std::fs::remove_file(folder.join(&symbolic));
+    let _ = std::fs::remove_file(folder.join(&hard));
+    std::os::unix::fs::symlink(file, folder.join(&symbolic)).unwrap();
+    std::fs::hard_link(folder.join(file), folder.join(&hard)).unwrap();
+    vec![file.into(), format!("./{file}"), symbolic, hard]
+}
+
+#[cfg(unix)]
+#[test]
+fn a_picture_never_overwrites_a_mesh() {
+    let folder = folder();
+    // A mesh may have any name that a link to it has not.
+    for picture in &names_of(folder.path(), "cube.off", "svg")[2..] {
+        let before = contents(folder.path());
+        for (moving, fixed) in [("cube.off", "dent.off"), ("dent.off", "cube.off")] {
+            let arguments =
+                ["cast", moving, fixed, "--hull", "--direction", "x", "--picture", picture];
+            refused(folder.path(), &arguments, 3, &[picture, "is the same file as cube.off"]);
+        }
+        assert!(contents(folder.path()) == before);
+    }
+    refused(folder.path(), &[&CAST[..], &["--picture", "cube.off"]].concat(), 2, &["cube.svg"]);
+}
+
+#[test]
+fn a_picture_is_svg() {
+    let folder = folder();
+    for name in ["out.png", "out", "cube.off"] {
+        let before = contents(folder.path());
+        let arguments = [&CAST[..], &["--picture", name]].concat();
+        refused(folder.path(), &arguments, 2, &["pictures are written as SVG", ".svg"]);
+        assert!(contents(folder.path()) == before);
+    }
+}
+
+const QUERY: &str =
+    r#"{"moving":{"mesh":"cube.off"},"fixed":{"points":[[5,0.5,0.5]]},"direction":[1,0,0]}"#;
+
+#[cfg(unix)]
+#[test]
+fn results_never_overwrite_what_is_read() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("q.jsonl"), QUERY).unwrap();
+    for output in names_of(path, "q.jsonl", "jsonl") {
+        let before = contents(path);
+        refused(path, &["batch", "q.jsonl", "-o", &output], 3, &["holds the queries"]);
+        let input = std::fs::File::open(path.join("q.jsonl")).unwrap();
+        let result = std::process::Command::new(assert_cmd::cargo::cargo_bin("colltrans"))
+            .args(["batch", "-", "-o", &output])
+            .current_dir(path)
+            .stdin(input)
+            .output()
+            .unwrap();
+        assert_eq!(result.status.code(), Some(3), "{}", stderr(&result));
+        assert!(contents(path) == before, "{output}");
+    }
+    for output in names_of(path, "cube.off", "off") {
+        let before = contents(path);
+        let arguments = ["batch", "q.jsonl", "-o", &output];
+        let result = run(path, &arguments);
+        let message = stderr(&result);
+        assert_eq!(result.status.code(), Some(3), "{message}");
+        let left = message.split("the results are in ").nth(1).expect(&message).trim();
+        let results = std::fs::read_to_string(path.join(left)).unwrap();
+        assert_eq!(json(&results)["translation"], 4.0, "nothing is lost");
+        std::fs::remove_file(path.join(left)).unwrap();
+        assert!(contents(path) == before, "{output}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn results_replace_an_earlier_file_in_the_end() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("q.jsonl"), QUERY).unwrap();
+    std::fs::write(path.join("old.jsonl"), "old\n").unwrap();
+    std::os::unix::fs::symlink("old.jsonl", path.join("link.jsonl")).unwrap();
+    let files = contents(path).len();
+    assert_eq!(answered(path, &["batch", "q.jsonl", "-o", "link.jsonl"]), "");
+    assert!(path.join("link.jsonl").is_symlink());
+    let results = std::fs::read_to_string(path.join("old.jsonl")).unwrap();
+    assert_eq!(json(&results)["outcome"], "contact");
+    assert_eq!(contents(path).len(), files, "nothing is left beside it");
+    assert_eq!(answered(path, &["batch", "q.jsonl", "-o", "/dev/null"]), "");
+    refused(path, &["batch", "q.jsonl", "-o", "."], 5, &["cannot be written"]);
+}
+
+#[test]
+fn a_hull_says_what_it_exceeds_and_what_that_means() {
+    let folder = folder();
+    let path = folder.path();
+    let cast = |more: &[&str]| {
+        let first = ["cast", "dent.off", "cube.off", "--direction", "x", "--moving-pose"];
+        answered(path, &[&first[..], more].concat())
+    };
+    let ahead = cast(&["-3,0,0", "--hull"]);
+    for part in [
+        "moving hull  0.0833333 of its volume 1 is not the part (8.333 %)",
+        "lies up to 0.25 below it",
+        "a bound for the moving part itself: no contact before this one, perhaps later or none",
+    ] {
+        assert!(ahead.contains(part), "{part:?} is not in {ahead}");
+    }
+    assert!(!ahead.contains("fixed hull"), "the cube is its own hull: {ahead}");
+    let beside = cast(&["-3,2,0", "--hull-moving"]);
+    assert!(beside.starts_with("separated"));
+    assert!(beside.contains("so this is   proven for the moving part itself too"), "{beside}");
+
+    let arguments = ["cast", "dent.off", "cube.off", "--direction", "x", "--hull-fixed"];
+    refused(path, &arguments, 3, &["dent.off", "not convex"]);
+    let record = json(&cast(&["-3,0,0", "--hull-moving", "--json"]));
+    assert_eq!(record["hull"]["moving"]["depth"], 0.25, "{record}");
+    assert_eq!(record["hull"]["moving"]["hull_volume"], 1.0);
+    assert!(record["hull"].get("fixed").is_none());
+    // A face is missing: nobody knows the volume.
+    let open = ["cast", "open.off", "cube.off", "--direction", "x", "--hull", "--json"];
+    let record = json(&answered(path, &open));
+    assert!(record["hull"]["moving"].get("part_volume").is_none(), "{record}");
+
+    let line = |body: &str| {
+        format!(r#"{{"moving":{body},"fixed":{{"points":[[9,0,0]]}},"direction":[1,0,0]}}"#)
+    };
+    let text = [
+        line(r#"{"mesh":"dent.off","hull":true,"scale":2}"#),
+        line(r#"{"mesh":"dent.off","hull":false}"#),
+        line(r#"{"mesh":"cube.off","scale":0}"#),
+        line(r#"{"points":[[0,0,0]],"scale":2}"#),
+    ];
+    let output =
+        colltrans(path).args(["batch", "-"]).write_stdin(text.join("\n")).output().unwrap();
+    let records: Vec<_> = stdout(&output).lines().map(json).collect();
+    assert_eq!(records[0]["translation"], 7.0);
+    assert_eq!(records[0]["hull"]["moving"]["depth"], 0.5);
+    for (record, word) in records[1..].iter().zip(["not convex", "scale 0", "are for meshes"]) {
+        assert!(record["message"].as_str().unwrap().contains(word), "{record}");
+    }
+}
+
+#[test]
+fn scales_angles_and_named_axes() {
+    let folder = folder();
+    let path = folder.path();
+    let cast = |more: &[&str]| {
+        let all = [&["cast", "cube.off", "cube.off", "--json"], more].concat();
+        json(&answered(path, &all))["translation"].as_f64().unwrap()
+    };
+    assert_eq!(cast(&["--direction", "x", "--moving-pose", "-3,0,0"]), 2.0);
+    assert_eq!(cast(&["--direction", "-z", "--moving-pose", "0,0,5"]), 4.0);
+    assert_eq!(cast(&["--direction", "+y", "--moving-pose", "0,-5,0"]), 4.0);
+    let right = ["--direction", "x", "--moving-pose", "-4,0,0"];
+    assert_eq!(cast(&[&right[..], &["--moving-scale", "2"]].concat()), 2.0);
+    assert_eq!(
+        cast(&[&right[..], &["--fixed-scale", "0.5", "--fixed-pose", "1,0,0"]].concat()),
+        4.0
+    );
+    // A quarter turn about z takes the cube to x from -1 to 0.
+    let turned = cast(&[&right[..], &["--moving-rpy", "0,0,90"]].concat());
+    assert!((turned - 4.0).abs() < 1e-12, "{turned}");
+    let both = ["--moving-pose", "0,0,0,0,0,0,1", "--moving-rpy", "0,0,90"];
+    let arguments = [&["cast", "cube.off", "cube.off", "--direction", "x"], &both[..]].concat();
+    refused(path, &arguments, 2, &["--moving-rpy; give one of them"]);
+    for (option, value, word) in [
+        ("--moving-scale", "0", "positive"),
+        ("--moving-scale", "-1", "positive"),
+        ("--fixed-rpy", "1,2", "roll,pitch,yaw"),
+        ("--direction", "w", "neither three numbers (x,y,z) nor an axis (x, -x,"),
+    ] {
+        let mut arguments = vec!["cast", "cube.off", "cube.off", option, value];
+        if option != "--direction" {
+            arguments.extend(["--direction", "x"]);
+        }
+        refused(path, &arguments, 2, &[word]);
+    }
+}
+
+#[test]
+fn a_quaternion_of_few_digits_is_normalised_and_that_is_said() {
+    let folder = folder();
+    let pose = "--moving-pose";
+    let arguments = ["cast", "cube.off", "cube.off", "--direction", "x", pose];
+    let output = run(folder.path(), &[&arguments[..], &["-4,0.25,0,0,0,0.707,0.707"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with("contact\n  translation  4 times"), "{}", stdout(&output));
+    let note = stderr(&output);
+    assert!(note.starts_with("note: --moving-pose: the quaternion has length 0.999849"), "{note}");
+    let wrong = [&arguments[..], &["0,0,0,0,0,1,1"]].concat();
+    refused(folder.path(), &wrong, 2, &["not 1"]);
+}
+
+#[test]
+fn a_scan_gives_one_answer_a_line() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("d.txt"), "\u{feff}x # ahead\r\n\r\n-x\n0 0 -2\n0,0,0\n").unwrap();
+    let scan = |more: &[&str]| {
+        let first = ["cast", "cube.off", "cube.off", "--moving-pose", "-3,0,0", "--directions"];
+        run(path, &[&first[..], more].concat())
+    };
+    let output = scan(&["d.txt"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(stderr(&output), "error: 1 of 4 directions have no answer\n");
+    let text = stdout(&output);
+    let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
+    assert_eq!(lines[0], ["direction", "outcome", "translation", "length", "normal"]);
+    assert_eq!(lines[1], ["1,0,0", "contact", "2", "2", "1,0,0"]);
+    assert_eq!(lines[2], ["-1,0,0", "contact", "-4", "-4", "-1,0,0"]);
+    assert_eq!(lines[3][..4], ["0,0,-2", "separated", "-", "-"]);
+    assert_eq!(lines[4][..2], ["0,0,0", "error"]);
+    assert_eq!(lines.len(), 5);
+
+    let records: Vec<_> = stdout(&scan(&["d.txt", "--json"])).lines().map(json).collect();
+    assert_eq!(records.len(), 4);
+    assert_eq!(records[1]["direction"], serde_json::json!([-1.0, 0.0, 0.0]));
+    assert_eq!(records[1]["translation"], -4.0);
+    assert_eq!(records[3]["outcome"], "error");
+
+    std::fs::write(path.join("bad.txt"), "x\nsideways\n").unwrap();
+    std::fs::write(path.join("none.txt"), "# nothing\n").unwrap();
+    for (file, word) in [
+        ("bad.txt", "bad.txt: line 2: neither three numbers"),
+        ("none.txt", "none.txt: holds no directions"),
+        ("missing.txt", "missing.txt: cannot be read"),
+    ] {
+        let output = scan(&[file]);
+        assert_eq!((output.status.code(), stdout(&output)), (Some(3), String::new()));
+        assert!(stderr(&output).contains(word), "{}", stderr(&output));
+    }
+    let both = scan(&["d.txt", "--direction", "x"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+#[test]
+fn clearance_tells_its_cases_apart() {
+    let folder = folder();
+    let clearance = |pose: &str, more: &[&str]| {
+        let first = ["clearance", "cube.off", "cube.off", "--direction", "2,0,0", "--moving-pose"];
+        answered(folder.path(), &[&first[..], &[pose], more].concat())
+    };
+    let cases = [
+        ("-3,0.5,0", "blocked", "free         1 times the direction, a length of 2"),
+        (
+            "-1,0.5,0",
+            "blocked",
+            "free         0 times the direction, a length of 0 (the bodies touch)",
+        ),
+        ("-3,1,0", "slides", "free, the bodies slide along each other"),
+        ("3,0.5,0", "behind", "last contact -1 times the direction, a length of -2"),
+        ("-3,2,0", "separated", "never meet"),
+        (
+            "0.5,0.5,0",
+            "overlapping",
+            "free after   0.75 times the direction, a length of 1.5, back",
+        ),
+    ];
+    for (pose, outcome, part) in cases {
+        let text = clearance(pose, &[]);
+        assert!(text.starts_with(outcome) && text.contains(part), "{text}");
+        assert!(!text.contains("-0 ") && !text.contains("e0"), "{text}");
+        let line = clearance(pose, &["--json"]);
+        assert!(!line.contains("-0.0,") && !line.contains("-0.0]"), "{line}");
+        let record = json(&line);
+        assert_eq!(record["outcome"], outcome, "{record}");
+        assert_eq!(record.get("distance").is_some(), outcome == "blocked", "{record}");
+    }
+    // What is called certain is on the safe side.
+    let certain = |text: &str| -> Vec<f64> {
+        let lines = text.lines().filter_map(|line| line.trim().strip_prefix("certain"));
+        lines.map(|l| l.split_whitespace().next().unwrap().parse().unwrap()).collect()
+    };
+    let ahead = certain(&clearance("-3,0.5,0", &[]));
+    assert!(ahead.len() == 1 && ahead[0] <= 1.0 && ahead[0] > 1.0 - 1e-12, "{ahead:?}");
+    let ways = certain(&clearance("0.5,0.5,0", &[]));
+    assert!(ways.len() == 2 && ways[0] >= 0.75 && ways[1] >= 0.25, "{ways:?}");
+    let record = json(&clearance("0.5,0.5,0", &["--json"]));
+    assert_eq!([&record["back"], &record["on"]].map(|v| v.as_f64().unwrap()), ways[..], "{record}");
+    let record = json(&clearance("-3,0.5,0", &["--json"]));
+    let (distance, lower) = (&record["distance"], &record["lower"]);
+    assert!(distance.as_f64() <= lower.as_f64() && lower.as_f64().is_some(), "{record}");
+    assert!(record["tolerance"].as_f64().unwrap() > 0.0);
+    assert!(clearance("-3,0.5,0", &["--picture", "free.svg"]).starts_with("blocked"));
+    assert!(folder.path().join("free.svg").is_file());
+}
+
+/// Zeros that are rounding errors, as computed corners have them.
+#[test]
+fn what_was_merged_is_said() {
+    let folder = folder();
+    let path = folder.path();
+    let cube = std::fs::read_to_string(path.join("cube.off")).unwrap();
+    // The first corner once more for the last side.
+    let twins = cube
+        .replace("8 6 12\n", "9 6 12\n")
+        .replace("0 1 1\n", "0 1 1\n5e-17 0 0\n")
+        .replace("4 3 0 4 7", "4 3 8 4 7");
+    std::fs::write(path.join("twins.off"), twins).unwrap();
+    let output = run(path, &["cast", "twins.off", "cube.off", "--direction", "x"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let note = "twins.off: 1 vertex on open edges merged with another, at most 5e-17 away";
+    assert!(stderr(&output).contains(note), "{}", stderr(&output));
+    assert!(answered(path, &["info", "twins.off"]).contains("merged       1 vertex on open edges"));
+    let equal = ["cast", "twins.off", "cube.off", "--direction", "x", "--merge-tolerance", "0"];
+    refused(path, &equal, 3, &["the surface is open", "--merge-tolerance"]);
+}
+
+#[test]
+fn contents_that_belie_the_name_are_named() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::copy(path.join("cube.off"), path.join("cube.stl")).unwrap();
+    let arguments = ["cast", "cube.stl", "cube.off", "--direction", "x"];
+    refused(path, &arguments, 3, &["cube.stl: holds an OFF file, not STL as its name says"]);
+    refused(path, &["info", "cube.stl"], 3, &["holds an OFF file"]);
+}
+
+/// A body that is too large for the cache is built once all the same, if it is the last one used.
+#[test]
+fn the_cache_has_a_size() {
+    let folder = folder();
+    let queries = vec![QUERY; 50].join("\n");
+    let batch = |size: &str| {
+        let arguments = ["batch", "-", "--cache-bytes", size];
+        colltrans(folder.path()).args(arguments).write_stdin(queries.as_str()).output().unwrap()
+    };
+    let expected = stdout(&batch("1GiB"));
+    assert_eq!(expected.lines().count(), 50);
+    assert_eq!(stdout(&batch("0")), expected);
+    assert_eq!(batch("much").status.code(), Some(2));
+}

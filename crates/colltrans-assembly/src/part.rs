@@ -152,6 +152,18 @@ impl Assembly {
         Ok(self)
     }
 
+    /// The same, with parts (by name) that are never moved.
+    ///
+    /// # Errors
+    /// A name that no part has.
+    pub fn with_fixed<S: AsRef<str>>(mut self, names: &[S]) -> Result<Self, AssemblyError> {
+        for name in names {
+            let index = self.index(name.as_ref())?;
+            self.parts[index].fixed = true;
+        }
+        Ok(self)
+    }
+
     /// The same, with the unit of its lengths, as the file says it.
     #[must_use]
     pub fn with_unit(self, unit: impl Into<String>) -> Self {

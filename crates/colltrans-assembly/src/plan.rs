@@ -238,8 +238,11 @@ impl Planner<'_> {
         if left.iter().filter(|&&k| !self.fixed(k)).count() == 0 {
             return Ok(None);
         }
-        let own = self.finer.iter().filter(|f| f.concerns(alive)).map(|f| f.direction);
-        let own: Vec<DVec3> = own.take(MOST_FINER).collect();
+        let concerning = |any: bool| {
+            let own = self.finer.iter().filter(move |f| f.part.is_none() == any);
+            own.filter(|f| f.concerns(alive)).map(|f| f.direction)
+        };
+        let own: Vec<DVec3> = concerning(true).chain(concerning(false).take(MOST_FINER)).collect();
         let sphere = match self.options.samples {
             0 => Vec::new(),
             count => Sphere::with_directions(count).directions,

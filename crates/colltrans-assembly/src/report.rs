@@ -7,11 +7,14 @@ pub mod graph;
 pub mod html;
 pub mod scene;
 
+use glam::DVec3;
+
 use crate::matrix::Matrix;
 use crate::candidates::Candidate;
 use crate::bodies::Bodies;
 use crate::map::RemovalMap;
 use crate::plan::Plan;
+use crate::rooms::PartRoom;
 use crate::liaisons::Liaison;
 use crate::start::Start;
 
@@ -27,6 +30,8 @@ pub struct Findings<'a> {
     pub candidates: &'a [Candidate],
     /// Who meets whom along them.
     pub matrix: &'a Matrix,
+    /// Rooms of all parts in more directions, by direction.
+    pub more: &'a [(DVec3, Vec<PartRoom>)],
     /// How it comes apart.
     pub plan: &'a Plan,
     /// Removal maps, with the names they were asked by.

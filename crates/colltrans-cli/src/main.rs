@@ -4,9 +4,10 @@
 //! -> [`query`] (the library's part) -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read.
-//! [`info`] looks at one mesh.
+//! [`info`] looks at one mesh, [`assembly`] at many parts.
 
 mod args;
+mod assembly;
 mod batch;
 mod body;
 mod cast;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Cast(arguments) => cast::run(&arguments, Asked::Contact),
         Command::Clearance(arguments) => cast::run(&arguments, Asked::Clearance),
         Command::Batch(arguments) => batch::run(&arguments),
+        Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
     };
     match result {

@@ -90,14 +90,14 @@ pub struct Finer {
     pub direction: DVec3,
     /// Where it comes from.
     pub origin: Origin,
-    /// The part that it comes from.
-    pub part: usize,
+    /// The part that it comes from; `None` if it may concern any.
+    pub part: Option<usize>,
 }
 
 impl Finer {
     /// Whether it comes from one of the parts that are `true`.
     pub fn concerns(&self, parts: &[bool]) -> bool {
-        parts[self.part]
+        self.part.is_none_or(|part| parts[part])
     }
 }
 
@@ -185,10 +185,10 @@ impl Chosen {
 
     fn add_finer(&mut self, axis: &Axis) {
         for direction in [positive(axis.axis), positive(-axis.axis)] {
-            let same = |f: &Finer| f.part == axis.part && angle(f.direction, direction) <= self.apart;
+            let same = |f: &Finer| f.part == Some(axis.part) && angle(f.direction, direction) <= self.apart;
             if self.is_new(direction) && !self.found.finer.iter().any(same) {
                 let Axis { origin, part, .. } = *axis;
-                self.found.finer.push(Finer { direction, origin, part });
+                self.found.finer.push(Finer { direction, origin, part: Some(part) });
             }
         }
     }

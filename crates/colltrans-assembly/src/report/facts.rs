@@ -52,28 +52,34 @@ pub fn json(f: &Findings) -> Value {
 }
 
 fn rooms(f: &Findings) -> Vec<Value> {
-    let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let mut rooms = Vec::new();
     for part in 0..f.bodies.len() {
         for (k, &d) in f.matrix.directions().iter().enumerate() {
-            let room = f.matrix.room(k, part);
-            let distance = room.distance();
-            let mut entry = json!({
-                "part": name(part),
-                "direction": d.to_array(),
-                "outcome": room.outcome(),
-                "distance": distance.is_finite().then_some(distance),
-                "by": room.by().map(name),
-            });
-            if let PartRoom::Blocked { stop, .. } = room {
-                entry["nominal"] = json!(f.bodies.nominal(&stop, d));
-                entry["point"] = json!(stop.point.to_array());
-                entry["normal"] = json!(stop.normal.to_array());
-            }
-            rooms.push(entry);
+            rooms.push(room(f, part, d, &f.matrix.room(k, part)));
+        }
+        for (d, all) in f.more {
+            rooms.push(room(f, part, *d, &all[part]));
         }
     }
     rooms
+}
+
+fn room(f: &Findings, part: usize, d: DVec3, room: &PartRoom) -> Value {
+    let name = |k: usize| f.bodies.assembly().parts()[k].name();
+    let distance = room.distance();
+    let mut entry = json!({
+        "part": name(part),
+        "direction": d.to_array(),
+        "outcome": room.outcome(),
+        "distance": distance.is_finite().then_some(distance),
+        "by": room.by().map(name),
+    });
+    if let PartRoom::Blocked { stop, .. } = room {
+        entry["nominal"] = json!(f.bodies.nominal(stop, d));
+        entry["point"] = json!(stop.point.to_array());
+        entry["normal"] = json!(stop.normal.to_array());
+    }
+    entry
 }
 
 fn steps(f: &Findings) -> Vec<Value> {

@@ -207,26 +207,17 @@ impl<'a> Bodies<'a> {
         cast.overlaps().then(|| cast.depth())
     }
 
-    /// How far part `a` must go along unit direction `d` to be past all of `b` that is beside it or in
-    /// its way: beyond those facets of `b` whose shadows' boxes meet or touch that of `a`. 0 if it is
-    /// there already.
+    /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, if their
+    /// shadows' boxes meet; 0 if it is there already, or they do not.
     pub fn past(&self, a: usize, b: usize, d: DVec3) -> f64 {
         let (u, v) = d.any_orthonormal_pair();
-        let turned = |p: DVec3| DVec3::new(p.dot(u), p.dot(v), p.dot(d));
-        let solid = |k: usize| self.assembly.parts()[k].solid();
-        let touching = crate::liaisons::reach(self);
-        let moving =
-            Aabb::of_points(solid(a).vertices().iter().map(|p| turned(*p))).grown(touching);
-        let fixed: Vec<DVec3> = solid(b).vertices().iter().map(|p| turned(*p)).collect();
-        let mut top = f64::NEG_INFINITY;
-        for t in solid(b).triangles() {
-            let facet = Aabb::of_points(t.map(|k| fixed[k as usize]));
-            let beside = (0..2).any(|k| facet.low[k] > moving.high[k] || facet.high[k] < moving.low[k]);
-            if !beside {
-                top = top.max(facet.high.z);
-            }
-        }
-        (top - moving.low.z - touching).max(0.0)
+        let around = |part: usize| {
+            let vertices = self.assembly.parts()[part].solid().vertices().iter();
+            Aabb::of_points(vertices.map(|p| DVec3::new(p.dot(u), p.dot(v), p.dot(d))))
+        };
+        let (moving, fixed) = (around(a), around(b));
+        let beside = (0..2).any(|k| fixed.low[k] > moving.high[k] || fixed.high[k] < moving.low[k]);
+        if beside { 0.0 } else { (fixed.high.z - moving.low.z).max(0.0) }
     }
 
     /// Whether part `a`, displaced by `by`, and part `b` overlap, by more than rounding.

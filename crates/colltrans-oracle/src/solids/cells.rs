@@ -122,7 +122,12 @@ fn square(cell: [i32; 3], axis: usize, up: i32) -> [[i32; 3]; 4] {
     corners
 }
 
-fn cut(vertices: &mut Vec<DVec3>, facets: &mut Vec<Vec<u32>>, [a, b, c, d]: [u32; 4], rng: &mut Rng) {
+fn cut(
+    vertices: &mut Vec<DVec3>,
+    facets: &mut Vec<Vec<u32>>,
+    [a, b, c, d]: [u32; 4],
+    rng: &mut Rng,
+) {
     match rng.int(0, 3) {
         0 => facets.push(vec![a, b, c, d]),
         1 => facets.extend([vec![a, b, c], vec![a, c, d]]),

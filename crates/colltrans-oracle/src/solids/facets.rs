@@ -83,8 +83,7 @@ impl Plane {
 
     fn shadow(&self, p: &Vector) -> Point {
         let (k, d) = (self.axis, &self.direction.0);
-        let [x, y] =
-            [(k + 1) % 3, (k + 2) % 3].map(|i| &(&p.0[i] * &d[k]) - &(&p.0[k] * &d[i]));
+        let [x, y] = [(k + 1) % 3, (k + 2) % 3].map(|i| &(&p.0[i] * &d[k]) - &(&p.0[k] * &d[i]));
         [x, y, Dyadic::new(1.0)]
     }
 
@@ -103,8 +102,7 @@ impl Plane {
             common = cut(&common, &clip[k], &clip[(k + 1) % 3]);
         }
         let n = common.len();
-        let has_area =
-            (2..n).any(|k| turn(&common[0], &common[k - 1], &common[k]).is_positive());
+        let has_area = (2..n).any(|k| turn(&common[0], &common[k - 1], &common[k]).is_positive());
         if !has_area {
             return None;
         }
@@ -116,10 +114,9 @@ impl Plane {
         for gap in heights {
             range = Some(match range {
                 None => [gap.clone(), gap],
-                Some([low, high]) => [
-                    if gap < low { gap.clone() } else { low },
-                    if gap > high { gap } else { high },
-                ],
+                Some([low, high]) => {
+                    [if gap < low { gap.clone() } else { low }, if gap > high { gap } else { high }]
+                }
             });
         }
         range

@@ -141,7 +141,8 @@ impl Setting {
             .map_err(|e| e.to_string())?;
         let expected = self.expected();
         let tolerance = self.tolerance();
-        let near = |found: f64, right: &Ratio| right.minus(&Ratio::from_f64(found)).is_within(tolerance);
+        let near =
+            |found: f64, right: &Ratio| right.minus(&Ratio::from_f64(found)).is_within(tolerance);
         let exit = cast.exit();
         match (&expected.exit, exit) {
             (None, None) => {}
@@ -156,7 +157,9 @@ impl Setting {
         }
         match (cast.clearance(), expected.overlaps, &expected.stop) {
             (SolidClearance::Free, false, None) => Ok(Some(Seen::Free)),
-            (SolidClearance::Blocked { distance, .. }, false, Some(stop)) if near(distance, stop) => {
+            (SolidClearance::Blocked { distance, .. }, false, Some(stop))
+                if near(distance, stop) =>
+            {
                 Ok(Some(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked }))
             }
             (found, overlaps, stop) => Err(format!(
@@ -205,9 +208,8 @@ fn sheared(rng: &mut Rng) -> DMat3 {
 fn quarter(rng: &mut Rng) -> DMat3 {
     loop {
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-        let pick = |rng: &mut Rng| {
-            axes[rng.int(0, 2) as usize] * if rng.one_in(2) { 1.0 } else { -1.0 }
-        };
+        let pick =
+            |rng: &mut Rng| axes[rng.int(0, 2) as usize] * if rng.one_in(2) { 1.0 } else { -1.0 };
         let (x, y) = (pick(rng), pick(rng));
         if x.dot(y) == 0.0 {
             return DMat3::from_cols(x, y, x.cross(y));

@@ -108,7 +108,12 @@ impl Soup {
         self.push_ring(vertices, facet as u32, &ring)
     }
 
-    fn push_ring(&mut self, vertices: &[DVec3], facet: u32, ring: &[u32]) -> Result<(), SolidError> {
+    fn push_ring(
+        &mut self,
+        vertices: &[DVec3],
+        facet: u32,
+        ring: &[u32],
+    ) -> Result<(), SolidError> {
         if let &[a, b, c] = ring {
             self.triangles.push([a, b, c]);
             self.facet_index.push(facet);

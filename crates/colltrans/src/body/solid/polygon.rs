@@ -32,8 +32,7 @@ pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
 /// The corners along the axis in which the area vector is largest, running counter-clockwise.
 fn project(corners: &[DVec3]) -> Vec<DVec2> {
     let first = corners[0];
-    let area: DVec3 =
-        corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum();
+    let area: DVec3 = corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum();
     let flat = |p: &DVec3| match area.abs().max_position() {
         0 => p.yz(),
         1 => p.zx(),
@@ -51,9 +50,7 @@ fn is_ear(flat: &[DVec2], rest: &[usize], k: usize) -> bool {
     if turn(a, b, c) <= 0.0 {
         return false;
     }
-    let inside = |p: DVec2| {
-        turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
-    };
+    let inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
     (0..n).filter(|m| ![i, j, l].contains(m)).all(|m| {
         let p = flat[rest[m]];
         // A corner passed twice (a slit to a hole) lies on the ear without being in it.

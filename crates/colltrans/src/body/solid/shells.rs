@@ -141,8 +141,7 @@ impl<'a> Nesting<'a> {
     fn is_outermost(&self, shell: usize) -> bool {
         let p = self.points[shell];
         let boxed = |s: usize| p.cmpge(self.boxes[s][0]).all() && p.cmple(self.boxes[s][1]).all();
-        let candidates: Vec<bool> =
-            (0..self.boxes.len()).map(|s| s != shell && boxed(s)).collect();
+        let candidates: Vec<bool> = (0..self.boxes.len()).map(|s| s != shell && boxed(s)).collect();
         if !candidates.contains(&true) {
             return true;
         }

@@ -10,10 +10,12 @@
 //! Facets less high than a millionth of the body's size have no say if their vertex has others: in
 //! single precision their normals are noise.
 //!
-//! For a node of the tree, `[reach, turn, rough]` bound what shrinking does to it: its vertices move
-//! by at most `e reach`, its normals turn by an angle whose sine is at most `e turn + rough`. With
-//! edges `u, v` of a facet, displacements that differ by at most `f`, and area vector `N = u x v`,
-//! `N` changes by at most `e f (|u| + |v|) + e^2 f^2 <= 2 e f (|u| + |v|)` (or by more than itself).
+//! A [`NodeMotion`] bounds what shrinking does to the facets of a node. The least coordinate
+//! `min (v + e x)` is a concave function of `e`, so up to a fixed amount `E` it is not below its chord:
+//! the rates of the chords say how sides of boxes and slabs move, inwards where the facets do. Normals
+//! turn by an angle whose sine is at most `e turn + rough`: with edges `u, v` of a facet,
+//! displacements that differ by at most `f`, and area vector `N = u x v`, `N` changes by at most
+//! `e f (|u| + |v|) + e^2 f^2 <= 2 e f (|u| + |v|)` (or by more than itself).
 
 use std::thread;
 
@@ -28,6 +30,8 @@ use crate::number::range::in_exact_range;
 
 /// Facets less high than this share of the body's size are noise.
 const NOISE: f64 = 1e-6;
+/// Rates hold up to this share of the body's size.
+const MOST: f64 = 1.0 / 1024.0;
 /// Displacements longer than this many times the amount count as no solution.
 const FARTHEST: f64 = 64.0;
 /// Rounds of the search for the nearest point; each adds a normal that was violated.
@@ -38,10 +42,25 @@ const MOST_ROUNDS: usize = 64;
 pub(crate) struct Shrinking {
     /// Displacement of each vertex.
     pub(crate) field: Vec<DVec3>,
-    /// For each node of the tree what its facets do, at most; see the module's head.
-    pub(crate) nodes: Vec<[f32; 3]>,
+    /// For each node of the tree what its facets do, at most.
+    pub(crate) nodes: Vec<NodeMotion>,
+    /// The amount up to which the rates of the nodes hold.
+    pub(crate) most: f64,
+    /// The longest displacement.
+    pub(crate) farthest: f64,
     /// Vertices that stay, because they have no solution.
     pub(crate) stuck: Vec<u32>,
+}
+
+/// What shrinking does to the facets of a node; see the module's head.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NodeMotion {
+    /// Rates of the sides of the box, and of the slab.
+    pub(crate) low: [f32; 3],
+    pub(crate) high: [f32; 3],
+    pub(crate) slab: [f32; 2],
+    pub(crate) turn: f32,
+    pub(crate) rough: f32,
 }
 
 /// What could not be shrunk, or grown, as it should.
@@ -118,21 +137,18 @@ impl Solid {
     /// What shrinking by `amount` (or growing, if negative) cannot do as it should.
     pub fn shrink_report(&self, amount: f64) -> ShrinkReport {
         let shrinking = self.shrinking();
-        let longest = shrinking.field.iter().map(|x| x.length()).fold(0.0, f64::max);
         let inverted = |t: &usize| {
             let corners = self.triangles[*t].map(|v| v as usize);
             let before = tree::normal(corners.map(|v| self.vertices[v])).0;
             let moved = corners.map(|v| displace(self.vertices[v], shrinking.field[v], amount));
             tree::normal(moved).0.dot(before) <= 0.0
         };
-        let mut facets: Vec<u32> = (0..self.triangles.len())
-            .filter(inverted)
-            .map(|t| self.facet_index[t])
-            .collect();
+        let mut facets: Vec<u32> =
+            (0..self.triangles.len()).filter(inverted).map(|t| self.facet_index[t]).collect();
         facets.sort_unstable();
         facets.dedup();
         ShrinkReport {
-            farthest: longest * amount.abs(),
+            farthest: shrinking.farthest * amount.abs(),
             stuck: shrinking.stuck.iter().map(|&v| self.vertex_index[v as usize]).collect(),
             inverted: facets,
         }
@@ -169,16 +185,16 @@ impl Shrinking {
                 });
             }
         });
-        let stuck =
-            (0..field.len() as u32).filter(|&v| field[v as usize] == DVec3::ZERO).collect();
-        let mut nodes = vec![[0.0; 3]; solid.nodes.len()];
-        bound_nodes(solid, &field, 0, &mut nodes);
-        Self { field, nodes, stuck }
+        let stuck = (0..field.len() as u32).filter(|&v| field[v as usize] == DVec3::ZERO).collect();
+        let most = MOST * solid.reach;
+        let nodes = (0..solid.nodes.len()).map(|k| bound_node(solid, &field, most, k)).collect();
+        let farthest = field.iter().map(|x| x.length()).fold(0.0, f64::max);
+        Self { field, nodes, most, farthest, stuck }
     }
 
     pub(crate) fn heap_bytes(&self) -> usize {
         self.field.capacity() * size_of::<DVec3>()
-            + self.nodes.capacity() * size_of::<[f32; 3]>()
+            + self.nodes.capacity() * size_of::<NodeMotion>()
             + self.stuck.capacity() * size_of::<u32>()
     }
 }
@@ -298,42 +314,57 @@ fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
                 let normal = (q - p).cross(r - p);
                 normal.dot(s - p) * normal.dot(-p) >= 0.0
             };
-            let inside = side(a, b, c, d) && side(b, c, d, a) && side(c, d, a, b) && side(d, a, b, c);
+            let inside =
+                side(a, b, c, d) && side(b, c, d, a) && side(c, d, a, b) && side(d, a, b, c);
             inside.then_some(DVec3::ZERO)
         }
         _ => None,
     }
 }
 
-/// Bounds of a subtree's displacements and turns; children before parents.
-fn bound_nodes(solid: &Solid, field: &[DVec3], at: usize, nodes: &mut [[f32; 3]]) -> [f32; 3] {
+fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotion {
     let node: &Node = &solid.nodes[at];
-    let mut worst = [0.0_f32; 3];
-    let mut join = |other: [f32; 3]| {
-        for k in 0..3 {
-            worst[k] = worst[k].max(other[k]);
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut slab = [f64::INFINITY, f64::NEG_INFINITY];
+    let [mut turn, mut rough] = [0.0_f64; 2];
+    for t in node.facets() {
+        for v in solid.triangles[t].map(|v| v as usize) {
+            let moved = displace(solid.vertices[v], field[v], most);
+            (low, high) = (low.min(moved), high.max(moved));
+            let level = node.axis.dot(moved);
+            slab = [slab[0].min(level), slab[1].max(level)];
         }
-    };
-    if node.is_leaf() {
-        node.facets().for_each(|t| join(bound_facet(solid, field, t)));
-    } else {
-        join(bound_nodes(solid, field, at + 1, nodes));
-        join(bound_nodes(solid, field, at + node.skip as usize, nodes));
+        // What looks to all sides has no normals to be turned.
+        if node.slab[1] < f64::INFINITY {
+            let [x, y] = bound_facet(solid, field, t);
+            (turn, rough) = (turn.max(x), rough.max(y));
+        }
     }
-    nodes[at] = worst;
-    worst
+    // Rounded outwards, by more than the rounding of the chords' ends.
+    let slack = 16.0 * f64::EPSILON * solid.reach / most;
+    let down = |end: f64, start: f64| ((end - start) / most - slack) as f32;
+    let up = |end: f64, start: f64| ((end - start) / most + slack) as f32;
+    let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
+    NodeMotion {
+        low: [0, 1, 2].map(|k| down(low[k], node.low[k]).next_down()),
+        high: [0, 1, 2].map(|k| up(high[k], node.high[k]).next_up()),
+        slab: [
+            finite(down(slab[0], node.slab[0]).next_down()),
+            finite(up(slab[1], node.slab[1]).next_up()),
+        ],
+        turn: (turn * 1.000_001) as f32,
+        rough: (rough * 1.000_001) as f32,
+    }
 }
 
-fn bound_facet(solid: &Solid, field: &[DVec3], t: usize) -> [f32; 3] {
+/// How fast a facet's normal turns, and what rounding adds.
+fn bound_facet(solid: &Solid, field: &[DVec3], t: usize) -> [f64; 2] {
     let corners = solid.triangles[t].map(|v| v as usize);
     let [a, b, c] = corners.map(|v| solid.vertices[v]);
     let [x, y, z] = corners.map(|v| field[v]);
-    let reach = x.length().max(y.length()).max(z.length());
     let apart = (y - x).length().max((z - x).length());
     let ratio = ((b - a).length() + (c - a).length()) / tree::normal([a, b, c]).0.length();
-    let turn = 2.0 * apart * ratio;
-    let rough = 8.0 * f64::EPSILON * solid.reach * ratio;
-    [reach, turn, rough].map(|x| if x == 0.0 { 0.0 } else { (x * 1.000_001) as f32 })
+    [2.0 * apart * ratio, 8.0 * f64::EPSILON * solid.reach * ratio]
 }
 
 #[cfg(test)]
@@ -349,7 +380,8 @@ mod tests {
         let x = shortest(&[DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
         assert!((x + DVec3::ONE).length() < 1e-15);
         assert!(shortest(&[DVec3::X, DVec3::NEG_X]).is_none());
-        let saddle = [DVec3::X, DVec3::Y, DVec3::new(-1.0, -1.0, 1.0), DVec3::new(-1.0, -1.0, -1.0)];
+        let saddle =
+            [DVec3::X, DVec3::Y, DVec3::new(-1.0, -1.0, 1.0), DVec3::new(-1.0, -1.0, -1.0)];
         assert!(shortest(&saddle.map(DVec3::normalize)).is_none());
     }
 

@@ -16,7 +16,7 @@ use std::thread;
 use glam::{DVec3, Vec3Swizzles};
 
 /// Facets of a leaf, at most.
-pub(crate) const LEAF: usize = 4;
+pub(crate) const LEAF: usize = 2;
 const BINS: usize = 16;
 /// Subtrees with fewer facets are not worth a thread.
 const FORK: usize = 1 << 14;
@@ -82,11 +82,7 @@ pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let (u, v) = (b - a, c - a);
     let area = u.cross(v);
     let (x, y) = (u.abs(), v.abs());
-    let terms = DVec3::new(
-        x.y * y.z + x.z * y.y,
-        x.z * y.x + x.x * y.z,
-        x.x * y.y + x.y * y.x,
-    );
+    let terms = DVec3::new(x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x);
     let error = terms * (4.0 * f64::EPSILON);
     let length = area.length_squared();
     if length == 0.0 {

@@ -106,7 +106,8 @@ mod tests {
             };
             let expected = cover(a, b) & cover(c, d) != 0;
             assert_eq!(wedge(a, b).meets(&wedge(c, d), &Rose), expected, "{a} {b} {c} {d}");
-            let opposite = Wedge { start: Ray { point: (a + 4) % 8, opposite: true }, end: Ray::to(b) };
+            let opposite =
+                Wedge { start: Ray { point: (a + 4) % 8, opposite: true }, end: Ray::to(b) };
             assert_eq!(opposite.meets(&wedge(c, d), &Rose), expected);
         }
     }

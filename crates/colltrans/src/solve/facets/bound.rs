@@ -35,6 +35,8 @@ pub enum Reason {
 pub(super) struct Shade {
     pub(super) low: DVec3,
     pub(super) high: DVec3,
+    /// The box in the body frame, after shrinking.
+    local: [DVec3; 2],
     /// The node's axis and its slab.
     pub(super) axis: DVec3,
     pub(super) slab: [f64; 2],
@@ -46,26 +48,63 @@ pub(super) struct Shade {
 
 impl Shade {
     pub(super) fn new(scene: &Scene, side: &Side, at: usize) -> Self {
-        let node = &side.solid.nodes()[at];
-        let [reach, turn, rough] = side.shrinking.map_or([0.0; 3], |s| s.nodes[at].map(f64::from));
-        let swell = reach * side.amount.abs() * (1.0 + 1e-9);
-        let (low, high) = boxed(scene, side, node, swell);
-        let mut spread = f64::from(node.spread) + turn * side.amount.abs();
-        if side.amount != 0.0 {
-            spread += rough;
+        let node = &shrunk(side, at);
+        let (low, high) = boxed(scene, side, node);
+        let mut spread = f64::from(node.spread);
+        if let Some(shrinking) = side.shrinking {
+            let motion = &shrinking.nodes[at];
+            spread += f64::from(motion.turn) * side.amount + f64::from(motion.rough);
         }
         let terms = (node.axis * side.along).abs().element_sum();
         spread += if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
         let axis = side.view * node.axis;
-        let (shift, slack) = (axis.dot(side.view_offset), swell + 4.0 * scene.blur);
+        let (shift, slack) = (axis.dot(side.view_offset), scene.blur);
         Self {
             low,
             high,
+            local: [node.low, node.high],
             axis,
             slab: [node.slab[0] + shift - slack, node.slab[1] + shift + slack],
             along: node.axis.dot(side.along),
             spread,
         }
+    }
+
+    /// Whether both nodes lie in one plane, exactly, and look at each other. Boxes without thickness are
+    /// exact: others are rounded outwards.
+    pub(super) fn is_face_to_face(&self, other: &Self) -> bool {
+        let flat = |k: usize| {
+            self.low[k] == self.high[k]
+                && other.low[k] == other.high[k]
+                && self.low[k] == other.low[k]
+                && self.axis[k] * other.axis[k] < 0.0
+        };
+        self.spread < 1.0 && other.spread < 1.0 && (0..3).any(flat)
+    }
+
+    /// The range of the box along an axis of the body, in the query frame.
+    fn local_range(&self, side: &Side, k: usize) -> [f64; 2] {
+        let shift = side.view.col(k).dot(side.view_offset);
+        [self.local[0][k] + shift, self.local[1][k] + shift]
+    }
+
+    /// The range of `m.x` over the node, by its box in the body frame and by its slab.
+    fn range(&self, side: &Side, m: DVec3, blur: f64) -> [f64; 2] {
+        let local = side.view.transpose() * m;
+        let [low, high] = self.local;
+        let middle = local.dot((low + high) * 0.5) + m.dot(side.view_offset);
+        let spread = local.abs().dot((high - low) * 0.5);
+        let [mut least, mut largest] = [middle - spread, middle + spread];
+        if self.slab[1] < f64::INFINITY {
+            let sign = self.axis.dot(m).signum();
+            let rest = m - self.axis * sign;
+            let (center, half) = ((self.low + self.high) * 0.5, (self.high - self.low) * 0.5);
+            let (value, spread) = (rest.dot(center), rest.abs().dot(half));
+            let [x, y] = [sign * self.slab[0], sign * self.slab[1]];
+            least = least.max(x.min(y) + value - spread);
+            largest = largest.min(x.max(y) + value + spread);
+        }
+        [least - blur, largest + blur]
     }
 
     /// Whether it has no facet that looks along the direction.
@@ -79,8 +118,29 @@ impl Shade {
     }
 }
 
+/// The node of the shrunk body, but for its normals.
+fn shrunk(side: &Side, at: usize) -> Node {
+    let mut node = side.solid.nodes()[at];
+    let Some(shrinking) = side.shrinking else { return node };
+    let amount = side.amount;
+    if amount <= shrinking.most {
+        let motion = &shrinking.nodes[at];
+        let rate = |r: [f32; 3]| DVec3::from_array(r.map(f64::from)) * amount;
+        node.low += rate(motion.low);
+        node.high += rate(motion.high);
+        node.slab[0] += f64::from(motion.slab[0]) * amount;
+        node.slab[1] += f64::from(motion.slab[1]) * amount;
+    } else {
+        let swell = shrinking.farthest * amount;
+        node.low -= swell;
+        node.high += swell;
+        node.slab = [node.slab[0] - swell, node.slab[1] + swell];
+    }
+    node
+}
+
 /// The node's box in the query frame: exact along aligned axes, rounded outwards along others.
-fn boxed(scene: &Scene, side: &Side, node: &Node, swell: f64) -> (DVec3, DVec3) {
+fn boxed(scene: &Scene, side: &Side, node: &Node) -> (DVec3, DVec3) {
     let (center, half) = ((node.low + node.high) * 0.5, (node.high - node.low) * 0.5);
     let middle = side.view * center + side.view_offset;
     let rows = side.view.transpose();
@@ -88,7 +148,7 @@ fn boxed(scene: &Scene, side: &Side, node: &Node, swell: f64) -> (DVec3, DVec3) 
         rows.x_axis.abs().dot(half),
         rows.y_axis.abs().dot(half),
         rows.z_axis.abs().dot(half),
-    ) + DVec3::splat(swell + scene.blur);
+    ) + DVec3::splat(scene.blur);
     let (mut low, mut high) = (middle - extent, middle + extent);
     if side.shrinking.is_none() {
         for (k, row) in [rows.x_axis, rows.y_axis, rows.z_axis].into_iter().enumerate() {
@@ -152,7 +212,8 @@ pub(super) fn least_gap(
         return Err(Reason::Parting);
     }
     if p.is_none() || q.is_none() {
-        let apart = slab_apart(scene, a, b) || slab_apart(scene, b, a);
+        let apart = sides_apart(scene, (&scene.moving, a), (&scene.fixed, b))
+            || sides_apart(scene, (&scene.fixed, b), (&scene.moving, a));
         if apart {
             return Err(Reason::ShadowsApart);
         }
@@ -187,7 +248,7 @@ impl Heights {
             return None;
         }
         let (x, y) = (shade.slab[0] / c, shade.slab[1] / c);
-        let slack = 2.0 * scene.blur / c.abs();
+        let slack = scene.blur / c.abs();
         Some(Self { slope: -shade.axis.xy() / c, base: [x.min(y) - slack, x.max(y) + slack] })
     }
 }
@@ -217,30 +278,44 @@ fn gaps(
     [least, largest]
 }
 
-/// Whether the shadows are apart along the axis of a slab that is nearly parallel to the direction.
+/// Whether the shadows are apart along the axis of a slab or a box that is nearly orthogonal to the
+/// direction.
 ///
-/// For a point with shadow `s` and height `h` it is `n.x = m.s + c h`, with `m` the axis' shadow. The
-/// other node is bounded by its box, or by its own slab where that is nearly opposite.
-fn slab_apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
-    let c = a.axis.z;
-    if c.abs() > LEVEL || a.slab[1] == f64::INFINITY {
-        return false;
-    }
-    let m = a.axis.xy();
-    let rise = [c * a.low.z, c * a.high.z];
-    let low = a.slab[0] - rise[0].max(rise[1]);
-    let high = a.slab[1] - rise[0].min(rise[1]);
-    let box_of_b = Region { middle: (b.low + b.high).xy() * 0.5, half: (b.high - b.low).xy() * 0.5 };
-    let [mut least, mut largest] = box_of_b.range(m);
-    if b.slab[1] < f64::INFINITY {
-        for sign in [1.0, -1.0] {
-            let [x, y] = [sign * b.slab[0], sign * b.slab[1]];
-            let lift = [sign * b.axis.z * b.low.z, sign * b.axis.z * b.high.z];
-            let [d, e] = box_of_b.range(m - b.axis.xy() * sign);
-            least = least.max(x.min(y) - lift[0].max(lift[1]) + d);
-            largest = largest.min(x.max(y) - lift[0].min(lift[1]) + e);
+/// For a point with shadow `s` and height `h` it is `n.x = m.s + c h`, with `m` the axis' shadow and
+/// `c` its component along the direction.
+fn sides_apart(scene: &Scene, (p, a): (&Side, &Shade), (q, b): (&Side, &Shade)) -> bool {
+    let apart = |axis: DVec3, range: [f64; 2]| {
+        let c = axis.z;
+        if c.abs() > LEVEL {
+            return false;
         }
+        let rise = [c * a.low.z, c * a.high.z];
+        let low = range[0] - rise[0].max(rise[1]);
+        let high = range[1] - rise[0].min(rise[1]);
+        let [least, largest] = b.range(q, axis.with_z(0.0), scene.blur);
+        let slack = scene.blur;
+        least >= high + slack || largest <= low - slack
+    };
+    if a.slab[1] < f64::INFINITY && apart(a.axis, a.slab) {
+        return true;
     }
-    let slack = 8.0 * scene.blur;
-    least >= high + slack || largest <= low - slack
+    p.aligned == [false; 3] && (0..3).any(|k| apart(p.view.col(k), a.local_range(p, k)))
+}
+
+/// Whether no point of one node is a point of the other, by boxes and slabs.
+pub(super) fn apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
+    let (p, q) = (&scene.moving, &scene.fixed);
+    (0..3).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k])
+        || beyond(scene, (p, a), (q, b))
+        || beyond(scene, (q, b), (p, a))
+}
+
+/// Whether a node is certainly beyond a side of another's box or slab.
+pub(super) fn beyond(scene: &Scene, (p, a): (&Side, &Shade), (q, b): (&Side, &Shade)) -> bool {
+    let apart = |axis: DVec3, range: [f64; 2]| {
+        let [least, largest] = b.range(q, axis, scene.blur);
+        least > range[1] + scene.blur || largest < range[0] - scene.blur
+    };
+    a.slab[1] < f64::INFINITY && apart(a.axis, a.slab)
+        || p.aligned == [false; 3] && (0..3).any(|k| apart(p.view.col(k), a.local_range(p, k)))
 }

@@ -10,10 +10,10 @@ use super::contact::{SolidContact, contact};
 use super::overlap;
 use super::scene::Scene;
 use super::search::{Aim, Cut, Found, Search, Workspace};
+use crate::body::Pose;
 use crate::body::solid::Solid;
 use crate::error::QueryError;
 use crate::number::range::in_exact_range;
-use crate::body::Pose;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 const NOISES: f64 = 8.0;

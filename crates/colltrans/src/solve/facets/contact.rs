@@ -78,8 +78,7 @@ pub(super) fn contact(
             (along(k, s), along(j, t), normal * normal.z.signum())
         }
     };
-    let (on_f, on_g) =
-        (Foot { vertices: f, weights: on_f }, Foot { vertices: g, weights: on_g });
+    let (on_f, on_g) = (Foot { vertices: f, weights: on_f }, Foot { vertices: g, weights: on_g });
     let normal = (scene.frame.transpose() * normal).normalize_or_zero();
     let shift = on_f.displacement(moving) - on_g.displacement(fixed);
     let slope = normal.dot(scene.direction);

@@ -32,7 +32,7 @@ pub(super) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
         let (middle, half) = ((span.low + span.high) * 0.5, (span.high - span.low) * 0.5);
         let at = own.view * middle + own.view_offset;
         let rows = own.view.transpose();
-        let swell = own.shrinking.map_or(0.0, |s| f64::from(s.nodes[0][0]) * own.amount.abs());
+        let swell = own.shrinking.map_or(0.0, |s| s.farthest * own.amount);
         let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
         let extent = DVec3::from_array(extent) + DVec3::splat(swell + 4.0 * scene.blur);
         // A shell that reaches out of the other's box is not inside it.

@@ -18,8 +18,10 @@ use glam::DVec3;
 use super::scene::{Corner, Scene};
 use super::sign::rough_turn;
 
-/// Rounded gaps are used while their error is below so many times the blur of coordinates.
-const SHARP: f64 = 256.0;
+/// Rounded gaps are used while their error is below so many times the blur of coordinates, `2e-10 S`;
+/// the one that decides is taken again exactly if its error is not below [`FINE`] times the blur.
+const SHARP: f64 = 65_536.0;
+pub(super) const FINE: f64 = 256.0;
 
 /// A facet, its shadow running counter-clockwise.
 #[derive(Clone, Copy)]
@@ -76,6 +78,8 @@ pub(super) struct Gap {
     pub(super) signs: [Ordering; 2],
     /// Where the gap is least.
     pub(super) at: Meeting,
+    /// Bound of the error of its values.
+    pub(super) error: f64,
 }
 
 impl Gap {
@@ -101,15 +105,16 @@ struct Turns([[Turn; 3]; 3]);
 
 impl Turns {
     fn new(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
-        let at = |k: usize| sides.corners[k].at;
-        Self(std::array::from_fn(|k| {
-            let (a, b) = (at(k), at((k + 1) % 3));
-            std::array::from_fn(|j| {
-                let (value, error) = rough_turn(scene, a, b, corners.corners[j].at);
+        let mut turns = [[Turn { value: 0.0, error: 0.0, sign: Ordering::Equal }; 3]; 3];
+        for (k, row) in turns.iter_mut().enumerate() {
+            let (a, b) = (sides.corners[k].at, sides.corners[(k + 1) % 3].at);
+            for (turn, corner) in row.iter_mut().zip(&corners.corners) {
+                let (value, error) = rough_turn(scene, a, b, corner.at);
                 let sign = if value > 0.0 { Ordering::Greater } else { Ordering::Less };
-                Turn { value, error, sign }
-            })
-        }))
+                *turn = Turn { value, error, sign };
+            }
+        }
+        Self(turns)
     }
 
     /// Makes all signs exact.
@@ -143,13 +148,7 @@ impl Turns {
 
 /// Whether the interiors of the shadows overlap, and if so the gap over them; `limit` is what a pair
 /// has to stay below to be of interest. The sign of the least gap is only right if it is `needed`.
-pub(super) fn gap(
-    scene: &Scene,
-    f: &Facet,
-    g: &Facet,
-    limit: f64,
-    needed: bool,
-) -> Option<Gap> {
+pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, needed: bool) -> Option<Gap> {
     let blur = 4.0 * scene.blur;
     let apart = |k: usize| g.low[k] - f.high[k] > blur || f.low[k] - g.high[k] > blur;
     if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {
@@ -175,6 +174,14 @@ pub(super) fn gap(
         Rounded::Beyond(least) if least >= limit => None,
         Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g)),
     }
+}
+
+/// The gap of two facets whose shadows overlap, exact but for its last roundings.
+pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
+    let (mut of_f, mut of_g) = (Turns::new(scene, f, g), Turns::new(scene, g, f));
+    of_f.resolve(scene, f, g);
+    of_g.resolve(scene, g, f);
+    exact(scene, f, g, &of_f, &of_g)
 }
 
 /// Whether side `k` of a facet has no corner of the other on its inner side, exactly.
@@ -229,8 +236,8 @@ impl Range {
         };
         match (least, largest) {
             (Some(a), Some(b)) if self.worst <= sharp => {
-                let Self { least, largest, at, .. } = self;
-                Rounded::Known(Gap { least, largest, signs: [a, b], at })
+                let Self { least, largest, at, worst, .. } = self;
+                Rounded::Known(Gap { least, largest, signs: [a, b], at, error: worst })
             }
             _ => Rounded::Beyond(low),
         }
@@ -355,6 +362,7 @@ fn exact(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> Gap
         largest: f64::NEG_INFINITY,
         signs: [Ordering::Greater, Ordering::Less],
         at: Meeting::Corner(0),
+        error: 0.0,
     };
     let length = scene.length;
     let mut add = |sign: Ordering, ratio: f64, at: Meeting| {

@@ -20,7 +20,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::bound::Shade;
+use super::bound::{Shade, apart, beyond};
 use super::inside;
 use super::scene::{Corner, Scene, Side, Spot};
 use super::search::{children, splits_moving};
@@ -45,10 +45,12 @@ pub(super) fn find(scene: &Scene) -> Option<Overlap> {
         return None;
     }
     let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
-    if (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k]) || slabs_apart(scene, &a, &b) {
+    let (p, q) = (&scene.moving, &scene.fixed);
+    let disjoint = beyond(scene, (p, &a), (q, &b)) || beyond(scene, (q, &b), (p, &a));
+    if disjoint || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k]) {
         return None;
     }
-    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, meet) {
+    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, Judge::OVERLAP) {
         return Some(Overlap::Facets(f, g));
     }
     let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
@@ -61,7 +63,7 @@ pub(super) fn touches(scene: &Scene) -> bool {
     if apart(scene, &a, &b) {
         return false;
     }
-    if descend(scene, [0, 0], &a, &b, share_a_point).is_some() {
+    if descend(scene, [0, 0], &a, &b, Judge::TOUCH).is_some() {
         return true;
     }
     let closed = |side: &Side| side.solid.is_closed();
@@ -69,24 +71,23 @@ pub(super) fn touches(scene: &Scene) -> bool {
         || closed(&scene.moving) && inside::shell_inside(scene, false).is_some()
 }
 
-/// What is asked of two triangles.
-type Judge = fn(&Scene, &Plate, &Plate) -> bool;
-
-/// Whether two nodes' slabs or boxes are apart: no point of one is a point of the other.
-fn apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
-    (0..3).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k]) || slabs_apart(scene, a, b)
+/// What is asked of two triangles, and whether nodes that lie face to face are of interest.
+#[derive(Clone, Copy)]
+struct Judge {
+    holds: fn(&Scene, &Plate, &Plate) -> bool,
+    faces: bool,
 }
 
-fn slabs_apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
-    let beyond = |a: &Shade, b: &Shade| {
-        if a.slab[1] == f64::INFINITY {
-            return false;
-        }
-        let (middle, half) = ((b.low + b.high) * 0.5, (b.high - b.low) * 0.5);
-        let (value, spread) = (a.axis.dot(middle), a.axis.abs().dot(half) + 4.0 * scene.blur);
-        value - spread > a.slab[1] || value + spread < a.slab[0]
-    };
-    beyond(a, b) || beyond(b, a)
+impl Judge {
+    const OVERLAP: Self = Self { holds: meet, faces: false };
+    const TOUCH: Self = Self { holds: share_a_point, faces: true };
+
+    /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show
+    /// no overlap: at their edges one half-space of material touches another, or else the wedge's
+    /// other facet is in a node of its own, and shows it.
+    fn dismisses(self, scene: &Scene, a: &Shade, b: &Shade) -> bool {
+        apart(scene, a, b) || !self.faces && a.is_face_to_face(b)
+    }
 }
 
 /// A pair of triangles for which `judge` holds, of all that are not certainly apart.
@@ -104,7 +105,7 @@ fn descend(
     if splits_moving(m, n) {
         for part in children(m, nodes[0] as u32).map(|c| c as usize) {
             let shade = Shade::new(scene, &scene.moving, part);
-            if !apart(scene, &shade, b) {
+            if !judge.dismisses(scene, &shade, b) {
                 let found = descend(scene, [part, nodes[1]], &shade, b, judge);
                 if found.is_some() {
                     return found;
@@ -114,7 +115,7 @@ fn descend(
     } else {
         for part in children(n, nodes[1] as u32).map(|c| c as usize) {
             let shade = Shade::new(scene, &scene.fixed, part);
-            if !apart(scene, a, &shade) {
+            if !judge.dismisses(scene, a, &shade) {
                 let found = descend(scene, [nodes[0], part], a, &shade, judge);
                 if found.is_some() {
                     return found;
@@ -130,7 +131,7 @@ fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)>
         let g = Plate::new(&scene.fixed, t);
         for s in a.facets() {
             let f = Plate::new(&scene.moving, s);
-            if judge(scene, &f, &g) {
+            if (judge.holds)(scene, &f, &g) {
                 return Some((s as u32, t as u32));
             }
         }

@@ -14,8 +14,8 @@
 use glam::{DMat3, DVec3};
 
 use super::wide::Wide;
-use crate::body::solid::{Shrinking, Solid, displace};
 use crate::body::Pose;
+use crate::body::solid::{Shrinking, Solid, displace};
 
 /// One of the two bodies.
 #[derive(Clone, Copy)]
@@ -152,7 +152,7 @@ impl<'a> Side<'a> {
 
     /// The largest distance of a point of the body from its origin.
     fn reach(&self) -> f64 {
-        let farthest = self.shrinking.map_or(0.0, |s| f64::from(s.nodes[0][0]));
+        let farthest = self.shrinking.map_or(0.0, |s| s.farthest);
         self.solid.reach() + farthest * self.amount.abs()
     }
 

@@ -14,6 +14,10 @@ use super::leaf::{self, Facet, Gap, Meeting};
 use super::scene::Scene;
 use crate::body::solid::tree::{LEAF, Node};
 
+/// An answer may be larger than the least gap by so many times the blur of coordinates: bounds of
+/// nodes are rounded by a third of that.
+const SLACK: f64 = 12.0;
+
 /// What is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Aim {
@@ -49,6 +53,21 @@ pub(super) struct Found {
     pub(super) moving: u32,
     pub(super) fixed: u32,
     pub(super) at: Meeting,
+    error: f64,
+}
+
+impl Found {
+    /// The same with the gap taken exactly, if it is not sharp.
+    pub(super) fn sharpened(self, scene: &Scene, aim: Aim) -> Self {
+        if self.error <= leaf::FINE * scene.blur {
+            return self;
+        }
+        let f = Facet::facing(scene, true, self.moving as usize, Ordering::Greater);
+        let g = Facet::facing(scene, false, self.fixed as usize, Ordering::Less);
+        let (Some(f), Some(g)) = (f, g) else { return self };
+        let gap = leaf::sharpened(scene, &f, &g);
+        Self { gap: aim.clamp(gap.least), at: gap.at, error: gap.error, ..self }
+    }
 }
 
 /// A pair of nodes that was not split.
@@ -121,7 +140,8 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
         let queue = &mut workspace.queue;
         queue.clear();
         let (a, b) = (self.shade(true, 0), self.shade(false, 0));
-        let mut next = self.judge([0, 0], &a, &b).map(|bound| Entry { bound, number: 0, nodes: [0, 0] });
+        let mut next =
+            self.judge([0, 0], &a, &b).map(|bound| Entry { bound, number: 0, nodes: [0, 0] });
         let mut number = 0;
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
@@ -129,8 +149,10 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
                 continue;
             }
             let nodes = entry.nodes.map(|n| n as usize);
-            let (a, b) =
-                (&self.scene.moving.solid.nodes()[nodes[0]], &self.scene.fixed.solid.nodes()[nodes[1]]);
+            let (a, b) = (
+                &self.scene.moving.solid.nodes()[nodes[0]],
+                &self.scene.fixed.solid.nodes()[nodes[1]],
+            );
             if a.is_leaf() && b.is_leaf() {
                 self.leaves(a, b);
                 (self.cut)(Cut { nodes: entry.nodes, reason: None });
@@ -156,7 +178,7 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
                 }
             }
         }
-        self.found
+        self.found.map(|found| found.sharpened(self.scene, self.aim))
     }
 
     fn dismiss(&mut self, entry: Entry) {
@@ -213,9 +235,11 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
                 let Some(gap) = leaf::gap(scene, &f, g, self.limit, needed) else { continue };
                 let Some(value) = self.aim.value(&gap) else { continue };
                 if value < self.limit {
-                    self.limit = value;
+                    // What could be better by less is not worth a look: rounding is as much.
+                    self.limit = value - SLACK * scene.blur;
                     let (moving, fixed) = (f.triangle, g.triangle);
-                    self.found = Some(Found { gap: value, moving, fixed, at: gap.at });
+                    let (at, error) = (gap.at, gap.error);
+                    self.found = Some(Found { gap: value, moving, fixed, at, error });
                 }
             }
         }

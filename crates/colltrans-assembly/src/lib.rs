@@ -14,6 +14,7 @@
 mod bodies;
 mod boxes;
 mod error;
+mod orient;
 mod part;
 mod watch;
 

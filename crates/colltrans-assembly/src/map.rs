@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 use crate::rooms::{PartRoom, room_of};
-use crate::sphere::Sphere;
+use crate::sphere::{Sphere, angle};
 use crate::watch::{Stage, Watch};
 
 pub use draw::{png, svg};
@@ -52,7 +52,7 @@ pub struct RemovalMap {
     pub rooms: Vec<PartRoom>,
     /// Connected sets of free directions, largest first.
     pub regions: Vec<Region>,
-    /// Candidate directions that are free, and lie in no region.
+    /// Free directions that lie in no region: all around them is blocked, as far as was looked.
     pub isolated: Vec<DVec3>,
     /// The size of the assembly, for a scale.
     pub size: f64,
@@ -84,12 +84,22 @@ impl RemovalMap {
         mapper.refine_around(&free)?;
         mapper.refine_border()?;
         let Mapper { sphere, rooms, .. } = mapper;
-        let regions = regions::regions(&sphere, &rooms);
+        let mut regions = regions::regions(&sphere, &rooms);
+        // Smaller than the border is known: single directions.
+        let smallest = std::f64::consts::PI * options.border * options.border;
+        let single: Vec<DVec3> =
+            regions.iter().filter(|r| r.solid_angle < smallest).map(|r| r.center).collect();
+        regions.retain(|r| r.solid_angle >= smallest);
         let open = |d: &DVec3| {
             let corners = sphere.triangles[sphere.locate(*d).0].corners;
             corners.iter().all(|&k| !rooms[k as usize].is_free())
         };
-        let isolated = free.into_iter().filter(open).collect();
+        let mut isolated: Vec<DVec3> = free.into_iter().filter(open).collect();
+        for d in single {
+            if isolated.iter().all(|known| angle(*known, d) > options.border) {
+                isolated.push(d);
+            }
+        }
         let [low, high] = bodies.assembly().bounds();
         let size = (high - low).length();
         Ok(Self { group: group.to_vec(), sphere, rooms, regions, isolated, size })
@@ -98,7 +108,7 @@ impl RemovalMap {
     /// The share of the sphere that is free.
     pub fn free_share(&self) -> f64 {
         let area: f64 = self.regions.iter().map(|r| r.solid_angle).sum();
-        area / (4.0 * std::f64::consts::PI)
+        (area / (4.0 * std::f64::consts::PI)).max(0.0)
     }
 
     /// The map as JSON: samples, free regions with points of their borders, isolated directions.

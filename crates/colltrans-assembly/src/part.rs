@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::boxes::Aabb;
 use crate::error::AssemblyError;
+use crate::orient;
 
 /// A mesh and its place: a part has one or several, which may overlap each other.
 #[derive(Debug, Clone)]
@@ -95,8 +96,15 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
     if mirrored {
         faces.iter_mut().for_each(|face| face.reverse());
     }
-    let solid = match Solid::from_mesh(&vertices, &faces) {
-        Err(open @ (SolidError::Open { .. } | SolidError::Inconsistent { .. })) => {
+    let mut built = Solid::from_mesh(&vertices, &faces);
+    if let Err(SolidError::Inconsistent { .. }) = built
+        && let Some(turned) = orient::consistent(&vertices, &mut faces)
+    {
+        defects.push(format!("{turned} facets were oriented against the others, and are turned"));
+        built = Solid::from_mesh(&vertices, &faces);
+    }
+    let solid = match built {
+        Err(open @ SolidError::Open { .. }) => {
             let solid = Solid::from_open_mesh(&vertices, &faces)?;
             defects.push(format!("{open}; taken as a surface without an inside"));
             solid

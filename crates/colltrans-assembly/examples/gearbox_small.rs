@@ -29,7 +29,16 @@ fn parts() -> Vec<(String, Mesh)> {
         ("rear_bush".into(), ring(4.0, 10.0, 4.0, 9.0)),
         (
             "shaft".into(),
-            turned(&[(0.0, 4.0), (4.0, 4.0), (4.0, 9.0), (6.0, 9.0), (6.0, 12.0), (4.0, 12.0), (4.0, 42.0), (0.0, 42.0)]),
+            turned(&[
+                (0.0, 4.0),
+                (4.0, 4.0),
+                (4.0, 9.0),
+                (6.0, 9.0),
+                (6.0, 12.0),
+                (4.0, 12.0),
+                (4.0, 42.0),
+                (0.0, 42.0),
+            ]),
         ),
         ("gear".into(), gear(4.0, 7.6, 9.4, 12.0, 20.0)),
         ("spacer".into(), ring(4.0, 6.0, 20.0, 25.0)),
@@ -44,7 +53,10 @@ fn parts() -> Vec<(String, Mesh)> {
     }
     for k in 0..4 {
         let (s, c) = (TAU * k as f64 / 4.0).sin_cos();
-        parts.push((format!("bearing_ball_{k}"), moved(ball(1.8), DVec3::new(7.0 * c, 7.0 * s, 27.5))));
+        parts.push((
+            format!("bearing_ball_{k}"),
+            moved(ball(1.8), DVec3::new(7.0 * c, 7.0 * s, 27.5)),
+        ));
     }
     parts
 }
@@ -126,7 +138,9 @@ fn ball(radius: f64) -> Mesh {
 fn gear(bore: f64, root: f64, tip: f64, low: f64, high: f64) -> Mesh {
     let radius = |k: usize| if k % 4 < 2 { tip } else { root };
     let Mesh { mut vertices, faces, .. } = ring(bore, tip, low, high);
-    for (k, v) in vertices.iter_mut().enumerate().filter(|(_, v)| v.truncate().length() > bore + 1.0) {
+    for (k, v) in
+        vertices.iter_mut().enumerate().filter(|(_, v)| v.truncate().length() > bore + 1.0)
+    {
         let (c, s) = circle(k % SIDES);
         let r = radius(k % SIDES);
         (v.x, v.y) = (r * c, r * s);
@@ -160,7 +174,8 @@ fn block(low: f64, high: f64, middle: Hole, corner: Hole) -> Mesh {
     }
     for tile in 0..9 {
         let (i, j) = (tile % 3, tile / 3);
-        let square = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| (4 * j + i) as u32);
+        let square =
+            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| (4 * j + i) as u32);
         let below = square.map(|k| k + 16);
         let hole = match (i, j) {
             (1, 1) => Some(middle),
@@ -198,7 +213,8 @@ fn block(low: f64, high: f64, middle: Hole, corner: Hole) -> Mesh {
 
 fn rim(vertices: &mut Vec<DVec3>, [x, y]: [f64; 2], radius: f64, z: f64) -> u32 {
     let first = vertices.len() as u32;
-    vertices.extend((0..SIDES).map(circle).map(|(c, s)| DVec3::new(x + radius * c, y + radius * s, z)));
+    vertices
+        .extend((0..SIDES).map(circle).map(|(c, s)| DVec3::new(x + radius * c, y + radius * s, z)));
     first
 }
 

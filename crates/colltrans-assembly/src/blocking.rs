@@ -129,7 +129,8 @@ mod tests {
             let closed = closed_sets(n, &arcs, &among);
             let set = |parts: &[usize]| parts.iter().map(|&k| 1_u32 << k).sum::<u32>();
             for part in (0..n).filter(|&k| among[k]) {
-                let least = closed.iter().filter(|s| *s >> part & 1 == 1).min_by_key(|s| s.count_ones());
+                let least =
+                    closed.iter().filter(|s| *s >> part & 1 == 1).min_by_key(|s| s.count_ones());
                 assert_eq!(Some(&set(&graph.closure(part))), least);
             }
             // Removable as they are: closed sets that contain no smaller one.

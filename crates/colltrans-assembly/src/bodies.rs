@@ -3,9 +3,7 @@
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
-use colltrans::{
-    Pose, Solid, SolidCast, SolidClearance, SolidOptions, StartOverlap, Workspace,
-};
+use colltrans::{Pose, Solid, SolidCast, SolidClearance, SolidOptions, StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -108,7 +108,11 @@ impl BoxTree {
     }
 
     /// Calls with the number of each box for which `wanted` holds, and holds for the boxes around.
-    pub(crate) fn visit(&self, mut wanted: impl FnMut(&Aabb) -> bool, mut call: impl FnMut(&Aabb, usize)) {
+    pub(crate) fn visit(
+        &self,
+        mut wanted: impl FnMut(&Aabb) -> bool,
+        mut call: impl FnMut(&Aabb, usize),
+    ) {
         let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(at) = stack.pop() {
             let node = &self.nodes[at];
@@ -171,8 +175,7 @@ mod tests {
             let tree = BoxTree::new(boxes.iter().copied());
             let query = random_box(&mut random, snapped);
             let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
-            let listed: Vec<usize> =
-                (0..round).filter(|&k| boxes[k].meets(&query)).collect();
+            let listed: Vec<usize> = (0..round).filter(|&k| boxes[k].meets(&query)).collect();
             assert_eq!(tree.meeting(&query), listed);
             let mut ahead: Vec<usize> = tree.ahead(&query, d).iter().map(|x| x.1).collect();
             ahead.sort_unstable();

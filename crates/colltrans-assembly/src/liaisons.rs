@@ -127,7 +127,8 @@ fn contact(first: &Triangle, second: &Triangle, reach: f64) -> Option<Patch> {
         (second[0] - foot).dot(m) / n.dot(m)
     };
     let heights = shadow.iter().map(|s| height(*s));
-    let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    let (low, high) =
+        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
     (low <= reach && high >= -reach).then_some(Patch {
         normal: n,
         other: -m,
@@ -172,9 +173,8 @@ mod tests {
     #[test]
     fn stacked_triangles_touch_where_they_overlap() {
         let low = [DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(0.0, 4.0, 0.0)];
-        let up = |z: f64| {
-            [DVec3::new(0.0, 0.0, z), DVec3::new(0.0, 2.0, z), DVec3::new(2.0, 0.0, z)]
-        };
+        let up =
+            |z: f64| [DVec3::new(0.0, 0.0, z), DVec3::new(0.0, 2.0, z), DVec3::new(2.0, 0.0, z)];
         let patch = contact(&low, &up(0.01), 0.02).expect("they touch");
         assert_eq!(patch.normal, DVec3::Z);
         assert!((patch.area - 2.0).abs() < 1e-12);

@@ -186,7 +186,8 @@ impl Mapper<'_> {
             let mut highest = vec![0.0_f64; self.rooms.len()];
             for t in self.sphere.leaves() {
                 let corners = self.sphere.triangles[t].corners.map(|k| k as usize);
-                let best = corners.map(|k| self.rooms[k].distance()).into_iter().fold(0.0, f64::max);
+                let best =
+                    corners.map(|k| self.rooms[k].distance()).into_iter().fold(0.0, f64::max);
                 corners.iter().for_each(|&k| highest[k] = highest[k].max(best));
             }
             let peak = |k: &usize| {
@@ -198,9 +199,8 @@ impl Mapper<'_> {
             peaks.sort_by(|a, b| far(*b).total_cmp(&far(*a)).then(a.cmp(b)));
             peaks.truncate(MOST_PEAKS);
             let peaks: BTreeSet<u32> = peaks.into_iter().map(|k| k as u32).collect();
-            let around = |t: &usize| {
-                self.sphere.triangles[*t].corners.iter().any(|k| peaks.contains(k))
-            };
+            let around =
+                |t: &usize| self.sphere.triangles[*t].corners.iter().any(|k| peaks.contains(k));
             let cuts: Vec<usize> = self.sphere.leaves().filter(around).collect();
             self.cut(cuts)?;
         }

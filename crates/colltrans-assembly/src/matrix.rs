@@ -86,12 +86,6 @@ impl Matrix {
         Ok(Self { directions: directions.to_vec(), meetings: all })
     }
 
-    /// More directions after these.
-    pub(crate) fn append(&mut self, mut more: Self) {
-        self.directions.append(&mut more.directions);
-        self.meetings.append(&mut more.meetings);
-    }
-
     /// The directions, of length 1.
     pub fn directions(&self) -> &[DVec3] {
         &self.directions
@@ -131,7 +125,8 @@ impl Matrix {
     /// The matrix as CSV: a line for each ordered pair and direction that is not free.
     pub fn to_csv(&self, bodies: &Bodies) -> String {
         let parts = bodies.assembly().parts();
-        let mut text = "direction_x,direction_y,direction_z,moving,fixed,outcome,distance\n".to_owned();
+        let mut text =
+            "direction_x,direction_y,direction_z,moving,fixed,outcome,distance\n".to_owned();
         let quoted = |name: &str| {
             if name.contains([',', '"', '\n']) {
                 format!("\"{}\"", name.replace('"', "\"\""))

@@ -93,9 +93,9 @@ mod tests {
             assert_eq!(faces, mesh.faces);
         }
         // Moebius' band.
-        let band: Vec<DVec3> = (0..6).map(|k| DVec3::new(f64::from(k), f64::from(k * k), 1.0)).collect();
-        let mut faces: Vec<Vec<u32>> =
-            vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4], vec![4, 5, 0, 1]];
+        let band: Vec<DVec3> =
+            (0..6).map(|k| DVec3::new(f64::from(k), f64::from(k * k), 1.0)).collect();
+        let mut faces: Vec<Vec<u32>> = vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4], vec![4, 5, 0, 1]];
         assert_eq!(consistent(&band, &mut faces), None);
     }
 }

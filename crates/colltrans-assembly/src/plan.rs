@@ -16,12 +16,12 @@ mod replay;
 use colltrans::StartOverlap;
 use glam::DVec3;
 
-use crate::bodies::Bodies;
 use crate::blocking::Blocking;
+use crate::bodies::Bodies;
 use crate::candidates::Finer;
-use crate::sphere::Sphere;
 use crate::error::AssemblyError;
 use crate::matrix::Matrix;
+use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
 pub use hold::Hold;
@@ -254,8 +254,7 @@ impl Planner<'_> {
         for directions in [own, sphere] {
             *asked += directions.len();
             let start = self.options.start;
-            let way =
-                loose::smallest(self.bodies, &directions, alive, start, allowed, self.watch)?;
+            let way = loose::smallest(self.bodies, &directions, alive, start, allowed, self.watch)?;
             if way.is_some() {
                 return Ok(way);
             }

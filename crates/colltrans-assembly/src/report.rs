@@ -9,13 +9,13 @@ pub mod scene;
 
 use glam::DVec3;
 
-use crate::matrix::Matrix;
-use crate::candidates::Candidate;
 use crate::bodies::Bodies;
+use crate::candidates::Candidate;
+use crate::liaisons::Liaison;
 use crate::map::RemovalMap;
+use crate::matrix::Matrix;
 use crate::plan::Plan;
 use crate::rooms::PartRoom;
-use crate::liaisons::Liaison;
 use crate::start::Start;
 
 /// All that was found out about an assembly.
@@ -87,7 +87,8 @@ mod tests {
 
     #[test]
     fn numbers_for_people() {
-        let cases = [(0.0, "0"), (27.0, "27"), (0.0617, "0.0617"), (1234.56, "1235"), (1e-9, "1.00e-9")];
+        let cases =
+            [(0.0, "0"), (27.0, "27"), (0.0617, "0.0617"), (1234.56, "1235"), (1e-9, "1.00e-9")];
         for (x, text) in cases {
             assert_eq!(short(x), text);
         }

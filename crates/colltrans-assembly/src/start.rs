@@ -42,8 +42,11 @@ impl Start {
         let look = |&[a, b]: &[usize; 2]| {
             let remains = bodies.overlaps(a, b);
             let given = bodies.overlap_as_given(a, b);
-            let overlap = (remains || given.is_some())
-                .then_some(Overlap { parts: [a, b], depth: given.unwrap_or(Some(0.0)), remains });
+            let overlap = (remains || given.is_some()).then_some(Overlap {
+                parts: [a, b],
+                depth: given.unwrap_or(Some(0.0)),
+                remains,
+            });
             tally.step().map(|()| overlap)
         };
         let found: Result<Vec<Option<Overlap>>, AssemblyError> =

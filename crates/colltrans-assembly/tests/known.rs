@@ -24,8 +24,7 @@ fn planned(assembly: &Assembly) -> Plan {
     let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
     let all = vec![true; bodies.len()];
     let start = StartOverlap::Refuse;
-    let matrix =
-        Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
+    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
     disassemble(&bodies, &matrix, &found.finer, Default::default(), Watch::default()).unwrap()
 }
 
@@ -268,10 +267,7 @@ fn directions_and_names_that_are_wrong_are_refused() {
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     for given in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::splat(f64::INFINITY)] {
         let choice = Choice { given: vec![given], ..Choice::default() };
-        assert!(matches!(
-            candidates(&bodies, &[], &choice),
-            Err(AssemblyError::Direction { .. })
-        ));
+        assert!(matches!(candidates(&bodies, &[], &choice), Err(AssemblyError::Direction { .. })));
     }
     let twice = vec![part("a", &[cuboid([0.0; 3], [1.0; 3])]); 2];
     assert!(matches!(Assembly::new(twice), Err(AssemblyError::SameName { .. })));

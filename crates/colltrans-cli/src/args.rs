@@ -12,8 +12,8 @@ use colltrans::Solver;
 use colltrans::glam::DVec3;
 
 use crate::body::Recipe;
-use help::{ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, FORMATS};
 pub(crate) use assembly::AssemblyArguments;
+use help::{ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, FORMATS};
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, threads};
 

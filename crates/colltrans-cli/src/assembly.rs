@@ -56,11 +56,8 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let bodies = Bodies::new(&assembly, fit)?;
     let start = Start::new(&bodies, watch)?;
     let touching = liaisons(&bodies, watch)?;
-    let choice = Choice {
-        given: arguments.direction.clone(),
-        search: !arguments.only,
-        ..Choice::default()
-    };
+    let choice =
+        Choice { given: arguments.direction.clone(), search: !arguments.only, ..Choice::default() };
     let mut found = candidates(&bodies, &touching, &choice)?;
     let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
     found.finer.splice(0..0, given.iter().map(finer));

@@ -185,7 +185,9 @@ impl Chosen {
 
     fn add_finer(&mut self, axis: &Axis) {
         for direction in [positive(axis.axis), positive(-axis.axis)] {
-            let same = |f: &Finer| f.part == Some(axis.part) && angle(f.direction, direction) <= self.apart;
+            let same = |f: &Finer| {
+                f.part == Some(axis.part) && angle(f.direction, direction) <= self.apart
+            };
             if self.is_new(direction) && !self.found.finer.iter().any(same) {
                 let Axis { origin, part, .. } = *axis;
                 self.found.finer.push(Finer { direction, origin, part: Some(part) });
@@ -243,8 +245,10 @@ fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
 fn normals_of(liaisons: &[Liaison], part: usize, most: usize) -> Vec<(f64, DVec3)> {
     const TOGETHER: f64 = 0.017;
     let own = liaisons.iter().filter(|l| l.parts.contains(&part));
-    let mut patches: Vec<(f64, DVec3)> =
-        own.flat_map(|l| &l.patches).flat_map(|p| [(p.area, p.normal), (p.area, p.other)]).collect();
+    let mut patches: Vec<(f64, DVec3)> = own
+        .flat_map(|l| &l.patches)
+        .flat_map(|p| [(p.area, p.normal), (p.area, p.other)])
+        .collect();
     patches.sort_by(|x, y| y.0.total_cmp(&x.0));
     let mut normals: Vec<(f64, DVec3)> = Vec::new();
     for (area, normal) in patches {

@@ -1,7 +1,7 @@
 //! Removal maps as pictures, in Mollweide's projection: equal areas, the poles `+z` and `-z` at top and
 //! bottom, `+x` in the middle.
 
-use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
 use glam::{DVec2, DVec3};
@@ -11,8 +11,14 @@ use crate::rooms::PartRoom;
 
 /// Colours of blocked directions, from stopped at once to stopped far away.
 const BLOCKED: [[u8; 3]; 8] = [
-    [22, 32, 72], [30, 55, 110], [40, 82, 148], [58, 110, 178], [90, 141, 200], [128, 172, 217],
-    [170, 202, 231], [211, 228, 243],
+    [22, 32, 72],
+    [30, 55, 110],
+    [40, 82, 148],
+    [58, 110, 178],
+    [90, 141, 200],
+    [128, 172, 217],
+    [170, 202, 231],
+    [211, 228, 243],
 ];
 const FREE: [u8; 3] = [246, 150, 40];
 const OVERLAP: [u8; 3] = [150, 60, 60];
@@ -132,7 +138,9 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
     let _ = writeln!(
         text,
         "<ellipse cx=\"{}\" cy=\"{}\" rx=\"{}\" ry=\"{SCALE}\" fill=\"none\" stroke=\"#333\"/>",
-        MIDDLE.x, MIDDLE.y, 2.0 * SCALE
+        MIDDLE.x,
+        MIDDLE.y,
+        2.0 * SCALE
     );
     graticule(&mut text);
     axes(&mut text);
@@ -173,7 +181,8 @@ fn runs(map: &RemovalMap) -> Vec<String> {
         while from < COLUMNS {
             let to = (from..COLUMNS).find(|&k| classes[k] != classes[from]).unwrap_or(COLUMNS);
             if let Some(class) = classes[from] {
-                let (x, y) = (MIDDLE.x - 2.0 * SCALE + from as f64 * w, MIDDLE.y - SCALE + row as f64 * h);
+                let (x, y) =
+                    (MIDDLE.x - 2.0 * SCALE + from as f64 * w, MIDDLE.y - SCALE + row as f64 * h);
                 let (width, height) = ((to - from) as f64 * w + 0.1, h + 0.1);
                 let _ = write!(paths[class], "M{x:.1} {y:.1}h{width:.1}v{height:.1}h-{width:.1}z");
             }
@@ -215,7 +224,13 @@ fn graticule(text: &mut String) {
 }
 
 fn axes(text: &mut String) {
-    let names = [(DVec3::X, "+x"), (DVec3::Y, "+y"), (DVec3::NEG_Y, "−y"), (DVec3::Z, "+z"), (DVec3::NEG_Z, "−z")];
+    let names = [
+        (DVec3::X, "+x"),
+        (DVec3::Y, "+y"),
+        (DVec3::NEG_Y, "−y"),
+        (DVec3::Z, "+z"),
+        (DVec3::NEG_Z, "−z"),
+    ];
     let mut label = |at: DVec2, name: &str| {
         let _ = writeln!(
             text,
@@ -226,7 +241,8 @@ fn axes(text: &mut String) {
         );
     };
     for (d, name) in names {
-        label(in_picture(place(d)), name);
+        // Names of the poles stay inside.
+        label(in_picture(place(d)) + DVec2::Y * 12.0 * d.z, name);
     }
     label(in_picture(DVec2::new(-2.0, 0.0)), "−x");
     label(in_picture(DVec2::new(2.0, 0.0)), "−x");
@@ -250,7 +266,9 @@ fn legend(text: &mut String, map: &RemovalMap) {
         entry(k as usize, &name, 58.0);
     }
     entry(9, "overlapping", 60.0);
-    text.push_str("<text x=\"40\" y=\"434\" font-size=\"11\" fill=\"#555\">blocked after, from</text>\n");
+    text.push_str(
+        "<text x=\"40\" y=\"434\" font-size=\"11\" fill=\"#555\">blocked after, from</text>\n",
+    );
 }
 
 /// Three digits.

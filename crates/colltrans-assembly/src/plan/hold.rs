@@ -54,9 +54,7 @@ pub(super) fn explain(
 fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
     match sets.first().map_or(usize::MAX, |s| s.0.len()).cmp(&set.len()) {
         std::cmp::Ordering::Greater => *sets = vec![(set, d)],
-        std::cmp::Ordering::Equal
-            if sets.len() < MOST_SETS && sets.iter().all(|s| s.0 != set) =>
-        {
+        std::cmp::Ordering::Equal if sets.len() < MOST_SETS && sets.iter().all(|s| s.0 != set) => {
             sets.push((set, d));
         }
         _ => (),
@@ -70,26 +68,36 @@ impl Stuck {
         let directions = self.directions;
         let mut text = match (&self.overlapping[..], self.fixed) {
             ([], false) => {
-                format!("they hold each other along all of {directions} directions: translations \
-                         cannot take them apart")
+                format!(
+                    "they hold each other along all of {directions} directions: translations \
+                         cannot take them apart"
+                )
             }
             ([], true) => {
-                format!("they are held, along all of {directions} directions, by what is fixed or \
-                         by each other")
+                format!(
+                    "they are held, along all of {directions} directions, by what is fixed or \
+                         by each other"
+                )
             }
             ([[a, b], rest @ ..], _) => {
-                let more = if rest.is_empty() { String::new() } else {
+                let more = if rest.is_empty() {
+                    String::new()
+                } else {
                     format!(", and {} more pairs", rest.len())
                 };
                 format!("{} and {} overlap with this tolerance{more}", name(*a), name(*b))
             }
         };
-        let easiest = self.holds.iter().filter(|h| !h.by.is_empty()).min_by_key(|h| h.by[0].0.len());
+        let easiest =
+            self.holds.iter().filter(|h| !h.by.is_empty()).min_by_key(|h| h.by[0].0.len());
         if let Some(hold) = easiest {
             let (set, _) = &hold.by[0];
             let names: Vec<&str> = set.iter().map(|&k| name(k)).collect();
-            text += &format!("; the least that holds a part: {} is held by {}", name(hold.part),
-                names.join(", "));
+            text += &format!(
+                "; the least that holds a part: {} is held by {}",
+                name(hold.part),
+                names.join(", ")
+            );
         }
         text
     }

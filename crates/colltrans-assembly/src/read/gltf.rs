@@ -18,7 +18,8 @@ use crate::part::{Assembly, Part, Piece};
 
 pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
     let bytes = std::fs::read(path).map_err(io(path))?;
-    let Gltf { document, blob } = Gltf::from_slice(&bytes).map_err(|e| contents(path, "glTF", e))?;
+    let Gltf { document, blob } =
+        Gltf::from_slice(&bytes).map_err(|e| contents(path, "glTF", e))?;
     let buffers = buffers(path, &document, blob)?;
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let Some(scene) = scene else { return Err(contents(path, "scenes", "there is no scene")) };
@@ -110,9 +111,11 @@ impl Reader<'_> {
                 let reason = format!("index {beyond} of only {count} vertices");
                 return Err(contents(self.path, format!("{place}, mesh {}", mesh.index()), reason));
             }
-            merged.faces.extend(triangles(primitive.mode(), &indices).into_iter().map(|t| {
-                t.map(|k| k + base).to_vec()
-            }));
+            merged.faces.extend(
+                triangles(primitive.mode(), &indices)
+                    .into_iter()
+                    .map(|t| t.map(|k| k + base).to_vec()),
+            );
         }
         Ok(merged)
     }

@@ -74,9 +74,8 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
     let manifest: Manifest = if toml {
         toml::from_str(&text).map_err(|e| contents(path, toml_place(&text, &e), e.message()))?
     } else {
-        serde_json::from_str(&text).map_err(|e| {
-            contents(path, format!("line {}, column {}", e.line(), e.column()), e)
-        })?
+        serde_json::from_str(&text)
+            .map_err(|e| contents(path, format!("line {}, column {}", e.line(), e.column()), e))?
     };
     let folder = path.parent().unwrap_or(Path::new("."));
     let (mut parts, mut missing) = (Vec::new(), Vec::new());
@@ -116,9 +115,9 @@ fn part(
 ) -> Result<Part, ReadError> {
     let first = files.first().ok_or_else(|| contents(path, place(k), "no file is given"))?;
     let name = entry.name.clone().unwrap_or_else(|| stem(Path::new(first)));
-    let world = entry.world_from_mesh().map_err(|reason| {
-        contents(path, format!("{} ({name})", place(k)), reason)
-    })?;
+    let world = entry
+        .world_from_mesh()
+        .map_err(|reason| contents(path, format!("{} ({name})", place(k)), reason))?;
     let pieces: Result<Vec<_>, ReadError> =
         files.iter().map(|file| piece(&folder.join(file), world)).collect();
     Ok(Part::new(name, &pieces?).map_err(in_file(path))?.with_fixed(entry.fixed))
@@ -169,7 +168,10 @@ impl Rotation {
 fn quaternion(q: [f64; 4]) -> Result<DMat3, String> {
     let rotation = DQuat::from_array(q);
     if (rotation.length() - 1.0).abs() > ROUNDED || !rotation.is_finite() {
-        return Err(format!("quaternion {q:?} (x, y, z, w) has length {}, not 1", rotation.length()));
+        return Err(format!(
+            "quaternion {q:?} (x, y, z, w) has length {}, not 1",
+            rotation.length()
+        ));
     }
     Ok(DMat3::from_quat(rotation.normalize()))
 }

@@ -59,7 +59,9 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, R
         "urdf" => urdf::read(path, options),
         "glb" | "gltf" => gltf::read(path),
         "3mf" => threemf::read(path),
-        _ if colltrans_mesh::Format::of_path(path).is_ok() => folder::read_files(path, &[path.into()]),
+        _ if colltrans_mesh::Format::of_path(path).is_ok() => {
+            folder::read_files(path, &[path.into()])
+        }
         _ if path.exists() => Err(ReadError::UnknownSource { path: path.into() }),
         _ => Err(io(path)(std::io::Error::from(std::io::ErrorKind::NotFound))),
     }

@@ -14,7 +14,8 @@ pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
         let sign = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
         half * DVec3::new(sign(0), sign(1), sign(2))
     };
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let faces = faces.iter().map(|f| f.to_vec()).collect();
     Piece { vertices: (0..8).map(corner).collect(), faces, world_from_piece }
 }

@@ -168,7 +168,8 @@ fn attributes(tag: &BytesStart) -> Result<HashMap<String, String>, String> {
     for attribute in tag.attributes() {
         let attribute = attribute.map_err(|e| e.to_string())?;
         let key = attribute.key.local_name().as_ref().to_owned();
-        let value = quick_xml::escape::unescape(&attribute.value).map_err(|e| e.to_string())?.into_owned();
+        let value =
+            quick_xml::escape::unescape(&attribute.value).map_err(|e| e.to_string())?.into_owned();
         all.insert(key, value);
     }
     Ok(all)

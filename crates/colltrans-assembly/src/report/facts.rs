@@ -99,9 +99,7 @@ fn steps(f: &Findings) -> Vec<Value> {
 
 fn stuck(f: &Findings) -> Vec<Value> {
     let assembly = f.bodies.assembly();
-    let set = |(parts, d): &(Vec<usize>, DVec3)| {
-        json!({ "parts": assembly.names(parts), "direction": d.to_array() })
-    };
+    let set = |(parts, d): &(Vec<usize>, DVec3)| json!({ "parts": assembly.names(parts), "direction": d.to_array() });
     let stuck = |s: &crate::plan::Stuck| {
         let holds: Vec<Value> = s
             .holds

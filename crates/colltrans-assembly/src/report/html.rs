@@ -76,7 +76,11 @@ fn overview(text: &mut String, f: &Findings) {
         let _ = writeln!(text, "<p class=\"warn\">{}</p>", escaped(note));
     }
     if !assembly.parts().is_empty() {
-        let _ = writeln!(text, "<figure style=\"max-width:45em\">{}</figure>", scene::svg(&whole(f, &[]), &[]));
+        let _ = writeln!(
+            text,
+            "<figure style=\"max-width:45em\">{}</figure>",
+            scene::svg(&whole(f, &[]), &[])
+        );
     }
 }
 
@@ -96,8 +100,11 @@ fn overlaps(text: &mut String, f: &Findings) {
     let remaining = f.start.remaining().count();
     if remaining > 0 {
         let advice = f.start.suggested.map_or(String::new(), |t| {
-            format!(" Try a tolerance of {} or, for curved fits, the chord errors of both parts \
-                     together.", short(t))
+            format!(
+                " Try a tolerance of {} or, for curved fits, the chord errors of both parts \
+                     together.",
+                short(t)
+            )
         });
         let _ = writeln!(
             text,
@@ -130,7 +137,8 @@ fn steps(text: &mut String, f: &Findings) {
         let picture = step_picture(f, k, &gone);
         let within =
             step.within.map_or(String::new(), |w| format!(" (of the group of step {})", w + 1));
-        let travel = if step.travel > 0.0 { format!(", {}", short(step.travel)) } else { String::new() };
+        let travel =
+            if step.travel > 0.0 { format!(", {}", short(step.travel)) } else { String::new() };
         let names: Vec<String> =
             f.bodies.assembly().names(&step.parts).into_iter().map(escaped).collect();
         let _ = writeln!(
@@ -146,7 +154,11 @@ fn steps(text: &mut String, f: &Findings) {
     }
     text.push_str("</div>\n");
     if f.plan.steps.len() > MOST_STEPS {
-        let _ = writeln!(text, "<p>{} more steps are in the JSON.</p>", f.plan.steps.len() - MOST_STEPS);
+        let _ = writeln!(
+            text,
+            "<p>{} more steps are in the JSON.</p>",
+            f.plan.steps.len() - MOST_STEPS
+        );
     }
 }
 
@@ -155,14 +167,17 @@ fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     let step = &f.plan.steps[k];
     let parts = f.bodies.assembly().parts();
     let [low, high] = f.bodies.assembly().bounds();
-    let by = step.direction * (step.travel * 0.5).clamp(0.12 * (high - low).length(), 0.5 * (high - low).length());
+    let by = step.direction
+        * (step.travel * 0.5).clamp(0.12 * (high - low).length(), 0.5 * (high - low).length());
     let last = step.travel == 0.0 && step.within.is_none() && k + 1 == f.plan.steps.len();
     let by = if last { DVec3::ZERO } else { by };
     let group = step.within.map(|w| &f.plan.steps[w].parts);
     let there = |p: usize| match group {
         Some(group) => {
             group.contains(&p)
-                && !f.plan.steps[..k].iter().any(|s| s.within == step.within && s.parts.contains(&p))
+                && !f.plan.steps[..k]
+                    .iter()
+                    .any(|s| s.within == step.within && s.parts.contains(&p))
         }
         None => !gone[p],
     };
@@ -181,7 +196,10 @@ fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     let middle = step.parts.iter().map(|&p| f.bodies.bounds(p)).reduce(|a, b| a.join(&b));
     let arrows: Vec<Arrow> = middle
         .filter(|_| !last)
-        .map(|b| Arrow { from: b.center(), to: b.center() + by + step.direction * 0.1 * (high - low).length() })
+        .map(|b| Arrow {
+            from: b.center(),
+            to: b.center() + by + step.direction * 0.1 * (high - low).length(),
+        })
         .into_iter()
         .collect();
     scene::svg(&shown, &arrows)
@@ -218,8 +236,10 @@ fn map_section(text: &mut String, map: &map::RemovalMap, title: &str) {
 }
 
 fn rooms(text: &mut String, f: &Findings) {
-    text.push_str("<h2>Rooms</h2>\n<p>How far each part can move before another stops it, with all \
-                   parts in place.</p>\n<div class=\"wide\"><table><tr><th>part</th>");
+    text.push_str(
+        "<h2>Rooms</h2>\n<p>How far each part can move before another stops it, with all \
+                   parts in place.</p>\n<div class=\"wide\"><table><tr><th>part</th>",
+    );
     for d in f.matrix.directions() {
         let _ = write!(text, "<th>{}</th>", arrow(*d));
     }
@@ -265,7 +285,9 @@ fn graphs(text: &mut String, f: &Findings) {
 }
 
 fn contacts(text: &mut String, f: &Findings) {
-    text.push_str("<h2>Contacts</h2>\n<table><tr><th>parts</th><th>area</th><th>around</th></tr>\n");
+    text.push_str(
+        "<h2>Contacts</h2>\n<table><tr><th>parts</th><th>area</th><th>around</th></tr>\n",
+    );
     for l in f.liaisons.iter().take(MOST_ROWS) {
         let [a, b] = l.parts.map(|k| escaped(f.bodies.assembly().parts()[k].name()));
         let c = l.center().to_array().map(short);
@@ -280,8 +302,10 @@ fn contacts(text: &mut String, f: &Findings) {
 }
 
 fn parts(text: &mut String, f: &Findings) {
-    text.push_str("<h2>Parts</h2>\n<table><tr><th>part</th><th>facets</th><th>volume</th>\
-                   <th>remarks</th></tr>\n");
+    text.push_str(
+        "<h2>Parts</h2>\n<table><tr><th>part</th><th>facets</th><th>volume</th>\
+                   <th>remarks</th></tr>\n",
+    );
     for p in f.bodies.assembly().parts().iter().take(MOST_ROWS) {
         let mut remarks: Vec<String> = p.defects().iter().map(|d| escaped(d)).collect();
         if p.fixed() {

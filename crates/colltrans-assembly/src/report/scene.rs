@@ -118,7 +118,8 @@ fn rasterised(shown: &[Shown], view: &View) -> Raster {
         let solid = s.part.solid();
         for t in solid.triangles() {
             let corners = t.map(|v| solid.vertices()[v as usize] + s.by);
-            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+            let normal =
+                (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
             if solid.is_closed() && normal.dot(view.towards) <= 0.0 {
                 continue;
             }

@@ -8,7 +8,8 @@ pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Piece {
     let corner = |k: usize| {
         DVec3::from_array(std::array::from_fn(|i| if k >> i & 1 == 1 { high[i] } else { low[i] }))
     };
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     Piece {
         vertices: (0..8).map(corner).collect(),
         faces: faces.iter().map(|f| f.to_vec()).collect(),
@@ -59,7 +60,10 @@ pub fn boxed() -> Assembly {
     let parts = vec![
         part("box", &well([0.0; 3], [3.0; 3], 1.0)),
         part("core", &[cuboid([0.0; 3], [3.0, 3.0, 2.5])]),
-        part("lid", &[cuboid([-1.0, -1.0, 3.0], [4.0, 4.0, 3.5]), cuboid([0.0, 0.0, 2.5], [3.0; 3])]),
+        part(
+            "lid",
+            &[cuboid([-1.0, -1.0, 3.0], [4.0, 4.0, 3.5]), cuboid([0.0, 0.0, 2.5], [3.0; 3])],
+        ),
     ];
     Assembly::new(parts).unwrap()
 }

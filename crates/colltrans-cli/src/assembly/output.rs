@@ -23,9 +23,7 @@ pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), F
         files(f, arguments, folder, &json)?;
     }
     let text = if arguments.json { format!("{json}\n") } else { summary(f) };
-    io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(|e| Failure::output("standard output", &e))
+    io::stdout().write_all(text.as_bytes()).map_err(|e| Failure::output("standard output", &e))
 }
 
 fn files(
@@ -76,7 +74,8 @@ fn summary(f: &Findings) -> String {
         text.push_str("plan\n");
     }
     for (k, step) in f.plan.steps.iter().enumerate() {
-        let within = step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
+        let within =
+            step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
         let [x, y, z] = step.direction.to_array();
         let way = format!("{} along {x},{y},{z}", step.travel);
         let _ = writeln!(text, "  {}. {}{within}: {way}", k + 1, names(&step.parts));

@@ -163,7 +163,7 @@ impl<'a> Bodies<'a> {
     ) -> Room {
         let start = match (self.overlaps(a, b), start) {
             (false, _) => StartOverlap::Apart,
-            (true, StartOverlap::Ignore) => StartOverlap::Ignore,
+            (true, StartOverlap::Ignore | StartOverlap::KnownIgnore) => StartOverlap::KnownIgnore,
             (true, _) => return Room::Overlapping,
         };
         let options = SolidOptions { start_overlap: start, tolerance: Some(0.0), before };

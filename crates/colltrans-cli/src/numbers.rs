@@ -60,6 +60,11 @@ pub(crate) fn about(value: f64) -> String {
     format!("{value:.0e}")
 }
 
+/// How many there are of something.
+pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

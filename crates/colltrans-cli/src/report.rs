@@ -114,14 +114,14 @@ fn align(columns: &[String]) -> String {
 }
 
 /// A translation, which has an error, and its length.
-fn along(t: f64, error: f64, direction: DVec3) -> String {
+pub(crate) fn along(t: f64, error: f64, direction: DVec3) -> String {
     let length = direction.length();
     let shown = known(t * length, error * length);
     format!("{} times the direction, a length of {shown}", known(t, error))
 }
 
 /// A proven bound, with all its digits.
-fn times(t: f64) -> String {
+pub(crate) fn times(t: f64) -> String {
     format!("{} times the direction", number(t))
 }
 
@@ -201,7 +201,7 @@ fn hulls(text: &mut String, record: &Record) {
         Name::Overlapping => {
             format!("a bound for {whose}: free after these ways, perhaps no overlap at all")
         }
-        Name::Contact | Name::Blocked | Name::Error => {
+        Name::Contact | Name::Blocked | Name::Free | Name::Error => {
             format!("a bound for {whose}: no contact before this one, perhaps later or none")
         }
     };

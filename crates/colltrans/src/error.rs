@@ -38,6 +38,14 @@ pub enum BuildError {
         /// The point as given.
         point: DVec3,
     },
+    /// Vertices and faces of a saved body that do not belong together.
+    #[error("{vertices} vertices and {faces} faces are not those of a convex body")]
+    NotABody {
+        /// Number of vertices.
+        vertices: usize,
+        /// Number of faces.
+        faces: usize,
+    },
     /// The faces of the mesh do not form one closed, consistently oriented surface.
     #[error(transparent)]
     Topology(#[from] TopologyError),

@@ -47,7 +47,8 @@
 //! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
 //! convex hull), from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
 //! ([`ConvexPolyhedron::cuboid`]), and then asked as often as one likes, from any thread. Flat
-//! polygons, segments and single points are bodies too.
+//! polygons, segments and single points are bodies too. Bodies that are not convex are [`Solid`]s,
+//! asked by [`SolidCast`].
 //!
 //! # Frames and units
 //!
@@ -130,7 +131,9 @@ pub use answer::{
 };
 pub use body::solid::{Shell, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{Body, ConvexPolyhedron, ConvexityDefect, Feature, Placed, Pose, convexity_defect};
-pub use cast::{CaseError, Cast, Features, WitnessPoints, cast};
+#[cfg(feature = "json")]
+pub use cast::{Case, CaseError};
+pub use cast::{Cast, Features, WitnessPoints, cast};
 pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
@@ -146,3 +149,8 @@ pub use tracker::Tracker;
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
+
+/// The examples of `docs/solids.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/solids.md")]
+pub struct Solids;

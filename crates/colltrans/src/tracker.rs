@@ -100,7 +100,6 @@ impl<'a> Tracker<'a> {
     ///
     /// # Errors
     /// As [`Cast::first_contact`].
-    #[inline]
     pub fn first_contact(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
         self.begin(cast);
         self.run(cast, 0)

@@ -18,6 +18,7 @@ fn cast<'a>(a: &'a Solid, b: &'a Solid, direction: DVec3) -> SolidCast<'a> {
     SolidCast::new((a, &Pose::IDENTITY), (b, &Pose::IDENTITY), direction).expect("a direction")
 }
 
+#[expect(clippy::large_types_passed_by_value, reason = "it is turned into another one")]
 fn with_tolerance(cast: SolidCast<'_>, tolerance: f64) -> SolidCast<'_> {
     let options = SolidOptions { tolerance: Some(tolerance), ..SolidOptions::default() };
     cast.with(options).expect("a tolerance")

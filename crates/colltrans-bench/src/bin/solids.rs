@@ -54,7 +54,7 @@ fn main() -> ExitCode {
     if command.only.as_ref().is_none_or(|only| "flat".contains(only.as_str())) {
         rows.extend(flat(&command.arguments));
     }
-    report::write(&command.arguments, &rows)
+    report::write("solids", &command.arguments, &rows)
 }
 
 fn print_pair(row: &Value) {

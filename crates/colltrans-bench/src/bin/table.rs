@@ -118,7 +118,7 @@ struct Cases {
 /// Both rows of a shape and a size.
 fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], BuildError> {
     let mut random = Random::new(arguments.seed, &[n as u64]);
-    let count = if n >= 50_000 { 2 } else { 8 };
+    let count = if n >= 50_000 { 2 } else { 4 };
     let started = Instant::now();
     let mut pair = || -> Result<Bodies, BuildError> {
         Ok(Bodies::new([shape.draw(n, &mut random)?, shape.draw(n, &mut random)?]))

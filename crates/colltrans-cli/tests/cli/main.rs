@@ -2,7 +2,10 @@
 
 mod batch;
 mod cast;
+mod clear;
 mod door;
 mod example_parts;
 mod picture;
+mod readme;
+mod replay;
 mod support;

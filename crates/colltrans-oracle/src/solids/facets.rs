@@ -45,7 +45,7 @@ pub fn rule(moving: &[Triangle], fixed: &[Triangle], direction: DVec3) -> Rule {
         for g in fixed {
             let (n, m) = (facing(f), facing(g));
             let front = n.is_positive() && m.is_negative();
-            if !front && !(n.is_negative() && m.is_positive()) {
+            if !(front || n.is_negative() && m.is_positive()) {
                 continue;
             }
             let Some([least, largest]) = plane.gaps(f, g, &direction) else { continue };

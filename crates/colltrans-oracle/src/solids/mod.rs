@@ -3,5 +3,9 @@
 //! ([`settings`]).
 
 pub mod cells;
+mod convex;
 pub mod facets;
 pub mod settings;
+
+pub use convex::as_solids;
+pub use settings::Seen;

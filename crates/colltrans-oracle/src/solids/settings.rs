@@ -80,6 +80,7 @@ impl Setting {
             }
             "mould" => {
                 let axis = rng.int(0, 2) as usize;
+                cells[0] = Cells::random(rng.int(1, 3) as usize, rng);
                 cells[1] = cells[0].mould((!rng.one_in(4)).then_some(axis));
                 shear = if rng.one_in(2) { sheared(rng) } else { shear };
                 translations = [DVec3::ZERO; 2];

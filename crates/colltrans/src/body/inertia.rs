@@ -52,8 +52,11 @@ impl Inertia {
         let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
         let radius = (0..3).map(|i| shape.col(i)[i]).sum::<f64>().sqrt();
         let factor = cholesky(&shape);
-        let mean = (factor.x_axis.x * factor.y_axis.y * factor.z_axis.z).powf(2.0 / 3.0);
-        let round = mean > ROUND * radius * radius / 3.0;
+        // Both means to the third power, as shares of the radius: no root, which platforms round
+        // differently, and no overflow.
+        let axes = (factor.x_axis.x / radius) * (factor.y_axis.y / radius);
+        let geometric = axes * (factor.z_axis.z / radius);
+        let round = geometric * geometric > (ROUND / 3.0) * (ROUND / 3.0) * (ROUND / 3.0);
         let inner = if volume > 0.0 { inner_radius(vertices, topology, center) } else { 0.0 };
         Self { reach, center, factor, radius, round, inner, volume }
     }

@@ -2,10 +2,11 @@
 //!
 //! The way: [`Cast`] holds the setting and the choices, [`derive`](mod@derive) makes the answers
 //! that take more than one cast, [`contact`] computes what is not needed for an answer but asked of
-//! it, [`replay`] saves a query as a file.
+//! it, `replay` saves a query as a file (feature `json`).
 
 mod contact;
 mod derive;
+#[cfg(feature = "json")]
 mod replay;
 
 use std::fmt;
@@ -24,7 +25,8 @@ use crate::solve::options::{Focus, Options};
 use crate::solve::{WarmStart, search};
 pub use contact::{Features, WitnessPoints};
 pub(crate) use derive::{clearance_of, depth_of, intersection_of, range_of};
-pub use replay::CaseError;
+#[cfg(feature = "json")]
+pub use replay::{Case, CaseError};
 
 /// A moving body, a fixed one, and the direction in which the first is translated: what all queries
 /// are asked of.
@@ -147,7 +149,8 @@ impl Cast<'_> {
     /// # Errors
     /// A graze tolerance that is negative or not finite, a narrowing gap that is negative or not a
     /// number.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub fn with_options(self, options: Options) -> Result<Self, QueryError> {
         options.check()?;
         Ok(Self { options, ..self })
@@ -192,7 +195,6 @@ impl Cast<'_> {
     ///
     /// # Errors
     /// Only a search that ends without an answer, of which no case is known.
-    #[inline]
     pub fn first_contact(&self) -> Result<Outcome, QueryError> {
         self.first_contact_observed(&mut Nobody)
     }

@@ -22,6 +22,7 @@ impl Body for ConvexPolyhedron {
 }
 
 impl Options {
+    #[inline]
     pub(crate) fn check(&self) -> Result<(), QueryError> {
         let tolerance = self.graze_tolerance;
         if !tolerance.is_finite() || tolerance < 0.0 {

@@ -1,23 +1,20 @@
 //! How far a body can reach beyond a support point that a climb has found.
 //!
-//! A climb ends where no neighbour gains more than rounding can tell. On an exactly convex body a
-//! vertex none of whose neighbours gains is extreme; here neighbours may gain by as much as a dot
-//! product with an edge can be wrong, and the exact hull of the vertices may have edges that are no
-//! edges of the body: diagonals of its polygons, which are flat only up to the *flatness* `f`.
+//! A climb ends where no neighbour gains more than rounding can tell. On the exact convex hull of the
+//! vertices a path along its edges leads from any vertex `v` to the support point without ever going
+//! down, so the support point is found by visiting, from `v`, all that may not be lower than `v`: the
+//! *plateau*. What is gained there is computed from differences of vertices, up to `GAIN reach`.
 //!
-//! Notation. `n` is the normal, `v` the vertex, `e` an edge or a diagonal from it, of unit length
-//! where marked `^`; `g(e) = n . e`, known up to `err(e)`. An edge is *tied* if `g(e)` may be above
-//! `-(BAND |e| + 2 f)`, a face if one of its two edges at `v` is; then its diagonals are looked at,
-//! too. Along those of other faces nothing is gained but `2 f`.
+//! Edges of the exact hull may be diagonals of the body's polygons, which are flat only up to the
+//! *flatness* `f`. One of the two ways round a polygon stays as high as its diagonal, up to `4 f`; so
+//! the plateau is visited down to `h = 2 GAIN reach + 4 f` below `v`. Mostly it is `v` alone, or the
+//! corners of an edge or a face.
 //!
-//! - No tie: no point is beyond `v` by more than `2 f`.
-//! - With ties let `m` be the unit vector along the sum of the tied `^e`, and `s` the largest
-//!   `(g(e) + err(e)) / (m . e)` of them that is positive. Then `(n - s m) . e <= 0` for the tied
-//!   edges and diagonals, and, as long as `s <= BAND`, for all others up to `2 f`: `v` is extreme
-//!   along `n - s m`, and along `n` no point `x` is beyond it by more than `s |x - v| + 2 f <= 2 s
-//!   reach + 2 f`.
-//! - At the corners of polygons with many sides, where some `m . e` is small, `s` says too much. Then
-//!   all vertices are looked at, and the largest gain found is exceeded by rounding alone.
+//! A face with many corners has its plateau measured at three that span it widely, `a`, `b` the one
+//! farthest from `a`, and `c` the one farthest from the line through both. Any corner is `l_a a + l_b
+//! b + l_c c` with `|l_c| <= 1`, `|l_b| <= 2`, `|l_a| <= 4`, up to `8 f`, so it gains at most 7 times
+//! what one of the three does; and where all edges that leave the face go down more steeply than the
+//! normal can be tilted, nothing off the face belongs to the plateau.
 
 use glam::DVec3;
 
@@ -25,11 +22,30 @@ use super::ConvexPolyhedron;
 use crate::number::noise;
 use crate::number::plane::polygon_normal;
 
-/// Gains above minus this share of an edge are ties.
-const BAND: f64 = 32.0 * noise::GAIN;
+/// Vertices of a plateau that are visited one by one; a larger one is taken to be the whole body.
+const VISITED: usize = 16;
 
-/// The largest `s` that is not worth a look at all vertices.
-const ENOUGH: f64 = 8.0 * noise::GAIN;
+/// Of bodies with up to this many vertices each is looked at: that is faster than to visit some.
+const SMALL: usize = 48;
+
+/// A face with more corners is measured at three.
+const FEW: usize = 8;
+
+/// Sum of the magnitudes of the weights over three corners.
+const WEIGHTS: f64 = 7.0;
+
+/// A face with many corners.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LargeFace {
+    face: u32,
+    /// Three that span it.
+    corners: [u32; 3],
+    normal: DVec3,
+    /// Of the triangle of the three.
+    height: f64,
+    /// The least slope, downwards, of the edges that leave the face.
+    descent: f64,
+}
 
 impl ConvexPolyhedron {
     /// Bound on how far the body reaches beyond `vertex`, a support point found along the unit vector
@@ -40,96 +56,129 @@ impl ConvexPolyhedron {
             // The largest of the rounded products was taken: both may be off.
             return 2.0 * noise::GAIN * self.inertia.reach;
         }
-        self.excess_of_climb(normal, vertex)
-    }
-
-    fn excess_of_climb(&self, normal: DVec3, vertex: u32) -> f64 {
-        let mut sum = DVec3::ZERO;
-        self.each_tie(normal, vertex, |edge, _| sum += edge * (1.0 / edge.length()));
-        if sum == DVec3::ZERO {
-            return 2.0 * self.flatness;
-        }
-        let m = sum.normalize_or_zero();
-        let mut tilt = 0.0_f64;
-        self.each_tie(normal, vertex, |edge, gain| {
-            let excess = gain + noise::GAIN * normal.abs().dot(edge.abs());
-            if excess > 0.0 {
-                let along = m.dot(edge);
-                // A product that may be nothing but rounding bounds nothing.
-                let sound = along > noise::GAIN * edge.abs().element_sum();
-                tilt = if sound { tilt.max(1.01 * excess / along) } else { f64::INFINITY };
-            }
-        });
-        if tilt <= ENOUGH {
-            return 2.0 * (self.flatness + tilt * self.inertia.reach);
-        }
         let here = self.vertices[vertex as usize];
-        let gain = |v: &DVec3| normal.dot(*v - here);
-        let most = self.vertices.iter().map(gain).fold(0.0, f64::max);
-        most + 2.0 * noise::GAIN * self.inertia.reach
-    }
-
-    /// Reports the tied edges, and the diagonals of tied faces, with what they gain.
-    #[inline]
-    fn each_tie(&self, normal: DVec3, vertex: u32, mut report: impl FnMut(DVec3, f64)) {
-        let here = self.vertices[vertex as usize];
+        let least = -self.plateau_depth();
         let neighbours = self.neighbours(vertex);
-        let mut last = usize::MAX;
-        for (k, &w) in neighbours.iter().enumerate() {
-            let edge = self.vertices[w as usize] - here;
-            let gain = normal.dot(edge);
-            let least = 2.0 * self.flatness;
-            // Squares: most edges are not tied, and a root for each costs more than the rest.
-            let low = (gain + least).min(0.0);
-            if low * low > BAND * BAND * edge.length_squared() {
-                continue;
+        let ties = |w: &u32| normal.dot(self.vertices[*w as usize] - here) > least;
+        if neighbours.iter().any(ties) { self.excess_of_plateau(normal, vertex) } else { 0.0 }
+    }
+
+    /// How far below a vertex its plateau is visited.
+    #[inline]
+    fn plateau_depth(&self) -> f64 {
+        2.0 * noise::GAIN * self.inertia.reach + 4.0 * self.flatness
+    }
+
+    #[inline(never)]
+    fn excess_of_plateau(&self, normal: DVec3, vertex: u32) -> f64 {
+        if self.vertices.len() <= SMALL {
+            return self.excess_of_all(normal, vertex);
+        }
+        if !self.large_faces.is_empty()
+            && let Some(excess) = self.excess_of_large_face(normal, vertex)
+        {
+            return excess;
+        }
+        let here = self.vertices[vertex as usize];
+        let least = -self.plateau_depth();
+        let gain = |w: u32| normal.dot(self.vertices[w as usize] - here);
+        let mut plateau = [vertex; VISITED];
+        let (mut count, mut next, mut most) = (1, 0, 0.0_f64);
+        while next < count {
+            for &w in self.neighbours(plateau[next]) {
+                let gained = gain(w);
+                if gained <= least || plateau[..count].contains(&w) {
+                    continue;
+                }
+                if count == VISITED {
+                    return self.excess_of_all(normal, vertex);
+                }
+                plateau[count] = w;
+                count += 1;
+                most = most.max(gained);
             }
-            report(edge, gain);
-            if self.flatness > 0.0 {
-                // The faces on either side; the one before may have been looked at.
-                let before = if k == 0 { neighbours.len() - 1 } else { k - 1 };
-                for corner in [before, k] {
-                    if corner != last {
-                        self.each_diagonal(normal, vertex, corner, &mut report);
-                        last = corner;
-                    }
+            next += 1;
+        }
+        most + noise::GAIN * self.inertia.reach
+    }
+
+    /// The same by a look at all vertices.
+    fn excess_of_all(&self, normal: DVec3, vertex: u32) -> f64 {
+        let here = self.vertices[vertex as usize];
+        let mut most = 0.0;
+        for v in &self.vertices {
+            let gain = normal.dot(*v - here);
+            most = if gain > most { gain } else { most };
+        }
+        most + noise::GAIN * self.inertia.reach
+    }
+
+    /// The same where the plateau is, at most, one face with many corners.
+    fn excess_of_large_face(&self, normal: DVec3, vertex: u32) -> Option<f64> {
+        let here = self.vertices[vertex as usize];
+        let gain = |w: u32| normal.dot(self.vertices[w as usize] - here);
+        let around = self.topology.outgoing(vertex).iter();
+        let large = around.map(|&h| self.topology.half_edge(h).face).filter_map(|face| {
+            let found = self.large_faces.binary_search_by_key(&face, |large| large.face);
+            found.ok().map(|k| &self.large_faces[k])
+        });
+        let near = large.filter(|large| normal.dot(large.normal) > 0.9);
+        for LargeFace { corners, height, descent, .. } in near {
+            let gains = corners.map(|w| gain(w).abs());
+            let most = gains[0].max(gains[1]).max(gains[2]) + noise::GAIN * self.inertia.reach;
+            if 8.0 * most < descent * height {
+                return Some(WEIGHTS * most + 8.0 * self.flatness);
+            }
+        }
+        None
+    }
+
+    /// Measures how flat the polygons are, and those with many corners.
+    pub(super) fn measure_faces(&mut self) {
+        for face in 0..self.face_count() as u32 {
+            let count = self.face_vertices(face).len();
+            if count > 3 {
+                let at = |v: u32| self.vertices[v as usize];
+                let corners = self.face_vertices(face).map(at);
+                let normal = polygon_normal(corners.clone());
+                // From the plane through one corner: another parallel one is at most as far from all.
+                let first = corners.clone().next().unwrap_or_default();
+                let off = corners.map(|p| normal.dot(p - first).abs()).fold(0.0, f64::max);
+                self.flatness = self.flatness.max(off + noise::GAIN * self.inertia.reach);
+                if count > FEW {
+                    self.large_faces.push(self.large_face(face, normal));
                 }
             }
         }
     }
 
-    /// The diagonals of the face between a neighbour and the next one.
-    fn each_diagonal(
-        &self,
-        normal: DVec3,
-        vertex: u32,
-        corner: usize,
-        report: &mut impl FnMut(DVec3, f64),
-    ) {
-        let here = self.vertices[vertex as usize];
-        let outgoing = self.topology.outgoing(vertex);
-        let neighbours = self.neighbours(vertex);
-        // The face between a neighbour and the next one is on the left of the half-edge to the next.
-        let next = (corner + 1) % outgoing.len();
-        let face = self.topology.half_edge(outgoing[next]).face;
-        let rim = [vertex, neighbours[corner], neighbours[next]];
-        for w in self.topology.face_vertices(face).filter(|w| !rim.contains(w)) {
-            let edge = self.vertices[w as usize] - here;
-            report(edge, normal.dot(edge));
-        }
-    }
-
-    /// The largest distance of a corner from its face's plane, of all faces with more than three.
-    pub(super) fn measure_flatness(&self) -> f64 {
-        let polygons = 0..self.face_count() as u32;
-        let off = |face: u32| {
-            let corners = self.face_vertices(face).map(|v| self.vertices[v as usize]);
-            let normal = polygon_normal(corners.clone());
-            let Some(first) = corners.clone().next() else { return 0.0 };
-            // The plane through one corner: another parallel one is at most as far from all.
-            let rounding = noise::GAIN * self.inertia.reach;
-            corners.map(|p| normal.dot(p - first).abs()).fold(0.0, f64::max) + rounding
+    fn large_face(&self, face: u32, normal: DVec3) -> LargeFace {
+        let at = |v: u32| self.vertices[v as usize];
+        let corners: Vec<u32> = self.face_vertices(face).collect();
+        let farthest = |measure: &dyn Fn(DVec3) -> f64| {
+            corners.iter().copied().fold((corners[0], 0.0), |best, v| {
+                let value = measure(at(v));
+                if value > best.1 { (v, value) } else { best }
+            })
         };
-        polygons.filter(|&f| self.face_vertices(f).len() > 3).map(off).fold(0.0, f64::max)
+        let a = corners[0];
+        let (b, length) = farthest(&|p| p.distance(at(a)));
+        let axis = (at(b) - at(a)) / length;
+        let (c, height) = farthest(&|p| (p - at(a)).cross(axis).length());
+        let mut on_face = corners.clone();
+        on_face.sort_unstable();
+        let leaving = corners.iter().flat_map(|&v| {
+            self.neighbours(v).iter().filter(|w| on_face.binary_search(w).is_err()).map(move |&w| {
+                let edge = at(w) - at(v);
+                -normal.dot(edge) / edge.length()
+            })
+        });
+        LargeFace {
+            face,
+            corners: [a, b, c],
+            normal,
+            height,
+            descent: leaving.fold(f64::INFINITY, f64::min),
+        }
     }
 }

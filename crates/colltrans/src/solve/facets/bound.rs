@@ -17,7 +17,7 @@ const LEVEL: f64 = 0.1;
 
 /// Why a pair of nodes needs no further look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Reason {
+pub(super) enum Reason {
     /// The moving node has no facet that looks along the direction.
     MovingFacesAway,
     /// The fixed node has no facet that looks against the direction.

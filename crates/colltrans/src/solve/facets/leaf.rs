@@ -85,10 +85,7 @@ pub(super) struct Gap {
 impl Gap {
     /// Whether the largest gap is positive, or the gap zero all over.
     pub(super) fn counts(&self) -> bool {
-        match self.signs {
-            [_, Ordering::Greater] | [Ordering::Equal, Ordering::Equal] => true,
-            _ => false,
-        }
+        matches!(self.signs, [_, Ordering::Greater] | [Ordering::Equal, Ordering::Equal])
     }
 }
 

@@ -194,23 +194,23 @@ fn meet(scene: &Scene, f: &Plate, g: &Plate) -> bool {
         return false;
     }
     let of_g = f.sides(scene, g);
-    if one_sided(&of_g) {
+    if one_sided(of_g) {
         return false;
     }
     let of_f = g.sides(scene, f);
-    if one_sided(&of_f) {
+    if one_sided(of_f) {
         return false;
     }
-    let flat = |signs: &[Ordering; 3]| signs.iter().all(|s| *s == Ordering::Equal);
-    if flat(&of_g) || flat(&of_f) {
+    let flat = |signs: [Ordering; 3]| signs.iter().all(|s| *s == Ordering::Equal);
+    if flat(of_g) || flat(of_f) {
         if share_a_side(scene, f, g) {
             return true;
         }
-    } else if straddles(&of_g) && straddles(&of_f) && cross(scene, f, &of_f, g, &of_g) {
+    } else if straddles(of_g) && straddles(of_f) && cross(scene, f, of_f, g, of_g) {
         return true;
     }
-    (0..3).any(|k| edge_meets(scene, f, k, &of_f, g, &of_g))
-        || (0..3).any(|k| edge_meets(scene, g, k, &of_g, f, &of_f))
+    (0..3).any(|k| edge_meets(scene, f, k, of_f, g, of_g))
+        || (0..3).any(|k| edge_meets(scene, g, k, of_g, f, of_f))
 }
 
 /// Whether two triangles, as closed sets, have a point in common: if so, an edge of one meets the
@@ -230,7 +230,7 @@ fn edge_reaches(scene: &Scene, f: &Plate, k: usize, g: &Plate) -> bool {
             let (axis, facing) = g.open_axis(scene);
             let turn = |u: &Corner, v: &Corner, w: &Corner| scene.turn_about(axis, u, v, w);
             let of_corners = g.corners.map(|c| turn(p, q, &c));
-            let beside = one_sided(&of_corners);
+            let beside = one_sided(of_corners);
             let beyond = (0..3).any(|k| {
                 let (a, b) = (&g.corners[k], &g.corners[(k + 1) % 3]);
                 turn(a, b, p) == facing.reverse() && turn(a, b, q) == facing.reverse()
@@ -246,18 +246,18 @@ fn edge_reaches(scene: &Scene, f: &Plate, k: usize, g: &Plate) -> bool {
     }
 }
 
-fn one_sided(signs: &[Ordering; 3]) -> bool {
+fn one_sided(signs: [Ordering; 3]) -> bool {
     signs[0] != Ordering::Equal && signs[1] == signs[0] && signs[2] == signs[0]
 }
 
-fn straddles(signs: &[Ordering; 3]) -> bool {
+fn straddles(signs: [Ordering; 3]) -> bool {
     signs.contains(&Ordering::Greater) && signs.contains(&Ordering::Less)
 }
 
 /// Case 1, for triangles with corners on both sides of each other's planes: the segments in which
 /// they meet the common line overlap. With `a` alone on the upper side of `g`, and `b` alone on the
 /// upper side of `f`, that is told by two sides' order along the line.
-fn cross(scene: &Scene, f: &Plate, of_f: &[Ordering; 3], g: &Plate, of_g: &[Ordering; 3]) -> bool {
+fn cross(scene: &Scene, f: &Plate, of_f: [Ordering; 3], g: &Plate, of_g: [Ordering; 3]) -> bool {
     let (mut p, p_up) = alone_first(f, of_f);
     let (mut q, q_up) = alone_first(g, of_g);
     // Turning one triangle over turns the sides of its plane.
@@ -273,7 +273,7 @@ fn cross(scene: &Scene, f: &Plate, of_f: &[Ordering; 3], g: &Plate, of_g: &[Orde
 
 /// The corners in their order, beginning with the one that is alone on its side of the other plane,
 /// and whether that is the upper side.
-fn alone_first<'c>(plate: &'c Plate, signs: &[Ordering; 3]) -> ([&'c Corner; 3], bool) {
+fn alone_first<'c>(plate: &'c Plate, signs: [Ordering; 3]) -> ([&'c Corner; 3], bool) {
     let alone = |k: usize| {
         signs[k] != Ordering::Equal
             && signs[(k + 1) % 3] != signs[k]
@@ -305,9 +305,9 @@ fn edge_meets(
     scene: &Scene,
     f: &Plate,
     k: usize,
-    of_f: &[Ordering; 3],
+    of_f: [Ordering; 3],
     g: &Plate,
-    of_g: &[Ordering; 3],
+    of_g: [Ordering; 3],
 ) -> bool {
     let next = (k + 1) % 3;
     if of_f[k] != Ordering::Equal || of_f[next] != Ordering::Equal {
@@ -344,7 +344,7 @@ fn edge_meets(
 fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Plate) -> bool {
     let (axis, facing) = g.open_axis(scene);
     let of_corners = g.corners.map(|c| scene.turn_about(axis, p, q, &c));
-    if !straddles(&of_corners) {
+    if !straddles(of_corners) {
         return false;
     }
     !(0..3).any(|k| {

@@ -50,8 +50,6 @@ pub(crate) struct Scene<'a> {
     pub(super) length: f64,
     /// From the setting frame to the query frame.
     pub(super) frame: DMat3,
-    /// Whether the frame permutes axes and changes signs.
-    pub(super) square: bool,
     /// Bound of the rounding error of a coordinate in the query frame.
     pub(super) blur: f64,
 }
@@ -80,7 +78,6 @@ impl<'a> Scene<'a> {
             direction,
             length: direction.length(),
             frame,
-            square: permutes(frame),
             blur: 16.0 * f64::EPSILON * size.max(crate::number::range::MIN_MAGNITUDE),
         }
     }
@@ -98,7 +95,6 @@ impl<'a> Scene<'a> {
             direction: -self.direction,
             length: self.length,
             frame,
-            square: permutes(frame),
             blur: self.blur,
         }
     }
@@ -251,12 +247,9 @@ pub(super) fn place_exactly(side: &Side, terms: &[(f64, DVec3)]) -> [Wide; 3] {
 fn frame_along(unit: DVec3) -> DMat3 {
     let zeros = unit.to_array().map(|c| c == 0.0);
     let x = match zeros {
-        [false, true, true] => DVec3::Y,
-        [true, false, true] => DVec3::Z,
-        [true, true, false] => DVec3::X,
+        [_, false, true] => DVec3::Z,
         [true, ..] => DVec3::X,
         [_, true, _] => DVec3::Y,
-        [.., true] => DVec3::Z,
         _ => unit.any_orthonormal_vector(),
     };
     DMat3::from_cols(x, unit.cross(x), unit).transpose()

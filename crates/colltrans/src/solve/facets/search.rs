@@ -171,11 +171,11 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
                     None => next = Some(child),
                 }
             }
-            if let (Some(child), Some(top)) = (next, queue.peek()) {
-                if top.bound < child.bound {
-                    queue.push(child);
-                    next = None;
-                }
+            if let (Some(child), Some(top)) = (next, queue.peek())
+                && top.bound < child.bound
+            {
+                queue.push(child);
+                next = None;
             }
         }
         self.found.map(|found| found.sharpened(self.scene, self.aim))

@@ -194,10 +194,10 @@ fn decode(x: f64) -> (u64, i32) {
 /// `det[a, b, c]`, in the cube of the unit.
 pub(super) fn determinant(a: &[Wide; 3], b: &[Wide; 3], c: &[Wide; 3]) -> Wide {
     let mut sum = Wide::ZERO;
-    for k in 0..3 {
+    for (k, component) in a.iter().enumerate() {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         let minor = b[i].multiply(&c[j]).subtract(&b[j].multiply(&c[i]));
-        sum = sum.add(&a[k].multiply(&minor));
+        sum = sum.add(&component.multiply(&minor));
     }
     sum
 }

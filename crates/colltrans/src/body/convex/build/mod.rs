@@ -101,6 +101,38 @@ impl ConvexPolyhedron {
         mesh::from_mesh(vertices, faces, tolerance)
     }
 
+    /// A body from what another one was: its vertices, its faces in their order, the indices of its
+    /// input and its hull error, checked to be convex.
+    ///
+    /// # Errors
+    /// As [`Self::from_mesh`]; [`BuildError::NotABody`] if there are no faces and not one or two
+    /// vertices, or vertices that the hull of all does not have.
+    #[cfg(feature = "json")]
+    pub(crate) fn from_own_faces(
+        vertices: &[DVec3],
+        faces: &[Vec<u32>],
+        input_indices: &[u32],
+        hull_error: f64,
+    ) -> Result<Self, BuildError> {
+        hull::check_points(vertices)?;
+        let sound_error = (0.0..=crate::MAX_MAGNITUDE).contains(&hull_error);
+        let vertex_count = vertices.len();
+        let like = hull::convex_hull(vertices);
+        let same = like.vertices.len() == vertex_count && input_indices.len() == vertex_count;
+        let flat = if faces.is_empty() { vertex_count <= 2 } else { like.dimension >= 2 };
+        if !same || !flat || !sound_error {
+            return Err(BuildError::NotABody { vertices: vertex_count, faces: faces.len() });
+        }
+        let dimension = like.dimension;
+        let topology =
+            if faces.is_empty() { like.topology } else { mesh::own_faces(vertices, faces)? };
+        let in_order = (0..vertex_count as u32).collect();
+        let hull = Hull { dimension, vertices: in_order, topology, violation: hull_error };
+        let mut body = Self::from_hull(vertices, hull);
+        body.input_index = input_indices.to_vec();
+        Ok(body)
+    }
+
     fn from_hull(points: &[DVec3], hull: Hull) -> Self {
         let Hull { dimension, vertices: input_index, topology, violation } = hull;
         let vertices: Vec<DVec3> = input_index.iter().map(|&i| points[i as usize]).collect();
@@ -117,12 +149,13 @@ impl ConvexPolyhedron {
             dimension,
             hull_error: violation,
             flatness: 0.0,
+            large_faces: Vec::new(),
             topology,
             inertia,
             support,
             sections,
         };
-        body.flatness = body.measure_flatness();
+        body.measure_faces();
         body
     }
 

@@ -229,6 +229,21 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// The tolerance by which solids are shrunk is negative or not finite.
+    #[error("the tolerance {tolerance} is negative or not finite")]
+    Tolerance {
+        /// The tolerance as given.
+        tolerance: f64,
+    },
+    /// A graze tolerance was set on a query between solids.
+    #[error(
+        "a graze tolerance ({tolerance}) on a solid would depend on how finely it is meshed; \
+         `with_tolerance` shrinks both bodies instead"
+    )]
+    GrazeOnSolid {
+        /// The tolerance as given.
+        tolerance: f64,
+    },
     /// The gap at which narrowing ends is negative or not a number.
     #[error("the gap {gap} at which narrowing ends is negative or not a number")]
     NarrowingGap {

@@ -48,7 +48,7 @@
 //! convex hull), from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
 //! ([`ConvexPolyhedron::cuboid`]), and then asked as often as one likes, from any thread. Flat
 //! polygons, segments and single points are bodies too. Bodies that are not convex are [`Solid`]s,
-//! asked by [`SolidCast`].
+//! asked in the same way.
 //!
 //! # Frames and units
 //!
@@ -138,9 +138,7 @@ pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;
-pub use solve::facets::{
-    SolidCast, SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace,
-};
+pub use solve::facets::{SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
 pub use tracker::Tracker;

@@ -1,6 +1,6 @@
 //! Solids in the situations that people have names for.
 
-use colltrans::{Pose, Solid, SolidCast, SolidClearance, SolidError, SolidOptions, StartOverlap};
+use colltrans::{Cast, Pose, Solid, SolidClearance, SolidError, SolidOptions, StartOverlap};
 use colltrans_kit::shapes::Mesh;
 use colltrans_kit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DQuat, DVec3};
@@ -14,17 +14,16 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
 }
 
 /// In place, along a direction.
-fn cast<'a>(a: &'a Solid, b: &'a Solid, direction: DVec3) -> SolidCast<'a> {
-    SolidCast::new((a, &Pose::IDENTITY), (b, &Pose::IDENTITY), direction).expect("a direction")
+fn cast<'a>(a: &'a Solid, b: &'a Solid, direction: DVec3) -> Cast<'a, Solid> {
+    Cast::new(a.at(Pose::IDENTITY), b.at(Pose::IDENTITY), direction).expect("a direction")
 }
 
 #[expect(clippy::large_types_passed_by_value, reason = "it is turned into another one")]
-fn with_tolerance(cast: SolidCast<'_>, tolerance: f64) -> SolidCast<'_> {
-    let options = SolidOptions { tolerance: Some(tolerance), ..SolidOptions::default() };
-    cast.with(options).expect("a tolerance")
+fn with_tolerance(cast: Cast<'_, Solid>, tolerance: f64) -> Cast<'_, Solid> {
+    cast.with_tolerance(tolerance).expect("a tolerance")
 }
 
-fn distance(cast: &SolidCast) -> f64 {
+fn distance(cast: &Cast<Solid>) -> f64 {
     match cast.clearance() {
         SolidClearance::Blocked { distance, .. } => distance,
         other => panic!("{other:?}"),
@@ -125,7 +124,7 @@ fn a_blind_press_fit() {
     assert!((nominal - 1.0).abs() < 1e-9, "{nominal}");
     // Ignored, the overlap does not hide the bottom either.
     let ignore = SolidOptions { start_overlap: StartOverlap::Ignore, ..SolidOptions::default() };
-    let ignoring = press(DVec3::NEG_Z).with(ignore).expect("choices");
+    let ignoring = press(DVec3::NEG_Z).with_options(ignore).expect("choices");
     assert!((distance(&ignoring) - 1.0).abs() < 1e-9);
 }
 
@@ -189,8 +188,7 @@ fn wedges_that_share_an_edge_and_part() {
     let lower = upper.clone();
     let half_turn = Pose::new(DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0), DVec3::Y).expect("a rotation");
     let ask = |direction| {
-        SolidCast::new((&upper, &Pose::IDENTITY), (&lower, &half_turn), direction)
-            .expect("a direction")
+        Cast::new(upper.at(Pose::IDENTITY), lower.at(half_turn), direction).expect("a direction")
     };
     assert_eq!(ask(DVec3::Z).clearance(), SolidClearance::Free);
     assert_eq!(ask(DVec3::X).clearance(), SolidClearance::Free);
@@ -223,7 +221,7 @@ fn a_zero_clearance_slide_of_100_000_facets() {
     for rotation in [DQuat::IDENTITY, quarter, general] {
         let pose = Pose::new(rotation, DVec3::ZERO).expect("a rotation");
         let ask = |direction: DVec3| {
-            SolidCast::new((&bar, &pose), (&groove, &pose), pose.transform_vector(direction))
+            Cast::new(bar.at(pose), groove.at(pose), pose.transform_vector(direction))
                 .expect("a direction")
                 .clearance()
         };
@@ -261,7 +259,7 @@ fn answers_do_not_depend_on_order_subdivision_or_displacement() {
     let answer = |mesh: &Mesh, by: DVec3, direction: DVec3| {
         let (a, b) = (solid(mesh), solid(&b));
         let pose = Pose::from_translation(by).expect("in range");
-        let cast = SolidCast::new((&a, &pose), (&b, &pose), direction).expect("a direction");
+        let cast = Cast::new(a.at(pose), b.at(pose), direction).expect("a direction");
         match cast.clearance() {
             SolidClearance::Blocked { distance, .. } => Some(distance),
             SolidClearance::Free => None,
@@ -278,4 +276,12 @@ fn answers_do_not_depend_on_order_subdivision_or_displacement() {
             }
         }
     }
+}
+
+#[test]
+fn a_graze_tolerance_on_a_solid_names_the_other_way() {
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let refused = cast(&cube, &cube, DVec3::X).with_graze_tolerance(0.5).expect_err("a solid");
+    assert!(refused.to_string().contains("with_tolerance"), "{refused}");
+    assert!(cast(&cube, &cube, DVec3::X).with_tolerance(-1.0).is_err());
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans::{Pose, Solid, SolidCast, SolidClearance, Workspace};
+use colltrans::{Cast, Pose, Solid, SolidClearance, Workspace};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{Placed, TriangleMesh};
 use colltrans_bench::report::{self, Times};
@@ -176,7 +176,7 @@ impl Pair {
         let mut workspace = Workspace::default();
         for _ in 0..count {
             let Placement { poses, direction } = Placement::draw(radii, &mut random);
-            let Ok(cast) = SolidCast::new((&p, &poses[0]), (&q, &poses[1]), direction) else {
+            let Ok(cast) = Cast::new(p.at(poses[0]), q.at(poses[1]), direction) else {
                 continue;
             };
             let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
@@ -229,7 +229,7 @@ fn growth(arguments: &Arguments) -> Vec<Value> {
         let mut times = Times::default();
         for _ in 0..if arguments.quick { 300 } else { 2_000 } {
             let Placement { poses, direction } = Placement::draw([1.2, 1.2], &mut random);
-            if let Ok(cast) = SolidCast::new((&body, &poses[0]), (&body, &poses[1]), direction) {
+            if let Ok(cast) = Cast::new(body.at(poses[0]), body.at(poses[1]), direction) {
                 times.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
             }
         }
@@ -277,7 +277,7 @@ fn flat(arguments: &Arguments) -> Vec<Value> {
                 continue;
             };
             let way = rotation * direction;
-            let Ok(cast) = SolidCast::new((&body, &above), (&body, &below), way) else { continue };
+            let Ok(cast) = Cast::new(body.at(above), body.at(below), way) else { continue };
             let answer = cast.clearance();
             let mut times = Times::default();
             for _ in 0..if arguments.quick { 20 } else { 200 } {

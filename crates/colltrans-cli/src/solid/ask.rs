@@ -4,7 +4,7 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Feature, Pose, QueryError, Solid, SolidCast, SolidClearance, SolidContact, SolidOptions,
+    Cast, Feature, Pose, QueryError, Solid, SolidClearance, SolidContact, SolidOptions,
     StartOverlap,
 };
 
@@ -116,13 +116,13 @@ impl<'a> Question<'a> {
         moving: &'s Solid,
         fixed: &'s Solid,
         tolerance: f64,
-    ) -> Result<SolidCast<'s>, QueryError> {
+    ) -> Result<Cast<'s, Solid>, QueryError> {
         let start_overlap =
             if self.ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
         let options =
             SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() };
-        SolidCast::new((moving, &self.moving_pose), (fixed, &self.fixed_pose), self.direction)?
-            .with(options)
+        Cast::new(moving.at(self.moving_pose), fixed.at(self.fixed_pose), self.direction)?
+            .with_options(options)
     }
 
     /// What was asked for, or what the files and the poses ask for.
@@ -130,9 +130,9 @@ impl<'a> Question<'a> {
         if let Some(tolerance) = self.tolerance {
             return Ok(tolerance);
         }
-        let moving = (self.moving.solid(), &self.moving_pose);
-        let fixed = (self.fixed.solid(), &self.fixed_pose);
-        let of_poses = SolidCast::new(moving, fixed, self.direction)?.tolerance();
+        let moving = self.moving.solid().at(self.moving_pose);
+        let fixed = self.fixed.solid().at(self.fixed_pose);
+        let of_poses = Cast::new(moving, fixed, self.direction)?.tolerance();
         let of_files = PRECISIONS * (self.moving.precision() + self.fixed.precision());
         Ok(of_files.max(of_poses))
     }

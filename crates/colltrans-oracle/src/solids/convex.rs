@@ -1,6 +1,6 @@
 //! Convex bodies as solids, against the convex core and against the rule over all pairs of facets.
 
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Solid, SolidCast, SolidClearance, SolidOptions};
+use colltrans::{Cast, ConvexPolyhedron, Outcome, Solid, SolidClearance, SolidOptions};
 
 use super::facets::{rule, triangles};
 use super::settings::Seen;
@@ -25,8 +25,8 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
     let (Ok(a), Ok(b)) = (Solid::from_convex(&p), Solid::from_convex(&q)) else { return Ok(None) };
     let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
     let (s, t) = (&setting.moving_pose, &setting.fixed_pose);
-    let cast = SolidCast::new((&a, s), (&b, t), setting.direction)
-        .and_then(|cast| cast.with(options))
+    let cast = Cast::new(a.at(*s), b.at(*t), setting.direction)
+        .and_then(|cast| cast.with_options(options))
         .map_err(|e| e.to_string())?;
     let overlaps = cast.overlaps();
     let found = if overlaps { None } else { Some(cast.clearance()) };

@@ -1,6 +1,6 @@
 //! Settings of bodies made of cubes, most of them tied, and how an answer is judged.
 
-use colltrans::{Pose, Solid, SolidCast, SolidClearance, SolidOptions};
+use colltrans::{Cast, Pose, Solid, SolidClearance, SolidOptions};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::{Cells, Motion, motion};
@@ -137,8 +137,8 @@ impl Setting {
         };
         let (a, b) = (solid(0)?, solid(1)?);
         let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
-        let cast = SolidCast::new((&a, &self.poses[0]), (&b, &self.poses[1]), self.direction)
-            .and_then(|cast| cast.with(options))
+        let cast = Cast::new(a.at(self.poses[0]), b.at(self.poses[1]), self.direction)
+            .and_then(|cast| cast.with_options(options))
             .map_err(|e| e.to_string())?;
         let expected = self.expected();
         let tolerance = self.tolerance();

@@ -3,7 +3,7 @@
 pub(crate) mod convex;
 mod feature;
 pub(crate) mod inertia;
-mod placed;
+pub(crate) mod placed;
 mod pose;
 pub(crate) mod solid;
 pub(crate) mod topology;

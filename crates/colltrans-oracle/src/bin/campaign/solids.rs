@@ -23,7 +23,7 @@ pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {
     for &name in &cubes {
         let each = count.div_ceil(FAMILIES.len() as u64);
         clean &= family(name, seed, each, |seed| {
-            Setting::draw(name, seed).ok_or("no such family").and_then(|s| Ok(s.examine()))?
+            Setting::draw(name, seed).ok_or("no such family")?.examine()
         });
     }
     let convex: Vec<&str> = settings::FAMILIES.iter().map(|f| f.0).collect();

@@ -16,7 +16,7 @@ use std::thread;
 use glam::{DVec3, Vec3Swizzles};
 
 /// Facets of a leaf, at most.
-pub(crate) const LEAF: usize = 2;
+pub(crate) const LEAF: usize = 3;
 const BINS: usize = 16;
 /// Subtrees with fewer facets are not worth a thread.
 const FORK: usize = 1 << 14;

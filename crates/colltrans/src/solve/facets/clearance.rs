@@ -4,16 +4,15 @@
 //! overlap, and the depth is the least tolerance with which they do not, from above: doubled until
 //! there is one, then halved between the two.
 
-use glam::DVec3;
-
 use super::contact::{SolidContact, contact};
 use super::overlap;
 use super::scene::Scene;
 use super::search::{Aim, Cut, Found, Search, Workspace};
-use crate::body::Pose;
+use crate::body::placed::sealed;
 use crate::body::solid::Solid;
+use crate::body::{Body, Placed, Pose};
+use crate::cast::Cast;
 use crate::error::QueryError;
-use crate::number::range::in_exact_range;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 const NOISES: f64 = 8.0;
@@ -72,43 +71,54 @@ pub enum SolidClearance {
     },
 }
 
-/// Two placed solids and a direction, checked.
-#[derive(Debug, Clone, Copy)]
-pub struct SolidCast<'a> {
-    moving: (&'a Solid, Pose),
-    fixed: (&'a Solid, Pose),
-    direction: DVec3,
-    options: SolidOptions,
+impl sealed::Sealed for Solid {}
+
+impl Body for Solid {
+    type Options = SolidOptions;
 }
 
-impl<'a> SolidCast<'a> {
-    /// `moving` is translated along `direction` (world, any length), `fixed` stands still.
-    ///
-    /// # Errors
-    /// A direction that is zero, not finite or out of range.
-    pub fn new(
-        (moving, moving_pose): (&'a Solid, &Pose),
-        (fixed, fixed_pose): (&'a Solid, &Pose),
-        direction: DVec3,
-    ) -> Result<Self, QueryError> {
-        if direction == DVec3::ZERO || !in_exact_range(direction) {
-            return Err(QueryError::Direction { direction });
-        }
-        let (moving, fixed) = ((moving, *moving_pose), (fixed, *fixed_pose));
-        Ok(Self { moving, fixed, direction, options: SolidOptions::default() })
+impl Solid {
+    /// This body in a pose, for a [`Cast`].
+    pub fn at(&self, pose: Pose) -> Placed<'_, Self> {
+        Placed { body: self, pose }
     }
+}
 
+/// Queries between solids.
+impl<'a> Cast<'a, Solid> {
     /// The same with other choices.
     ///
     /// # Errors
     /// A tolerance that is negative or not finite.
-    pub fn with(self, options: SolidOptions) -> Result<Self, QueryError> {
+    pub fn with_options(self, options: SolidOptions) -> Result<Self, QueryError> {
         if let Some(tolerance) = options.tolerance
             && !(tolerance.is_finite() && tolerance >= 0.0)
         {
-            return Err(QueryError::GrazeTolerance { tolerance });
+            return Err(QueryError::Tolerance { tolerance });
         }
         Ok(Self { options, ..self })
+    }
+
+    /// The same with both bodies shrunk by half of this length.
+    ///
+    /// # Errors
+    /// A tolerance that is negative or not finite.
+    pub fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
+        self.with_options(SolidOptions { tolerance: Some(tolerance), ..self.options })
+    }
+
+    /// The same with another meaning of an overlap at the start.
+    #[must_use]
+    pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
+        Self { options: SolidOptions { start_overlap, ..self.options }, ..self }
+    }
+
+    /// Always an error: on a solid a graze tolerance would depend on how finely it is meshed.
+    ///
+    /// # Errors
+    /// [`QueryError::GrazeOnSolid`], which names [`Self::with_tolerance`].
+    pub fn with_graze_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
+        Err(QueryError::GrazeOnSolid { tolerance })
     }
 
     /// The tolerance that is used, as a length.
@@ -122,8 +132,8 @@ impl<'a> SolidCast<'a> {
 
     pub(super) fn scene(&self, tolerance: f64) -> Scene<'a> {
         let half = tolerance / 2.0;
-        let (moving, fixed) = (&self.moving, &self.fixed);
-        Scene::new((moving.0, &moving.1, half), (fixed.0, &fixed.1, half), self.direction)
+        let (moving, fixed) = (self.moving_pose(), self.fixed_pose());
+        Scene::new((self.moving(), &moving, half), (self.fixed(), &fixed, half), self.direction())
     }
 
     pub(super) fn asked(&self) -> Scene<'a> {
@@ -153,7 +163,7 @@ impl<'a> SolidCast<'a> {
             None => SolidClearance::Free,
             Some(found) => {
                 let distance = found.gap / scene.length;
-                let origin = self.moving.1.translation();
+                let origin = self.moving_pose().translation();
                 let (contact, nominal) = contact(&scene, &found, distance, origin);
                 SolidClearance::Blocked { distance, nominal, contact }
             }

@@ -15,6 +15,6 @@ mod search;
 mod sign;
 mod wide;
 
-pub use clearance::{SolidCast, SolidClearance, SolidOptions, StartOverlap};
+pub use clearance::{SolidClearance, SolidOptions, StartOverlap};
 pub use contact::SolidContact;
 pub use search::Workspace;

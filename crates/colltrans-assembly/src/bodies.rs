@@ -3,7 +3,7 @@
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
-use colltrans::{Pose, Solid, SolidCast, SolidClearance, SolidOptions, StartOverlap, Workspace};
+use colltrans::{Cast, Pose, Solid, SolidClearance, SolidOptions, StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -167,9 +167,9 @@ impl<'a> Bodies<'a> {
             (true, _) => return Room::Overlapping,
         };
         let options = SolidOptions { start_overlap: start, tolerance: Some(0.0), before };
-        let at = |k: usize| (&self.solids[k], &Pose::IDENTITY);
+        let at = |k: usize| self.solids[k].at(Pose::IDENTITY);
         // Directions and tolerances are checked at the door, so nothing is refused here.
-        let cast = SolidCast::new(at(a), at(b), d).and_then(|c| c.with(options));
+        let cast = Cast::new(at(a), at(b), d).and_then(|c| c.with_options(options));
         match cast.map(|cast| cast.clearance_in(workspace)) {
             Ok(SolidClearance::Blocked { distance, contact, .. }) => Room::Blocked(Stop {
                 distance,
@@ -199,9 +199,9 @@ impl<'a> Bodies<'a> {
     /// not, if there is one up to their size.
     pub fn overlap_as_given(&self, a: usize, b: usize) -> Option<Option<f64>> {
         let parts = self.assembly.parts();
-        let at = |k: usize| (parts[k].solid(), &Pose::IDENTITY);
+        let at = |k: usize| parts[k].solid().at(Pose::IDENTITY);
         let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
-        let cast = SolidCast::new(at(a), at(b), DVec3::Z).and_then(|c| c.with(options)).ok()?;
+        let cast = Cast::new(at(a), at(b), DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
         cast.overlaps().then(|| cast.depth())
     }
 
@@ -221,9 +221,9 @@ impl<'a> Bodies<'a> {
     /// Whether part `a`, displaced by `by`, and part `b` overlap, by more than rounding.
     pub fn overlaps_displaced(&self, a: usize, by: DVec3, b: usize) -> bool {
         let Ok(pose) = Pose::from_translation(by) else { return false };
-        let moving = (&self.solids[a], &pose);
+        let moving = self.solids[a].at(pose);
         let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
-        let cast = SolidCast::new(moving, (&self.solids[b], &Pose::IDENTITY), DVec3::Z);
-        cast.and_then(|c| c.with(options)).is_ok_and(|cast| cast.overlaps())
+        let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
+        cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
 }

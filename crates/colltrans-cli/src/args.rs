@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+mod assembly;
 mod help;
 mod values;
 
@@ -12,7 +13,11 @@ use colltrans::glam::DVec3;
 
 use crate::body::Recipe;
 use crate::solid;
-use help::{BATCH_FORMAT, CAST_EXAMPLES, CLEAR_ANSWERS, CLEARANCE_ANSWERS, EXIT_CODES, FORMATS};
+pub(crate) use assembly::AssemblyArguments;
+use help::{
+    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEAR_ANSWERS, CLEARANCE_ANSWERS, EXIT_CODES,
+    FORMATS,
+};
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, threads};
 
@@ -51,6 +56,13 @@ pub(crate) enum Command {
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = EXIT_CODES, after_long_help = format!("{BATCH_FORMAT}\n\n{EXIT_CODES}"))]
     Batch(BatchArguments),
+    /// Say which parts of an assembly come out, along which directions, in which order, and what
+    /// holds the rest
+    ///
+    /// Parts are solids of any shape, not only convex ones. Without --direction, directions are
+    /// found: contact normals and what is orthogonal to them, cylinder axes, the world's axes.
+    #[command(after_help = EXIT_CODES, after_long_help = format!("{ASSEMBLY_FORMAT}\n\n{EXIT_CODES}"))]
+    Assembly(Box<AssemblyArguments>),
     /// Say what a mesh file holds, and whether it is convex
     #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
     Info(InfoArguments),

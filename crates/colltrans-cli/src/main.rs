@@ -4,10 +4,11 @@
 //! -> [`query`] (the library's part) -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read.
-//! [`info`] looks at one mesh. Parts that need not be convex go from [`solid`] (mesh files to
+//! [`info`] looks at one mesh, [`assembly`] at many parts. Parts that need not be convex go from [`solid`] (mesh files to
 //! solids, and the library's part) by way of [`clear`]; [`progress`] shows how far work is.
 
 mod args;
+mod assembly;
 mod batch;
 mod body;
 mod cast;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Command::Clearance(arguments) => cast::run(&arguments, Asked::Clearance),
         Command::Clear(arguments) => clear::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
+        Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
     };

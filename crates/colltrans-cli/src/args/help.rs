@@ -116,3 +116,32 @@ Translations, bounds and tolerance are in multiples of the direction, other leng
 the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
 that exists is replaced when all lines are answered, and never if a query reads it. A line may have
 up to 64 MiB."#;
+
+pub(super) const ASSEMBLY_FORMAT: &str = r#"SOURCE is a folder of meshes, each a part in its place (STL, OBJ, PLY, OFF); a manifest (.toml, .json);
+a URDF file (metres); .glb, .gltf (metres) or .3mf (the unit it says).
+
+A manifest, in TOML (JSON has the same fields):
+  unit = "mm"                                # said, never guessed; may be missing
+  ignore = [["pin", "block"]]                # pairs that may overlap and never block
+  [[part]]
+  file = "pin.stl"                           # or several: ["a.stl", "b.stl"]
+  name = "pin"                               # the file's name, if missing
+  translation = [0, 0, 5]
+  rotation = { rpy_degrees = [0, 90, 0] }    # or quaternion = [x, y, z, w], or matrix = rows
+  scale = 0.9
+  fixed = true                               # never moved
+
+With --json:
+  {"parts": [{"name", "facets", "volume"}], "unit", "tolerance",
+   "overlaps": [{"parts": [a, b], "depth"}], "suggested_tolerance",
+   "liaisons": [{"parts": [a, b], "area", "center"}],
+   "rooms": [{"part", "direction", "outcome", "distance", "by", "nominal", "point", "normal"}],
+   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within"}],
+   "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
+   "maps": [...]}
+  Directions have length 1, so distances are lengths; distance is that of the bodies shrunk by half
+  the tolerance each, nominal that of the parts as they are. outcome is "free", "blocked" or
+  "overlapping". A step with "within" takes apart the group that step (from 0) took out.
+
+With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each
+map a .svg, .png and .json."#;

@@ -29,6 +29,11 @@ pub enum StartOverlap {
     Refuse,
     /// Facets that cross now do not block; contacts that begin later do.
     Ignore,
+    /// There is none: the caller has asked before, for the same bodies, poses and tolerance. Whoever
+    /// asks one pair along many directions asks once whether it overlaps.
+    Apart,
+    /// There is one, and it is ignored: the caller has asked before, as for [`Self::Apart`].
+    KnownIgnore,
 }
 
 /// Choices of a query between solids.
@@ -143,13 +148,15 @@ impl<'a> Cast<'a, Solid> {
     /// The same with a queue that is kept.
     pub fn clearance_in(&self, workspace: &mut Workspace) -> SolidClearance {
         let scene = self.asked();
-        let overlapping = overlap::find(&scene).is_some();
-        let aim = match (overlapping, self.options.start_overlap) {
-            (true, StartOverlap::Refuse) => {
+        let overlapping = || overlap::find(&scene).is_some();
+        let aim = match self.options.start_overlap {
+            StartOverlap::Apart => Aim::Stop,
+            StartOverlap::KnownIgnore => Aim::LaterStop,
+            StartOverlap::Refuse if overlapping() => {
                 return SolidClearance::Overlapping { depth: self.depth() };
             }
-            (true, StartOverlap::Ignore) => Aim::LaterStop,
-            (false, _) => Aim::Stop,
+            StartOverlap::Ignore if overlapping() => Aim::LaterStop,
+            StartOverlap::Refuse | StartOverlap::Ignore => Aim::Stop,
         };
         let limit = self.options.before.map_or(f64::INFINITY, |t| t * scene.length);
         match first(&scene, aim, limit, workspace, |_| ()) {

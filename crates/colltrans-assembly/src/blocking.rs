@@ -83,7 +83,9 @@ impl Blocking {
         let mut group_of = vec![usize::MAX; self.node.len()];
         let groups = self.groups();
         for (k, group) in groups.iter().enumerate() {
-            group.iter().for_each(|&part| group_of[part] = k);
+            for &part in group {
+                group_of[part] = k;
+            }
         }
         let mut leaves = vec![false; groups.len()];
         for edge in self.graph.raw_edges() {

@@ -81,7 +81,7 @@ pub enum AssemblyError {
         name: String,
     },
     /// No part has this name.
-    #[error("no part is named {name}{}", hint(near))]
+    #[error("no part is named {name}{}", hint(near.as_deref()))]
     UnknownPart {
         /// The name.
         name: String,
@@ -113,6 +113,6 @@ pub enum AssemblyError {
     },
 }
 
-fn hint(near: &Option<String>) -> String {
-    near.as_ref().map_or_else(String::new, |name| format!("; is it {name}?"))
+fn hint(near: Option<&str>) -> String {
+    near.map_or_else(String::new, |name| format!("; is it {name}?"))
 }

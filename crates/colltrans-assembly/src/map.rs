@@ -188,7 +188,9 @@ impl Mapper<'_> {
                 let corners = self.sphere.triangles[t].corners.map(|k| k as usize);
                 let best =
                     corners.map(|k| self.rooms[k].distance()).into_iter().fold(0.0, f64::max);
-                corners.iter().for_each(|&k| highest[k] = highest[k].max(best));
+                for k in corners {
+                    highest[k] = highest[k].max(best);
+                }
             }
             let peak = |k: &usize| {
                 let distance = self.rooms[*k].distance();

@@ -4,6 +4,7 @@
 //! directions one is asked, and the other is its mirror image. Pairs that never meet are not stored.
 
 use std::collections::HashMap;
+use std::fmt::Write;
 
 use colltrans::{StartOverlap, Workspace};
 use glam::DVec3;
@@ -139,7 +140,7 @@ impl Matrix {
                 let (a, b) = (quoted(parts[m.moving].name()), quoted(parts[m.fixed].name()));
                 let outcome = if m.stop.is_some() { "blocked" } else { "overlapping" };
                 let distance = m.distance();
-                text += &format!("{},{},{},{a},{b},{outcome},{distance}\n", d.x, d.y, d.z);
+                let _ = writeln!(text, "{},{},{},{a},{b},{outcome},{distance}", d.x, d.y, d.z);
             }
         }
         text

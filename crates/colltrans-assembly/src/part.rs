@@ -94,7 +94,9 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
     let mirrored = piece.world_from_piece.matrix3.determinant() < 0.0;
     let mut faces = piece.faces.clone();
     if mirrored {
-        faces.iter_mut().for_each(|face| face.reverse());
+        for face in &mut faces {
+            face.reverse();
+        }
     }
     let mut built = Solid::from_mesh(&vertices, &faces);
     if let Err(SolidError::Inconsistent { .. }) = built

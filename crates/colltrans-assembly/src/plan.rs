@@ -277,7 +277,9 @@ impl Planner<'_> {
 
     fn mask(&self, parts: &[usize]) -> Vec<bool> {
         let mut mask = vec![false; self.bodies.len()];
-        parts.iter().for_each(|&k| mask[k] = true);
+        for &k in parts {
+            mask[k] = true;
+        }
         mask
     }
 }

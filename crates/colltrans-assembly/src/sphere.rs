@@ -34,7 +34,9 @@ impl Sphere {
         let mut sphere = Self { directions, triangles, middles: HashMap::new() };
         for _ in 0..levels {
             let leaves: Vec<usize> = sphere.leaves().collect();
-            leaves.into_iter().for_each(|t| sphere.cut(t));
+            for t in leaves {
+                sphere.cut(t);
+            }
         }
         sphere
     }
@@ -120,7 +122,7 @@ pub fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut directions = Vec::with_capacity(12);
     for axis in 0..3 {
         for (u, v) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {

@@ -33,7 +33,7 @@ impl Stage {
 }
 
 /// Called with what is being done, how much of it is done, and how much there is.
-pub type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
+pub(crate) type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
 
 /// Who looks on: nobody, by default.
 #[derive(Clone, Copy, Default)]

@@ -46,7 +46,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         bar.set_style(style);
     }
     let progress = |stage: Stage, done: usize, total: usize| {
-        if done % 16 == 0 || done == total {
+        if done.is_multiple_of(16) || done == total {
             bar.set_message(stage.name());
             bar.set_length(total as u64);
             bar.set_position(done as u64);
@@ -199,7 +199,9 @@ fn maps(
     let mut maps = Vec::new();
     for (name, group) in groups {
         let mut mask = vec![false; bodies.len()];
-        group.iter().for_each(|&k| mask[k] = true);
+        for &k in group {
+            mask[k] = true;
+        }
         let own = found.finer.iter().filter(|f| f.concerns(&mask)).map(|f| f.direction);
         let directions: Vec<DVec3> = found.directions().into_iter().chain(own).collect();
         maps.push((name.clone(), RemovalMap::new(bodies, group, &directions, options, watch)?));

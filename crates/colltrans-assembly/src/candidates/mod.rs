@@ -145,7 +145,7 @@ pub fn candidates(
     axes.sort_by(|x, y| x.rank.cmp(&y.rank).then(y.weight.total_cmp(&x.weight)));
     for axis in axes {
         if chosen.found.main.len() + 2 <= given + choice.main && axis.rank < 2 {
-            chosen.add_main(axis.axis, axis.origin);
+            chosen.add_main(axis.along, axis.origin);
         } else if chosen.found.finer.len() + 2 <= choice.finer {
             chosen.add_finer(&axis);
         }
@@ -184,7 +184,7 @@ impl Chosen {
     }
 
     fn add_finer(&mut self, axis: &Axis) {
-        for direction in [positive(axis.axis), positive(-axis.axis)] {
+        for direction in [positive(axis.along), positive(-axis.along)] {
             let same = |f: &Finer| {
                 f.part == Some(axis.part) && angle(f.direction, direction) <= self.apart
             };
@@ -205,7 +205,7 @@ struct Axis {
     /// Axes of cylinders and what is orthogonal to contacts of large areas first.
     rank: usize,
     weight: f64,
-    axis: DVec3,
+    along: DVec3,
     origin: Origin,
     part: usize,
 }
@@ -217,7 +217,8 @@ const NORMALS: usize = 6;
 fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
     let solid = bodies.assembly().parts()[part].solid();
     let mut axes = Vec::new();
-    let mut add = |rank, weight, axis, origin| axes.push(Axis { rank, weight, axis, origin, part });
+    let mut add =
+        |rank, weight, axis, origin| axes.push(Axis { rank, weight, along: axis, origin, part });
     for (length, axis) in cylinders::axes(solid) {
         add(0, length, axis, Origin::Cylinder);
     }

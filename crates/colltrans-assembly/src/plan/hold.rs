@@ -1,5 +1,7 @@
 //! What holds parts that are stuck.
 
+use std::fmt::Write;
+
 use glam::DVec3;
 
 use super::Stuck;
@@ -29,7 +31,9 @@ pub(super) fn explain(
     fixed: bool,
 ) -> Stuck {
     let mut among = vec![false; bodies.len()];
-    left.iter().for_each(|&k| among[k] = true);
+    for &k in left {
+        among[k] = true;
+    }
     let mut holds: Vec<Hold> = Vec::new();
     for &part in left.iter().filter(|&&k| !bodies.assembly().parts()[k].fixed()) {
         holds.push(Hold { part, by: Vec::new() });
@@ -93,7 +97,8 @@ impl Stuck {
         if let Some(hold) = easiest {
             let (set, _) = &hold.by[0];
             let names: Vec<&str> = set.iter().map(|&k| name(k)).collect();
-            text += &format!(
+            let _ = write!(
+                text,
                 "; the least that holds a part: {} is held by {}",
                 name(hold.part),
                 names.join(", ")

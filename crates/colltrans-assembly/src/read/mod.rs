@@ -75,7 +75,7 @@ fn in_file(path: &Path) -> impl Fn(AssemblyError) -> ReadError + '_ {
     move |source| ReadError::Assembly { path: path.into(), source }
 }
 
-fn contents(path: &Path, place: impl Into<String>, reason: impl ToString) -> ReadError {
+fn contents(path: &Path, place: impl Into<String>, reason: impl std::fmt::Display) -> ReadError {
     ReadError::Contents { path: path.into(), place: place.into(), reason: reason.to_string() }
 }
 

@@ -44,8 +44,12 @@ fn model(path: &Path) -> Result<String, ReadError> {
     let mut archive =
         ZipArchive::new(Cursor::new(bytes)).map_err(|e| contents(path, "package", e))?;
     let is_model = |n: &str| n.trim_start_matches('/').to_ascii_lowercase().ends_with(".model");
-    let mut names: Vec<String> =
-        archive.file_names().flatten().map(|n| n.into_owned()).filter(|n| is_model(n)).collect();
+    let mut names: Vec<String> = archive
+        .file_names()
+        .flatten()
+        .map(std::borrow::Cow::into_owned)
+        .filter(|n| is_model(n))
+        .collect();
     // The root model is 3D/3dmodel.model by custom; parts of the production extension lie deeper.
     names.sort_by_key(|n| (n.matches('/').count(), n.clone()));
     let Some(name) = names.first() else {
@@ -101,7 +105,7 @@ impl Model {
         let number = |key: &str| parsed::<f64>(key, need(key)?);
         let index = |key: &str| parsed::<u32>(key, need(key)?);
         match tag.local_name().as_ref() {
-            "model" => self.unit = get("unit").unwrap_or("millimeter").to_owned(),
+            "model" => get("unit").unwrap_or("millimeter").clone_into(&mut self.unit),
             "object" => {
                 let id = need("id")?.to_owned();
                 let object = Object { name: get("name").map(str::to_owned), ..Object::default() };

@@ -28,7 +28,9 @@ pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
     let groups = graph.groups();
     let mut group_of = vec![usize::MAX; n];
     for (k, group) in groups.iter().enumerate().filter(|(_, g)| g.len() > 1) {
-        group.iter().for_each(|&part| group_of[part] = k);
+        for &part in group {
+            group_of[part] = k;
+        }
     }
     let free: Vec<usize> = graph.removable().concat();
     for a in 0..n {
@@ -50,8 +52,8 @@ pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
             );
         }
     }
-    for k in 0..n {
-        node(&mut text, at(k), bodies.assembly().parts()[k].name(), free.contains(&k), group_of[k]);
+    for (k, &group) in group_of.iter().enumerate() {
+        node(&mut text, at(k), bodies.assembly().parts()[k].name(), free.contains(&k), group);
     }
     text.push_str("</svg>\n");
     text

@@ -9,6 +9,7 @@ use colltrans::glam::DVec3;
 use super::values::{direction, length, threads};
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub(crate) struct AssemblyArguments {
     /// A folder of meshes, a manifest (.toml, .json), .urdf, .glb, .gltf or .3mf
     pub(crate) source: PathBuf,

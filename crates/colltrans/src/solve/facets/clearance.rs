@@ -150,13 +150,12 @@ impl<'a> Cast<'a, Solid> {
         let scene = self.asked();
         let overlapping = || overlap::find(&scene).is_some();
         let aim = match self.options.start_overlap {
-            StartOverlap::Apart => Aim::Stop,
-            StartOverlap::KnownIgnore => Aim::LaterStop,
             StartOverlap::Refuse if overlapping() => {
                 return SolidClearance::Overlapping { depth: self.depth() };
             }
+            StartOverlap::KnownIgnore => Aim::LaterStop,
             StartOverlap::Ignore if overlapping() => Aim::LaterStop,
-            StartOverlap::Refuse | StartOverlap::Ignore => Aim::Stop,
+            StartOverlap::Refuse | StartOverlap::Ignore | StartOverlap::Apart => Aim::Stop,
         };
         let limit = self.options.before.map_or(f64::INFINITY, |t| t * scene.length);
         match first(&scene, aim, limit, workspace, |_| ()) {

@@ -52,7 +52,7 @@ fn parts() -> Vec<(String, Mesh)> {
         parts.push((format!("bolt_{k}"), moved(turned(&profile), DVec3::new(x, y, 0.0))));
     }
     for k in 0..4 {
-        let (s, c) = (TAU * k as f64 / 4.0).sin_cos();
+        let (s, c) = (TAU * f64::from(k) / 4.0).sin_cos();
         parts.push((
             format!("bearing_ball_{k}"),
             moved(ball(1.8), DVec3::new(7.0 * c, 7.0 * s, 27.5)),
@@ -63,7 +63,9 @@ fn parts() -> Vec<(String, Mesh)> {
 
 fn moved(mesh: Mesh, by: DVec3) -> Mesh {
     let Mesh { mut vertices, faces, .. } = mesh;
-    vertices.iter_mut().for_each(|v| *v += by);
+    for v in &mut vertices {
+        *v += by;
+    }
     made(vertices, faces)
 }
 

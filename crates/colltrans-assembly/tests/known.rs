@@ -1,5 +1,11 @@
 //! Assemblies whose answers are known.
 
+#![expect(
+    clippy::default_trait_access,
+    clippy::needless_range_loop,
+    reason = "what is the default, and what is numbered, is said by the calls around"
+)]
+
 mod common;
 
 use std::sync::atomic::AtomicBool;

@@ -1,5 +1,7 @@
 //! Every kind of source, in small files that the tests write.
 
+#![allow(clippy::format_push_string, reason = "small files, written for people to read")]
+
 mod common;
 
 use std::io::Write;

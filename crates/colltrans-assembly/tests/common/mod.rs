@@ -1,5 +1,7 @@
 //! Parts of boxes.
 
+#![allow(dead_code, unreachable_pub, reason = "each test program uses a part of it")]
+
 use colltrans_assembly::{Assembly, Part, Piece};
 use colltrans_kit::random::Random;
 use glam::{DAffine3, DVec3};

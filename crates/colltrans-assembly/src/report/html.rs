@@ -247,13 +247,13 @@ fn rooms(text: &mut String, f: &Findings) {
     for part in 0..f.bodies.len().min(MOST_ROWS) {
         let name = |k: usize| escaped(f.bodies.assembly().parts()[k].name());
         let _ = write!(text, "<tr><th>{}</th>", name(part));
-        for (k, d) in f.matrix.directions().iter().enumerate() {
+        for k in 0..f.matrix.directions().len() {
             let room = f.matrix.room(k, part);
             let cell = match room {
                 PartRoom::Free => "free".into(),
                 PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(by)),
                 PartRoom::Blocked { by, stop, .. } => {
-                    format!("{} {}", short(f.bodies.nominal(&stop, *d)), name(by))
+                    format!("{} {}", short(stop.nominal), name(by))
                 }
             };
             let _ = write!(text, "<td class=\"{}\">{cell}</td>", room.outcome());

@@ -202,9 +202,22 @@ pub(super) fn least_gap(
     if parting && b.high.z < a.low.z {
         return Err(Reason::Parting);
     }
+    let mut swept = [f64::NEG_INFINITY, f64::INFINITY];
+    if let Some(sweep) = &scene.sweep {
+        swept = sweep.gaps(&a.local, &b.local, scene.blur);
+        if swept[0] > swept[1] {
+            return Err(Reason::ShadowsApart);
+        }
+        if swept[0] >= limit {
+            return Err(Reason::NotBefore);
+        }
+        if parting && swept[1] < 0.0 {
+            return Err(Reason::Parting);
+        }
+    }
     let region = Region { middle: (low + high).xy() * 0.5, half: (high - low).xy() * 0.5 };
     let (p, q) = (Heights::new(scene, a), Heights::new(scene, b));
-    let [least, largest] = gaps(&region, (a, p.as_ref()), (b, q.as_ref()));
+    let [least, largest] = gaps(&region, (a, p.as_ref()), (b, q.as_ref()), swept);
     if least >= limit {
         return Err(Reason::NotBefore);
     }
@@ -253,13 +266,15 @@ impl Heights {
     }
 }
 
-/// Bounds of all gaps over a region, the best of boxes and slabs.
+/// Bounds of all gaps over a region, the best of boxes, slabs and what is known already.
 fn gaps(
     region: &Region,
     (a, p): (&Shade, Option<&Heights>),
     (b, q): (&Shade, Option<&Heights>),
+    swept: [f64; 2],
 ) -> [f64; 2] {
-    let [mut least, mut largest] = [b.low.z - a.high.z, b.high.z - a.low.z];
+    let mut least = swept[0].max(b.low.z - a.high.z);
+    let mut largest = swept[1].min(b.high.z - a.low.z);
     if let Some(p) = p {
         let [low, high] = region.range(p.slope);
         least = least.max(b.low.z - (p.base[1] + high));

@@ -13,6 +13,7 @@ mod overlap;
 mod scene;
 mod search;
 mod sign;
+mod sweep;
 mod wide;
 
 pub use clearance::{SolidClearance, SolidOptions, StartOverlap};

@@ -126,6 +126,8 @@ fn base(bodies: &Bodies) -> Vec<bool> {
 const MOST_FINER: usize = 64;
 /// Of the parts that are stuck, a sphere is refined for at most so many.
 const MOST_LOOSE: usize = 64;
+/// Loose is what can go this share of its own size.
+const LOOSE: f64 = 0.125;
 
 struct Planner<'a> {
     bodies: &'a Bodies<'a>,
@@ -162,7 +164,7 @@ impl Planner<'_> {
             }
             let mut way = self.smallest(matrix, &alive, left.len());
             if way.is_none() {
-                way = self.search_finer(&left, &alive, &mut asked)?;
+                way = self.search_finer(&left, &alive, matrix, &mut asked)?;
             }
             let Some(way) = way else {
                 self.explain(&left, matrix, asked);
@@ -240,6 +242,7 @@ impl Planner<'_> {
         &self,
         left: &[usize],
         alive: &[bool],
+        matrix: &Matrix,
         asked: &mut usize,
     ) -> Result<Option<Way>, AssemblyError> {
         if left.iter().filter(|&&k| !self.fixed(k)).count() == 0 {
@@ -266,12 +269,17 @@ impl Planner<'_> {
                 return Ok(way);
             }
         }
-        self.search_refined(left, alive)
+        self.search_refined(left, alive, matrix)
     }
 
     /// A way for something loose, on a sphere that is refined where outcomes change: for single
     /// parts and for those that overlap, and so move as one.
-    fn search_refined(&self, left: &[usize], alive: &[bool]) -> Result<Option<Way>, AssemblyError> {
+    fn search_refined(
+        &self,
+        left: &[usize],
+        alive: &[bool],
+        matrix: &Matrix,
+    ) -> Result<Option<Way>, AssemblyError> {
         let PlanOptions { start, samples } = self.options;
         if samples == 0 {
             return Ok(None);
@@ -279,6 +287,7 @@ impl Planner<'_> {
         let based = |g: &[usize]| g.iter().any(|&k| self.base[k]);
         let mut groups = self.rigid(left);
         groups.retain(|g| g.len() < left.len() && !g.iter().any(|&k| self.fixed(k)));
+        groups.retain(|g| self.is_loose(g, alive, matrix));
         groups.sort_by_key(|g| (based(g), g.len(), g[0]));
         groups.truncate(MOST_LOOSE);
         let options = MapOptions { samples, start, ..MapOptions::default() };
@@ -288,6 +297,17 @@ impl Planner<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether a group can go [`LOOSE`] of its own size along a direction of the matrix.
+    fn is_loose(&self, group: &[usize], alive: &[bool], matrix: &Matrix) -> bool {
+        let bounds = group.iter().map(|&k| self.bodies.bounds(k)).reduce(|a, b| a.join(&b));
+        let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
+        (0..matrix.directions().len()).any(|k| {
+            let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
+            let mut met = met.filter(|m| alive[m.fixed] && !group.contains(&m.fixed));
+            met.all(|m| m.distance() >= LOOSE * size)
+        })
     }
 
     /// These parts, those that overlap in one group, unless overlaps are ignored.

@@ -10,7 +10,7 @@
 use glam::{DVec2, DVec3};
 
 use super::planar::Planar;
-use super::side::Bracket;
+use super::crossing::Bracket;
 
 /// An affine function of `(X, Y)`.
 #[derive(Debug, Clone, Copy, Default)]

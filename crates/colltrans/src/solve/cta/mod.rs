@@ -16,9 +16,11 @@
 
 mod bound;
 mod cell;
+mod crossing;
 mod minimise;
 mod planar;
 mod region;
+mod section;
 mod side;
 #[cfg(test)]
 mod tests;

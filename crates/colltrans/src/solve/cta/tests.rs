@@ -274,12 +274,12 @@ fn colliding(random: &mut Random) -> Example {
 }
 
 /// All vertices of a section in order, from the bottom up the left chain.
-fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
-    let section = side.section(x);
+fn polygon(side: &super::side::Side, x: f64) -> Vec<super::crossing::Crossing> {
+    let section = super::section::Section::new(side, x);
     let first = section.bottom().unwrap().vertex;
     let mut all = vec![first];
     loop {
-        let next = section.up(super::side::Chain::Left, &all[all.len() - 1]);
+        let next = section.up(super::crossing::Chain::Left, &all[all.len() - 1]);
         if next.up == first.up {
             return all;
         }
@@ -313,11 +313,11 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     });
     let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
     for (i, polygon) in polygons.iter().enumerate() {
-        let least = polygon.iter().map(super::side::Crossing::h).fold(f64::INFINITY, f64::min);
+        let least = polygon.iter().map(super::crossing::Crossing::h).fold(f64::INFINITY, f64::min);
         assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
     }
     let edges = |i: usize| {
-        let of: &Vec<super::side::Crossing> = &polygons[i];
+        let of: &Vec<super::crossing::Crossing> = &polygons[i];
         (0..of.len()).map(move |k| (of[k].w, of[(k + 1) % of.len()].w))
     };
     // Clockwise with g to the right and h upwards.

@@ -1,20 +1,16 @@
-//! The planar problem: the lowest point of the intersection of two convex polygons, or a line that
-//! separates them (the paper, section III-B).
+//! Newton's method up two chains that face each other.
 //!
-//! Notation. Body 0 is P with its section at `x`, body 1 is Q with its section at `y`, in the
-//! shadow plane `w = (h, g)`. The *upper* section is the one with the higher bottom, at height
-//! `h0`. If that bottom lies in the other section it is the answer. Otherwise one section is to the
-//! left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the
-//! right chain `r` of the one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive
-//! at `h0`: Newton's method from there never overshoots and ends on the pair of edges that meet
-//! first, or where the gap no longer falls. A guess of these edges is followed along the mesh
-//! first, from above or below. Pieces found earlier bound the answer from below: then Newton's
-//! method starts at that height.
+//! With the left chain `l` of the section on the right (convex) and the right chain `r` of the one
+//! on the left (concave) `gap(h) = l(h) - r(h)` is convex: from a height where it is positive
+//! Newton's method never overshoots, and ends on the pair of edges that meet first, or where the gap
+//! no longer falls.
 
 use glam::DVec2;
 
-use super::side::{Bottom, Bracket, Chain, Crossing, Located, Section, Side};
+use super::Planar;
 use crate::number::noise;
+use crate::solve::cta::crossing::{Bracket, Chain};
+use crate::solve::cta::section::{Located, Section};
 
 /// Halvings of a height: none are left between two numbers after so many.
 const HALVINGS: usize = 64;
@@ -25,130 +21,8 @@ const STEPS_NEAR: usize = 24;
 /// Newton's method walks so far back down a chain before it searches the snapshot.
 const STEPS_DOWN: usize = 4;
 
-/// What the planar problem found.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Planar {
-    /// The bottom of one section lies in the other, between two edges of it.
-    Vertex { upper: usize, vertex: Crossing, left: Bracket, right: Bracket },
-    /// Two edges cross at the lowest common point.
-    Edges { edges: [Bracket; 2], contact: DVec2 },
-    /// Nothing in common: along `u` every point of section 1 is beyond every point of section 0;
-    /// `supports` are the closest.
-    Separated { u: DVec2, supports: [Crossing; 2] },
-}
-
-struct Problem<'a> {
-    sections: [Section<'a>; 2],
-    upper: usize,
-    h0: f64,
-}
-
-/// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is
-/// known not to lie below height `known`. `None` if rounding errors of the mesh hide a section.
-pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
-    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
-    let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
-    let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
-    let problem = Problem { sections, upper, h0: bottoms[upper].vertex.h() };
-    let shortcut = if known > problem.h0 { problem.slide_from(known, &bottoms) } else { None };
-    shortcut.or_else(|| problem.solve(&bottoms))
-}
-
-/// A guess of the two edges that cross.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Near {
-    /// A crossing mesh edge of each body, as the half-edge that runs upwards.
-    pub(super) ups: [u32; 2],
-    /// The body on the right.
-    pub(super) right: usize,
-}
-
-/// The answer if it is a crossing of two edges or a separating line, few steps from the guess. It
-/// is certain, however it was found: where the edges of facing chains cross while the gap falls,
-/// nothing in common lies below, and where it is least and positive, nothing in common is anywhere.
-pub(super) fn solve_near(sides: &[Side; 2], levels: [f64; 2], near: &Near) -> Option<Planar> {
-    let sections = [sides[0].section(levels[0]), sides[1].section(levels[1])];
-    let slide = Slide::new(&sections, near.right);
-    let edge = |body: usize| sections[body].edge_at(slide.chains[body], near.ups[body]);
-    slide.settle([edge(0)?, edge(1)?])
-}
-
-impl Problem<'_> {
-    fn solve(&self, bottoms: &[Bottom; 2]) -> Option<Planar> {
-        let lower = 1 - self.upper;
-        let bottom = &bottoms[self.upper];
-        let left_end = self.sections[self.upper].bottom_end(bottom, Chain::Left);
-        let right_end = self.sections[self.upper].bottom_end(bottom, Chain::Right);
-        let nearer =
-            if right_end.g() < bottoms[lower].vertex.g() { Chain::Left } else { Chain::Right };
-        let mut found = [None; 2];
-        for chain in [nearer, nearer.opposite()] {
-            let edge = match self.sections[lower].locate(chain, self.h0)? {
-                Located::Edge(edge) => edge,
-                Located::Beyond(topmost) => {
-                    return Some(self.separated_by_height(&bottom.vertex, &topmost.high));
-                }
-                Located::Short => return None,
-            };
-            let g = edge.g_at(self.h0);
-            if chain == Chain::Left && right_end.g() < g {
-                return self.slide(right_end, chain, edge);
-            }
-            if chain == Chain::Right && left_end.g() > g {
-                return self.slide(left_end, chain, edge);
-            }
-            found[usize::from(chain == Chain::Right)] = Some(edge);
-        }
-        let (left, right) = (found[0]?, found[1]?);
-        let inside =
-            |end: &Crossing| left.g_at(self.h0) <= end.g() && end.g() <= right.g_at(self.h0);
-        if let Some(vertex) = [left_end, right_end].into_iter().find(inside) {
-            return Some(Planar::Vertex { upper: self.upper, vertex, left, right });
-        }
-        // The lower section is narrower than the flat bottom of the upper one.
-        let flat = Bracket::new(left_end, right_end);
-        Some(crossing_edges(&self.by_body(flat, left)))
-    }
-
-    /// Newton's method from height `known` if the sections are apart there and approach each other.
-    fn slide_from(&self, known: f64, bottoms: &[Bottom; 2]) -> Option<Planar> {
-        let likely = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
-        for right in [likely, 1 - likely] {
-            let slide = Slide::new(&self.sections, right);
-            let locate = |body: usize| self.sections[body].locate(slide.chains[body], known);
-            let Located::Edge(first) = locate(0)? else { break };
-            let Located::Edge(second) = locate(1)? else { break };
-            let edges = [first, second];
-            if slide.gap(&edges, known) > 0.0 {
-                return slide.closes(&edges).then(|| slide.solve(&edges, known)).flatten();
-            }
-        }
-        None
-    }
-
-    /// What belongs to the upper and to the lower section, by body.
-    fn by_body<T>(&self, of_upper: T, of_lower: T) -> [T; 2] {
-        if self.upper == 0 { [of_upper, of_lower] } else { [of_lower, of_upper] }
-    }
-
-    fn separated_by_height(&self, bottom: &Crossing, top: &Crossing) -> Planar {
-        let sign = if self.upper == 1 { 1.0 } else { -1.0 };
-        Planar::Separated { u: DVec2::new(sign, 0.0), supports: self.by_body(*bottom, *top) }
-    }
-
-    /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose
-    /// edge at `h0` is `edge`.
-    fn slide(&self, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
-        let facing = chain.opposite();
-        let first = Bracket::new(end, self.sections[self.upper].up(facing, &end));
-        // The body that shows its left chain is the one on the right.
-        let right = if chain == Chain::Left { 1 - self.upper } else { self.upper };
-        Slide::new(&self.sections, right).solve(&self.by_body(first, edge), self.h0)
-    }
-}
-
 /// Two edges that cross, and where.
-fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
+pub(super) fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
     Planar::Edges { edges: *edges, contact: crossing_of(edges) }
 }
 
@@ -164,23 +38,23 @@ fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
 }
 
 /// Newton's method up two chains that face each other.
-struct Slide<'a, 'b> {
-    sections: &'a [Section<'b>; 2],
+pub(super) struct Slide<'a, 'b> {
+    pub(super) sections: &'a [Section<'b>; 2],
     /// The chain that each body shows to the other.
-    chains: [Chain; 2],
+    pub(super) chains: [Chain; 2],
     /// The body on the right.
     right: usize,
 }
 
 impl<'a, 'b> Slide<'a, 'b> {
-    fn new(sections: &'a [Section<'b>; 2], right: usize) -> Self {
+    pub(super) fn new(sections: &'a [Section<'b>; 2], right: usize) -> Self {
         let mut chains = [Chain::Right; 2];
         chains[right] = Chain::Left;
         Self { sections, chains, right }
     }
 
     /// Up or down the chains to where they cross or the gap is least, if that is few steps away.
-    fn settle(&self, mut edges: [Bracket; 2]) -> Option<Planar> {
+    pub(super) fn settle(&self, mut edges: [Bracket; 2]) -> Option<Planar> {
         for _ in 0..STEPS_NEAR {
             if !self.closes(&edges) {
                 let body = higher(&edges);
@@ -222,7 +96,7 @@ impl<'a, 'b> Slide<'a, 'b> {
     }
 
     /// Whether the gap falls along these edges.
-    fn closes(&self, edges: &[Bracket; 2]) -> bool {
+    pub(super) fn closes(&self, edges: &[Bracket; 2]) -> bool {
         let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
         let sine = r.perp_dot(*s);
         sine < 0.0
@@ -231,7 +105,7 @@ impl<'a, 'b> Slide<'a, 'b> {
     }
 
     /// From the edges at height `start`, where the gap is positive.
-    fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
+    pub(super) fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
         let mut edges = *edges;
         let mut h = start;
         let mut closing = start;
@@ -285,7 +159,7 @@ impl<'a, 'b> Slide<'a, 'b> {
         edges[self.right].slope() - edges[1 - self.right].slope()
     }
 
-    fn gap(&self, edges: &[Bracket; 2], h: f64) -> f64 {
+    pub(super) fn gap(&self, edges: &[Bracket; 2], h: f64) -> f64 {
         edges[self.right].g_at(h) - edges[1 - self.right].g_at(h)
     }
 
@@ -369,7 +243,7 @@ impl<'a, 'b> Slide<'a, 'b> {
         self.separated(&edges[1 - body], supports)
     }
 
-    fn separated(&self, along: &Bracket, supports: [Crossing; 2]) -> Planar {
+    fn separated(&self, along: &Bracket, supports: [super::Crossing; 2]) -> Planar {
         // Points to the right, where g grows, and from body 0 to body 1.
         let sign = if self.right == 1 { 1.0 } else { -1.0 };
         let u = sign * DVec2::new(-along.direction.y, along.direction.x).normalize();

@@ -31,6 +31,11 @@ impl Crossing {
         self.w.y
     }
 
+    /// The levels that the mesh edge spans.
+    pub(super) fn span(&self) -> f64 {
+        self.levels[1] - self.levels[0]
+    }
+
     /// Direction of the polygon edge to its neighbour `next`, of any length: exact even where a
     /// mesh vertex that both edges share makes the polygon edge vanish.
     pub(super) fn towards(&self, next: &Self) -> DVec2 {
@@ -90,6 +95,12 @@ pub(super) struct Bracket {
 impl Bracket {
     pub(super) fn new(low: Crossing, high: Crossing) -> Self {
         Self { low, high, direction: low.towards(&high) }
+    }
+
+    /// The end whose mesh edge spans more levels: the drift of one that rounding alone lifts across
+    /// the level has no digits.
+    pub(super) fn steeper(&self) -> &Crossing {
+        if self.low.span() > self.high.span() { &self.low } else { &self.high }
     }
 
     /// `dg/dh` along the edge.

@@ -8,7 +8,21 @@ use crate::body::ConvexPolyhedron;
 use crate::body::Pose;
 use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism};
 use crate::setting::Setting;
-use crate::solve::observe::{Nobody, Watch};
+use crate::solve::observe::{Nobody, Observer, Watch};
+
+/// Exit tests, and how many of them ended a search.
+#[derive(Debug, Default)]
+struct Exits {
+    tests: u32,
+    hits: u32,
+}
+
+impl Observer for Exits {
+    fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
+        self.tests += 1;
+        self.hits += u32::from(solved());
+    }
+}
 
 /// The result of a minimisation, and how many planar problems it took.
 fn minimised(setting: &Setting, options: &CtaOptions) -> (Narrowed, u32) {
@@ -237,6 +251,43 @@ fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
 }
 
 #[test]
+fn the_exit_test_ends_nearly_every_search_at_the_contact() {
+    let mut random = Random(23);
+    let bodies = [
+        ellipsoid(30, DVec3::ONE),
+        ellipsoid(60, DVec3::new(1.0, 0.7, 1.3)),
+        ellipsoid(60, DVec3::new(100.0, 1.0, 1.0)),
+        prism(5, DVec3::ONE),
+        cone(6, DVec3::ONE),
+        cuboid(DVec3::ZERO, DVec3::ONE),
+    ];
+    let mut counted = Exits::default();
+    let mut contacts = 0;
+    for round in 0..500 {
+        let (p, q) = (&bodies[random.index(bodies.len())], &bodies[random.index(bodies.len())]);
+        let Example { poses, d } = colliding(&mut random);
+        let setting = Setting::new(p, &poses[0], q, &poses[1], d).unwrap();
+        let mut exits = Exits::default();
+        let narrowed = minimise(&setting, &EXACT, &mut Watch::new(&mut exits));
+        let truth =
+            brute_force(&Placed::new(p, &poses[0]), &Placed::new(q, &poses[1]), setting.unit);
+        let Truth::Contact(t) = truth else { continue };
+        contacts += 1;
+        counted.tests += exits.tests;
+        counted.hits += exits.hits;
+        // No search goes on after a hit, and none is wrong.
+        assert!(exits.hits <= 1, "round {round}");
+        assert!(
+            exits.hits == 0 || (narrowed.lower - t).abs() < 1e-7,
+            "round {round}: {narrowed:?}"
+        );
+    }
+    assert!(contacts > 250 && counted.hits * 100 >= contacts * 99, "{contacts} {counted:?}");
+    // The test is not asked so often that it could not but hit.
+    assert!(counted.tests > 2 * counted.hits, "{counted:?}");
+}
+
+#[test]
 fn steps_do_not_grow_with_the_bodies() {
     for count in [8, 128, 2000, 20_000] {
         let mut random = Random(19);
@@ -306,7 +357,7 @@ fn planar_problems_agree_with_brute_force() {
 
 fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     use super::planar::{Planar, solve};
-    let query = super::minimise::SectionPair::new(setting);
+    let query = super::pair::SectionPair::new(setting);
     let levels = [0, 1].map(|i| {
         let [low, high] = query.sides[i].range();
         random.within(low, high)

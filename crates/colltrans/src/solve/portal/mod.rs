@@ -18,7 +18,7 @@ mod start;
 
 use glam::{DVec2, DVec3};
 
-pub(crate) use enclose::{Enclosure, SeparatingLine, enclose, widest_margin};
+pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, widest_margin};
 pub(crate) use follow::{ContactPortal, Followed, approach, follow};
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, refine};

@@ -20,7 +20,7 @@ use crate::body::Pose;
 use crate::error::QueryError;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
-use cta::{ContactGuess, CtaOptions, Guess, Origin, RegionFocus};
+use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
 use portal::{Enclosure, FirstNormal, Followed, Overlap, Portal, Refined, SeparatingLine};
@@ -228,35 +228,26 @@ impl<O: Observer> Run<'_, '_, O> {
         }
     }
 
-    /// Planar problems are solved only where the way from the ellipsoids' guess gets lost: one costs
-    /// as much as all of that way.
+    /// Where the ellipsoids meet, their normal is the start of portal refinement: a planar problem
+    /// costs more than it saves there (measured). Where they pass each other and the bodies are
+    /// not seen to do so, it is solved.
     fn start_at_ellipsoids(&mut self, ellipsoids: &FirstNormal) -> Start {
         let normal = ellipsoids.normal;
-        if let Some(found) = self.approach(ellipsoids) {
-            return Start::Enclosed(found);
+        if normal.z > 0.0 {
+            return Start::Normal(*ellipsoids);
         }
         let support = self.difference.support(normal);
         self.watch.support(|| Support::of(normal, &support));
-        if normal.z == 0.0 {
-            // It may separate the bodies already.
-            return if normal.dot(support.at) > 0.0 {
-                Start::Normal(ellipsoids.guided(normal, support.pair))
-            } else {
-                self.narrow(ellipsoids, Origin::Center)
-            };
+        if normal.dot(support.at) > 0.0 {
+            return Start::Normal(ellipsoids.guided(normal, support.pair));
         }
-        let guess = ContactGuess {
-            normal: self.difference.setting_from_shadow * normal,
-            supports: [support.pair.moving, support.pair.fixed],
-            touching: ellipsoids.touching(&self.difference),
-        };
-        self.narrow(ellipsoids, Origin::Contact(guess))
+        self.narrow(ellipsoids, Origin::Center)
     }
 
     /// By the collision translation algorithm.
     fn narrow(&mut self, ellipsoids: &FirstNormal, origin: Origin) -> Start {
         self.watch.ended(Phase::Setup);
-        let options = CtaOptions::new(origin, self.narrowing.gap);
+        let options = CtaOptions { start: origin, gap: self.narrowing.gap };
         let narrowed = cta::minimise(self.difference.setting, &options, &mut self.watch);
         let corners = narrowed.corners.as_ref();
         if let Some(portal) = corners.and_then(|c| portal::around(&self.difference, c)) {

@@ -9,7 +9,7 @@ use super::crossing::Crossing;
 use super::exit::{Corners, ExitTest, Solved};
 use super::pair::SectionPair;
 use super::piece::{Affine, Piece};
-use super::planar::{self, Planar};
+use super::planar::{self, Hint, Planar};
 use super::region::{Region, Square};
 use super::start::Origin;
 use crate::setting::Setting;
@@ -20,25 +20,9 @@ use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Watch};
 pub(crate) struct CtaOptions {
     /// Where to start.
     pub(crate) start: Origin,
-    /// Planar problems at most (never more than [`MAX_STEPS`]).
-    pub(crate) max_steps: u32,
     /// Stops when upper minus lower bound is at most this part of the extent of both bodies along
     /// the direction.
     pub(crate) gap: f64,
-}
-
-/// Planar problems after a guess: from there portal refinement is faster (measured).
-const STEPS_AFTER_GUESS: u32 = 2;
-
-impl CtaOptions {
-    /// As many steps as pay off from a start.
-    pub(crate) fn new(start: Origin, gap: f64) -> Self {
-        let max_steps = match start {
-            Origin::Contact(_) => STEPS_AFTER_GUESS,
-            Origin::Center | Origin::Region(_) => MAX_STEPS,
-        };
-        Self { start, max_steps, gap }
-    }
 }
 
 /// Where the search was narrowed to.
@@ -100,10 +84,7 @@ pub(crate) fn minimise<O: Observer>(
     watch.ended(Phase::Setup);
     let begin = sections.begin(&options.start);
     let levels = begin.at.to_array();
-    let first = begin
-        .near
-        .and_then(|near| planar::solve_near(&sections.sides, levels, &near))
-        .or_else(|| planar::solve(&sections.sides, levels, f64::NEG_INFINITY));
+    let first = planar::solve(&sections.sides, levels, &Hint::NONE);
     watch.ended(Phase::Planar);
     let Some(first) = first else {
         watch.planar_problem(|| PlanarProblem::hidden(levels));
@@ -120,12 +101,12 @@ pub(crate) fn minimise<O: Observer>(
         solved: None,
         last_separation: None,
         contradiction: None,
+        right: None,
         watch,
         steps: 1,
-        guessed: matches!(options.start, Origin::Contact(_)),
     };
     if search.learn(begin.at - sections.origin, levels, &first) {
-        search.run(options.max_steps.min(MAX_STEPS), gap);
+        search.run(gap);
     }
     search.result()
 }
@@ -145,24 +126,25 @@ struct Minimisation<'q, 'a, 'o, O> {
     solved: Option<Solved>,
     last_separation: Option<(Features, DVec3)>,
     contradiction: Option<DVec3>,
+    /// The body on the right in the last planar problem.
+    right: Option<usize>,
     watch: &'q mut Watch<'o, O>,
     /// Planar problems solved.
     steps: u32,
-    /// Whether the search began with a supporting plane of the bodies.
-    guessed: bool,
 }
 
 impl<O: Observer> Minimisation<'_, '_, '_, O> {
     /// One planar problem after the other, at the centroid of what is left or on the way there.
-    fn run(&mut self, max_steps: u32, gap: f64) {
-        while self.steps < max_steps && self.upper - self.bound.t > gap {
+    fn run(&mut self, gap: f64) {
+        while self.steps < MAX_STEPS && self.upper - self.bound.t > gap {
             let Some(at) = self.next() else { break };
             self.watch.ended(Phase::Region);
             let levels = (self.sections.origin + at).to_array();
-            let known = self.bound.below(at) - self.sections.frame.base(levels);
+            let height = self.bound.below(at) - self.sections.frame.base(levels);
             self.steps += 1;
             self.watch.ended(Phase::Bound);
-            let answer = planar::solve(&self.sections.sides, levels, known);
+            let sides = &self.sections.sides;
+            let answer = planar::solve(sides, levels, &Hint { height, right: self.right });
             self.watch.ended(Phase::Planar);
             let Some(answer) = answer else {
                 self.watch.planar_problem(|| PlanarProblem::hidden(levels));
@@ -190,6 +172,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
 
     /// Cuts the region and raises the bound; `false` if there is nothing more to learn.
     fn learn(&mut self, at: DVec2, levels: [f64; 2], answer: &Planar) -> bool {
+        self.right = answer.right();
         let local = answer.piece(&self.sections.frame, levels);
         let shifted = self.shift(levels, answer, &local);
         self.watch.ended(Phase::Cell);
@@ -261,11 +244,6 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         }
         let (guess, vertices) = match (self.best, self.last_separation) {
             (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, best),
-            // Not all of the levels were searched, but every normal that the bounds combine is one
-            // of a supporting plane.
-            (None, Some((features, _))) if self.guessed && self.contradiction.is_none() => {
-                (Guess::Contact { normal: self.bound.normal() }, features)
-            }
             (None, Some((features, normal))) => {
                 let direction = self.contradiction.unwrap_or(normal);
                 (Guess::Separation { direction }, features)

@@ -32,7 +32,7 @@ mod start;
 mod tests;
 
 pub(crate) use minimise::{CtaOptions, Guess, minimise};
-pub(crate) use start::{ContactGuess, Origin, RegionFocus};
+pub(crate) use start::{Origin, RegionFocus};
 
 /// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^40 < 2e-8` of the region
 /// by then.

@@ -11,9 +11,6 @@ use crate::body::convex::sections::{Snapshot, Turn, next_clockwise, next_counter
 /// Newton's method walks so far up a chain before it searches the snapshot.
 const STEPS_BEFORE_SEARCH: usize = 2;
 
-/// Edges of the opposite chain that are passed on the way to the bottom.
-const STEPS_TO_CHAIN: usize = 4;
-
 /// Where a height was found on a chain.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Located {
@@ -30,6 +27,26 @@ pub(super) enum Located {
 pub(super) struct Bottom {
     pub(super) vertex: Crossing,
     pub(super) directions: [DVec2; 2],
+}
+
+/// Crossings computed and mesh steps made by this thread.
+#[cfg(test)]
+pub(super) mod work {
+    use std::cell::Cell;
+
+    thread_local!(static STEPS: Cell<[u64; 2]> = const { Cell::new([0; 2]) });
+
+    pub(super) fn count(kind: usize) {
+        STEPS.with(|steps| {
+            let mut all = steps.get();
+            all[kind] += 1;
+            steps.set(all);
+        });
+    }
+
+    pub(in crate::solve::cta) fn take() -> [u64; 2] {
+        STEPS.with(|steps| steps.replace([0; 2]))
+    }
 }
 
 /// The section of a body at one level.
@@ -64,6 +81,8 @@ impl<'a> Section<'a> {
     }
 
     fn crossing(&self, up: u32) -> Crossing {
+        #[cfg(test)]
+        work::count(0);
         let topology = self.side.topology;
         let vertices = [topology.half_edge(up).origin, topology.target(up)];
         let (low, high) = (self.side.point(vertices[0]), self.side.point(vertices[1]));
@@ -114,6 +133,8 @@ impl<'a> Section<'a> {
         let topology = self.side.topology;
         let mut up = from;
         loop {
+            #[cfg(test)]
+            work::count(1);
             let vertex = topology.target(up);
             if self.side.level(vertex) > self.x {
                 return Some(up);
@@ -191,20 +212,6 @@ impl<'a> Section<'a> {
             }
         }
         Some(self.walk(chain, bracket, h, self.step_limit()))
-    }
-
-    /// An edge of the chain at or near the crossing mesh edge `up`: also from the other side of the
-    /// bottom.
-    pub(super) fn edge_at(&self, chain: Chain, up: u32) -> Option<Bracket> {
-        let mut low = self.crossing(up);
-        for _ in 0..STEPS_TO_CHAIN {
-            let above = Bracket::new(low, self.up(chain, &low));
-            if chain.ascends(above.direction) {
-                return Some(above);
-            }
-            low = above.high;
-        }
-        None
     }
 
     /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite

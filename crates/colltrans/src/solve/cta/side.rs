@@ -9,12 +9,6 @@ use super::crossing::Chain;
 use crate::body::convex::sections::{AxisSections, SectionForm, Turn};
 use crate::body::topology::Topology;
 
-/// Edges of a vertex that are compared one by one.
-const EDGES_TRIED: usize = 16;
-
-/// Vertices on the way from a support vertex to a level.
-const VERTICES_TRIED: usize = 4;
-
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
@@ -69,36 +63,6 @@ impl<'a> Side<'a> {
     pub(super) fn least_height(&self) -> f64 {
         let any = self.point(0).shadow.x;
         any - self.shadow[0].length() * self.sections.diameter
-    }
-
-    /// A mesh edge that crosses level `x`, as the half-edge that runs upwards: the way there from a
-    /// support vertex leads along edges that stay close to the supporting plane with this normal
-    /// (body frame). `None` if it is long.
-    pub(super) fn edge_near(&self, support: u32, normal: DVec3, x: f64) -> Option<u32> {
-        let mut vertex = support;
-        let upwards = self.level(vertex) <= x;
-        for _ in 0..VERTICES_TRIED {
-            let here = self.vertices[vertex as usize];
-            let neighbours = self.topology.neighbours(vertex);
-            if neighbours.len() > EDGES_TRIED {
-                return None;
-            }
-            let (mut best, mut least) = (None, f64::INFINITY);
-            for (k, &neighbour) in neighbours.iter().enumerate() {
-                let edge = self.vertices[neighbour as usize] - here;
-                let rise = self.axis.dot(edge);
-                let depth = normal.dot(edge).abs() / rise.abs();
-                let better = (rise > 0.0) == upwards && depth < least;
-                (best, least) = if better { (Some(k), depth) } else { (best, least) };
-            }
-            let best = best?;
-            if (self.level(neighbours[best]) <= x) != upwards {
-                let out = self.topology.outgoing(vertex)[best];
-                return Some(if upwards { out } else { self.topology.half_edge(out).twin });
-            }
-            vertex = neighbours[best];
-        }
-        None
     }
 
     pub(super) fn level(&self, vertex: u32) -> f64 {

@@ -6,7 +6,7 @@ use super::minimise::{Narrowed, minimise};
 use super::{CtaOptions, Guess, Origin};
 use crate::body::ConvexPolyhedron;
 use crate::body::Pose;
-use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism};
+use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism, thin_ellipsoid};
 use crate::setting::Setting;
 use crate::solve::observe::{Nobody, Observer, Watch};
 
@@ -102,8 +102,7 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
     Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
 }
 
-const EXACT: CtaOptions =
-    CtaOptions { start: Origin::Center, max_steps: super::MAX_STEPS, gap: 1e-10 };
+const EXACT: CtaOptions = CtaOptions { start: Origin::Center, gap: 1e-10 };
 
 /// Compares with brute force to `tolerance`; returns the result.
 fn check(
@@ -356,7 +355,7 @@ fn planar_problems_agree_with_brute_force() {
 }
 
 fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
-    use super::planar::{Planar, solve};
+    use super::planar::{Hint, Planar, solve};
     let query = super::pair::SectionPair::new(setting);
     let levels = [0, 1].map(|i| {
         let [low, high] = query.sides[i].range();
@@ -395,18 +394,21 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             }
         }
     }
-    let height = |known: f64| match solve(&query.sides, levels, known).unwrap() {
+    let height = |hint: &Hint| match solve(&query.sides, levels, hint).unwrap() {
         Planar::Vertex { vertex, .. } => vertex.h(),
         Planar::Edges { contact, .. } => contact.x,
         Planar::Separated { .. } => f64::INFINITY,
     };
-    // A bound from below changes the way, not the answer.
-    let unguided = height(f64::NEG_INFINITY);
+    // A bound from below and a guess, right or wrong, change the way, not the answer.
+    let unguided = height(&Hint::NONE);
     for known in [1e-6, 1e-2, 1.0] {
-        let found = height(least.min(10.0) - known);
-        assert!(found == unguided || (found - unguided).abs() < 1e-9, "{name}: {found} {unguided}");
+        for right in [None, Some(0), Some(1)] {
+            let found = height(&Hint { height: least.min(10.0) - known, right });
+            let same = found == unguided || (found - unguided).abs() < 1e-9;
+            assert!(same, "{name}: {found} {unguided}");
+        }
     }
-    let answer = solve(&query.sides, levels, f64::NEG_INFINITY).unwrap();
+    let answer = solve(&query.sides, levels, &Hint::NONE).unwrap();
     match answer {
         Planar::Vertex { vertex, .. } => {
             assert!((vertex.h() - least).abs() < 1e-9, "{name}: {least} {}", vertex.h());
@@ -424,6 +426,45 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             for c in &polygons[1] {
                 assert!(u.dot(c.w - supports[1].w) > -1e-9, "{name}");
             }
+        }
+    }
+}
+
+/// Crossings computed and mesh steps made per planar problem, and planar problems per search, of
+/// searches from the centre to the end.
+fn work_per_problem(bodies: &[ConvexPolyhedron; 2], aside: f64, rounds: usize) -> [f64; 3] {
+    let mut random = Random(29);
+    let mut problems = 0;
+    super::section::work::take();
+    for _ in 0..rounds {
+        let mut e = colliding(&mut random);
+        let shift = random.unit().cross(e.d).normalize() * aside;
+        e.poses[1] = Pose::new(e.poses[1].rotation(), e.poses[1].translation() + shift).unwrap();
+        let [p, q] = bodies;
+        let setting = Setting::new(p, &e.poses[0], q, &e.poses[1], e.d).unwrap();
+        problems += minimised(&setting, &EXACT).1;
+    }
+    let [crossings, steps] = super::section::work::take();
+    let problems = f64::from(problems);
+    [crossings as f64 / problems, steps as f64 / problems, problems / rounds as f64]
+}
+
+#[test]
+fn planar_problems_do_not_walk_along_sections() {
+    for (count, thin) in [(2000, false), (20_000, false), (2000, true), (20_000, true)] {
+        let mut random = Random(31);
+        let bodies = [0, 1].map(|_| {
+            let axes = DVec3::from_array([0, 1, 2].map(|_| random.within(0.6, 1.4)));
+            if thin { thin_ellipsoid(count, axes) } else { ellipsoid(count, axes) }
+        });
+        for aside in [0.0, 1.5, 3.0] {
+            let [crossings, steps, problems] = work_per_problem(&bodies, aside, 200);
+            println!(
+                "{count} thin {thin} aside {aside}: {crossings:.1} crossings, {steps:.1} mesh \
+                 steps a problem, {problems:.1} problems"
+            );
+            let most = if thin { 120.0 } else { 40.0 };
+            assert!(crossings < most && steps < most, "{count} {thin} {aside}");
         }
     }
 }

@@ -7,9 +7,8 @@
 //! left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the
 //! right chain `r` of the one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive
 //! at `h0`: Newton's method from there never overshoots and ends on the pair of edges that meet
-//! first, or where the gap no longer falls. A guess of these edges is followed along the mesh
-//! first, from above or below. Pieces found earlier bound the answer from below: then Newton's
-//! method starts at that height.
+//! first, or where the gap no longer falls. Pieces found
+//! earlier bound the answer from below: then Newton's method starts at that height.
 
 mod slide;
 
@@ -38,34 +37,40 @@ struct Problem<'a> {
     h0: f64,
 }
 
-/// Solves the planar problem for the sections at `levels`, each in its body's range; the answer is
-/// known not to lie below height `known`. `None` if rounding errors of the mesh hide a section.
-pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], known: f64) -> Option<Planar> {
+/// What pieces and the planar problem before tell about an answer.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hint {
+    /// The answer does not lie below this height.
+    pub(super) height: f64,
+    /// The body that is probably on the right there.
+    pub(super) right: Option<usize>,
+}
+
+impl Hint {
+    /// Nothing is known.
+    pub(super) const NONE: Self = Self { height: f64::NEG_INFINITY, right: None };
+}
+
+/// Solves the planar problem for the sections at `levels`, each in its body's range. `None` if
+/// rounding errors of the mesh hide a section.
+pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], hint: &Hint) -> Option<Planar> {
     let sections = [Section::new(&sides[0], levels[0]), Section::new(&sides[1], levels[1])];
+    // Where the guess of the right body holds, the bottoms need not be known.
+    if let Some(right) = hint.right
+        && let Some(found) = Slide::new(&sections, right).solve_from(hint.height)
+    {
+        return Some(found);
+    }
     let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
     let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
-    let problem = Problem { sections, upper, h0: bottoms[upper].vertex.h() };
-    let shortcut = if known > problem.h0 { problem.slide_from(known, &bottoms) } else { None };
-    shortcut.or_else(|| problem.solve(&bottoms))
-}
-
-/// A guess of the two edges that cross.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Near {
-    /// A crossing mesh edge of each body, as the half-edge that runs upwards.
-    pub(super) ups: [u32; 2],
-    /// The body on the right.
-    pub(super) right: usize,
-}
-
-/// The answer if it is a crossing of two edges or a separating line, few steps from the guess. It
-/// is certain, however it was found: where the edges of facing chains cross while the gap falls,
-/// nothing in common lies below, and where it is least and positive, nothing in common is anywhere.
-pub(super) fn solve_near(sides: &[Side; 2], levels: [f64; 2], near: &Near) -> Option<Planar> {
-    let sections = [Section::new(&sides[0], levels[0]), Section::new(&sides[1], levels[1])];
-    let slide = Slide::new(&sections, near.right);
-    let edge = |body: usize| sections[body].edge_at(slide.chains[body], near.ups[body]);
-    slide.settle([edge(0)?, edge(1)?])
+    let h0 = bottoms[upper].vertex.h();
+    if hint.height > h0 && hint.right.is_none() {
+        let right = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
+        if let Some(found) = Slide::new(&sections, right).solve_from(hint.height) {
+            return Some(found);
+        }
+    }
+    Problem { sections, upper, h0 }.solve(&bottoms)
 }
 
 impl Problem<'_> {
@@ -105,22 +110,6 @@ impl Problem<'_> {
         Some(crossing_edges(&self.by_body(flat, left)))
     }
 
-    /// Newton's method from height `known` if the sections are apart there and approach each other.
-    fn slide_from(&self, known: f64, bottoms: &[Bottom; 2]) -> Option<Planar> {
-        let likely = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
-        for right in [likely, 1 - likely] {
-            let slide = Slide::new(&self.sections, right);
-            let locate = |body: usize| self.sections[body].locate(slide.chains[body], known);
-            let Located::Edge(first) = locate(0)? else { break };
-            let Located::Edge(second) = locate(1)? else { break };
-            let edges = [first, second];
-            if slide.gap(&edges, known) > 0.0 {
-                return slide.closes(&edges).then(|| slide.solve(&edges, known)).flatten();
-            }
-        }
-        None
-    }
-
     /// What belongs to the upper and to the lower section, by body.
     fn by_body<T>(&self, of_upper: T, of_lower: T) -> [T; 2] {
         if self.upper == 0 { [of_upper, of_lower] } else { [of_lower, of_upper] }
@@ -139,5 +128,20 @@ impl Problem<'_> {
         // The body that shows its left chain is the one on the right.
         let right = if chain == Chain::Left { 1 - self.upper } else { self.upper };
         Slide::new(&self.sections, right).solve(&self.by_body(first, edge), self.h0)
+    }
+}
+
+impl Planar {
+    /// The body on the right where the sections face each other; not known of a vertex inside the
+    /// other section.
+    pub(super) fn right(&self) -> Option<usize> {
+        match self {
+            Self::Vertex { .. } => None,
+            // The gap falls: the edges turn towards each other.
+            Self::Edges { edges: [p, q], .. } => {
+                Some(usize::from(p.direction.perp_dot(q.direction) < 0.0))
+            }
+            Self::Separated { u, .. } => Some(usize::from(u.y > 0.0)),
+        }
     }
 }

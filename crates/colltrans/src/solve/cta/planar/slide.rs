@@ -53,46 +53,15 @@ impl<'a, 'b> Slide<'a, 'b> {
         Self { sections, chains, right }
     }
 
-    /// Up or down the chains to where they cross or the gap is least, if that is few steps away.
-    pub(super) fn settle(&self, mut edges: [Bracket; 2]) -> Option<Planar> {
-        for _ in 0..STEPS_NEAR {
-            if !self.closes(&edges) {
-                let body = higher(&edges);
-                if self.gap(&edges, edges[body].low.h()) > 0.0 {
-                    return self.separated_at_least_gap(&edges, STEPS_NEAR);
-                }
-                edges[body] = self.retreat(body, &edges[body])?;
-                continue;
-            }
-            let contact = crossing_of(&edges);
-            let mut settled = true;
-            for body in 0..2 {
-                let edge = &edges[body];
-                if edge.direction.dot(contact - edge.high.w) > 0.0 {
-                    let Some(above) = self.proceed(body, edge) else {
-                        return self.separated_near_top(body, &edges);
-                    };
-                    edges[body] = above;
-                    settled = false;
-                } else if edge.direction.dot(contact - edge.low.w) < 0.0 {
-                    edges[body] = self.retreat(body, edge)?;
-                    settled = false;
-                }
-            }
-            if settled {
-                return Some(Planar::Edges { edges, contact });
-            }
-        }
-        None
-    }
-
-    /// [`Self::separated_at_top`] if the other chain has been followed up to there and has not met
-    /// this one.
-    fn separated_near_top(&self, body: usize, edges: &[Bracket; 2]) -> Option<Planar> {
-        let top = edges[body].high.h();
-        let other = &edges[1 - body];
-        let level = other.low.h() <= top && top <= other.high.h();
-        (level && self.gap(edges, top) > 0.0).then(|| self.separated_at_top(body, edges))
+    /// Newton's method from a height, if both sections reach it and approach each other there.
+    pub(super) fn solve_from(&self, height: f64) -> Option<Planar> {
+        let locate = |body: usize| match self.sections[body].locate(self.chains[body], height)? {
+            Located::Edge(edge) if edge.low.h() <= height => Some(edge),
+            _ => None,
+        };
+        let edges = [locate(0)?, locate(1)?];
+        let starts = self.gap(&edges, height) > 0.0 && self.closes(&edges);
+        starts.then(|| self.solve(&edges, height)).flatten()
     }
 
     /// Whether the gap falls along these edges.

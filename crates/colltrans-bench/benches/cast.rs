@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use colltrans::{Options, Solver, Tracker, cast_with};
+use colltrans::{Options, Solver, Tracker};
 use colltrans_bench::parry::{self, ParrySetting};
 use colltrans_bench::shapes::Shape;
 use colltrans_kit::random::Random;
@@ -36,7 +36,7 @@ fn cast(criterion: &mut Criterion) {
             group.bench_function(name, |bencher| {
                 bencher.iter(|| {
                     let s = black_box(cycle.next().expect("endless"));
-                    cast_with(moving, &s.moving, fixed, &s.fixed, s.direction, &options)
+                    s.cast(&bodies, &options).and_then(|cast| cast.first_contact())
                 });
             });
         }
@@ -58,14 +58,15 @@ fn track(criterion: &mut Criterion) {
         let bodies = pair(Shape::Ellipsoid, n, &mut random);
         let [moving, fixed] = &bodies.pair;
         let settings = Setting::sequence(&bodies, Meeting::Colliding, delta, 1_000, &mut random);
-        let mut tracker = Tracker::new(moving, fixed);
+        let options = Options::default();
+        let mut tracker = Tracker::new();
         let mut group = criterion.benchmark_group(format!("sequence {n} {}%", 100.0 * delta));
         // Forwards and back, so that there is no jump.
         let mut cycle = settings.iter().chain(settings.iter().rev()).cycle();
         group.bench_function("tracker", |bencher| {
             bencher.iter(|| {
                 let s = black_box(cycle.next().expect("endless"));
-                tracker.cast(&s.moving, &s.fixed, s.direction)
+                s.cast(&bodies, &options).and_then(|cast| tracker.first_contact(&cast))
             });
         });
         group.bench_function("scratch", |bencher| {

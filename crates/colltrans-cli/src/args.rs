@@ -46,6 +46,11 @@ pub(crate) enum Command {
     /// Say what a mesh file holds, and whether it is convex
     #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
     Info(InfoArguments),
+    /// Answer a saved query once more
+    ///
+    /// A query that ends without an answer is saved as colltrans-case-1.json, exact in bits.
+    #[command(after_help = EXIT_CODES)]
+    Replay(ReplayArguments),
 }
 
 #[derive(Debug, Args)]
@@ -105,7 +110,7 @@ pub(crate) struct PlaceArguments {
     /// The rotation of the moving mesh as angles in degrees, instead of a quaternion
     ///
     /// About the world's x axis, then about y, then about z (as in URDF files), about the mesh's
-    /// own origin, before the translation. Multiples of 90 are exact up to the last bits.
+    /// own origin, before the translation. Multiples of 90 are exact.
     #[arg(long, value_name = "ROLL,PITCH,YAW", allow_hyphen_values = true, value_parser = angles)]
     pub(crate) moving_rpy: Option<Angles>,
     /// The rotation of the fixed mesh, written like --moving-rpy
@@ -201,6 +206,16 @@ pub(crate) struct BatchArguments {
     pub(crate) hull: bool,
     #[command(flatten)]
     pub(crate) body: BodyArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArguments {
+    /// The saved query
+    #[arg(value_name = "CASE.json")]
+    pub(crate) case: PathBuf,
+    /// Answer as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

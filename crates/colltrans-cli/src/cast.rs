@@ -5,15 +5,16 @@ use std::io::{self, Read as _, Write};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{ContactRange, Options};
+use colltrans::{Clearance, ContactRange, Options};
 
 use crate::args::{self, PairArguments};
 use crate::body::{self, Part};
 use crate::failure::{Code, Failure, note};
 use crate::inputs::overwritten;
 use crate::picture::{Scene, draw};
-use crate::query::{Clearance, Query};
+use crate::query::Query;
 use crate::record::{Hulls, Name, Record};
+use crate::replay;
 use crate::report;
 
 /// Which question is asked.
@@ -137,12 +138,12 @@ fn ask(
     let (answer, record) = match asked {
         Asked::Contact => {
             let answer = query.contact_range()?;
-            let record = Record::of_answer(&answer, query.moving, query.fixed);
+            let record = Record::of_answer(&answer, &query.cast()?);
             (Answer::Contact(answer), record)
         }
         Asked::Clearance => {
             let answer = query.clearance()?;
-            let record = Record::of_clearance(&answer, query.moving, query.fixed);
+            let record = Record::of_clearance(&answer, &query.cast()?);
             (Answer::Clearance(answer), record)
         }
     };
@@ -155,7 +156,8 @@ fn answer_one(
     query: &Query<'_>,
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
-    let (answer, record) = ask(asked, query, parts)?;
+    let answered = ask(asked, query, parts);
+    let (answer, record) = answered.map_err(|error| replay::failure(error, query))?;
     let text = if arguments.json {
         json(&record)?
     } else {
@@ -170,7 +172,7 @@ fn answer_one(
         Answer::Contact(range) => range,
         Answer::Clearance(_) => query.contact_range()?,
     };
-    fs::write(path, draw(&Scene { query, answer: &range }))
+    fs::write(path, draw(&Scene { query, cast: &query.cast()?, answer: &range }))
         .map_err(|error| Failure::output(path.display(), &error))
 }
 

@@ -18,6 +18,7 @@ mod numbers;
 mod picture;
 mod query;
 mod record;
+mod replay;
 mod report;
 
 use std::io::{self, Write};
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         Command::Clearance(arguments) => cast::run(&arguments, Asked::Clearance),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -31,15 +31,6 @@ pub(crate) fn known(value: f64, error: f64) -> String {
     number(rounded)
 }
 
-/// [`known`] of a value that is not negative, rounded down: what is shown is no more than it.
-pub(crate) fn known_down(value: f64, error: f64) -> String {
-    let shown = known(value, error);
-    match shown.parse::<f64>() {
-        Ok(rounded) if rounded > value => known((value - error).max(0.0), error),
-        _ => shown,
-    }
-}
-
 /// Six digits, for what is measured and not proven.
 pub(crate) fn six_digits(value: f64) -> String {
     known(value, value.abs() * 1e-5)
@@ -98,21 +89,6 @@ mod tests {
             for error in [1e-3, 3e-9, 9.9e-12] {
                 let shown: f64 = known(value, error).parse().unwrap();
                 assert!((shown - value).abs() <= error, "{value} {error}");
-            }
-            value *= 1.37;
-        }
-    }
-
-    #[test]
-    fn rounded_down_is_no_more() {
-        assert_eq!(known_down(2.999_999_999_999_999, 1e-12), "2.999999999999");
-        assert_eq!(known_down(2.0, 1e-12), "2");
-        assert_eq!(known_down(0.6, 10.0), "0");
-        let mut value = 0.1_f64;
-        while value < 1e6 {
-            for error in [1e-3, 3e-9, 9.9e-12, 1e-15] {
-                let shown: f64 = known_down(value, error).parse().unwrap();
-                assert!(shown <= value && value - shown <= 2.0 * error, "{value} {error}");
             }
             value *= 1.37;
         }

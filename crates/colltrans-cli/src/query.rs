@@ -1,8 +1,9 @@
 //! The library's queries, as the commands ask them.
 
 use colltrans::glam::DVec3;
-use colltrans::{Contact, ContactRange, ConvexPolyhedron, Grazing, Options, Pose, Separated};
-use colltrans::{QueryError, contact_range};
+use colltrans::{
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Pose, QueryError,
+};
 
 /// Two placed bodies and a direction.
 #[derive(Clone, Copy)]
@@ -15,44 +16,21 @@ pub(crate) struct Query<'a> {
     pub(crate) options: Options,
 }
 
-/// How far the moving body can go from where it is.
-pub(crate) enum Clearance {
-    /// No further than a contact ahead.
-    Blocked(Contact),
-    /// As far as one likes: the bodies slide along each other.
-    Slides(Grazing),
-    /// As far as one likes: the bodies only meet behind.
-    Behind(Contact),
-    /// As far as one likes: the bodies never meet.
-    Separated(Separated),
-    /// Nowhere: the bodies overlap where they are.
-    Overlapping { first: Contact, last: Contact },
-}
-
 impl Query<'_> {
-    /// At which translations the bodies first and last meet.
-    pub(crate) fn contact_range(&self) -> Result<ContactRange, QueryError> {
-        contact_range(
-            self.moving,
-            &self.moving_pose,
-            self.fixed,
-            &self.fixed_pose,
-            self.direction,
-            &self.options,
-        )
+    /// As the library sees it.
+    pub(crate) fn cast(&self) -> Result<Cast<'_>, QueryError> {
+        let (moving, fixed) = (self.moving.at(self.moving_pose), self.fixed.at(self.fixed_pose));
+        Cast::new(moving, fixed, self.direction)?.with_options(self.options)
     }
 
-    /// How far the moving body can go.
+    /// At which translations the bodies first and last meet.
+    pub(crate) fn contact_range(&self) -> Result<ContactRange, QueryError> {
+        self.cast()?.contact_range()
+    }
+
+    /// How far the moving body can go from where it is.
     pub(crate) fn clearance(&self) -> Result<Clearance, QueryError> {
-        Ok(match self.contact_range()? {
-            ContactRange::Contact { first, last } => match when(&first, &last) {
-                When::Ahead => Clearance::Blocked(first),
-                When::Now => Clearance::Overlapping { first, last },
-                When::Behind => Clearance::Behind(first),
-            },
-            ContactRange::Grazing { first, .. } => Clearance::Slides(first),
-            ContactRange::Separated(separated) => Clearance::Separated(separated),
-        })
+        self.cast()?.clearance()
     }
 }
 
@@ -77,12 +55,6 @@ pub(crate) fn when(first: &Contact, last: &Contact) -> When {
     } else {
         When::Behind
     }
-}
-
-/// How far the moving body can go for certain before a contact ahead, in multiples of the
-/// direction.
-pub(crate) fn safe_distance(contact: &Contact) -> f64 {
-    contact.certificate.lower.max(0.0)
 }
 
 /// The translation of the last contact, which its own cast counts backwards.

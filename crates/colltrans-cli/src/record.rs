@@ -1,13 +1,16 @@
 //! What is said about an answer, in the fields that `batch --help` documents.
 
+use colltrans::glam::DVec3;
 use colltrans::{
-    Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, Separated, Solver, Steps,
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, Separated, Solver,
+    Steps,
 };
 use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::excess::Excess;
-use crate::query::{Clearance, exit_of, safe_distance};
+use crate::numbers::{about, unit_vector};
+use crate::query::exit_of;
 
 /// One result; fields that do not apply are left out.
 #[derive(Debug, Default, Serialize)]
@@ -20,6 +23,10 @@ pub(crate) struct Record {
     pub(crate) direction: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) distance: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) back: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) on: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) translation: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -125,50 +132,51 @@ pub(crate) struct StepCounts {
 
 impl Record {
     /// The result of a query that was answered.
-    pub(crate) fn of_answer(
-        answer: &ContactRange,
-        moving: &ConvexPolyhedron,
-        fixed: &ConvexPolyhedron,
-    ) -> Self {
+    pub(crate) fn of_answer(answer: &ContactRange, cast: &Cast) -> Self {
         match answer {
             ContactRange::Contact { first, last } => {
-                Self { outcome: Name::Contact, ..Self::of_contact(first, last, moving, fixed) }
+                Self { outcome: Name::Contact, ..Self::of_contact(first, last, cast) }
             }
             ContactRange::Grazing { first, last } => Self {
                 outcome: Name::Grazing,
-                margin: Some(-first.overlap),
+                margin: Some(0.0 - first.overlap),
                 message: Some(describe(first)),
-                ..Self::of_contact(&first.contact, &last.contact, moving, fixed)
+                ..Self::of_contact(&first.contact, &last.contact, cast)
             },
             ContactRange::Separated(separated) => Self::of_separated(separated),
         }
     }
 
     /// The result of a query for the clearance.
-    pub(crate) fn of_clearance(
-        clearance: &Clearance,
-        moving: &ConvexPolyhedron,
-        fixed: &ConvexPolyhedron,
-    ) -> Self {
+    pub(crate) fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
         match clearance {
-            Clearance::Blocked(contact) => Self {
+            Clearance::Blocked { distance, contact } => Self {
                 outcome: Name::Blocked,
-                distance: Some(safe_distance(contact)),
-                ..Self::of_first(contact, moving, fixed)
+                distance: Some(*distance),
+                ..Self::of_first(contact, cast)
             },
             Clearance::Slides(grazing) => Self {
                 outcome: Name::Slides,
-                margin: Some(-grazing.overlap),
+                margin: Some(0.0 - grazing.overlap),
                 message: Some(describe(grazing)),
-                ..Self::of_first(&grazing.contact, moving, fixed)
+                ..Self::of_first(&grazing.contact, cast)
             },
-            Clearance::Behind(contact) => {
-                Self { outcome: Name::Behind, ..Self::of_first(contact, moving, fixed) }
-            }
+            // The last contact is the first one of the way back.
+            Clearance::Behind(last) => Self {
+                outcome: Name::Behind,
+                exit: Some(exit_of(last)),
+                translation: None,
+                lower: None,
+                upper: None,
+                ..Self::of_first(last, &cast.reversed())
+            },
             Clearance::Separated(separated) => Self::of_separated(separated),
-            Clearance::Overlapping { first, last } => {
-                Self { outcome: Name::Overlapping, ..Self::of_contact(first, last, moving, fixed) }
-            }
+            Clearance::Overlapping { first, last } => Self {
+                outcome: Name::Overlapping,
+                back: Some(-first.certificate.lower),
+                on: Some(-last.certificate.lower),
+                ..Self::of_contact(first, last, cast)
+            },
         }
     }
 
@@ -176,7 +184,7 @@ impl Record {
         let Separated { certificate, solver, steps } = separated;
         Self {
             outcome: Name::Separated,
-            normal: Some(certificate.normal.to_array()),
+            normal: Some(coordinates(certificate.normal)),
             margin: Some(certificate.margin),
             solver: Some(solver_name(*solver)),
             steps: Some(StepCounts::of(*steps)),
@@ -189,26 +197,23 @@ impl Record {
         Self { outcome: Name::Error, message: Some(message), ..Self::default() }
     }
 
-    fn of_contact(
-        first: &Contact,
-        last: &Contact,
-        moving: &ConvexPolyhedron,
-        fixed: &ConvexPolyhedron,
-    ) -> Self {
-        Self { exit: Some(exit_of(last)), ..Self::of_first(first, moving, fixed) }
+    fn of_contact(first: &Contact, last: &Contact, cast: &Cast) -> Self {
+        Self { exit: Some(exit_of(last)), ..Self::of_first(first, cast) }
     }
 
-    fn of_first(first: &Contact, moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron) -> Self {
+    fn of_first(first: &Contact, cast: &Cast) -> Self {
+        let features = first.features(cast);
         Self {
             translation: Some(first.translation),
-            normal: Some(first.normal.to_array()),
-            point: Some(first.point_on_fixed.to_array()),
+            normal: Some(coordinates(first.normal)),
+            point: Some(coordinates(first.points(cast).on_fixed)),
             lower: Some(first.certificate.lower),
-            upper: Some(first.certificate.upper),
+            // Bodies that only touch claim no upper bound.
+            upper: Some(first.certificate.upper).filter(|upper| upper.is_finite()),
             tolerance: Some(first.certificate.tolerance),
             features: Some(Features {
-                moving: FeatureRecord::of(first.moving_feature, moving),
-                fixed: FeatureRecord::of(first.fixed_feature, fixed),
+                moving: FeatureRecord::of(features.moving, cast.moving()),
+                fixed: FeatureRecord::of(features.fixed, cast.fixed()),
             }),
             solver: Some(solver_name(first.solver)),
             steps: Some(StepCounts::of(first.steps)),
@@ -233,9 +238,14 @@ impl StepCounts {
     }
 }
 
+/// Without -0.
+fn coordinates(v: DVec3) -> [f64; 3] {
+    v.to_array().map(|c| c + 0.0)
+}
+
 fn describe(grazing: &Grazing) -> String {
-    let [x, y, z] = grazing.separating_direction.to_array();
-    format!("the shadows overlap by {:e} along [{x},{y},{z}]", grazing.overlap)
+    let (overlap, along) = (about(grazing.overlap), unit_vector(grazing.separating_direction));
+    format!("the shadows overlap by {overlap} along [{along}]")
 }
 
 pub(crate) fn solver_name(solver: Solver) -> &'static str {

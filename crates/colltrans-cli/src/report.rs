@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
-use colltrans::{Contact, ContactRange, Grazing, Separated, Steps};
+use colltrans::{Clearance, Contact, ContactRange, Grazing, Separated, Steps};
 
 use crate::excess::Excess;
-use crate::numbers::{about, known, known_down, known_vector, number, six_digits, unit_vector};
-use crate::query::{Clearance, When, exit_of, safe_distance, when};
+use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
+use crate::query::{When, exit_of, when};
 use crate::record::{FeatureRecord, Hulls, Name, Record, solver_name};
 
 /// Vertices of a feature that are listed.
@@ -41,17 +41,13 @@ pub(crate) fn cast(answer: &ContactRange, record: &Record, direction: DVec3) -> 
 pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -> String {
     let mut text = String::new();
     match answer {
-        Clearance::Blocked(first) => {
+        Clearance::Blocked { distance, contact: first } => {
             text.push_str("blocked\n");
-            let distance = safe_distance(first);
-            let remark = if distance == 0.0 { " (the bodies touch)" } else { "" };
-            let (error, length) = (first.certificate.tolerance, direction.length());
-            let free = format!(
-                "{} times the direction, a length of {}",
-                known_down(distance, error),
-                known_down(distance * length, error * length)
-            );
+            let touch = first.translation.abs() <= first.certificate.tolerance;
+            let remark = if touch { " (the bodies touch)" } else { "" };
+            let free = along(first.translation.max(0.0), first.certificate.tolerance, direction);
             line(&mut text, "free", &format!("{free}{remark}"));
+            line(&mut text, "certain", &times(*distance));
             contact(&mut text, first, record, direction);
         }
         Clearance::Slides(grazing) => {
@@ -59,10 +55,10 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
             overlap(&mut text, grazing);
             contact(&mut text, &grazing.contact, record, direction);
         }
-        Clearance::Behind(first) => {
+        Clearance::Behind(last) => {
             text.push_str("behind: free, the bodies only meet behind\n");
-            let translation = along(first.translation, first.certificate.tolerance, direction);
-            line(&mut text, "contact at", &translation);
+            let exit = along(exit_of(last), last.certificate.tolerance, direction);
+            line(&mut text, "last contact", &exit);
         }
         Clearance::Separated(answer) => {
             text.push_str("separated: free, the bodies never meet along this direction\n");
@@ -70,10 +66,12 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
         }
         Clearance::Overlapping { first, last } => {
             text.push_str("overlapping: the bodies overlap now\n");
-            let back = along(-first.translation, first.certificate.tolerance, direction);
-            line(&mut text, "free after", &format!("{back}, back"));
-            let on = along(exit_of(last), last.certificate.tolerance, direction);
-            line(&mut text, "or after", &format!("{on}, on"));
+            // The last contact is the first one of the way back.
+            for (name, contact, way) in [("free after", first, "back"), ("or after", last, "on")] {
+                let far = along(-contact.translation, contact.certificate.tolerance, direction);
+                line(&mut text, name, &format!("{far}, {way}"));
+                line(&mut text, "certain", &times(-contact.certificate.lower));
+            }
         }
     }
     hulls(&mut text, record);
@@ -83,7 +81,7 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
 /// One line of a scan, under [`SCAN_HEAD`].
 pub(crate) fn scan_line(record: &Record, direction: DVec3) -> String {
     let (length, error) = (direction.length(), record.tolerance.unwrap_or_default());
-    let translation = record.distance.or(record.translation);
+    let translation = record.distance.or(record.translation).or(record.exit);
     let mut columns = vec![record.outcome.text().to_owned()];
     match (record.outcome, translation) {
         (Name::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
@@ -122,6 +120,11 @@ fn along(t: f64, error: f64, direction: DVec3) -> String {
     format!("{} times the direction, a length of {shown}", known(t, error))
 }
 
+/// A proven bound, with all its digits.
+fn times(t: f64) -> String {
+    format!("{} times the direction", number(t))
+}
+
 fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
     let remark = match when(first, last) {
         When::Behind => " (the contact lies behind)",
@@ -139,22 +142,26 @@ fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
 fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3) {
     let proof = &first.certificate;
     line(text, "normal", &unit_vector(first.normal));
-    line(text, "point", &known_vector(first.point_on_fixed, proof.tolerance * direction.length()));
+    if let Some(point) = record.point {
+        let point = DVec3::from_array(point);
+        line(text, "point", &known_vector(point, proof.tolerance * direction.length()));
+    }
     if let Some(features) = &record.features {
         line(text, "moving", &feature(&features.moving));
         line(text, "fixed", &feature(&features.fixed));
     }
-    line(
-        text,
-        "bounds",
-        &format!(
+    let bounds = if proof.upper.is_finite() {
+        format!(
             "{} to {}, gap {} (rounding alone: up to {})",
             number(proof.lower),
             number(proof.upper),
-            about((proof.upper - proof.lower).max(0.0)),
+            about(proof.gap()),
             about(proof.tolerance)
-        ),
-    );
+        )
+    } else {
+        format!("at least {}; whether they touch is beyond rounding", number(proof.lower))
+    };
+    line(text, "bounds", &bounds);
     line(text, "solver", &work(solver_name(first.solver), first.steps));
 }
 

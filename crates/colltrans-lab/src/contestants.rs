@@ -1,8 +1,6 @@
 //! Who is measured: every algorithm behind the same three words.
 
-use colltrans::{
-    Focus, NarrowFrom, Narrowing, Options, Outcome, Region, Solver, Tracker, cast_with,
-};
+use colltrans::{Focus, NarrowFrom, Narrowing, Options, Outcome, Region, Solver, Tracker};
 use colltrans_yardsticks::egjk::Egjk;
 use colltrans_yardsticks::hwalk::HWalk;
 use colltrans_yardsticks::pqp::Pqp;
@@ -150,24 +148,21 @@ impl Contestant for Scratch<'_> {
     fn forget(&mut self) {}
 
     fn ask(&mut self, setting: &Setting) -> Work {
-        let [moving, fixed] = &self.bodies.pair;
-        let Setting { moving: p, fixed: q, direction } = setting;
-        work(&cast_with(moving, p, fixed, q, *direction, &self.options))
+        work(&setting.cast(self.bodies, &self.options).and_then(|cast| cast.first_contact()))
     }
 }
 
 /// Casts that start from the one before.
 struct Tracked<'a> {
+    bodies: &'a Bodies,
     tracker: Tracker<'a>,
     options: Options,
 }
 
 impl<'a> Tracked<'a> {
     fn new(bodies: &'a Bodies, focus: Focus, options: Options) -> Self {
-        let [moving, fixed] = &bodies.pair;
-        let tracker =
-            Tracker::new(moving, fixed).with_focus(focus).expect("half-sides are positive");
-        Self { tracker, options }
+        let tracker = Tracker::new().with_focus(focus).expect("half-sides are positive");
+        Self { bodies, tracker, options }
     }
 }
 
@@ -177,8 +172,8 @@ impl Contestant for Tracked<'_> {
     }
 
     fn ask(&mut self, setting: &Setting) -> Work {
-        let Setting { moving: p, fixed: q, direction } = setting;
-        work(&self.tracker.cast_with(p, q, *direction, &self.options))
+        let cast = setting.cast(self.bodies, &self.options);
+        work(&cast.and_then(|cast| self.tracker.first_contact(&cast)))
     }
 }
 

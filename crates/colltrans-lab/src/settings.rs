@@ -7,7 +7,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans::{Cast, ConvexPolyhedron, Options, Pose, QueryError};
 use glam::{DQuat, DVec3};
 
 use crate::shapes::Bodies;
@@ -39,6 +39,17 @@ pub enum Meeting {
 const AHEAD: [f64; 2] = [0.05, 1.0];
 
 impl Setting {
+    /// The query about two bodies.
+    ///
+    /// # Errors
+    /// As [`Cast::new`] and [`Cast::with_options`].
+    #[inline]
+    pub fn cast<'a>(&self, bodies: &'a Bodies, options: &Options) -> Result<Cast<'a>, QueryError> {
+        let [moving, fixed] = &bodies.pair;
+        Cast::new(moving.at(self.moving), fixed.at(self.fixed), self.direction)?
+            .with_options(*options)
+    }
+
     /// A random setting of bodies that are apart at the start, in random orientations.
     ///
     /// # Panics

@@ -255,11 +255,14 @@ fn segment_to_segment([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
     let normal = along.cross(other);
     let square = normal.length_squared();
     let (s, t) = ((c - a).cross(other).dot(normal), (c - a).cross(along).dot(normal));
-    let crossing = if square > 0.0 && (0.0..=square).contains(&s) && (0.0..=square).contains(&t) {
-        normal.normalize().dot(c - a).abs()
-    } else {
-        f64::INFINITY
-    };
+    // The product of edges that are parallel to rounding points anywhere; their ends tell.
+    let parallel = (64.0 * f64::EPSILON).powi(2) * along.length_squared() * other.length_squared();
+    let crossing =
+        if square > parallel && (0.0..=square).contains(&s) && (0.0..=square).contains(&t) {
+            normal.normalize().dot(c - a).abs()
+        } else {
+            f64::INFINITY
+        };
     crossing
         .min(point_to_segment(a, [c, d]))
         .min(point_to_segment(b, [c, d]))

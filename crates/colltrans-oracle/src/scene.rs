@@ -6,7 +6,7 @@
 //! coordinates here are `s_i = m_i d_k - m_k d_i` and `s_j` alike: exact, zero along `d`, an affine
 //! image of the orthogonal projection.
 
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans::{Cast, Pose};
 use dashu_int::IBig;
 use glam::DVec3;
 
@@ -56,13 +56,11 @@ impl Scene {
         }
     }
 
-    /// Places two polyhedra: their vertices are what counts.
-    pub fn of_bodies(
-        (moving, moving_pose): (&ConvexPolyhedron, &Pose),
-        (fixed, fixed_pose): (&ConvexPolyhedron, &Pose),
-        direction: DVec3,
-    ) -> Self {
-        Self::new((moving.vertices(), moving_pose), (fixed.vertices(), fixed_pose), direction)
+    /// The scene of a query: its bodies' vertices are what counts.
+    pub fn of(cast: &Cast) -> Self {
+        let (moving, fixed) = (cast.moving().vertices(), cast.fixed().vertices());
+        let (moving_pose, fixed_pose) = (cast.moving_pose(), cast.fixed_pose());
+        Self::new((moving, &moving_pose), (fixed, &fixed_pose), cast.direction())
     }
 
     /// All points `q - p` for vertices `p, q`.

@@ -7,11 +7,10 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use colltrans::{BuildError, ConvexPolyhedron, Options, Outcome, Pose, QueryError, Solver};
+use colltrans::{BuildError, Cast, ConvexPolyhedron, Outcome, Pose, QueryError, Solver};
 use glam::{DQuat, DVec3};
 
 use crate::check::Judge;
-use crate::scene::Scene;
 
 /// Splitmix64: small, and good enough to draw test cases.
 #[derive(Debug, Clone)]
@@ -142,36 +141,30 @@ impl Setting {
         })
     }
 
-    /// Asks the library.
+    /// The query, with default choices but for the graze tolerance.
     ///
     /// # Errors
-    /// As [`colltrans::cast_with`].
+    /// As [`Cast::new`] and [`Cast::with_graze_tolerance`].
+    pub fn query<'a>(&self, bodies: &'a Bodies) -> Result<Cast<'a>, QueryError> {
+        let Bodies { moving, fixed } = bodies;
+        Cast::new(moving.at(self.moving_pose), fixed.at(self.fixed_pose), self.direction)?
+            .with_graze_tolerance(self.graze_tolerance)
+    }
+
+    /// Asks the library where the bodies first meet.
+    ///
+    /// # Errors
+    /// As [`Self::query`] and [`Cast::first_contact`].
     pub fn cast(&self, bodies: &Bodies, solver: Solver) -> Result<Outcome, QueryError> {
-        let options =
-            Options { solver, graze_tolerance: self.graze_tolerance, ..Options::default() };
-        colltrans::cast_with(
-            &bodies.moving,
-            &self.moving_pose,
-            &bodies.fixed,
-            &self.fixed_pose,
-            self.direction,
-            &options,
-        )
+        self.query(bodies)?.with_solver(solver).first_contact()
     }
 
     /// The judge of answers about it.
+    ///
+    /// # Panics
+    /// If the library refuses the query.
     pub fn judge<'a>(&self, bodies: &'a Bodies) -> Judge<'a> {
-        let Bodies { moving, fixed } = bodies;
-        Judge {
-            scene: Scene::of_bodies(
-                (moving, &self.moving_pose),
-                (fixed, &self.fixed_pose),
-                self.direction,
-            ),
-            moving,
-            fixed,
-            graze_tolerance: self.graze_tolerance,
-        }
+        Judge::new(self.query(bodies).expect("a query"))
     }
 
     /// All numbers of the setting, for a report.

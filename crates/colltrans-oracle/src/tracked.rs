@@ -5,8 +5,7 @@
 //! that holds by itself.
 
 use colltrans::{
-    Contact, Focus, Grazing, Options, Outcome, QueryError, Region, Solver, StartedFrom, Steps,
-    Tracker,
+    Contact, Focus, Grazing, Outcome, QueryError, Region, Solver, StartedFrom, Steps, Tracker,
 };
 
 use crate::check::{Judge, Objection, Proof, same};
@@ -83,7 +82,7 @@ impl<'a> Lanes<'a> {
         let reach = |points: &[glam::DVec3]| points.iter().map(|v| v.length()).fold(0.0, f64::max);
         let reach = reach(bodies.moving.vertices()).max(reach(bodies.fixed.vertices()));
         let tracker = |lane: Lane| {
-            let tracker = Tracker::new(&bodies.moving, &bodies.fixed).with_focus(lane.focus);
+            let tracker = Tracker::new().with_focus(lane.focus);
             (lane, tracker.expect("a region with a size"))
         };
         Self { bodies, trackers: lanes(reach).map(tracker).to_vec(), asked: 0 }
@@ -93,83 +92,59 @@ impl<'a> Lanes<'a> {
     /// exactly; they are solved again by the oracle if `with_oracle`, and where outcome and value
     /// are not proven by the certificate alone.
     ///
-    /// A setting whose direction one-off queries refuse has to be refused alike.
+    /// A setting that makes no query is not asked about.
     pub fn ask(&mut self, setting: &Setting, with_oracle: bool) -> Vec<Finding> {
         let bodies = self.bodies;
-        let from_scratch = [Solver::Auto, Solver::Cta].map(|solver| setting.cast(bodies, solver));
+        let Ok(cast) = setting.query(bodies) else { return Vec::new() };
+        let from_scratch =
+            [Solver::Auto, Solver::Cta].map(|solver| cast.with_solver(solver).first_contact());
         let asked = self.asked;
         self.asked += 1;
-        if let Err(QueryError::Direction { .. }) = from_scratch[0] {
-            return self.refused(setting, &from_scratch[0]);
-        }
-        let judge = setting.judge(bodies);
-        let find = |(lane, tracker): &mut (Lane, Tracker)| {
+        let judge = Judge::new(cast);
+        let find = |(lane, tracker): &mut (Lane, Tracker<'a>)| {
             let solver = lane.solvers[asked % lane.solvers.len()];
-            let answer = track(tracker, setting, solver);
+            let answer = tracker.first_contact(&cast.with_solver(solver));
             // Portal is what Auto stands for.
             let one_off = &from_scratch[usize::from(solver == Solver::Cta)];
-            let verdict = judge_tracked(&judge, setting, &answer, one_off, with_oracle);
+            let verdict = judge_tracked(&judge, &answer, one_off, with_oracle);
             Finding { lane: lane.name, solver, answer, verdict }
         };
         self.trackers.iter_mut().map(find).collect()
-    }
-
-    /// What is wrong where a query is to be refused: lanes that answer it.
-    fn refused(
-        &mut self,
-        setting: &Setting,
-        refusal: &Result<Outcome, QueryError>,
-    ) -> Vec<Finding> {
-        let ask = |(lane, tracker): &mut (Lane, Tracker)| {
-            let solver = lane.solvers[0];
-            let answer = track(tracker, setting, solver);
-            let verdict = Err(Objection(format!("{answer:?}, one-off: {refusal:?}")));
-            let differs = format!("{answer:?}") != format!("{refusal:?}");
-            differs.then_some(Finding { lane: lane.name, solver, answer, verdict })
-        };
-        self.trackers.iter_mut().filter_map(ask).collect()
     }
 }
 
 /// A tracker's answer about a setting.
 ///
 /// # Errors
-/// As [`Tracker::cast_with`].
-pub fn track(
-    tracker: &mut Tracker,
+/// As [`Setting::query`] and [`Tracker::first_contact`].
+pub fn track<'a>(
+    tracker: &mut Tracker<'a>,
     setting: &Setting,
+    bodies: &'a Bodies,
     solver: Solver,
 ) -> Result<Outcome, QueryError> {
-    let options =
-        Options { solver, graze_tolerance: setting.graze_tolerance, ..Options::default() };
-    tracker.cast_with(&setting.moving_pose, &setting.fixed_pose, setting.direction, &options)
+    tracker.first_contact(&setting.query(bodies)?.with_solver(solver))
 }
 
 fn judge_tracked(
     judge: &Judge,
-    setting: &Setting,
     answer: &Result<Outcome, QueryError>,
     one_off: &Result<Outcome, QueryError>,
     with_oracle: bool,
 ) -> Result<Agreement, Objection> {
     let answer = answer.as_ref().map_err(|e| Objection(format!("tracked: {e}")))?;
     let one_off = one_off.as_ref().map_err(|e| Objection(format!("one-off: {e}")))?;
-    let judged = judge_answer(judge, setting, answer, one_off, with_oracle);
-    judged.map_err(|objection| match judge_alone(judge, setting, one_off, true) {
+    let judged = judge_answer(judge, answer, one_off, with_oracle);
+    judged.map_err(|objection| match judge_alone(judge, one_off, true) {
         Ok(_) => objection,
         Err(same) => Objection(format!("{objection}; the one-off answer: {same}")),
     })
 }
 
 /// Everything that an answer says, by itself.
-fn judge_alone(
-    judge: &Judge,
-    setting: &Setting,
-    answer: &Outcome,
-    with_oracle: bool,
-) -> Result<Proof, Objection> {
+fn judge_alone(judge: &Judge, answer: &Outcome, with_oracle: bool) -> Result<Proof, Objection> {
     let proof = judge.check(answer)?;
-    verify(judge, setting, answer)?;
+    verify(judge, answer)?;
     if with_oracle || !proof.exact {
         judge.compare_with_oracle(answer)?;
     }
@@ -178,14 +153,13 @@ fn judge_alone(
 
 fn judge_answer(
     judge: &Judge,
-    setting: &Setting,
     answer: &Outcome,
     one_off: &Outcome,
     with_oracle: bool,
 ) -> Result<Agreement, Objection> {
     let difference = same(answer, one_off).err();
     let rounding_decides = difference.is_some();
-    let judged = judge_alone(judge, setting, answer, with_oracle || rounding_decides);
+    let judged = judge_alone(judge, answer, with_oracle || rounding_decides);
     let proof = match (judged, difference) {
         (Ok(proof), Some(_)) => judge.compare_with_oracle(one_off).map(|()| proof),
         (Err(objection), Some(difference)) => Err(Objection(format!("{difference}; {objection}"))),
@@ -195,28 +169,22 @@ fn judge_answer(
 }
 
 /// The library's own check of an answer's certificate, and the gap that it states.
-fn verify(judge: &Judge, setting: &Setting, answer: &Outcome) -> Result<(), Objection> {
-    let Setting { moving_pose, fixed_pose, direction, .. } = setting;
-    let bodies = (judge.moving, judge.fixed);
+fn verify(judge: &Judge, answer: &Outcome) -> Result<(), Objection> {
     let refused = |e| Objection(format!("refused by verify: {e}"));
     match answer {
         Outcome::Contact(Contact { certificate, .. })
         | Outcome::Grazing(Grazing { contact: Contact { certificate, .. }, .. }) => {
-            certificate
-                .verify(bodies.0, moving_pose, bodies.1, fixed_pose, *direction)
-                .map_err(refused)?;
+            judge.cast.verify(certificate).map_err(refused)?;
             let (gap, tolerance) = (certificate.gap(), certificate.tolerance);
-            if gap <= tolerance {
+            if gap <= tolerance || matches!(answer, Outcome::Grazing(_)) {
                 Ok(())
             } else {
                 Err(Objection(format!("gap {gap:e}, tolerance {tolerance:e}")))
             }
         }
-        Outcome::Separated(separated) => separated
-            .certificate
-            .verify(bodies.0, moving_pose, bodies.1, fixed_pose, *direction)
-            .map(|_| ())
-            .map_err(refused),
+        Outcome::Separated(separated) => {
+            judge.cast.verify(&separated.certificate).map(|_| ()).map_err(refused)
+        }
     }
 }
 

@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-use colltrans::{ConvexPolyhedron, Feature, Outcome, Pose, Solver};
+use colltrans::{Cast, ConvexPolyhedron, Feature, Outcome, Pose, Solver};
 use colltrans_oracle::distance::{distance_of_bodies, distance_of_point};
 use colltrans_oracle::exact::Ratio;
 use colltrans_oracle::settings::{Bodies, FAMILIES, Rng, Setting, cuboid, setting};
@@ -166,13 +166,15 @@ fn large_bodies() {
             let direction = -at.translation().normalize() + rng.vector() * 0.3;
             let size = 2.4 + 4.0;
             let name = format!("{axes}, case {case}");
-            let truth = colltrans::cast(&p, &at, &q, &world, direction).unwrap();
+            let question = Cast::new(p.at(at), q.at(world), direction).unwrap();
+            let truth = question.first_contact().unwrap();
             match (ray_cast.cast(&at, &world, direction), truth) {
                 (RayCastAnswer::Hit { translation, normal, .. }, Outcome::Contact(contact)) => {
                     let along = contact.normal.dot(direction);
                     let early = (contact.translation - translation) * along;
                     assert!((-1e-13..=tolerance * size).contains(&early), "{name}: {early:e}");
-                    let faces = [contact.moving_feature, contact.fixed_feature];
+                    let features = contact.features(&question);
+                    let faces = [features.moving, features.fixed];
                     if faces.iter().any(|f| matches!(f, Feature::Face(_))) {
                         let off_rad = normal.cross(contact.normal).length().asin();
                         worst_normal_rad = worst_normal_rad.max(off_rad);

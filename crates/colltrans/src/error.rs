@@ -38,6 +38,14 @@ pub enum BuildError {
         /// The point as given.
         point: DVec3,
     },
+    /// Vertices and faces of a saved body that do not belong together.
+    #[error("{vertices} vertices and {faces} faces are not those of a convex body")]
+    NotABody {
+        /// Number of vertices.
+        vertices: usize,
+        /// Number of faces.
+        faces: usize,
+    },
     /// The faces of the mesh do not form one closed, consistently oriented surface.
     #[error(transparent)]
     Topology(#[from] TopologyError),
@@ -176,6 +184,19 @@ pub enum PoseError {
         /// Its length.
         length: f64,
     },
+    /// The matrix is not finite or not a rotation.
+    #[error(
+        "the matrix with the columns {columns:?} is no rotation: it is off one by {defect:e} \
+         (tolerated: {tolerance:e})"
+    )]
+    NotARotationMatrix {
+        /// The columns as given.
+        columns: [[f64; 3]; 3],
+        /// The largest entry of `R^T R - I` by magnitude, or 2 for a reflection.
+        defect: f64,
+        /// The defect that would have been accepted.
+        tolerance: f64,
+    },
     /// The translation is not finite, or beyond the range in which the predicates are exact.
     #[error(
         "the translation {:?} is not finite or has a component outside the exact range \
@@ -220,15 +241,33 @@ pub enum QueryError {
         /// The half-side as given.
         half_side: f64,
     },
-    /// No solver could close the gap between the bounds to rounding error.
-    #[error(
-        "the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}; \
-         please report this case"
-    )]
+    /// The search ended without an answer. No such case is known: please report one (it can be saved
+    /// as a file).
+    #[error("the search ended without an answer: {reason}; please report this case")]
     NotConverged {
-        /// Best proven lower bound of the collision translation, in multiples of the direction.
+        /// What went wrong.
+        reason: Stalled,
+    },
+}
+
+/// Why a search ended without an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Stalled {
+    /// No triangle of points of the Minkowski difference around the line was found, and no
+    /// direction that separates.
+    #[error("no portal was found")]
+    NoPortal,
+    /// Portals followed each other without an end.
+    #[error("portals followed each other in a circle")]
+    Cycle,
+    /// The proven bounds are farther apart than rounding explains. All in multiples of the
+    /// direction.
+    #[error("the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}")]
+    Gap {
+        /// Lower bound of the collision translation.
         lower: f64,
-        /// Best proven upper bound.
+        /// Upper bound.
         upper: f64,
         /// The gap that would have been accepted.
         tolerance: f64,

@@ -2,18 +2,18 @@
 //! another?
 //!
 //! A convex body `P`, the *moving* one, is translated along a direction `d`; a convex body `Q`
-//! is *fixed*. [`cast`] returns the *collision translation*
+//! is *fixed*. A [`Cast`] asks for the *collision translation*
 //!
 //! `coll = min { t : P + t d meets Q }`
 //!
-//! with the contact normal, a contact point on each body and the vertices, edges or faces that
-//! meet; or it says that they never do. `t` ranges over all real numbers: a negative answer is a
-//! contact that lies behind, or an overlap now. Every answer carries a proof that can be checked
-//! without trusting the search that found it.
+//! and gets it with the contact normal, bounds that enclose it exactly, a contact point on each body
+//! and the vertices, edges or faces that meet; or a proof that they never do. `t` ranges over all
+//! real numbers: a negative answer is a contact that lies behind, or an overlap now. Every answer
+//! carries a proof that can be checked without trusting the search that found it.
 //!
 //! ```
 //! use colltrans::glam::DVec3;
-//! use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
+//! use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 //!
 //! // A pyramid one unit high, and a plate of 4 x 4 x 1 whose top is at z = 0.
 //! let pyramid = ConvexPolyhedron::from_points(&[
@@ -23,35 +23,31 @@
 //!     DVec3::new(-1.0, 1.0, 1.0),
 //!     DVec3::ZERO,
 //! ])?;
-//! let corners: Vec<DVec3> = (0..8)
-//!     .map(|i| DVec3::new([-2.0, 2.0][i & 1], [-2.0, 2.0][i >> 1 & 1], [-1.0, 0.0][i >> 2]))
-//!     .collect();
-//! let plate = ConvexPolyhedron::from_points(&corners)?;
+//! let plate = ConvexPolyhedron::cuboid(DVec3::new(-2.0, -2.0, -1.0), DVec3::new(2.0, 2.0, 0.0))?;
 //!
 //! // The pyramid starts with its apex at (0.5, 0, 3) and moves downwards.
-//! let (start, world) = (Pose::from_translation(DVec3::new(0.5, 0.0, 3.0))?, Pose::IDENTITY);
-//! let down = DVec3::NEG_Z;
-//! let Outcome::Contact(contact) = cast(&pyramid, &start, &plate, &world, down)? else {
+//! let start = Pose::from_translation(DVec3::new(0.5, 0.0, 3.0))?;
+//! let cast = Cast::new(pyramid.at(start), plate.at(Pose::IDENTITY), DVec3::NEG_Z)?;
+//! let Outcome::Contact(contact) = cast.first_contact()? else {
 //!     unreachable!("the plate is below")
 //! };
 //! assert_eq!(contact.translation, 3.0);
 //! assert_eq!(contact.normal, DVec3::NEG_Z);
-//! assert_eq!(contact.point_on_fixed, DVec3::new(0.5, 0.0, 0.0));
-//! assert_eq!(contact.moving_feature.kind(), "vertex");
-//! assert_eq!(contact.fixed_feature.kind(), "face");
+//! assert_eq!(contact.points(&cast).on_fixed, DVec3::new(0.5, 0.0, 0.0));
+//! let features = contact.features(&cast);
+//! assert_eq!((features.moving.kind(), features.fixed.kind()), ("vertex", "face"));
 //!
 //! // The proof: checked against the two bodies alone.
-//! let gap = contact.certificate.verify(&pyramid, &start, &plate, &world, down)?;
-//! assert!(gap <= contact.certificate.tolerance);
+//! assert!(cast.verify(&contact.certificate)? <= contact.certificate.tolerance);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Bodies
 //!
 //! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
-//! convex hull) or from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked), and then asked
-//! as often as one likes, from any thread. Flat polygons, segments and single points are bodies
-//! too. Bodies that are not convex are not supported: cut them into convex pieces first.
+//! convex hull), from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
+//! ([`ConvexPolyhedron::cuboid`]), and then asked as often as one likes, from any thread. Flat
+//! polygons, segments and single points are bodies too.
 //!
 //! # Frames and units
 //!
@@ -62,35 +58,45 @@
 //! unit vectors and point from the moving body to the fixed one. Numbers are `f64`; those that
 //! are not 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to `2^200`.
 //!
-//! # Answers
+//! # Questions and answers
 //!
-//! | query | question |
-//! |---|---|
-//! | [`cast`], [`cast_with`] | at which translation do the bodies first meet? |
-//! | [`contact_range`] | at which do they first and last meet? |
-//! | [`clearance`] | how far can one move from where it is? |
-//! | [`directional_depth`] | how far must one go back until the overlap ends? |
-//! | [`intersects`] | do they meet where they are? |
-//! | [`Tracker`] | the same again, after a small change of pose or direction |
+//! | query | question | answer |
+//! |---|---|---|
+//! | [`Cast::first_contact`], short [`cast()`] | at which translation do the bodies first meet? | [`Outcome`] |
+//! | [`Cast::contact_range`] | at which do they first and last meet? | [`ContactRange`] |
+//! | [`Cast::clearance`] | how far can one move from where it is? | [`Clearance`] |
+//! | [`Cast::directional_depth`] | how far must one go back until the overlap ends? | [`DirectionalDepth`] |
+//! | [`Cast::intersects`] | do they meet where they are? | [`Intersection`] |
+//! | [`Cast::verify`] | is this proof one? | the gap proven |
+//!
+//! A [`Tracker`] answers the same questions, starting from its last answer: for bodies that move a
+//! little between two queries.
 //!
 //! An [`Outcome`] is a [`Contact`], [`Separated`] or [`Grazing`]. The bodies' *shadows*, their
 //! projections along the direction, decide: disjoint shadows are a separation, overlapping
 //! ones a contact. Where they overlap by no more than the *graze tolerance* the bodies slide
 //! along each other, as a peg does in a hole of its own size. That is an outcome of its own,
 //! with the contact that results if the overlap is taken for real: whether it blocks is for the
-//! caller to say ([`clearance`] says it does not). The default tolerance is what rounding
-//! cannot decide, eight times the *noise*; a larger one may be set as a length in
-//! [`Options::graze_tolerance`].
+//! caller to say ([`Cast::clearance`] says it does not). The default tolerance is what rounding
+//! cannot decide, eight times the *noise*; a larger one may be set as a length by
+//! [`Cast::with_graze_tolerance`].
 //!
 //! # Accuracy
+//!
+//! A contact's bounds enclose the true collision translation of the bodies as given, exactly:
+//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`], where a body is the convex hull of
+//! its [`vertices`](ConvexPolyhedron::vertices), placed by the nine entries of its pose's matrix and
+//! its translation. ([`ConvexPolyhedron::hull_error`] says how far outside that hull the points were
+//! that it was made from.) [`Contact::translation`] is the best estimate between them.
 //!
 //! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of
 //! its body frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise*
 //! `32 u S`, with `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two
-//! points. A contact's two bounds differ by at most 10 noises divided by `n . d`
-//! ([`Certificate::tolerance`]); if they do not come that close, the query returns
-//! [`QueryError::NotConverged`], never a number. A displacement of both bodies together costs
-//! the translation nothing. The same input gives the same bits on every run and thread.
+//! points. The bounds differ by at most 15 noises, and what a body may reach beyond a support point
+//! that was found by climbing, divided by `n . d` ([`Certificate::tolerance`]); if they do not come
+//! that close, the query returns [`QueryError::NotConverged`], never a number. A displacement of both
+//! bodies together costs the translation nothing. The same input gives the same bits on every run,
+//! thread and platform.
 //!
 //! # How it works
 //!
@@ -119,14 +125,14 @@ mod solve;
 mod tracker;
 
 pub use answer::{
-    Certificate, CertificateError, Clearance, Contact, ContactRange, Grazing, Outcome, Separated,
-    Separation, Solver, StartedFrom, Steps,
+    Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
+    Intersection, Outcome, Proof, Separated, Separation, Solver, StartedFrom, Steps,
 };
-pub use body::{ConvexPolyhedron, ConvexityDefect, Feature, Pose, convexity_defect};
-pub use cast::{
-    cast, cast_observed, cast_with, clearance, contact_range, directional_depth, intersects,
-};
-pub use error::{BuildError, PoseError, QueryError, TopologyError};
+pub use body::{Body, ConvexPolyhedron, ConvexityDefect, Feature, Placed, Pose, convexity_defect};
+#[cfg(feature = "json")]
+pub use cast::{Case, CaseError};
+pub use cast::{Cast, Features, WitnessPoints, cast};
+pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;

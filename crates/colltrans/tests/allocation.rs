@@ -1,6 +1,6 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is.
 
-use colltrans::{Focus, Options, Region, Solver, Tracker};
+use colltrans::{Focus, Region, Solver, Tracker};
 use colltrans_oracle::sequences::Walk;
 use colltrans_oracle::settings::{FAMILIES, setting};
 
@@ -34,21 +34,19 @@ fn tracked_queries_allocate_nothing() {
             for (focus, solver) in foci.into_iter().zip([Solver::Auto, Solver::Cta, Solver::Cta]) {
                 let mut walk = Walk::new(family, seed);
                 let bodies = walk.setting.bodies().expect("a body");
-                let tracker = Tracker::new(&bodies.moving, &bodies.fixed);
+                let tracker = Tracker::new();
                 let mut tracker = tracker.with_focus(focus).expect("a focus");
                 while walk.step < 40 {
                     let s = &walk.setting;
-                    let (m, f, d) = (&s.moving_pose, &s.fixed_pose, s.direction);
-                    let options = Options {
-                        solver,
-                        graze_tolerance: s.graze_tolerance,
-                        ..Options::default()
-                    };
                     let mut answered = false;
                     let count = allocation_counter::measure(|| {
-                        answered = tracker.cast_with(m, f, d, &options).is_ok()
-                            && tracker.contact_range(m, f, d, &options).is_ok()
-                            && tracker.clearance(m, f, d, &options).is_ok();
+                        let Ok(cast) = s.query(&bodies) else { return };
+                        let cast = cast.with_solver(solver);
+                        answered = tracker.first_contact(&cast).is_ok()
+                            && tracker.contact_range(&cast).is_ok()
+                            && tracker.clearance(&cast).is_ok()
+                            && tracker.directional_depth(&cast).is_ok()
+                            && tracker.intersects(&cast).is_ok();
                     });
                     assert!(answered, "{walk} {solver:?}");
                     assert_eq!(count.count_total, 0, "{walk} {solver:?}");

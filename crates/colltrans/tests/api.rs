@@ -1,12 +1,13 @@
 //! The public interface: what it refuses, and what it promises to the type system.
 
-use colltrans::glam::{DQuat, DVec3};
+use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
-    BuildError, Certificate, Clearance, ContactRange, ConvexPolyhedron, MAX_MAGNITUDE,
-    MIN_MAGNITUDE, Options, Outcome, Pose, PoseError, QueryError, Separation, TopologyError, cast,
-    cast_with, clearance, contact_range, directional_depth, intersects,
+    BuildError, Cast, Certificate, Clearance, ContactRange, ConvexPolyhedron, MAX_MAGNITUDE,
+    MIN_MAGNITUDE, Narrowing, Options, Outcome, Pose, PoseError, QueryError, Separation,
+    TopologyError, cast,
 };
-use colltrans_oracle::settings::cuboid;
+use colltrans_oracle::exact::Vector;
+use colltrans_oracle::settings::{FAMILIES, Setting, cuboid, setting};
 
 fn cube() -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5))).expect("a body")
@@ -24,6 +25,7 @@ fn types_cross_threads() {
     is_send_and_sync::<Outcome>();
     is_send_and_sync::<ContactRange>();
     is_send_and_sync::<Clearance>();
+    is_send_and_sync::<Cast>();
     is_send_and_sync::<Options>();
     is_send_and_sync::<QueryError>();
     is_send_and_sync::<BuildError>();
@@ -130,7 +132,6 @@ fn poses_compose() {
 #[test]
 fn directions_are_checked() {
     let (cube, world, pose) = (cube(), Pose::IDENTITY, at(3.0, 0.0, 0.0));
-    let options = Options::default();
     for direction in [
         DVec3::ZERO,
         DVec3::new(f64::NAN, 1.0, 0.0),
@@ -142,59 +143,129 @@ fn directions_are_checked() {
             assert!(matches!(error, QueryError::Direction { .. }), "{error}");
         };
         refused(cast(&cube, &world, &cube, &pose, direction).unwrap_err());
-        refused(contact_range(&cube, &world, &cube, &pose, direction, &options).unwrap_err());
-        refused(clearance(&cube, &world, &cube, &pose, direction, &options).unwrap_err());
-        refused(directional_depth(&cube, &world, &cube, &pose, direction, &options).unwrap_err());
+        refused(Cast::new(cube.at(world), cube.at(pose), direction).unwrap_err());
+        let valid = Cast::new(cube.at(world), cube.at(pose), DVec3::X).expect("a query");
+        refused(valid.along(direction).unwrap_err());
     }
+    let valid = Cast::new(cube.at(world), cube.at(pose), DVec3::X).expect("a query");
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
-        let options = Options { graze_tolerance: tolerance, ..Options::default() };
-        let error = cast_with(&cube, &world, &cube, &pose, DVec3::X, &options).unwrap_err();
+        let error = valid.with_graze_tolerance(tolerance).unwrap_err();
         assert!(matches!(error, QueryError::GrazeTolerance { .. }), "{error}");
+        let narrowing = Narrowing { gap: -1.0, ..Narrowing::default() };
+        let error = valid.with_options(Options { narrowing, ..Options::default() }).unwrap_err();
+        assert!(matches!(error, QueryError::NarrowingGap { .. }), "{error}");
     }
+}
+
+/// A cube in the world, and another one moved by `offset`.
+fn cubes(cube: &ConvexPolyhedron, offset: DVec3, direction: DVec3) -> Cast<'_> {
+    let pose = at(offset.x, offset.y, offset.z);
+    Cast::new(cube.at(Pose::IDENTITY), cube.at(pose), direction).expect("a query")
 }
 
 #[test]
 fn a_box_before_a_box() {
-    let (cube, world, pose) = (cube(), Pose::IDENTITY, at(3.0, 0.25, 0.0));
-    let options = Options::default();
-    let range = contact_range(&cube, &world, &cube, &pose, DVec3::X * 2.0, &options);
+    let cube = cube();
+    let go = |direction| cubes(&cube, DVec3::new(3.0, 0.25, 0.0), direction);
+    let range = go(DVec3::X * 2.0).contact_range();
     let Ok(ContactRange::Contact { first, last }) = range else { panic!("{range:?}") };
     // The last contact is that of the cast the other way.
     assert!((first.translation - 1.0).abs() < 1e-13 && (last.translation + 2.0).abs() < 1e-13);
     assert!(first.normal.distance(DVec3::X) < 1e-12 && last.normal.distance(DVec3::NEG_X) < 1e-12);
 
-    let ahead = clearance(&cube, &world, &cube, &pose, DVec3::X, &options).expect("an answer");
+    let ahead = go(DVec3::X).clearance().expect("an answer");
     let Clearance::Blocked { distance, .. } = ahead else { panic!("{ahead:?}") };
-    assert!((distance - 2.0).abs() < 1e-13);
-    let away = clearance(&cube, &world, &cube, &pose, DVec3::NEG_X, &options);
-    assert_eq!(away, Ok(Clearance::Free));
-    let aside = clearance(&cube, &world, &cube, &pose, DVec3::Y, &options);
-    assert_eq!(aside, Ok(Clearance::Free));
+    assert!(distance <= 2.0 && distance > 2.0 - 1e-13);
+    assert_eq!(ahead.distance(), Some(distance));
+    let away = go(DVec3::NEG_X).clearance().expect("an answer");
+    let Clearance::Behind(last) = away else { panic!("{away:?}") };
+    assert!(away.is_free() && (last.translation - 2.0).abs() < 1e-13);
+    assert!(go(DVec3::X).verify(&last.certificate).is_ok(), "that of the reversed cast");
+    let aside = go(DVec3::Y).clearance().expect("an answer");
+    let Clearance::Separated(separated) = aside else { panic!("{aside:?}") };
+    assert!(go(DVec3::Y).verify(&separated.certificate).is_ok());
 }
 
 #[test]
 fn touching_boxes_block_one_way_only() {
-    let (cube, world, pose) = (cube(), Pose::IDENTITY, at(1.0, 0.25, 0.0));
-    let go = |direction| {
-        clearance(&cube, &world, &cube, &pose, direction, &Options::default()).expect("an answer")
-    };
-    assert!(matches!(go(DVec3::X), Clearance::Blocked { distance: 0.0, .. }), "{:?}", go(DVec3::X));
-    assert_eq!(go(DVec3::NEG_X), Clearance::Free);
-    assert_eq!(go(DVec3::Y), Clearance::Free);
-    assert_eq!(intersects(&cube, &world, &cube, &pose), Ok(true));
+    let cube = cube();
+    let go = |direction| cubes(&cube, DVec3::new(1.0, 0.25, 0.0), direction);
+    let clearance = |direction| go(direction).clearance().expect("an answer");
+    let ahead = clearance(DVec3::X);
+    assert!(matches!(ahead, Clearance::Blocked { distance: 0.0, .. }), "{ahead:?}");
+    assert!(matches!(clearance(DVec3::NEG_X), Clearance::Behind(_)));
+    assert!(matches!(clearance(DVec3::Y), Clearance::Slides(_)));
+    assert_eq!(clearance(DVec3::Y).distance(), Some(f64::INFINITY));
+    assert!(go(DVec3::X).intersects().expect("an answer").meets);
 }
 
 #[test]
 fn overlapping_boxes() {
-    let (cube, world, pose) = (cube(), Pose::IDENTITY, at(0.75, 0.25, 0.0));
-    let options = Options::default();
-    let found = clearance(&cube, &world, &cube, &pose, DVec3::X, &options).expect("an answer");
-    let Clearance::Overlapping { range: [first, last] } = found else { panic!("{found:?}") };
-    assert!((first + 0.25).abs() < 1e-13 && (last - 1.75).abs() < 1e-13);
-    let depth = directional_depth(&cube, &world, &cube, &pose, DVec3::X, &options);
-    assert!((depth.expect("an answer") - 0.25).abs() < 1e-13);
-    assert_eq!(intersects(&cube, &world, &cube, &pose), Ok(true));
-    assert_eq!(intersects(&cube, &world, &cube, &at(1.01, 0.25, 0.0)), Ok(false));
+    let cube = cube();
+    let cast = cubes(&cube, DVec3::new(0.75, 0.25, 0.0), DVec3::X);
+    let found = cast.clearance().expect("an answer");
+    let Clearance::Overlapping { first, last } = found else { panic!("{found:?}") };
+    assert!((first.translation + 0.25).abs() < 1e-13 && (last.translation + 1.75).abs() < 1e-13);
+    assert_eq!(found.distance(), None);
+    let depth = cast.directional_depth().expect("an answer");
+    assert!(depth.depth >= 0.25 && depth.depth < 0.25 + 1e-13);
+    assert_eq!(depth.clearance, found);
+    assert!(cast.verify(&first.certificate).is_ok());
+    assert!(cast.reversed().verify(&last.certificate).is_ok());
+    let meets = |x| {
+        let cast = cubes(&cube, DVec3::new(x, 0.25, 0.0), DVec3::Y);
+        let found = cast.intersects().expect("an answer");
+        // The proof is that of a cast along the line of the centres.
+        let along = cast.along(found.direction).expect("a direction");
+        match found.outcome {
+            Outcome::Contact(contact) => along.verify(&contact.certificate).expect("a proof"),
+            Outcome::Separated(separated) => along.verify(&separated.certificate).expect("a proof"),
+            Outcome::Grazing(_) => panic!("boxes with a volume"),
+        };
+        found.meets
+    };
+    assert!(meets(0.75) && meets(0.0) && meets(1.0) && !meets(1.01));
+}
+
+/// Up to the contact and not beyond: afterwards a plane still lies between the bodies, exactly.
+#[test]
+fn a_pose_before_a_contact_is_free() {
+    let mut moved = 0;
+    for (family, ..) in FAMILIES {
+        for seed in 0..40 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let cast = setting.query(&bodies).expect("a query");
+            let Ok(Clearance::Blocked { contact, .. }) = cast.clearance() else { continue };
+            let pose = contact.pose_before(&cast).expect("in range");
+            let there = Setting { moving_pose: pose, ..setting.clone() };
+            let judge = there.judge(&bodies);
+            let normal = Vector::new(contact.normal);
+            let highest = judge.scene.moving.iter().map(|p| normal.dot(p)).max();
+            let lowest = judge.scene.fixed.iter().map(|q| normal.dot(q)).min();
+            let was_free = contact.certificate.lower >= 0.0;
+            assert!(!was_free || lowest >= highest, "{setting}");
+            moved += u32::from(pose != setting.moving_pose);
+        }
+    }
+    assert!(moved > 250, "{moved}");
+}
+
+#[test]
+fn matrices_are_taken_as_they_are() {
+    let off = DMat3::from_cols(DVec3::X, DVec3::Y * (1.0 + 4e-7), DVec3::Z);
+    let pose = Pose::from_matrix(off, DVec3::ONE).expect("nearly a rotation");
+    assert_eq!(pose.matrix(), off);
+    for (matrix, least) in [
+        (DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.0 + 1e-6)), 1.9e-6),
+        (DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)), 2.0),
+        (DMat3::from_cols(DVec3::X, DVec3::new(1e-5, 1.0, 0.0), DVec3::Z), 9e-6),
+    ] {
+        let refused = Pose::from_matrix(matrix, DVec3::ZERO).unwrap_err();
+        let PoseError::NotARotationMatrix { defect, .. } = refused else { panic!("{refused}") };
+        assert!((least..1.2 * least).contains(&defect), "{defect:e}");
+    }
+    assert!(Pose::from_matrix(DMat3::from_diagonal(DVec3::splat(f64::NAN)), DVec3::ZERO).is_err());
 }
 
 #[test]
@@ -209,11 +280,13 @@ fn tampered_certificates_are_refused() {
         panic!("the cubes meet")
     };
     let good = contact.certificate;
-    let verify = |c: &Certificate| c.verify(&cube, &start, &cube, &world, DVec3::X);
+    let there = Cast::new(cube.at(start), cube.at(world), DVec3::X).expect("a query");
+    let verify = |c: &Certificate| there.verify(c);
     assert!(verify(&good).is_ok());
     for bad in [f64::NAN, f64::INFINITY, 3.0] {
         assert!(verify(&Certificate { lower: bad, ..good }).is_err());
-        assert!(verify(&Certificate { upper: bad, ..good }).is_err());
+        // An infinite upper bound claims nothing.
+        assert_eq!(verify(&Certificate { upper: bad, ..good }).is_ok(), bad == f64::INFINITY);
         assert!(verify(&Certificate { tolerance: bad, ..good }).is_err());
         assert!(verify(&Certificate { normal: DVec3::splat(bad), ..good }).is_err());
         assert!(verify(&Certificate { weights: [bad, 0.0, 0.0], ..good }).is_err());
@@ -228,7 +301,8 @@ fn tampered_certificates_are_refused() {
         panic!("they pass")
     };
     let good = separated.certificate;
-    let verify = |s: &Separation| s.verify(&cube, &beside, &cube, &world, DVec3::X);
+    let aside = Cast::new(cube.at(beside), cube.at(world), DVec3::X).expect("a query");
+    let verify = |s: &Separation| aside.verify(s);
     assert!(verify(&good).is_ok());
     for bad in [f64::NAN, 99.0, -1.0] {
         assert!(verify(&Separation { margin: bad, ..good }).is_err());

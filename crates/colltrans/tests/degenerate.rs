@@ -1,9 +1,8 @@
 //! Bodies of lower dimension, and bodies that are almost so.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{ConvexPolyhedron, Feature, Outcome, Pose, Solver};
+use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_oracle::check::Judge;
-use colltrans_oracle::scene::Scene;
 use colltrans_oracle::settings::{Rng, cuboid};
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
@@ -15,17 +14,27 @@ fn cast(moving: &[DVec3], fixed: &[DVec3], offset: DVec3, direction: DVec3) -> O
     let (moving, fixed) = (body(moving), body(fixed));
     let pose = Pose::from_translation(offset).expect("a pose");
     let world = Pose::IDENTITY;
-    let scene = Scene::of_bodies((&moving, &world), (&fixed, &pose), direction);
-    let judge = Judge { scene, moving: &moving, fixed: &fixed, graze_tolerance: 0.0 };
+    let cast = Cast::new(moving.at(world), fixed.at(pose), direction).expect("a query");
+    let judge = Judge::new(cast);
     let outcomes = [Solver::Cta, Solver::Portal, Solver::Auto].map(|solver| {
-        let options = colltrans::Options { solver, ..Default::default() };
-        let outcome = colltrans::cast_with(&moving, &world, &fixed, &pose, direction, &options)
-            .unwrap_or_else(|e| panic!("{solver:?}: {e}"));
+        let outcome =
+            cast.with_solver(solver).first_contact().unwrap_or_else(|e| panic!("{solver:?}: {e}"));
         judge.check(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
         judge.compare_with_oracle(&outcome).unwrap_or_else(|e| panic!("{solver:?}: {e}"));
         outcome
     });
     outcomes[0]
+}
+
+/// What touches, upwards.
+fn touching(moving: &[DVec3], fixed: &[DVec3], offset: DVec3) -> [&'static str; 2] {
+    let (moving, fixed) = (body(moving), body(fixed));
+    let pose = Pose::from_translation(offset).expect("a pose");
+    let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(pose), DVec3::Z).expect("a query");
+    let outcome = cast.first_contact().expect("an answer");
+    let Outcome::Contact(contact) = outcome else { panic!("{outcome:?}") };
+    let features = contact.features(&cast);
+    [features.moving.kind(), features.fixed.kind()]
 }
 
 fn translation(outcome: &Outcome) -> f64 {
@@ -75,8 +84,8 @@ fn point_onto_solid() {
     let hit = cast(&POINT, &cube, DVec3::new(0.25, 0.5, 4.0), DVec3::Z);
     let Outcome::Contact(contact) = hit else { panic!("{hit:?}") };
     assert!((contact.translation - 3.0).abs() <= contact.certificate.tolerance);
-    assert_eq!(contact.moving_feature, Feature::Vertex(0));
-    assert!(matches!(contact.fixed_feature, Feature::Face(_)));
+    let kinds = touching(&POINT, &cube, DVec3::new(0.25, 0.5, 4.0));
+    assert_eq!(kinds, ["vertex", "face"]);
 }
 
 #[test]
@@ -84,8 +93,7 @@ fn crossing_segments() {
     let hit = cast(&SEGMENT, &CROSSING, DVec3::new(0.25, 0.5, 2.0), DVec3::Z);
     let Outcome::Contact(contact) = hit else { panic!("{hit:?}") };
     assert!((contact.translation - 2.0).abs() <= contact.certificate.tolerance);
-    assert!(matches!(contact.moving_feature, Feature::Edge(_)));
-    assert!(matches!(contact.fixed_feature, Feature::Edge(_)));
+    assert_eq!(touching(&SEGMENT, &CROSSING, DVec3::new(0.25, 0.5, 2.0)), ["edge", "edge"]);
     let miss = cast(&SEGMENT, &CROSSING, DVec3::new(1.25, 0.5, 2.0), DVec3::Z);
     assert!(matches!(miss, Outcome::Separated(_)), "{miss:?}");
 }

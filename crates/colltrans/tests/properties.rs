@@ -3,10 +3,7 @@
 use std::thread;
 
 use colltrans::glam::DVec3;
-use colltrans::{
-    Clearance, ConvexPolyhedron, Options, Outcome, Pose, QueryError, Solver, cast_with, clearance,
-    intersects,
-};
+use colltrans::{Clearance, ConvexPolyhedron, Outcome, Pose, QueryError, Solver};
 use colltrans_oracle::scene::Scene;
 use colltrans_oracle::settings::{Bodies, FAMILIES, Rng, Setting, setting};
 use colltrans_oracle::shadow::sideways_overlap;
@@ -149,7 +146,8 @@ proptest! {
         let rounding = 64.0 * f64::EPSILON * size / found.normal.dot(setting.direction);
         prop_assume!(step > 4.0 * (found.certificate.tolerance + rounding));
         let meets = |t: f64| {
-            intersects(&bodies.moving, &advanced(&setting, t), &bodies.fixed, &setting.fixed_pose)
+            let there = Setting { moving_pose: advanced(&setting, t), ..setting.clone() };
+            there.query(&bodies).and_then(|cast| cast.intersects()).map(|found| found.meets)
         };
         prop_assert_eq!(meets(before), Ok(false), "{}: before", &setting);
         if after < exit - step {
@@ -160,17 +158,13 @@ proptest! {
     #[test]
     fn clearance_is_what_the_exact_range_says(setting in any_setting()) {
         let bodies = setting.bodies().unwrap();
-        let options = Options { graze_tolerance: setting.graze_tolerance, ..Options::default() };
-        let found = clearance(
-            &bodies.moving, &setting.moving_pose, &bodies.fixed, &setting.fixed_pose,
-            setting.direction, &options,
-        ).unwrap();
+        let found = setting.query(&bodies).unwrap().clearance().unwrap();
         let here = scene(&setting, &bodies);
         let border = setting.graze_tolerance.max(here.touching);
         let overlap = sideways_overlap(&here).to_f64();
         if overlap <= border + 4.0 * here.noise {
             // Grazing does not block; at its border either answer is right.
-            prop_assert!(overlap > border - 4.0 * here.noise || found == Clearance::Free, "{setting}");
+            prop_assert!(overlap > border - 4.0 * here.noise || found.is_free(), "{setting}");
             return Ok(());
         }
         let back = Setting { direction: -setting.direction, ..setting.clone() };
@@ -183,15 +177,20 @@ proptest! {
         match found {
             Clearance::Blocked { distance, contact } => {
                 prop_assert!(first >= -tolerance, "{setting}: blocked, range {first}..{last}");
-                prop_assert!((distance - first.max(0.0)).abs() <= tolerance, "{setting}");
+                prop_assert!(distance <= first.max(0.0), "{setting}: {distance:e} of {first:e}");
+                prop_assert!(first.max(0.0) - distance <= tolerance, "{setting}");
                 prop_assert!(distance >= 0.0 && contact.normal.dot(setting.direction) > 0.0);
             }
-            Clearance::Overlapping { range } => {
+            Clearance::Overlapping { first: enter, last: exit } => {
+                let range = [enter.translation, -exit.translation];
                 prop_assert!(first < 0.0 && last > -tolerance, "{setting}: range {first}..{last}");
                 prop_assert!((range[0] - first).abs() <= tolerance, "{setting}");
                 prop_assert!((range[1] - last).abs() <= tolerance, "{setting}");
             }
-            Clearance::Free => prop_assert!(last <= tolerance, "{setting}: range {first}..{last}"),
+            Clearance::Behind(_) => {
+                prop_assert!(last <= tolerance, "{setting}: range {first}..{last}");
+            }
+            free => prop_assert!(false, "{setting}: {free:?}, range {first}..{last}"),
         }
     }
 
@@ -256,38 +255,18 @@ fn verify_accepts_every_answer_and_no_other_body() {
             let points: Vec<DVec3> = body.vertices().iter().map(|v| *v * 1.01).collect();
             ConvexPolyhedron::from_points(&points).unwrap()
         };
-        let (m, f) = (&setting.moving_pose, &setting.fixed_pose);
         let outcome = setting.cast(&bodies, Solver::Auto).unwrap();
-        let verify = |moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron| match &outcome {
-            Outcome::Contact(c) => {
-                c.certificate.verify(moving, m, fixed, f, setting.direction).map(f64::abs)
+        let verify = |bodies: &Bodies| {
+            let cast = setting.query(bodies).unwrap();
+            match &outcome {
+                Outcome::Contact(c) => cast.verify(&c.certificate),
+                Outcome::Grazing(g) => cast.verify(&g.contact.certificate),
+                Outcome::Separated(s) => cast.verify(&s.certificate),
             }
-            Outcome::Grazing(g) => {
-                g.contact.certificate.verify(moving, m, fixed, f, setting.direction)
-            }
-            Outcome::Separated(s) => s.certificate.verify(moving, m, fixed, f, setting.direction),
         };
-        verify(&bodies.moving, &bodies.fixed).unwrap();
-        refused += u32::from(verify(&bigger(&bodies.moving), &bigger(&bodies.fixed)).is_err());
+        verify(&bodies).unwrap();
+        let others = Bodies { moving: bigger(&bodies.moving), fixed: bigger(&bodies.fixed) };
+        refused += u32::from(verify(&others).is_err());
     }
     assert!(refused >= 300, "only {refused} of 500 certificates were refused for other bodies");
-}
-
-/// With a direction that is no answer's, the query says so.
-#[test]
-fn solvers_refuse_alike() {
-    let setting = setting("random", 1);
-    let bodies = setting.bodies().unwrap();
-    for solver in [Solver::Cta, Solver::Portal, Solver::Auto] {
-        let options = Options { solver, ..Options::default() };
-        let refused = cast_with(
-            &bodies.moving,
-            &setting.moving_pose,
-            &bodies.fixed,
-            &setting.fixed_pose,
-            DVec3::ZERO,
-            &options,
-        );
-        assert_eq!(refused, Err(QueryError::Direction { direction: DVec3::ZERO }));
-    }
 }

@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Contact, ConvexPolyhedron, Options, Outcome, Pose, Solver};
+use colltrans::{Cast, Contact, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_oracle::check::Judge;
-use colltrans_oracle::scene::Scene;
 use colltrans_oracle::settings::cuboid;
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
@@ -25,13 +24,11 @@ fn contact(
     direction: DVec3,
     with_oracle: bool,
 ) -> Contact {
-    let scene = Scene::of_bodies((moving, moving_pose), (fixed, fixed_pose), direction);
-    let judge = Judge { scene, moving, fixed, graze_tolerance: 0.0 };
+    let cast = Cast::new(moving.at(*moving_pose), fixed.at(*fixed_pose), direction);
+    let cast = cast.expect("a query");
+    let judge = Judge::new(cast);
     let mut contacts = [Solver::Cta, Solver::Portal].map(|solver| {
-        let options = Options { solver, ..Options::default() };
-        let outcome =
-            colltrans::cast_with(moving, moving_pose, fixed, fixed_pose, direction, &options)
-                .expect("an answer");
+        let outcome = cast.with_solver(solver).first_contact().expect("an answer");
         judge.check(&outcome).expect("a certificate that holds");
         if with_oracle {
             judge.compare_with_oracle(&outcome).expect("agreement with the oracle");

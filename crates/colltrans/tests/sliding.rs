@@ -1,9 +1,8 @@
 //! Unit cubes that slide past each other with a small lateral gap never count as contact.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Clearance, ConvexPolyhedron, Options, Outcome, Pose, Solver};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_oracle::check::Judge;
-use colltrans_oracle::scene::Scene;
 use colltrans_oracle::settings::{Rng, cuboid};
 
 /// Cubes one above the other along x with a gap beside them, turned as a whole by `rotation`.
@@ -12,21 +11,19 @@ fn slide(gap: f64, rotation: DQuat, start: DVec3, origin: DVec3) {
     let pose = |v: DVec3| Pose::new(rotation, origin + rotation * v).expect("a pose");
     let (fixed_pose, moving_pose) = (pose(DVec3::ZERO), pose(start + DVec3::Y * (1.0 + gap)));
     let direction = rotation * DVec3::X;
-    let scene = Scene::of_bodies((&cube, &moving_pose), (&cube, &fixed_pose), direction);
-    let judge = Judge { scene, moving: &cube, fixed: &cube, graze_tolerance: 0.0 };
+    let cast = Cast::new(cube.at(moving_pose), cube.at(fixed_pose), direction).expect("a query");
+    let judge = Judge::new(cast);
     for solver in [Solver::Cta, Solver::Portal] {
-        let options = Options { solver, ..Options::default() };
+        let cast = cast.with_solver(solver);
         let outcome =
-            colltrans::cast_with(&cube, &moving_pose, &cube, &fixed_pose, direction, &options)
-                .unwrap_or_else(|e| panic!("gap {gap:e}, {solver:?}: {e}"));
+            cast.first_contact().unwrap_or_else(|e| panic!("gap {gap:e}, {solver:?}: {e}"));
         judge.check(&outcome).unwrap_or_else(|e| panic!("gap {gap:e}, {solver:?}: {e}"));
         assert!(
             matches!(outcome, Outcome::Separated(_)),
             "gap {gap:e}, rotation {rotation}, start {start}, {solver:?}: {outcome:?}"
         );
-        let clearance =
-            colltrans::clearance(&cube, &moving_pose, &cube, &fixed_pose, direction, &options);
-        assert_eq!(clearance, Ok(Clearance::Free));
+        let clearance = cast.clearance();
+        assert!(matches!(clearance, Ok(Clearance::Separated(_))), "{clearance:?}");
     }
 }
 
@@ -76,7 +73,6 @@ fn cubes_without_a_gap_graze() {
     let Outcome::Grazing(grazing) = outcome else { panic!("{outcome:?}") };
     assert!((grazing.contact.translation - 2.0).abs() <= grazing.contact.certificate.tolerance);
     assert!(grazing.separating_direction.distance(DVec3::NEG_Y) < 1e-12);
-    let options = Options::default();
-    let clearance = colltrans::clearance(&cube, &pose, &cube, &world, DVec3::X, &options);
-    assert_eq!(clearance, Ok(Clearance::Free));
+    let cast = Cast::new(cube.at(pose), cube.at(world), DVec3::X).expect("a query");
+    assert_eq!(cast.clearance(), Ok(Clearance::Slides(grazing)));
 }

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use colltrans::{
     Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, StartedFrom, Steps,
-    Tracker, cast_with,
+    Tracker,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParrySetting};
@@ -177,16 +177,15 @@ impl Measured {
         let stopwatch = Stopwatch::new();
         let Contestant { solver, narrowing, focus, .. } = *contestant;
         let options = Options { solver, narrowing, ..Options::default() };
-        let [moving, fixed] = &bodies.pair;
-        let mut tracker = Tracker::new(moving, fixed).with_focus(focus).expect("a focus");
+        let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
         let mut outcomes = Vec::with_capacity(sequence.len());
         for setting in sequence {
-            let Setting { moving: p, fixed: q, direction: d } = setting;
             let (outcome, spent) = stopwatch.time(|| {
+                let cast = setting.cast(bodies, &options)?;
                 if focus == Focus::NONE {
-                    cast_with(moving, p, fixed, q, *d, &options)
+                    cast.first_contact()
                 } else {
-                    tracker.cast_with(p, q, *d, &options)
+                    tracker.first_contact(&cast)
                 }
             });
             self.note(spent, &outcome);

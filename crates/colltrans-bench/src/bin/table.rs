@@ -9,9 +9,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
-use colltrans::{
-    BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver, Steps, cast_with,
-};
+use colltrans::{BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver, Steps};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParrySetting};
 use colltrans_bench::report::{self, Times};
@@ -120,7 +118,7 @@ struct Cases {
 /// Both rows of a shape and a size.
 fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], BuildError> {
     let mut random = Random::new(arguments.seed, &[n as u64]);
-    let count = if n >= 50_000 { 2 } else { 8 };
+    let count = if n >= 50_000 { 2 } else { 4 };
     let started = Instant::now();
     let mut pair = || -> Result<Bodies, BuildError> {
         Ok(Bodies::new([shape.draw(n, &mut random)?, shape.draw(n, &mut random)?]))
@@ -164,9 +162,7 @@ fn tied(tie: Tie, placement: Placement, arguments: &Arguments) -> Row {
 
 /// Asks `colltrans`.
 fn ask(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, QueryError> {
-    let [moving, fixed] = &bodies.pair;
-    let options = Options { solver, ..Options::default() };
-    cast_with(moving, &setting.moving, fixed, &setting.fixed, setting.direction, &options)
+    setting.cast(bodies, &Options { solver, ..Options::default() })?.first_contact()
 }
 
 /// Measurements of one solver in one row.

@@ -54,13 +54,15 @@ Each result is one JSON object with those of these fields that apply:
   outcome      "contact", "grazing", "separated" or "error"; of `clearance`: "blocked", "slides",
                "behind", "separated" or "overlapping"
   direction    with --directions: the direction as it was read
-  distance     of `clearance`, blocked: how far the body can go for certain (never past lower)
+  distance     of `clearance`, blocked: how far the body can go for certain
+  back on      of `clearance`, overlapping: how far to go back, or on, to be free for certain
   translation  first contact, in multiples of the direction; negative: behind, or overlapping
-  exit         last contact
-  tolerance    what rounding alone can make of upper - lower; so many digits are known
+  exit         last contact; behind: where that is (and normal, point, features are those there)
+  tolerance    what rounding alone can make of upper - lower; digits below it are not known
   normal       unit normal from moving to fixed: of the contact plane, or of the separating plane
   point        the contact point on the fixed body, in the world
-  lower upper  the proven bounds of translation
+  lower upper  the proven bounds of translation: never above, never below the true one; upper is
+               missing where bodies slide so lightly that they may not touch
   features     {"moving": {"kind": "vertex"|"edge"|"face", "vertices": [...]}, "fixed": ...} by the
                indices of the points or mesh vertices in the input
   margin       gap between the shadows (the projections along the direction), measured along

@@ -132,9 +132,10 @@ impl Desk {
             direction,
             options,
         };
-        let answer = query.contact_range().map_err(|e| e.to_string())?;
+        let cast = query.cast().map_err(|e| e.to_string())?;
+        let answer = cast.contact_range().map_err(|e| e.to_string())?;
         let hull = Hulls::of(moving.excess, fixed.excess);
-        Ok(Record { hull, ..Record::of_answer(&answer, moving_body, fixed_body) })
+        Ok(Record { hull, ..Record::of_answer(&answer, &cast) })
     }
 
     fn body(&self, source: BodySource) -> Built {

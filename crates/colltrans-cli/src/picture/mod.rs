@@ -36,6 +36,8 @@ use view::View;
 /// A query and its answer.
 pub(crate) struct Scene<'a> {
     pub(crate) query: &'a Query<'a>,
+    /// The query as the library sees it.
+    pub(crate) cast: &'a colltrans::Cast<'a>,
     pub(crate) answer: &'a ContactRange,
 }
 
@@ -80,9 +82,9 @@ pub(crate) fn draw(scene: &Scene<'_>) -> String {
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
     cast.draw(&mut page, &view, &story, on_page);
-    if let Some(contact) = story.contact {
-        cast.fixed.mark_hidden(&mut page, contact.fixed_feature, FIXED_MARK, on_page);
-        cast.stop.mark_hidden(&mut page, contact.moving_feature, MOVING_MARK, on_page);
+    if let Some(features) = story.features {
+        cast.fixed.mark_hidden(&mut page, features.fixed, FIXED_MARK, on_page);
+        cast.stop.mark_hidden(&mut page, features.moving, MOVING_MARK, on_page);
     }
     page.close_group();
     let notes = Notes { cast: &cast, story: &story, layout: &layout, view: &view };
@@ -131,8 +133,8 @@ impl Cast {
                 draw_start(page);
             }
             self.stop.draw(page, view, &MOVING, on_page);
-            if let Some(contact) = story.contact {
-                self.stop.mark(page, view, contact.moving_feature, MOVING_MARK, on_page);
+            if let Some(features) = story.features {
+                self.stop.mark(page, view, features.moving, MOVING_MARK, on_page);
             }
             if !stop_is_nearer && !is_behind {
                 draw_start(page);
@@ -140,8 +142,8 @@ impl Cast {
         };
         let draw_fixed = |page: &mut Page| {
             self.fixed.draw(page, view, &FIXED, on_page);
-            if let Some(contact) = story.contact {
-                self.fixed.mark(page, view, contact.fixed_feature, FIXED_MARK, on_page);
+            if let Some(features) = story.features {
+                self.fixed.mark(page, view, features.fixed, FIXED_MARK, on_page);
             }
         };
         let draw_plane = |page: &mut Page| {
@@ -231,7 +233,8 @@ mod tests {
                 options: Options::default(),
             };
             let answer = query.contact_range().unwrap();
-            let scene = Scene { query: &query, answer: &answer };
+            let question = query.cast().unwrap();
+            let scene = Scene { query: &query, cast: &question, answer: &answer };
             let story = Story::of(&scene);
             if story.stop < 0.0 {
                 continue;

@@ -1,7 +1,7 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Certificate, Contact, ContactRange, Feature, Separated};
+use colltrans::{Contact, ContactRange, Feature, Features, Separated};
 
 use super::{Cast, Scene, Solid, layout};
 use crate::query::{When, when};
@@ -15,6 +15,8 @@ pub(super) struct Story<'a> {
     /// The contact normal, or that of the separating plane.
     pub(super) normal: DVec3,
     pub(super) contact: Option<&'a Contact>,
+    /// What touches there.
+    pub(super) features: Option<Features>,
     pub(super) margin: Option<f64>,
     /// What the way is labelled with.
     pub(super) way: String,
@@ -46,28 +48,30 @@ impl<'a> Story<'a> {
         also: Option<String>,
     ) -> Self {
         let length = scene.query.direction.length();
+        let (features, points) = (contact.features(scene.cast), contact.points(scene.cast));
         let way = quantity(contact.translation, length);
-        let Certificate { lower, upper, .. } = contact.certificate;
-        let features = format!(
+        let proof = &contact.certificate;
+        let touch = format!(
             "{} of the moving body on {} of the fixed body",
-            contact.moving_feature.kind(),
-            contact.fixed_feature.kind()
+            features.moving.kind(),
+            features.fixed.kind()
         );
         let mut details: Vec<String> = also.into_iter().collect();
-        details.push(features);
-        let agreement = match (upper - lower).abs() {
-            0.0 => "are equal".into(),
-            gap => format!("agree to {gap:.0e}"),
+        details.push(touch);
+        let agreement = if proof.upper.is_finite() {
+            // The gap itself changes with the last bits of a search.
+            let within = proof.gap().max(proof.tolerance);
+            format!("proven lower and upper bound of t agree to {within:.0e}")
+        } else {
+            "t is a proven lower bound".into()
         };
-        details.push(format!(
-            "normal n = {}; proven lower and upper bound of t {agreement}",
-            components(contact.normal)
-        ));
+        details.push(format!("normal n = {}; {agreement}", components(contact.normal)));
         Self {
-            origin: contact.point_on_fixed,
+            origin: points.on_fixed,
             stop: contact.translation * length,
             normal: contact.normal,
             contact: Some(contact),
+            features: Some(features),
             margin: None,
             headline: match when {
                 When::Ahead => format!("{name} at {way}"),
@@ -94,6 +98,7 @@ impl<'a> Story<'a> {
             stop: ahead.max(0.0),
             normal,
             contact: None,
+            features: None,
             margin: Some(margin),
             way: "d".into(),
             headline: "Separated: the bodies never meet along d".into(),
@@ -109,8 +114,8 @@ impl<'a> Story<'a> {
     /// seen from its own side, and the body that has only a vertex or an edge there hides less.
     pub(super) fn looked_along(&self) -> DVec3 {
         let is_face = |feature| matches!(feature, Feature::Face(_));
-        match self.contact {
-            Some(c) if is_face(c.moving_feature) && !is_face(c.fixed_feature) => -self.normal,
+        match self.features {
+            Some(f) if is_face(f.moving) && !is_face(f.fixed) => -self.normal,
             _ => self.normal,
         }
     }

@@ -286,7 +286,7 @@ fn clearance_tells_its_cases_apart() {
             "free         0 times the direction, a length of 0 (the bodies touch)",
         ),
         ("-3,1,0", "slides", "free, the bodies slide along each other"),
-        ("3,0.5,0", "behind", "contact at   -2 times the direction, a length of -4"),
+        ("3,0.5,0", "behind", "last contact -1 times the direction, a length of -2"),
         ("-3,2,0", "separated", "never meet"),
         (
             "0.5,0.5,0",
@@ -298,10 +298,23 @@ fn clearance_tells_its_cases_apart() {
         let text = clearance(pose, &[]);
         assert!(text.starts_with(outcome) && text.contains(part), "{text}");
         assert!(!text.contains("-0 ") && !text.contains("e0"), "{text}");
-        let record = json(&clearance(pose, &["--json"]));
+        let line = clearance(pose, &["--json"]);
+        assert!(!line.contains("-0.0,") && !line.contains("-0.0]"), "{line}");
+        let record = json(&line);
         assert_eq!(record["outcome"], outcome, "{record}");
         assert_eq!(record.get("distance").is_some(), outcome == "blocked", "{record}");
     }
+    // What is called certain is on the safe side.
+    let certain = |text: &str| -> Vec<f64> {
+        let lines = text.lines().filter_map(|line| line.trim().strip_prefix("certain"));
+        lines.map(|l| l.split_whitespace().next().unwrap().parse().unwrap()).collect()
+    };
+    let ahead = certain(&clearance("-3,0.5,0", &[]));
+    assert!(ahead.len() == 1 && ahead[0] <= 1.0 && ahead[0] > 1.0 - 1e-12, "{ahead:?}");
+    let ways = certain(&clearance("0.5,0.5,0", &[]));
+    assert!(ways.len() == 2 && ways[0] >= 0.75 && ways[1] >= 0.25, "{ways:?}");
+    let record = json(&clearance("0.5,0.5,0", &["--json"]));
+    assert_eq!([&record["back"], &record["on"]].map(|v| v.as_f64().unwrap()), ways[..], "{record}");
     let record = json(&clearance("-3,0.5,0", &["--json"]));
     let (distance, lower) = (&record["distance"], &record["lower"]);
     assert!(distance.as_f64() <= lower.as_f64() && lower.as_f64().is_some(), "{record}");

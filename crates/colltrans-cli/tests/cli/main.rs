@@ -5,4 +5,6 @@ mod cast;
 mod door;
 mod example_parts;
 mod picture;
+mod readme;
+mod replay;
 mod support;

@@ -2,7 +2,6 @@
 
 use std::hint::black_box;
 
-use colltrans::cast_observed;
 use colltrans::observe::{Clock, Profile};
 
 use super::{ABOUT, Parts, claim, share, shares, thousands};
@@ -46,15 +45,13 @@ fn measure(plan: &Plan, n: usize) -> Profiled {
     let queries: usize = plan.by_scale(20, 1_500, 10_000);
     let settings: Vec<_> =
         (0..queries).map(|_| Setting::draw(&bodies, Meeting::Colliding, &mut random)).collect();
-    let [moving, fixed] = &bodies.pair;
     let options = Until::Near.options();
     let mut profiles: Vec<_> = settings
         .iter()
         .map(|s| {
             let mut clock = Clock::new();
-            let (p, q) = (&s.moving, &s.fixed);
-            let _ =
-                black_box(cast_observed(moving, p, fixed, q, s.direction, &options, &mut clock));
+            let cast = s.cast(&bodies, &options);
+            let _ = black_box(cast.and_then(|cast| cast.first_contact_observed(&mut clock)));
             clock.profile()
         })
         .collect();

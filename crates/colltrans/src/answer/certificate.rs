@@ -13,9 +13,6 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::body::ConvexPolyhedron;
-use crate::body::Pose;
-use crate::error::QueryError;
 use crate::number::noise::{self, Noise};
 use crate::setting::{Setting, VertexPair};
 
@@ -27,9 +24,9 @@ use crate::setting::{Setting, VertexPair};
 /// - if `sum w_i (q_i - p_i) = t d` with weights `w_i >= 0` of sum 1, the bodies meet at `t`: the
 ///   pairs prove `upper`.
 ///
-/// `lower` and `upper` may change places by rounding error. In [`Grazing`](crate::Grazing) the
-/// bounds are those of the bodies *widened sideways* by a little more than rounding error, and so
-/// is `tolerance`.
+/// `lower <= collision translation <= upper`, exactly, for the bodies as given: the convex hulls of
+/// their [`vertices`](crate::ConvexPolyhedron::vertices), in poses as their nine entries and their
+/// translations. Both are rounded outwards by what their computation can be off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
     /// Unit normal of the supporting plane that proves the lower bound, in the world;
@@ -43,11 +40,14 @@ pub struct Certificate {
     /// The weights (barycentric coordinates) of the pairs where the line passes: not negative, sum
     /// 1. The witness points are `sum w_i p_i` and `sum w_i q_i`.
     pub weights: [f64; 3],
-    /// The upper bound they prove, in multiples of the direction.
+    /// The upper bound they prove, in multiples of the direction. Infinite in a
+    /// [`Grazing`](crate::Grazing) whose shadows rounding cannot tell to overlap: such a one claims
+    /// `lower` only.
     pub upper: f64,
-    /// What rounding alone can make of `upper - lower` at the size of this configuration: ten
-    /// noises (see [the crate's introduction](crate#accuracy)) over `normal . d`, in multiples of
-    /// the direction.
+    /// What rounding alone can make of `upper - lower` at the size of this configuration: fifteen
+    /// noises (see [the crate's introduction](crate#accuracy)) and what the bodies may reach beyond
+    /// their support points, over `normal . d`, in multiples of the direction. Where bodies that only
+    /// touch were widened sideways for an answer, what the widening can make of the translation, too.
     pub tolerance: f64,
 }
 
@@ -58,8 +58,9 @@ pub struct Separation {
     /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed
     /// one.
     pub normal: DVec3,
-    /// `min_Q n.q - max_P n.p > 0`: how far the shadows stay apart along `normal`, in world units.
-    /// A lower bound of the distance of the shadows, not the distance itself.
+    /// At most `min_Q n.q - max_P n.p`, and positive: the gap between the shadows along this one
+    /// normal, in world units, rounded down. A lower bound of the distance of the shadows, not the
+    /// distance itself.
     pub margin: f64,
 }
 
@@ -67,9 +68,6 @@ pub struct Separation {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CertificateError {
-    /// The setting itself is not valid.
-    #[error(transparent)]
-    Setting(#[from] QueryError),
     /// The normal is not a unit vector with a component along the direction (contact), or
     /// orthogonal to it (separation).
     #[error("the normal {normal} is not a unit vector on the right side of the direction")]
@@ -109,16 +107,75 @@ pub enum CertificateError {
     },
 }
 
-/// `min_Q n.q - max_P n.p`.
-fn distance_along(setting: &Setting, normal: DVec3) -> f64 {
-    let (in_moving, in_fixed) = (setting.moving_normal(normal), setting.fixed_normal(normal));
-    let p = setting.moving.vertices()[setting.moving.support(in_moving) as usize];
-    let q = setting.fixed.vertices()[setting.fixed.support(-in_fixed) as usize];
-    (in_fixed.dot(q) - in_moving.dot(p)) + normal.dot(setting.offset)
+/// A proof to check: of a contact, or of a separation.
+#[derive(Debug, Clone, Copy)]
+pub enum Proof<'a> {
+    /// Of both bounds of a collision translation.
+    Contact(&'a Certificate),
+    /// Of there being none.
+    Separation(&'a Separation),
 }
 
-/// What rounding, and a widening sideways, can make of `upper - lower` for a normal, in multiples
-/// of the direction.
+impl<'a> From<&'a Certificate> for Proof<'a> {
+    fn from(certificate: &'a Certificate) -> Self {
+        Self::Contact(certificate)
+    }
+}
+
+impl<'a> From<&'a Separation> for Proof<'a> {
+    fn from(separation: &'a Separation) -> Self {
+        Self::Separation(separation)
+    }
+}
+
+/// A bound along a normal, and by how much rounding may have overstated it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Along {
+    /// `min_Q n.q - max_P n.p` at the support points.
+    pub(crate) distance: f64,
+    /// What the computation, and bodies that reach beyond the support points, may take from it.
+    pub(crate) error: f64,
+}
+
+impl Along {
+    /// For a unit normal, also in the frames of the moving and of the fixed body, and the support
+    /// points along it.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    pub(crate) fn new(
+        setting: &Setting,
+        noise: Noise,
+        normal: DVec3,
+        normals: &[DVec3; 2],
+        support: VertexPair,
+    ) -> Self {
+        let [p, q] = setting.vertices(support);
+        let distance = (normals[1].dot(q) - normals[0].dot(p)) + normal.dot(setting.offset);
+        let beyond = setting.moving.excess(normals[0], support.moving)
+            + setting.fixed.excess(-normals[1], support.fixed);
+        Self { distance, error: noise.lowered() + beyond }
+    }
+
+    /// The lower bound that it proves, in multiples of the direction, rounded down.
+    #[inline]
+    pub(crate) fn lower(&self, along: f64) -> f64 {
+        ((self.distance - self.error) / along).next_down()
+    }
+}
+
+/// What is proven along a normal.
+fn along(setting: &Setting, normal: DVec3) -> Along {
+    let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+    let support = VertexPair {
+        moving: setting.moving.support(normals[0]),
+        fixed: setting.fixed.support(-normals[1]),
+    };
+    Along::new(setting, setting.noise(), normal, &normals, support)
+}
+
+/// What rounding, and a widening sideways, can make of the difference between the estimates of the
+/// upper and the lower bound for a normal, in multiples of the direction.
+#[inline]
 pub(crate) fn gap_tolerance(setting: &Setting, normal: DVec3, noise: Noise, widening: f64) -> f64 {
     // Unwidened bodies, almost all, need no length.
     let across = if widening == 0.0 { 0.0 } else { normal.cross(setting.unit).length() };
@@ -131,56 +188,26 @@ impl Certificate {
         self.upper - self.lower
     }
 
-    /// Checks the certificate against the two bodies, in `O(log n)`, and returns the gap
-    /// `upper - lower` that is really proven, in multiples of the direction.
-    ///
-    /// Nothing of the solver is used: two support points for the lower bound, three pairs of
-    /// vertices for the upper one. Bodies, poses and direction must be those of the query; for the
-    /// `last` contact of a [`ContactRange`](crate::ContactRange) the direction is the opposite one.
-    ///
-    /// # Errors
-    /// What the certificate fails to prove.
-    ///
-    /// ```
-    /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
-    /// let triangle = ConvexPolyhedron::from_points(&[DVec3::X, DVec3::Y, DVec3::Z])?;
-    /// let start = Pose::from_translation(DVec3::new(-5.0, 0.0, 0.0))?;
-    /// let world = Pose::IDENTITY;
-    /// let Outcome::Contact(contact) = cast(&triangle, &start, &triangle, &world, DVec3::X)? else {
-    ///     unreachable!("the same triangle, five units further")
-    /// };
-    /// let proof = contact.certificate;
-    /// let gap = proof.verify(&triangle, &start, &triangle, &world, DVec3::X)?;
-    /// assert!(gap <= proof.tolerance);
-    ///
-    /// let mut lie = proof;
-    /// lie.lower += 1.0;
-    /// assert!(lie.verify(&triangle, &start, &triangle, &world, DVec3::X).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn verify(
-        &self,
-        moving: &ConvexPolyhedron,
-        moving_pose: &Pose,
-        fixed: &ConvexPolyhedron,
-        fixed_pose: &Pose,
-        direction: DVec3,
-    ) -> Result<f64, CertificateError> {
-        let setting = Setting::new(moving, moving_pose, fixed, fixed_pose, direction)?;
+    /// The checks of [`Cast::verify`](crate::Cast::verify), and the gap proven.
+    pub(crate) fn verify(&self, setting: &Setting) -> Result<f64, CertificateError> {
         let normal = self.normal;
-        let along = normal.dot(direction);
-        if (normal.length() - 1.0).abs() > noise::UNIT_VECTOR || along.is_nan() || along <= 0.0 {
+        let steepness = normal.dot(setting.direction);
+        let unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
+        if !unit || steepness.is_nan() || steepness <= 0.0 {
             return Err(CertificateError::Normal { normal });
         }
-        let lower = distance_along(&setting, normal) / along;
-        let upper = self.proven_upper(&setting)?;
-        // What a certificate says of its own tolerance proves nothing: it is derived anew.
         let noise = setting.noise();
-        let tolerance = gap_tolerance(&setting, normal, noise, noise.widest());
+        let along = along(setting, normal);
+        let lower = along.lower(steepness);
+        let proven = self.proven_upper(setting)?;
+        let upper = proven + noise.raised() / steepness;
+        // What a certificate says of its own tolerance proves nothing: it is derived anew.
+        let widest = gap_tolerance(setting, normal, noise, noise.widest());
+        let tolerance = widest + (noise.raised() + along.error) / steepness;
+        let claims_upper = self.upper != f64::INFINITY;
         for (proven, claimed, holds) in [
             (lower, self.lower, self.lower <= lower + tolerance),
-            (upper, self.upper, (self.upper - upper).abs() <= tolerance),
+            (upper, self.upper, !claims_upper || (self.upper - upper).abs() <= tolerance),
             (tolerance, self.tolerance, self.tolerance <= 2.0 * tolerance),
         ] {
             if !holds {
@@ -190,7 +217,7 @@ impl Certificate {
         Ok(upper - lower)
     }
 
-    /// The upper bound that the witness pairs prove.
+    /// The estimate of the upper bound that the witness pairs prove.
     fn proven_upper(&self, setting: &Setting) -> Result<f64, CertificateError> {
         let weights = self.weights;
         let sum: f64 = weights.iter().sum();
@@ -206,7 +233,7 @@ impl Certificate {
             let (Some(&q), Some(&p)) = (q, p) else { return Err(unknown) };
             difference += (setting.fixed_matrix * q - setting.moving_matrix * p) * weight;
         }
-        let upper = difference.dot(setting.unit) / setting.direction.length();
+        let upper = difference.dot(setting.unit) / setting.length;
         let residual = (difference - setting.direction * upper).length();
         // Grazing contacts may miss by the widening along both lateral axes.
         let tolerance = setting.noise().residual();
@@ -219,45 +246,16 @@ impl Certificate {
 }
 
 impl Separation {
-    /// Checks the separation against the two bodies, in `O(log n)`, and returns the margin that is
-    /// really proven, in world units.
-    ///
-    /// Nothing of the solver is used: two support points. Bodies, poses and direction must be those
-    /// of the query.
-    ///
-    /// # Errors
-    /// What the certificate fails to prove.
-    ///
-    /// ```
-    /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
-    /// let point = ConvexPolyhedron::from_points(&[DVec3::ZERO])?;
-    /// let beside = Pose::from_translation(DVec3::new(-5.0, 2.0, 0.0))?;
-    /// let world = Pose::IDENTITY;
-    /// let Outcome::Separated(separated) = cast(&point, &beside, &point, &world, DVec3::X)? else {
-    ///     unreachable!("it passes two units beside")
-    /// };
-    /// let margin = separated.certificate.verify(&point, &beside, &point, &world, DVec3::X)?;
-    /// assert!(margin > 0.0 && margin <= 2.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn verify(
-        &self,
-        moving: &ConvexPolyhedron,
-        moving_pose: &Pose,
-        fixed: &ConvexPolyhedron,
-        fixed_pose: &Pose,
-        direction: DVec3,
-    ) -> Result<f64, CertificateError> {
-        let setting = Setting::new(moving, moving_pose, fixed, fixed_pose, direction)?;
+    /// The checks of [`Cast::verify`](crate::Cast::verify), and the margin proven.
+    pub(crate) fn verify(&self, setting: &Setting) -> Result<f64, CertificateError> {
         let normal = self.normal;
         let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
         if !is_unit || normal.dot(setting.unit).abs() > noise::UNIT_VECTOR {
             return Err(CertificateError::Normal { normal });
         }
-        let margin = distance_along(&setting, normal);
-        let tolerance = setting.noise().point();
-        let claimed = self.margin;
+        let along = along(setting, normal);
+        let margin = along.distance - along.error;
+        let (claimed, tolerance) = (self.margin, setting.noise().point());
         if margin > 0.0 && claimed > 0.0 && claimed <= margin + tolerance {
             Ok(margin)
         } else {

@@ -5,8 +5,8 @@ mod outcome;
 mod range;
 mod steps;
 
-pub(crate) use certificate::gap_tolerance;
-pub use certificate::{Certificate, CertificateError, Separation};
+pub(crate) use certificate::{Along, gap_tolerance};
+pub use certificate::{Certificate, CertificateError, Proof, Separation};
 pub use outcome::{Contact, Grazing, Outcome, Separated};
-pub use range::{Clearance, ContactRange};
+pub use range::{Clearance, ContactRange, DirectionalDepth, Intersection};
 pub use steps::{Solver, StartedFrom, Steps};

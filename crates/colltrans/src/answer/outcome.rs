@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::certificate::{Certificate, Separation};
 use super::steps::{Solver, Steps};
-use crate::body::Feature;
+use crate::setting::VertexPair;
 
-/// The answer of [`cast`](crate::cast): do the bodies meet along the direction, and where.
+/// The answer of [`Cast::first_contact`](crate::Cast::first_contact): do the bodies meet along the direction, and where.
 ///
 /// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
 /// the graze tolerance, by no more than it, or not at all.
@@ -36,22 +36,14 @@ impl Outcome {
 pub struct Contact {
     /// The collision translation in multiples of the direction (a length if the direction is a
     /// unit vector): the smallest `t` at which the moving body, moved by `t * direction`, meets the
-    /// fixed one. Negative: the bodies overlap now, or the contact lies behind. It is the
-    /// certificate's upper bound.
+    /// fixed one. Negative: the bodies overlap now, or the contact lies behind. The best estimate,
+    /// between the certificate's bounds.
     pub translation: f64,
     /// Unit contact normal in the world, from the moving body to the fixed one;
     /// `normal . direction > 0`. Where corners meet, or parallel edges, it is one of several.
     pub normal: DVec3,
-    /// Witness point on the moving body, in the world, at its *start* pose.
-    pub point_on_moving: DVec3,
-    /// Witness point on the fixed body, in the world: the contact point. It is
-    /// `point_on_moving + translation * direction` up to rounding. Where an edge or a face lies on
-    /// the other body, it is one of many.
-    pub point_on_fixed: DVec3,
-    /// The part of the moving body that lies in the contact plane, to within rounding error.
-    pub moving_feature: Feature,
-    /// The part of the fixed body that lies in the contact plane, to within rounding error.
-    pub fixed_feature: Feature,
+    /// A vertex of each body in the contact plane.
+    pub support: VertexPair,
     /// Lower and upper bound with their proofs.
     pub certificate: Certificate,
     /// The solver asked for (never `Auto`); what the search began with is [`Steps::started_from`].

@@ -1,25 +1,27 @@
-//! Answers that take more than one cast: contact ranges and clearances.
+//! Answers that take more than one cast: contact ranges, clearances, depths and intersections.
 
-use super::outcome::{Contact, Grazing, Separated};
+use glam::DVec3;
 
-/// The answer of [`contact_range`](crate::contact_range): all translations at which the bodies
-/// meet, an interval, with the contact at either end.
+use super::outcome::{Contact, Grazing, Outcome, Separated};
+
+/// The answer of [`Cast::contact_range`](crate::Cast::contact_range): all translations at which the
+/// bodies meet, an interval, with the contact at either end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactRange {
     /// The bodies meet exactly for the translations in [`ContactRange::interval`].
     Contact {
         /// First contact along the direction.
         first: Contact,
-        /// Last contact along the direction: the contact of the cast along the *opposite*
-        /// direction, as that cast gives it (its certificate is for that direction, and its
-        /// translation counts in multiples of it).
+        /// Last contact along the direction: the first of the [reversed](crate::Cast::reversed)
+        /// cast, as that one gives it (its certificate is for that direction, and its translation
+        /// counts in multiples of it).
         last: Contact,
     },
     /// The shadows overlap by no more than the graze tolerance.
     Grazing {
         /// First contact along the direction.
         first: Grazing,
-        /// Last contact, of the cast along the opposite direction.
+        /// Last contact, of the reversed cast.
         last: Grazing,
     },
     /// The bodies never meet.
@@ -28,35 +30,80 @@ pub enum ContactRange {
 
 impl ContactRange {
     /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet.
+    ///
+    /// Best estimates; the certificates' bounds enclose them.
     pub fn interval(&self) -> Option<[f64; 2]> {
         let (first, last) = match self {
             Self::Contact { first, last } => (first, last),
             Self::Grazing { first, last } => (&first.contact, &last.contact),
             Self::Separated(_) => return None,
         };
-        // Where both ends are one, rounding may have turned them round.
-        let (enter, exit) = (first.translation, -last.translation);
-        Some([enter.min(exit), enter.max(exit)])
+        Some([first.translation, -last.translation])
     }
 }
 
-/// The answer of [`clearance`](crate::clearance): how far the moving body can move *from where it
-/// is* along the direction.
+/// The answer of [`Cast::clearance`](crate::Cast::clearance): how far the moving body can move *from
+/// where it is* along the direction, with the proof of each case.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a query allocates nothing, so nothing is boxed")]
 pub enum Clearance {
-    /// As far as it likes: the bodies never meet, or only slide, or the contact lies behind.
-    Free,
     /// Until it touches.
     Blocked {
-        /// How far, in multiples of the direction; never negative.
+        /// How far it may safely move, in multiples of the direction: never negative, never more
+        /// than the true distance. Less than [`Contact::translation`] by the rounding error.
         distance: f64,
         /// The contact that stops it.
         contact: Contact,
     },
+    /// As far as it likes, sliding along the other body or past it within the graze tolerance.
+    Slides(Grazing),
+    /// As far as it likes: the last contact, that of the [reversed](crate::Cast::reversed) cast,
+    /// lies behind, or is where it is now and it moves away from it.
+    Behind(Contact),
+    /// As far as it likes: it never meets the other body along this direction.
+    Separated(Separated),
     /// The bodies overlap now, by more than rounding error.
     Overlapping {
-        /// The translations at which they do: `[enter, exit]`, with 0 inside.
-        range: [f64; 2],
+        /// The first contact, behind.
+        first: Contact,
+        /// The last contact, ahead: that of the reversed cast.
+        last: Contact,
     },
+}
+
+impl Clearance {
+    /// How far the moving body may safely move, in multiples of the direction: infinite where
+    /// nothing stops it, `None` if the bodies overlap now.
+    pub fn distance(&self) -> Option<f64> {
+        match self {
+            Self::Blocked { distance, .. } => Some(*distance),
+            Self::Slides(_) | Self::Behind(_) | Self::Separated(_) => Some(f64::INFINITY),
+            Self::Overlapping { .. } => None,
+        }
+    }
+
+    /// Whether nothing stops the moving body.
+    pub fn is_free(&self) -> bool {
+        self.distance() == Some(f64::INFINITY)
+    }
+}
+
+/// The answer of [`Cast::directional_depth`](crate::Cast::directional_depth).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DirectionalDepth {
+    /// How far the moving body has to go back, in multiples of the direction, until the overlap has
+    /// ended: never less than the true depth; 0 if the bodies do not overlap.
+    pub depth: f64,
+    /// What it follows from, with its proof.
+    pub clearance: Clearance,
+}
+
+/// The answer of [`Cast::intersects`](crate::Cast::intersects).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Intersection {
+    /// Whether the bodies, as closed sets and to within rounding error, have a point in common.
+    pub meets: bool,
+    /// The direction along which the moving body was cast to find out: between the centres.
+    pub direction: DVec3,
+    /// What that cast found: a separation, or a first contact ahead, proves that they do not meet.
+    pub outcome: Outcome,
 }

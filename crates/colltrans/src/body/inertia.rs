@@ -8,6 +8,7 @@
 use glam::{DMat3, DVec3};
 
 use super::topology::Topology;
+use crate::number::plane::polygon_normal;
 
 /// Size and resemblance of a body, in its own frame.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +24,8 @@ pub(crate) struct Inertia {
     pub(crate) radius: f64,
     /// Whether the ellipsoid is nearly a ball.
     pub(crate) round: bool,
+    /// Radius of a ball around the centre that the body contains, certainly; 0 if it has no volume.
+    pub(crate) inner: f64,
     /// Volume.
     pub(crate) volume: f64,
 }
@@ -49,9 +52,13 @@ impl Inertia {
         let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
         let radius = (0..3).map(|i| shape.col(i)[i]).sum::<f64>().sqrt();
         let factor = cholesky(&shape);
-        let mean = (factor.x_axis.x * factor.y_axis.y * factor.z_axis.z).powf(2.0 / 3.0);
-        let round = mean > ROUND * radius * radius / 3.0;
-        Self { reach, center, factor, radius, round, volume }
+        // Both means to the third power, as shares of the radius: no root, which platforms round
+        // differently, and no overflow.
+        let axes = (factor.x_axis.x / radius) * (factor.y_axis.y / radius);
+        let geometric = axes * (factor.z_axis.z / radius);
+        let round = geometric * geometric > (ROUND / 3.0) * (ROUND / 3.0) * (ROUND / 3.0);
+        let inner = if volume > 0.0 { inner_radius(vertices, topology, center) } else { 0.0 };
+        Self { reach, center, factor, radius, round, inner, volume }
     }
 
     /// The volume that a closed surface encloses: positive if its faces are counter-clockwise from
@@ -81,6 +88,28 @@ impl Inertia {
         };
         DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis))
     }
+}
+
+/// Share of the inner radius that is kept: what is lost covers rounding, and rotations that are off
+/// by as much as the door admits.
+const CERTAIN: f64 = 1.0 - 1e-5;
+
+/// Radius of a ball around `center` inside a closed surface.
+///
+/// No corner of a face is nearer to the centre along the face's normal than the smallest such
+/// distance, so no point of any triangle between corners of a face is nearer, whether the face is
+/// flat or nearly so. These triangles are a closed surface around the centre, and the body, being
+/// convex, contains what they enclose.
+fn inner_radius(vertices: &[DVec3], topology: &Topology, center: DVec3) -> f64 {
+    let corners = |face| topology.face_vertices(face).map(|v| vertices[v as usize] - center);
+    let distance = |face| {
+        let normal = polygon_normal(corners(face));
+        corners(face).map(|corner| normal.dot(corner)).fold(f64::INFINITY, f64::min)
+    };
+    let least = (0..topology.face_count() as u32).map(distance).fold(f64::INFINITY, f64::min);
+    // Rounding is relative to the coordinates, not to the distance.
+    let rounding = 16.0 * f64::EPSILON * vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+    if least.is_finite() { (CERTAIN * least - rounding).max(0.0) } else { 0.0 }
 }
 
 /// Lower triangular `L` with `s = L L^T`.
@@ -152,6 +181,7 @@ mod tests {
         let m = Inertia::new(&vertices, &topology, 3);
         assert!((m.volume - 48.0).abs() < 1e-12);
         assert!((m.center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-12);
+        assert!(m.inner < 1.0 && m.inner > 0.9999);
         let expected = DVec3::new(1.0, 4.0, 9.0) / 3.0 * 5.0;
         for i in 0..3 {
             let s = m.factor * m.factor.transpose();

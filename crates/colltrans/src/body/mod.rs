@@ -3,6 +3,7 @@
 pub(crate) mod convex;
 mod feature;
 pub(crate) mod inertia;
+mod placed;
 mod pose;
 pub(crate) mod topology;
 
@@ -10,4 +11,5 @@ pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
 pub use feature::Feature;
 pub(crate) use feature::feature;
 pub(crate) use inertia::Inertia;
+pub use placed::{Body, Placed};
 pub use pose::Pose;

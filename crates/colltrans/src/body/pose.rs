@@ -1,16 +1,19 @@
 //! Poses: a rotation followed by a translation, `x_world = R x_body + t`.
 //!
-//! The nine entries of `R` are `f64` numbers computed once from the quaternion. They, not the
-//! quaternion, *define* where a body is: solvers, certificates and the exact verification all
-//! read the same nine numbers, so no rounding lies between them.
+//! The nine entries of `R` *define* where a body is: solvers, certificates and the exact
+//! verification all read the same nine numbers, so no rounding lies between them. They are those
+//! given, or computed once from a quaternion. They need not be a rotation to the last digit: a
+//! matrix that is off one by [`TOLERANCE`] places a body that is stretched by as much, which
+//! [`noise`](crate::number::noise) covers.
 
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::error::PoseError;
 use crate::number::range::{MIN_MAGNITUDE, in_exact_range};
 
-/// How far the length of a quaternion may be from 1: single-precision quaternions pass.
-const UNIT_LENGTH_TOLERANCE: f64 = 1e-6;
+/// How far the length of a quaternion may be from 1, and an entry of `R^T R` from that of the
+/// identity: single precision passes.
+const TOLERANCE: f64 = 1e-6;
 
 /// A rigid placement of a body in the world: `x_world = R x_body + t`.
 ///
@@ -31,15 +34,13 @@ const UNIT_LENGTH_TOLERANCE: f64 = 1e-6;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    rotation: DQuat,
     matrix: DMat3,
     translation: DVec3,
 }
 
 impl Pose {
     /// The body's own frame is the world's.
-    pub const IDENTITY: Self =
-        Self { rotation: DQuat::IDENTITY, matrix: DMat3::IDENTITY, translation: DVec3::ZERO };
+    pub const IDENTITY: Self = Self { matrix: DMat3::IDENTITY, translation: DVec3::ZERO };
 
     /// Rotation (a quaternion of length 1 to within 1e-6, normalised here), then translation.
     ///
@@ -47,15 +48,42 @@ impl Pose {
     /// A quaternion that is no rotation, a translation that is not finite or out of range.
     pub fn new(rotation: DQuat, translation: DVec3) -> Result<Self, PoseError> {
         let length = rotation.length();
-        if length.is_nan() || (length - 1.0).abs() > UNIT_LENGTH_TOLERANCE {
+        if length.is_nan() || (length - 1.0).abs() > TOLERANCE {
             let [x, y, z, w] = rotation.to_array();
             return Err(PoseError::NotARotation { x, y, z, w, length });
         }
-        if !in_exact_range(translation) {
-            return Err(PoseError::Translation { translation });
-        }
+        check_translation(translation)?;
         let rotation = if length == 1.0 { rotation } else { rotation * (1.0 / length) };
-        Ok(Self { rotation, matrix: flush_tiny(DMat3::from_quat(rotation)), translation })
+        Ok(Self { matrix: flush_tiny(matrix_of(rotation)), translation })
+    }
+
+    /// The nine entries of a rotation matrix, taken as they are, then translation.
+    ///
+    /// # Errors
+    /// A matrix that is off a rotation by more than 1e-6, with the measured defect; a translation
+    /// that is not finite or out of range.
+    ///
+    /// ```
+    /// use colltrans::Pose;
+    /// use colltrans::glam::{DMat3, DVec3};
+    ///
+    /// // x to y, y to z, z to x: the same nine entries come back.
+    /// let turn = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
+    /// assert_eq!(Pose::from_matrix(turn, DVec3::ZERO)?.matrix(), turn);
+    /// // A reflection places nothing.
+    /// assert!(Pose::from_matrix(-turn, DVec3::ZERO).is_err());
+    /// # Ok::<(), colltrans::PoseError>(())
+    /// ```
+    pub fn from_matrix(matrix: DMat3, translation: DVec3) -> Result<Self, PoseError> {
+        let off = (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array();
+        let defect = off.into_iter().map(f64::abs).fold(0.0, f64::max);
+        let defect = if matrix.determinant() < 0.0 { 2.0 } else { defect };
+        if !matrix.is_finite() || defect > TOLERANCE {
+            let columns = matrix.to_cols_array_2d();
+            return Err(PoseError::NotARotationMatrix { columns, defect, tolerance: TOLERANCE });
+        }
+        check_translation(translation)?;
+        Ok(Self { matrix: flush_tiny(matrix), translation })
     }
 
     /// A translation alone.
@@ -63,12 +91,28 @@ impl Pose {
     /// # Errors
     /// A translation that is not finite or out of range.
     pub fn from_translation(translation: DVec3) -> Result<Self, PoseError> {
-        Self::new(DQuat::IDENTITY, translation)
+        check_translation(translation)?;
+        Ok(Self { matrix: DMat3::IDENTITY, translation })
     }
 
-    /// The rotation as a unit quaternion.
-    pub const fn rotation(&self) -> DQuat {
-        self.rotation
+    /// From entries that were those of a pose before.
+    #[inline]
+    pub(crate) fn checked(matrix: DMat3, translation: DVec3) -> Self {
+        Self { matrix, translation }
+    }
+
+    /// The same rotation somewhere else.
+    ///
+    /// # Errors
+    /// The new translation is out of range.
+    pub(crate) fn moved_to(&self, translation: DVec3) -> Result<Self, PoseError> {
+        check_translation(translation)?;
+        Ok(Self { translation, ..*self })
+    }
+
+    /// The rotation as a unit quaternion, to rounding error: the matrix is what counts.
+    pub fn rotation(&self) -> DQuat {
+        DQuat::from_mat3(&self.matrix).normalize()
     }
 
     /// The rotation matrix `R` that defines the placement.
@@ -94,19 +138,18 @@ impl Pose {
     /// `self` after `first`: `x -> self(first(x))`.
     ///
     /// # Errors
-    /// The composed translation is out of range.
+    /// The composed translation is out of range, or errors of the two matrices have added up.
     pub fn compose(&self, first: &Self) -> Result<Self, PoseError> {
-        let rotation = (self.rotation * first.rotation).normalize();
-        Self::new(rotation, self.transform_point(first.translation))
+        Self::from_matrix(self.matrix * first.matrix, self.transform_point(first.translation))
     }
 
     /// The pose that undoes this one.
     ///
     /// # Errors
-    /// The inverse's translation is out of range.
+    /// The inverse's translation is out of range, or errors of the matrix have doubled.
     pub fn inverse(&self) -> Result<Self, PoseError> {
-        let rotation = self.rotation.conjugate();
-        Self::new(rotation, -(rotation * self.translation))
+        let matrix = self.matrix.inverse();
+        Self::from_matrix(matrix, -(matrix * self.translation))
     }
 
     /// This pose moved by `offset` in the world.
@@ -114,11 +157,7 @@ impl Pose {
     /// # Errors
     /// The new translation is out of range.
     pub fn translated(&self, offset: DVec3) -> Result<Self, PoseError> {
-        let translation = self.translation + offset;
-        if !in_exact_range(translation) {
-            return Err(PoseError::Translation { translation });
-        }
-        Ok(Self { translation, ..*self })
+        self.moved_to(self.translation + offset)
     }
 }
 
@@ -128,10 +167,61 @@ impl Default for Pose {
     }
 }
 
+/// The rotation matrix of a quaternion of any length near 1.
+///
+/// Divided by the square of the length as it is computed, the entries of a quarter turn, or of a
+/// half turn about a diagonal, come out as 0 and 1: the roots of 1/2 that make it are rounded, but
+/// the same rounding is above and below.
+fn matrix_of(rotation: DQuat) -> DMat3 {
+    let [x, y, z, w] = rotation.to_array();
+    let scale = 2.0 / ((x * x + y * y) + (z * z + w * w));
+    let off = |a: f64, b: f64| (a + b) * scale;
+    let diagonal = |a: f64, b: f64| 1.0 - (a * a + b * b) * scale;
+    DMat3::from_cols(
+        DVec3::new(diagonal(y, z), off(x * y, w * z), off(x * z, -w * y)),
+        DVec3::new(off(x * y, -w * z), diagonal(x, z), off(y * z, w * x)),
+        DVec3::new(off(x * z, w * y), off(y * z, -w * x), diagonal(x, y)),
+    )
+}
+
+fn check_translation(translation: DVec3) -> Result<(), PoseError> {
+    if in_exact_range(translation) { Ok(()) } else { Err(PoseError::Translation { translation }) }
+}
+
 /// Entries of a rotation below `2^-200` are rounding noise of zero: they become zero, so that
 /// products with coordinates stay in the exact range.
 fn flush_tiny(m: DMat3) -> DMat3 {
     DMat3::from_cols_array(
         &m.to_cols_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_that_map_the_axes_to_each_other_are_exact() {
+        let axes = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+        let mut count = 0;
+        for x in axes.clone() {
+            for y in axes.clone().filter(|y| x.dot(*y) == 0.0) {
+                let turn = DMat3::from_cols(x, y, x.cross(y));
+                let pose = Pose::new(DQuat::from_mat3(&turn), DVec3::ZERO).unwrap();
+                assert_eq!(pose.matrix(), turn);
+                count += 1;
+            }
+        }
+        assert_eq!(count, 24);
+    }
+
+    #[test]
+    fn the_matrix_is_that_of_the_quaternion() {
+        for k in 0..100 {
+            let angle = f64::from(k);
+            let q = DQuat::from_euler(glam::EulerRot::ZYX, angle, 2.0 * angle, 3.0 * angle);
+            let m = Pose::new(q, DVec3::ZERO).unwrap().matrix();
+            assert!((m - DMat3::from_quat(q)).to_cols_array().iter().all(|e| e.abs() < 1e-15));
+        }
+    }
 }

@@ -1,41 +1,367 @@
-//! The public queries, each a one-off function.
+//! A query as a value: two placed bodies and a direction, checked once.
+//!
+//! The way: [`Cast`] holds the setting and the choices, [`derive`](mod@derive) makes the answers
+//! that take more than one cast, [`contact`] computes what is not needed for an answer but asked of
+//! it, `replay` saves a query as a file (feature `json`).
+
+mod contact;
+mod derive;
+#[cfg(feature = "json")]
+mod replay;
+
+use std::fmt;
 
 use glam::DVec3;
 
-use crate::answer::{Clearance, ContactRange, Grazing, Outcome};
-use crate::body::ConvexPolyhedron;
-use crate::body::Pose;
+use crate::answer::{
+    CertificateError, Clearance, ContactRange, DirectionalDepth, Intersection, Outcome, Proof,
+    Solver,
+};
+use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::error::QueryError;
-use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::Setting;
 use crate::solve::observe::{Nobody, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{WarmStart, search};
+pub use contact::{Features, WitnessPoints};
+pub(crate) use derive::{clearance_of, depth_of, intersection_of, range_of};
+#[cfg(feature = "json")]
+pub use replay::{Case, CaseError};
 
-/// How far `moving` can translate along `direction` before it touches `fixed`.
+/// A moving body, a fixed one, and the direction in which the first is translated: what all queries
+/// are asked of.
 ///
-/// The poses place both bodies in the world; `direction` is a vector of the world of any length,
-/// and translations are in multiples of it. See
-/// [`Contact::translation`](crate::Contact::translation) for negative answers, and
-/// [`clearance`] for "from here on". Takes `O(log n)` steps in practice and allocates nothing.
+/// The poses place both bodies in the world; the direction is a vector of the world of any length,
+/// and translations count in multiples of it. Made once, asked as often as one likes: nothing is
+/// searched before a question is asked. See [`Tracker`](crate::Tracker) for questions that follow
+/// each other closely.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+/// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+///
+/// let Outcome::Contact(contact) = cast.first_contact()? else {
+///     unreachable!("half of the cube is in the way")
+/// };
+/// assert_eq!(contact.translation, 2.0);
+/// assert_eq!(contact.normal, DVec3::X);
+/// let features = contact.features(&cast);
+/// assert_eq!((features.moving.kind(), features.fixed.kind()), ("face", "face"));
+/// // The proof: checked against the two bodies alone.
+/// let gap = cast.verify(&contact.certificate)?;
+/// assert!(gap <= contact.certificate.tolerance);
+///
+/// assert!(cast.contact_range()?.interval() == Some([2.0, 4.0]));
+/// assert!(matches!(cast.reversed().clearance()?, Clearance::Behind(_)));
+/// assert!(!cast.intersects()?.meets);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Cast<'a, B: Body = ConvexPolyhedron> {
+    pub(crate) setting: Setting<'a, B>,
+    pub(crate) options: B::Options,
+}
+
+// Derived ones would ask the same of the body.
+impl<B: Body> Clone for Cast<'_, B> {
+    #[inline]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<B: Body> Copy for Cast<'_, B> {}
+
+impl<'a, B: Body> Cast<'a, B> {
+    /// With the default choices.
+    ///
+    /// # Errors
+    /// A direction that is zero, not finite or out of range.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    pub fn new(
+        moving: Placed<'a, B>,
+        fixed: Placed<'a, B>,
+        direction: DVec3,
+    ) -> Result<Self, QueryError> {
+        Ok(Self {
+            setting: Setting::new(moving, fixed, direction)?,
+            options: B::Options::default(),
+        })
+    }
+
+    /// The same bodies where they are, and the direction turned round: its first contact is the last
+    /// one along this direction.
+    #[inline]
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self { setting: self.setting.reversed(), ..*self }
+    }
+
+    /// The same bodies where they are, along another direction.
+    ///
+    /// # Errors
+    /// A direction that is zero, not finite or out of range.
+    pub fn along(&self, direction: DVec3) -> Result<Self, QueryError> {
+        let moving = Placed { body: self.setting.moving, pose: self.moving_pose() };
+        let fixed = Placed { body: self.setting.fixed, pose: self.fixed_pose() };
+        Ok(Self { setting: Setting::new(moving, fixed, direction)?, ..*self })
+    }
+
+    /// The moving body.
+    pub fn moving(&self) -> &'a B {
+        self.setting.moving
+    }
+
+    /// The fixed body.
+    pub fn fixed(&self) -> &'a B {
+        self.setting.fixed
+    }
+
+    /// Where the moving body is.
+    pub fn moving_pose(&self) -> Pose {
+        Pose::checked(self.setting.moving_matrix, self.setting.translations[0])
+    }
+
+    /// Where the fixed body is.
+    pub fn fixed_pose(&self) -> Pose {
+        Pose::checked(self.setting.fixed_matrix, self.setting.translations[1])
+    }
+
+    /// The direction, as given.
+    pub fn direction(&self) -> DVec3 {
+        self.setting.direction
+    }
+
+    /// The choices.
+    pub fn options(&self) -> B::Options {
+        self.options
+    }
+}
+
+impl Cast<'_> {
+    /// With other choices.
+    ///
+    /// # Errors
+    /// A graze tolerance that is negative or not finite, a narrowing gap that is negative or not a
+    /// number.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    pub fn with_options(self, options: Options) -> Result<Self, QueryError> {
+        options.check()?;
+        Ok(Self { options, ..self })
+    }
+
+    /// With a graze tolerance, in world units: sideways overlaps up to it are
+    /// [`Outcome::Grazing`].
+    ///
+    /// # Errors
+    /// A tolerance that is negative or not finite.
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// // A slide with a thousandth of overlap: contact, or grazing for those who tolerate as much.
+    /// let start = Pose::from_translation(DVec3::new(-3.0, 0.999, 0.0))?;
+    /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+    /// assert!(matches!(cast.first_contact()?, Outcome::Contact(_)));
+    /// let Outcome::Grazing(grazing) = cast.with_graze_tolerance(0.01)?.first_contact()? else {
+    ///     unreachable!("they overlap by less than tolerated")
+    /// };
+    /// assert!((grazing.overlap - 0.001).abs() < 1e-12);
+    /// assert_eq!(grazing.contact.translation, 2.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_graze_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
+        self.with_options(Options { graze_tolerance: tolerance, ..self.options })
+    }
+
+    /// With a solver. The answer, its certificate and its accuracy are the same.
+    #[must_use]
+    pub fn with_solver(self, solver: Solver) -> Self {
+        Self { options: Options { solver, ..self.options }, ..self }
+    }
+
+    /// At which translation do the bodies first meet, if they do?
+    ///
+    /// See [`Contact::translation`](crate::Contact::translation) for negative answers, and
+    /// [`Self::clearance`] for "from here on". Takes `O(log n)` steps in practice and allocates
+    /// nothing.
+    ///
+    /// # Errors
+    /// Only a search that ends without an answer, of which no case is known.
+    pub fn first_contact(&self) -> Result<Outcome, QueryError> {
+        self.first_contact_observed(&mut Nobody)
+    }
+
+    /// The same, with somebody who looks on: a [`Clock`](crate::observe::Clock), a
+    /// [`Recording`](crate::observe::Recording).
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    #[inline]
+    pub fn first_contact_observed<O: Observer>(
+        &self,
+        observer: &mut O,
+    ) -> Result<Outcome, QueryError> {
+        let mut start = WarmStart::Nothing;
+        search(&self.setting, &self.options, &Focus::NONE, &mut start, observer)
+    }
+
+    /// All translations at which the bodies meet, both ends certified. Two casts, along the
+    /// direction and against it.
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Cast, ConvexPolyhedron, Pose};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+    /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X * 0.5)?;
+    /// // In multiples of the direction.
+    /// assert_eq!(cast.contact_range()?.interval(), Some([4.0, 8.0]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contact_range(&self) -> Result<ContactRange, QueryError> {
+        range_of(self, Self::first_contact)
+    }
+
+    /// How far the moving body can move from where it is.
+    ///
+    /// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding,
+    /// block each other if the motion would make them overlap, and do not if it takes them apart.
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// // One cube upon another: it can go up, and aside, but not down.
+    /// let (above, world) = (Pose::from_translation(DVec3::Z)?, Pose::IDENTITY);
+    /// let toward = |direction| Cast::new(cube.at(above), cube.at(world), direction)?.clearance();
+    /// assert!(matches!(toward(DVec3::Z)?, Clearance::Behind(_)));
+    /// assert!(matches!(toward(DVec3::X)?, Clearance::Slides(_)));
+    /// assert_eq!(toward(DVec3::NEG_Z)?.distance(), Some(0.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clearance(&self) -> Result<Clearance, QueryError> {
+        clearance_of(self, Self::first_contact)
+    }
+
+    /// How far the moving body, where it overlaps the fixed one, has to go back against the
+    /// direction until they do not.
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Cast, ConvexPolyhedron, Pose};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let inside = Pose::from_translation(DVec3::new(-0.75, 0.0, 0.0))?;
+    /// let cast = Cast::new(cube.at(inside), cube.at(Pose::IDENTITY), DVec3::X)?;
+    /// assert!((cast.directional_depth()?.depth - 0.25).abs() < 1e-13);
+    /// assert!((cast.reversed().directional_depth()?.depth - 1.75).abs() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn directional_depth(&self) -> Result<DirectionalDepth, QueryError> {
+        depth_of(self, Self::first_contact)
+    }
+
+    /// Whether the bodies, as closed sets and to within rounding error, have a point in common where
+    /// they are. The direction plays no part.
+    ///
+    /// The moving body is cast along the line through both centres, which passes the deepest
+    /// part of the Minkowski difference, so the answer is as well conditioned as the question.
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Cast, ConvexPolyhedron, Pose};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let meets = |x| {
+    ///     let pose = Pose::from_translation(DVec3::new(x, 0.0, 0.0))?;
+    ///     let cast = Cast::new(cube.at(pose), cube.at(Pose::IDENTITY), DVec3::X)?;
+    ///     Ok::<_, Box<dyn std::error::Error>>(cast.intersects()?.meets)
+    /// };
+    /// assert!(meets(0.5)?);
+    /// assert!(meets(1.0)?); // they touch
+    /// assert!(!meets(1.001)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn intersects(&self) -> Result<Intersection, QueryError> {
+        intersection_of(self, Self::first_contact)
+    }
+
+    /// Checks a [`Certificate`](crate::Certificate) or a [`Separation`](crate::Separation) against
+    /// the two bodies, and returns the gap, in multiples of the direction, or the margin, in world
+    /// units, that is really proven.
+    ///
+    /// Nothing of the search is used: two support points for the lower bound or the margin, three
+    /// pairs of vertices for the upper bound. The cast must be the one that was answered; for the
+    /// `last` contact of a [`ContactRange`] it is the [reversed](Self::reversed) one.
+    ///
+    /// # Errors
+    /// What is not proven.
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
+    /// let triangle = ConvexPolyhedron::from_points(&[DVec3::X, DVec3::Y, DVec3::Z])?;
+    /// let start = Pose::from_translation(DVec3::new(-5.0, 0.0, 0.0))?;
+    /// let cast = Cast::new(triangle.at(start), triangle.at(Pose::IDENTITY), DVec3::X)?;
+    /// let Outcome::Contact(contact) = cast.first_contact()? else {
+    ///     unreachable!("the same triangle, five units further")
+    /// };
+    /// let proof = contact.certificate;
+    /// assert!(cast.verify(&proof)? <= proof.tolerance);
+    ///
+    /// let mut lie = proof;
+    /// lie.lower += 1.0;
+    /// assert!(cast.verify(&lie).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn verify<'p>(&self, proof: impl Into<Proof<'p>>) -> Result<f64, CertificateError> {
+        match proof.into() {
+            Proof::Contact(certificate) => certificate.verify(&self.setting),
+            Proof::Separation(separation) => separation.verify(&self.setting),
+        }
+    }
+}
+
+impl fmt::Display for Cast<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [p, q] = [self.moving(), self.fixed()].map(|body| body.vertices().len());
+        write!(f, "{p} vertices cast at {q} along {:?}", self.direction().to_array())
+    }
+}
+
+/// How far `moving` can translate along `direction` before it touches `fixed`: short for
+/// [`Cast::new`] and [`Cast::first_contact`].
 ///
 /// # Errors
-/// A direction that is zero, not finite or out of range; bounds that could not be closed.
+/// A direction that is zero, not finite or out of range.
 ///
 /// ```
 /// # use colltrans::glam::DVec3;
 /// # use colltrans::{ConvexPolyhedron, Outcome, Pose, cast};
-/// # let corners: Vec<DVec3> = (0..8)
-/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
-/// #     .collect();
-/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
 /// let Outcome::Contact(contact) = cast(&cube, &start, &cube, &Pose::IDENTITY, DVec3::X)? else {
 ///     unreachable!("half of the cube is in the way")
 /// };
 /// assert_eq!(contact.translation, 2.0);
-/// assert_eq!(contact.normal, DVec3::X);
-/// assert_eq!((contact.moving_feature.kind(), contact.fixed_feature.kind()), ("face", "face"));
 ///
 /// let beside = Pose::from_translation(DVec3::new(-3.0, 1.5, 0.0))?;
 /// let outcome = cast(&cube, &beside, &cube, &Pose::IDENTITY, DVec3::X)?;
@@ -49,252 +375,5 @@ pub fn cast(
     fixed_pose: &Pose,
     direction: DVec3,
 ) -> Result<Outcome, QueryError> {
-    cast_with(moving, moving_pose, fixed, fixed_pose, direction, &Options::default())
-}
-
-/// [`cast`] with [`Options`].
-///
-/// # Errors
-/// As [`cast`], and a graze tolerance that is negative or not finite.
-///
-/// ```
-/// # use colltrans::glam::DVec3;
-/// # use colltrans::{ConvexPolyhedron, Options, Outcome, Pose, Solver, cast_with};
-/// # let corners: Vec<DVec3> = (0..8)
-/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
-/// #     .collect();
-/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
-/// // A slide with a thousandth of overlap: contact, or grazing for those who tolerate as much.
-/// let start = Pose::from_translation(DVec3::new(-3.0, 0.999, 0.0))?;
-/// let slide = |options: &Options| {
-///     cast_with(&cube, &start, &cube, &Pose::IDENTITY, DVec3::X, options)
-/// };
-/// assert!(matches!(slide(&Options::default())?, Outcome::Contact(_)));
-/// let Outcome::Grazing(grazing) =
-///     slide(&Options { graze_tolerance: 0.01, ..Options::default() })?
-/// else {
-///     unreachable!("they overlap by less than tolerated")
-/// };
-/// assert!((grazing.overlap - 0.001).abs() < 1e-12);
-/// assert_eq!(grazing.contact.translation, 2.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn cast_with(
-    moving: &ConvexPolyhedron,
-    moving_pose: &Pose,
-    fixed: &ConvexPolyhedron,
-    fixed_pose: &Pose,
-    direction: DVec3,
-    options: &Options,
-) -> Result<Outcome, QueryError> {
-    cast_observed(moving, moving_pose, fixed, fixed_pose, direction, options, &mut Nobody)
-}
-
-/// [`cast_with`], with somebody who looks on.
-///
-/// # Errors
-/// As [`cast_with`].
-pub fn cast_observed<O: Observer>(
-    moving: &ConvexPolyhedron,
-    moving_pose: &Pose,
-    fixed: &ConvexPolyhedron,
-    fixed_pose: &Pose,
-    direction: DVec3,
-    options: &Options,
-    observer: &mut O,
-) -> Result<Outcome, QueryError> {
-    let setting = Setting::new(moving, moving_pose, fixed, fixed_pose, direction)?;
-    search(&setting, moving_pose, options, &Focus::NONE, &mut WarmStart::default(), observer)
-}
-
-/// All translations along `direction` at which the bodies meet, both ends certified.
-///
-/// Frames and units as for [`cast`]. Two casts, along the direction and against it.
-///
-/// # Errors
-/// As [`cast_with`].
-///
-/// ```
-/// # use colltrans::glam::DVec3;
-/// # use colltrans::{ConvexPolyhedron, Options, Pose, contact_range};
-/// # let corners: Vec<DVec3> = (0..8)
-/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
-/// #     .collect();
-/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
-/// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
-/// let direction = DVec3::X * 0.5;
-/// let range =
-///     contact_range(&cube, &start, &cube, &Pose::IDENTITY, direction, &Options::default())?;
-/// assert_eq!(range.interval(), Some([4.0, 8.0])); // in multiples of the direction
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn contact_range(
-    moving: &ConvexPolyhedron,
-    moving_pose: &Pose,
-    fixed: &ConvexPolyhedron,
-    fixed_pose: &Pose,
-    direction: DVec3,
-    options: &Options,
-) -> Result<ContactRange, QueryError> {
-    let run = |direction| cast_with(moving, moving_pose, fixed, fixed_pose, direction, options);
-    range_of(direction, run)
-}
-
-/// The contact range, from the casts along a direction and against it.
-pub(crate) fn range_of(
-    direction: DVec3,
-    mut run: impl FnMut(DVec3) -> Result<Outcome, QueryError>,
-) -> Result<ContactRange, QueryError> {
-    // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
-    Ok(match (run(direction)?, run(-direction)?) {
-        (Outcome::Separated(separated), _) | (_, Outcome::Separated(separated)) => {
-            ContactRange::Separated(separated)
-        }
-        (Outcome::Contact(first), Outcome::Contact(last)) => ContactRange::Contact { first, last },
-        (Outcome::Grazing(first), Outcome::Contact(last)) => {
-            ContactRange::Grazing { first, last: Grazing { contact: last, ..first } }
-        }
-        (Outcome::Contact(first), Outcome::Grazing(last)) => {
-            ContactRange::Grazing { first: Grazing { contact: first, ..last }, last }
-        }
-        (Outcome::Grazing(first), Outcome::Grazing(last)) => ContactRange::Grazing { first, last },
-    })
-}
-
-/// How far `moving` can move along `direction` from where it is.
-///
-/// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding,
-/// block each other if the motion would make them overlap, and do not if it takes them apart.
-/// Frames and units as for [`cast`].
-///
-/// # Errors
-/// As [`cast_with`].
-///
-/// ```
-/// # use colltrans::glam::DVec3;
-/// # use colltrans::{Clearance, ConvexPolyhedron, Options, Pose, clearance};
-/// # let corners: Vec<DVec3> = (0..8)
-/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
-/// #     .collect();
-/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
-/// // One cube upon another: it can go up, and aside, but not down.
-/// let (above, world) = (Pose::from_translation(DVec3::Z)?, Pose::IDENTITY);
-/// let free = |direction| clearance(&cube, &above, &cube, &world, direction, &Options::default());
-/// assert_eq!(free(DVec3::Z)?, Clearance::Free);
-/// assert_eq!(free(DVec3::X)?, Clearance::Free);
-/// let Clearance::Blocked { distance, .. } = free(DVec3::NEG_Z)? else {
-///     unreachable!("the other cube is below")
-/// };
-/// assert_eq!(distance, 0.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn clearance(
-    moving: &ConvexPolyhedron,
-    moving_pose: &Pose,
-    fixed: &ConvexPolyhedron,
-    fixed_pose: &Pose,
-    direction: DVec3,
-    options: &Options,
-) -> Result<Clearance, QueryError> {
-    let run = |direction| cast_with(moving, moving_pose, fixed, fixed_pose, direction, options);
-    clearance_of(direction, run)
-}
-
-/// The clearance, from the casts along a direction and, if need be, against it.
-pub(crate) fn clearance_of(
-    direction: DVec3,
-    mut run: impl FnMut(DVec3) -> Result<Outcome, QueryError>,
-) -> Result<Clearance, QueryError> {
-    let Outcome::Contact(contact) = run(direction)? else { return Ok(Clearance::Free) };
-    if contact.translation >= -contact.certificate.tolerance {
-        let distance = contact.translation.max(0.0);
-        return Ok(Clearance::Blocked { distance, contact });
-    }
-    Ok(match run(-direction)? {
-        Outcome::Contact(last) if last.translation < -last.certificate.tolerance => {
-            Clearance::Overlapping { range: [contact.translation, -last.translation] }
-        }
-        _ => Clearance::Free,
-    })
-}
-
-/// Whether the bodies, as closed sets and to within rounding error, have a point in common where
-/// they are.
-///
-/// The moving body is cast along the line through both centres, which passes the deepest
-/// part of the Minkowski difference, so the answer is as well conditioned as the question.
-///
-/// # Errors
-/// As [`cast`].
-///
-/// ```
-/// # use colltrans::glam::DVec3;
-/// # use colltrans::{ConvexPolyhedron, Pose, intersects};
-/// # let corners: Vec<DVec3> = (0..8)
-/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
-/// #     .collect();
-/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
-/// let at = |x| Pose::from_translation(DVec3::new(x, 0.0, 0.0));
-/// let meets = |x| Ok::<_, Box<dyn std::error::Error>>(
-///     intersects(&cube, &at(x)?, &cube, &Pose::IDENTITY)?
-/// );
-/// assert!(meets(0.5)?);
-/// assert!(meets(1.0)?); // they touch
-/// assert!(!meets(1.001)?);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn intersects(
-    moving: &ConvexPolyhedron,
-    moving_pose: &Pose,
-    fixed: &ConvexPolyhedron,
-    fixed_pose: &Pose,
-) -> Result<bool, QueryError> {
-    let center = |body: &ConvexPolyhedron, pose: &Pose| pose.matrix() * body.inertia().center;
-    let between = (center(fixed, fixed_pose) - center(moving, moving_pose))
-        + (fixed_pose.translation() - moving_pose.translation());
-    let Some(unit) = between.try_normalize() else { return Ok(true) };
-    // Components out of the exact range are rounding noise of zero.
-    let significant = |c: f64| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c };
-    let direction = DVec3::from_array(unit.to_array().map(significant));
-    Ok(match cast(moving, moving_pose, fixed, fixed_pose, direction)? {
-        Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {
-            contact.translation <= contact.certificate.tolerance
-        }
-        Outcome::Separated(_) => false,
-    })
-}
-
-/// How far `moving`, where it overlaps `fixed`, has to go back along `-direction` until they only
-/// touch, in multiples of `direction`; 0 if they do not overlap.
-///
-/// # Errors
-/// As [`cast_with`].
-///
-/// ```
-/// # use colltrans::glam::DVec3;
-/// # use colltrans::{ConvexPolyhedron, Options, Pose, directional_depth};
-/// # let corners: Vec<DVec3> = (0..8)
-/// #     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
-/// #     .collect();
-/// let cube = ConvexPolyhedron::from_points(&corners)?; // from (0, 0, 0) to (1, 1, 1)
-/// let inside = Pose::from_translation(DVec3::new(-0.75, 0.0, 0.0))?;
-/// let depth = |direction| {
-///     directional_depth(&cube, &inside, &cube, &Pose::IDENTITY, direction, &Options::default())
-/// };
-/// assert_eq!(depth(DVec3::X)?, 0.25);
-/// assert_eq!(depth(DVec3::NEG_X)?, 1.75);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn directional_depth(
-    moving: &ConvexPolyhedron,
-    moving_pose: &Pose,
-    fixed: &ConvexPolyhedron,
-    fixed_pose: &Pose,
-    direction: DVec3,
-    options: &Options,
-) -> Result<f64, QueryError> {
-    Ok(match clearance(moving, moving_pose, fixed, fixed_pose, direction, options)? {
-        Clearance::Overlapping { range } => -range[0],
-        Clearance::Free | Clearance::Blocked { .. } => 0.0,
-    })
+    Cast::new(moving.at(*moving_pose), fixed.at(*fixed_pose), direction)?.first_contact()
 }

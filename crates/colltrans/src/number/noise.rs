@@ -20,9 +20,16 @@
 //!   `|WIDENING| < 1.3` longer half-sides off.
 //! - *Plane.* A plane supports `M` when no support point is deeper below it than one noise; after
 //!   many exchanges ties follow each other, and what counts as touching is taken to lie on it.
-//! - *Gap.* The lower and the upper bound each add at most one noise to what the plane was accepted
-//!   with, over `n . d` if counted in multiples of `d`; widening by `w` adds what the rectangle's
-//!   corners make of it on both sides, `2 |WIDENING| w` times the part of `n` across `d`.
+//! - *Gap.* The estimates of the lower and the upper bound each add at most one noise to what the
+//!   plane was accepted with, over `n . d` if counted in multiples of `d`; widening by `w` adds what
+//!   the rectangle's corners make of it on both sides, `2 |WIDENING| w` times the part of `n` across
+//!   `d`.
+//! - *Outwards.* The lower bound's products and sums are off by less than `18 u S`, and dividing by a
+//!   rounded `n . d` by `3 u S` more, as `|t d| <= S`: one noise, and what the body reaches beyond
+//!   the support points. The upper bound's weights are of a triangle more than eight noises high, so
+//!   its plane is tilted by rounding by less than an eighth; the weighted mean of its corners is off
+//!   the line by at most two noises sideways, as its weights are off by a noise over that height, and
+//!   off in height by one: together less than four noises along `n`.
 //! - *Residual.* The witness points of a certificate may miss each other by the corner of the widest
 //!   rectangle, and by one noise for each body.
 //! - *Unit vector.* Normalising leaves `4 u`, rotating into the world `3 u sqrt(3)`, normalising
@@ -44,6 +51,9 @@ const ROUNDING: f64 = 0.5 * f64::EPSILON;
 /// The noise of a point, in `u S`.
 const POINT: f64 = 32.0;
 
+/// The length of two coordinates' errors, `18 u S` each, in noises.
+const LATERAL: f64 = 0.8;
+
 /// What counts as touching, in noises.
 const TOUCHING: f64 = 8.0;
 
@@ -59,6 +69,9 @@ const WIDENING_CORNER: f64 = 1.3;
 
 /// The noises that the two bounds of an optimum cost.
 const BOUNDS: f64 = 2.0;
+
+/// By how many noises an upper bound is raised.
+const RAISED: f64 = 4.0;
 
 /// Relative error of a unit vector's length and of its product with one it should be orthogonal to.
 pub(crate) const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
@@ -91,6 +104,12 @@ impl Noise {
         self.0
     }
 
+    /// Bound on the distance by which the shadow of a point of `M` may be off.
+    #[inline]
+    pub(crate) fn lateral(self) -> f64 {
+        LATERAL * self.0
+    }
+
     /// Sideways distance below which points are not told apart.
     #[inline]
     pub(crate) fn touching(self) -> f64 {
@@ -121,6 +140,18 @@ impl Noise {
         // The plane as accepted among ties.
         let bounds = self.plane(true) + BOUNDS * self.0;
         if widening == 0.0 { bounds } else { bounds + across * (2.0 * WIDENING_CORNER * widening) }
+    }
+
+    /// By how much a lower bound along `n` has to be lowered to be one.
+    #[inline]
+    pub(crate) fn lowered(self) -> f64 {
+        self.0
+    }
+
+    /// By how much an upper bound along `n` has to be raised to be one.
+    #[inline]
+    pub(crate) fn raised(self) -> f64 {
+        RAISED * self.0
     }
 
     /// By how much the witness points of a certificate may miss each other.

@@ -188,6 +188,25 @@ pub(crate) fn shadow(x: &Terms, d: DVec3) -> Shadow {
     rounded_shadow(x.rounded([u, v, m]), [d[u], d[v], d[m]])
 }
 
+/// A shadow in the coordinates of lateral axes `e1, e2`, with a small error relative to its length;
+/// zero only if it is. `None` if the shadow is not known that well.
+pub(crate) fn rounded(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
+    let [u_error, v_error] = [shadow[0].error, shadow[1].error];
+    let [along_u, along_v] = [&shadow[0], &shadow[1]].map(|x| x.high + x.low);
+    let size = along_u.abs().max(along_v.abs());
+    if u_error + v_error > RELATIVE_ERROR * size {
+        return None;
+    }
+    // Lateral vectors are determined by their components across the main axis.
+    let [m, u, v] = axes_of(d);
+    let factor = if d[u] == 0.0 && d[v] == 0.0 { 1.0 } else { d[m] };
+    let along = |e: DVec3| (e[u] * along_u + e[v] * along_v) / factor;
+    Some(DVec2::new(along(axes.x_axis), along(axes.y_axis)))
+}
+
+/// Error that a shadow may have to be of use as a direction.
+const RELATIVE_ERROR: f64 = 1e-9;
+
 /// The side on which a line passes, from the shadow of one of the segment's ends, known well, and
 /// the way between them in the shadow frame, whose coordinates have errors of two noises; if that
 /// is enough, as it is where the end is close to the line and the way is not.

@@ -13,6 +13,7 @@ pub const MAX_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
 pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 200) << 52);
 
 /// Whether a coordinate is finite and inside the exact range.
+#[inline]
 pub(crate) fn in_exact_range(v: DVec3) -> bool {
     v.to_array().into_iter().all(|c| c == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&c.abs()))
 }

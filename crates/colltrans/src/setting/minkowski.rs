@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::number::noise::{self, Noise};
-use crate::number::orientation::{self, Shadow};
+use crate::number::orientation::{self, Shadow, Terms};
 use crate::number::symmetric::Symmetric;
 use crate::setting::{Setting, VertexPair};
 
@@ -36,6 +36,10 @@ impl Point {
 /// Cosine of the largest angle by which bodies turn against each other between queries that have
 /// something in common (measured).
 const ALIGNED: f64 = 0.94;
+
+/// How many noises along a normal a point that the line nearly passes may be too low: with those for
+/// its own height, and for dividing by the normal's share, less than an upper bound is raised by.
+const RISE: f64 = 3.25;
 
 /// Largest displacement between such queries, as a share of both bodies' radii (measured).
 const NEAR: f64 = 0.1;
@@ -213,6 +217,89 @@ impl<'a> MinkowskiDifference<'a> {
             + self.offset
     }
 
+    /// Whether balls inside the bodies prove that the shadow of `M` contains all that is nearer to
+    /// the line than `margin`.
+    #[inline]
+    pub(crate) fn is_deep(&self, margin: f64) -> bool {
+        let rest = self.inner_radius() - (margin + self.noise.point());
+        rest > 0.0 && self.center().truncate().length_squared() < rest * rest
+    }
+
+    /// Radius of a ball around the centre of `M` that it contains.
+    #[inline]
+    fn inner_radius(&self) -> f64 {
+        self.setting.moving.inertia().inner + self.setting.fixed.inertia().inner
+    }
+
+    /// Whether the line meets `M` not noticeably higher than a point of `M` which it passes within
+    /// `residual`, as measured along `normal`: so the point is an upper bound, up to rounding.
+    ///
+    /// `M` contains the point, and a level disc around its centre; hence the cone between them. If
+    /// the disc covers the line and `R` around it, the line is in the cone at `residual / R` of the
+    /// way from the point to the disc.
+    pub(crate) fn is_met_at(&self, point: DVec3, residual: f64, normal: DVec3) -> bool {
+        let noise = self.noise.point();
+        let center = self.center();
+        let around = self.inner_radius() - (center.truncate().length() + noise);
+        let rise = (center.z - point.z + noise) * (normal.z / normal.length());
+        around > 0.0 && (residual + self.noise.lateral()) * rise <= RISE * noise * around
+    }
+
+    /// The same for a point on an edge in a plane across `normal`.
+    ///
+    /// `M` contains the edge and the disc, hence the two triangles between the edge and the points of
+    /// the disc farthest across it. If these are at least `R` beyond the edge, the line is in one of
+    /// the triangles at `residual / R` of the way from the edge to its third corner, and at most that
+    /// share of the corner's height above the plane; the plane itself rises by the residual at most.
+    pub(crate) fn is_met_on(
+        &self,
+        edge: [&Point; 2],
+        point: DVec3,
+        residual: f64,
+        normal: DVec3,
+    ) -> bool {
+        let noise = self.noise.point();
+        let away = residual + self.noise.lateral();
+        let [from, to] = edge.map(Point::shadow);
+        let length = (to - from).length();
+        let center = self.center();
+        let radius = self.inner_radius();
+        let around =
+            radius - ((to - from).perp_dot(center.truncate() - from).abs() / length + noise);
+        let rise = (normal.dot(center - point) + radius * normal.truncate().length())
+            / normal.length()
+            + noise;
+        // The triangle's way across the edge leads along it, too.
+        let along = away * (center.truncate() - point.truncate()).length();
+        let inside = (point.truncate() - from).length().min((point.truncate() - to).length());
+        let level = around > 0.0
+            && along <= 0.5 * inside * around
+            && away * (around + rise) <= RISE * noise * around;
+        level || self.is_met_at(point, residual, normal)
+    }
+
+    /// A pair's exact shadow, computed once if it is asked for several times.
+    fn shadow_of(&self, pair: VertexPair, terms: &Terms) -> Shadow {
+        match self.known.get() {
+            Some((known, shadow)) if known == pair => shadow,
+            _ => {
+                let new = orientation::shadow(terms, self.setting.direction);
+                self.known.set(Some((pair, new)));
+                new
+            }
+        }
+    }
+
+    /// The shadow of a pair's point of `M`, not widened, with a small error relative to its length;
+    /// zero only if the line passes through the point. `None` if that is not known.
+    pub(crate) fn exact_shadow(&self, pair: VertexPair) -> Option<DVec2> {
+        if self.widening != 0.0 {
+            return None;
+        }
+        let exact = self.shadow_of(pair, &self.setting.terms(pair));
+        orientation::rounded(&exact, &self.setting_from_shadow, self.setting.direction)
+    }
+
     /// Whether the line passes to the left (`true`) or to the right of the directed segment between
     /// two shadows.
     ///
@@ -221,13 +308,19 @@ impl<'a> MinkowskiDifference<'a> {
     /// never *on* a segment, and three consistent answers always mean a triangle that contains it.
     #[inline]
     pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
+        match self.is_left_rounded(from, to) {
+            Some(left) => left,
+            None => self.is_left_exactly(from, to),
+        }
+    }
+
+    /// The same, if a rounded determinant decides.
+    #[inline]
+    pub(crate) fn is_left_rounded(&self, from: &Point, to: &Point) -> Option<bool> {
         let (a, b) = (from.shadow(), to.shadow());
         let det = a.perp_dot(b);
         let size = a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs();
-        if det.abs() > 2.0 * self.noise.point() * (size + self.noise.point()) {
-            return det > 0.0;
-        }
-        self.is_left_exactly(from, to)
+        (det.abs() > 2.0 * self.noise.point() * (size + self.noise.point())).then_some(det > 0.0)
     }
 
     #[cold]
@@ -239,14 +332,7 @@ impl<'a> MinkowskiDifference<'a> {
             // The line passes near one of the two again and again.
             let from_is_near = from.shadow().length_squared() < to.shadow().length_squared();
             let (near, terms) = if from_is_near { (from.pair, &a) } else { (to.pair, &b) };
-            let base = || match self.known.get() {
-                Some((pair, known)) if pair == near => known,
-                _ => {
-                    let new = orientation::shadow(terms, setting.direction);
-                    self.known.set(Some((near, new)));
-                    new
-                }
-            };
+            let base = || self.shadow_of(near, terms);
             let way = to.shadow() - from.shadow();
             if way.length_squared() > self.touching() * self.touching() {
                 let side = orientation::side(

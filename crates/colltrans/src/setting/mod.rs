@@ -8,8 +8,7 @@ pub(crate) mod minkowski;
 
 use glam::{DMat3, DVec3};
 
-use crate::body::ConvexPolyhedron;
-use crate::body::Pose;
+use crate::body::{ConvexPolyhedron, Placed};
 use crate::error::QueryError;
 use crate::number::error_free::difference_error;
 use crate::number::noise::Noise;
@@ -26,16 +25,18 @@ pub struct VertexPair {
 }
 
 /// Two placed bodies and a direction.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Setting<'a> {
+#[derive(Debug)]
+pub(crate) struct Setting<'a, B = ConvexPolyhedron> {
     /// The moving body P.
-    pub(crate) moving: &'a ConvexPolyhedron,
+    pub(crate) moving: &'a B,
     /// Its rotation `R_P`.
     pub(crate) moving_matrix: DMat3,
     /// The fixed body Q.
-    pub(crate) fixed: &'a ConvexPolyhedron,
+    pub(crate) fixed: &'a B,
     /// Its rotation `R_Q`.
     pub(crate) fixed_matrix: DMat3,
+    /// `t_P` and `t_Q`.
+    pub(crate) translations: [DVec3; 2],
     /// `t_Q - t_P`, rounded.
     pub(crate) offset: DVec3,
     /// What rounding took from `offset`, exactly.
@@ -48,26 +49,36 @@ pub(crate) struct Setting<'a> {
     pub(crate) unit: DVec3,
 }
 
-impl<'a> Setting<'a> {
+// Derived ones would ask the same of the body.
+impl<B> Clone for Setting<'_, B> {
+    #[inline]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<B> Copy for Setting<'_, B> {}
+
+impl<'a, B> Setting<'a, B> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 2 %")]
     pub(crate) fn new(
-        moving: &'a ConvexPolyhedron,
-        moving_pose: &Pose,
-        fixed: &'a ConvexPolyhedron,
-        fixed_pose: &Pose,
+        moving: Placed<'a, B>,
+        fixed: Placed<'a, B>,
         direction: DVec3,
     ) -> Result<Self, QueryError> {
         if direction == DVec3::ZERO || !in_exact_range(direction) {
             return Err(QueryError::Direction { direction });
         }
         let length = direction.length();
-        let (t_p, t_q) = (moving_pose.translation(), fixed_pose.translation());
+        let translations = [moving.pose.translation(), fixed.pose.translation()];
+        let [t_p, t_q] = translations;
         Ok(Self {
-            moving,
-            moving_matrix: moving_pose.matrix(),
-            fixed,
-            fixed_matrix: fixed_pose.matrix(),
+            moving: moving.body,
+            moving_matrix: moving.pose.matrix(),
+            fixed: fixed.body,
+            fixed_matrix: fixed.pose.matrix(),
+            translations,
             offset: t_q - t_p,
             offset_error: DVec3::new(
                 difference_error(t_q.x, t_p.x),
@@ -80,6 +91,14 @@ impl<'a> Setting<'a> {
         })
     }
 
+    /// The same bodies, and the direction turned round.
+    #[inline]
+    pub(crate) fn reversed(&self) -> Self {
+        Self { direction: -self.direction, unit: -self.unit, ..*self }
+    }
+}
+
+impl Setting<'_> {
     /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
     #[inline]
     pub(crate) fn scale(&self) -> f64 {

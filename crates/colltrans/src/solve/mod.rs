@@ -15,15 +15,14 @@ mod warm_start;
 
 use glam::{DVec2, DVec3};
 
-use crate::answer::{Grazing, Outcome, Separated, Solver, StartedFrom};
-use crate::body::Pose;
-use crate::error::QueryError;
+use crate::answer::{Grazing, Outcome, Separated, Separation, Solver, StartedFrom};
+use crate::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
 use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
-use portal::{Enclosure, FirstNormal, Followed, Overlap, Portal, Refined, SeparatingLine};
+use portal::{Enclosure, FirstNormal, Followed, Optimum, Overlap, Portal, Refined, SeparatingLine};
 use proof::Proven;
 pub(crate) use warm_start::WarmStart;
 
@@ -31,13 +30,11 @@ pub(crate) use warm_start::WarmStart;
 #[inline]
 pub(crate) fn search<O: Observer>(
     setting: &Setting,
-    moving_pose: &Pose,
     options: &Options,
     focus: &Focus,
     warm_start: &mut WarmStart,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
-    options.check()?;
     let solver = match options.solver {
         Solver::Auto => Solver::Portal,
         solver => solver,
@@ -45,10 +42,10 @@ pub(crate) fn search<O: Observer>(
     let last = std::mem::take(warm_start);
     let mut first = Run {
         difference: MinkowskiDifference::new(setting),
-        moving_pose,
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
+        optimum: None,
         watch: Watch::new(observer),
     };
     let mut answer = first.run(focus, &last, warm_start);
@@ -72,7 +69,7 @@ fn again<O: Observer>(
     next: &mut WarmStart,
 ) -> Result<Outcome, QueryError> {
     run.watch.steps.started_from = StartedFrom::Scratch;
-    let mut answer = Err(run.not_converged());
+    let mut answer = Err(stalled(Stalled::Cycle));
     for &turn in turns {
         run.difference = MinkowskiDifference::turned_by(run.difference.setting, turn);
         answer = run.run(&Focus::NONE, &WarmStart::Nothing, next);
@@ -106,10 +103,11 @@ enum Start {
 /// One cast under way.
 struct Run<'a, 'o, O> {
     difference: MinkowskiDifference<'a>,
-    moving_pose: &'a Pose,
     graze_tolerance: f64,
     solver: Solver,
     narrowing: Narrowing,
+    /// The optimum in the first portal, if that is known to be the lowest.
+    optimum: Option<Optimum>,
     watch: Watch<'o, O>,
 }
 
@@ -132,17 +130,16 @@ impl<O: Observer> Run<'_, '_, O> {
             self.enclosure(focus.region, last)
         };
         self.watch.ended(Phase::Finish);
-        let noise = self.difference.noise.point();
         match enclosure {
-            None => Err(self.not_converged()),
+            None => Err(stalled(Stalled::NoPortal)),
             Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
-            Some(Enclosure::Beside(found)) if found.margin > noise => {
-                Ok(Outcome::Separated(self.separated(&found, next)))
-            }
             Some(Enclosure::Beside(found)) => {
+                if let Some(separated) = self.separated(&found, next) {
+                    return Ok(Outcome::Separated(separated));
+                }
                 let widest = portal::widest_margin(&self.difference, found, &mut self.watch);
-                if widest.margin > noise {
-                    return Ok(Outcome::Separated(self.separated(&widest, next)));
+                if let Some(separated) = self.separated(&widest, next) {
+                    return Ok(Outcome::Separated(separated));
                 }
                 self.touching(&widest, next).map(Outcome::Grazing)
             }
@@ -154,7 +151,8 @@ impl<O: Observer> Run<'_, '_, O> {
         match last {
             WarmStart::Nothing => None,
             WarmStart::Contact(portal) => {
-                match portal::follow(&self.difference, portal, &mut self.watch) {
+                let optimum = &mut self.optimum;
+                match portal::follow(&self.difference, portal, optimum, &mut self.watch) {
                     Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
                     Followed::Rim { outward, near } => self.beside(-outward, near),
                     Followed::Lost => None,
@@ -186,7 +184,8 @@ impl<O: Observer> Run<'_, '_, O> {
         if start.normal.z <= 0.0 {
             return None;
         }
-        match portal::approach(&self.difference, start, &mut self.watch) {
+        let optimum = &mut self.optimum;
+        match portal::approach(&self.difference, start, optimum, &mut self.watch) {
             Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
             Followed::Rim { outward, near } => self.beside(-outward, near),
             Followed::Lost => None,
@@ -296,10 +295,13 @@ impl<O: Observer> Run<'_, '_, O> {
             StartedFrom::Features => MOST_AFTER_FOLLOWING,
             StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
         };
-        let optimum = match portal::refine(&self.difference, portal, most, &mut self.watch) {
-            Some(Refined::Optimum(optimum)) => optimum,
-            Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
-            None => return Err(self.not_converged()),
+        let optimum = match self.optimum.take() {
+            Some(optimum) => optimum,
+            None => match portal::refine(&self.difference, portal, most, &mut self.watch) {
+                Some(Refined::Optimum(optimum)) => optimum,
+                Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
+                None => return Err(stalled(Stalled::Cycle)),
+            },
         };
         let tolerance = self.graze_tolerance.max(self.difference.touching());
         let overlap = portal::overlap(&self.difference, portal, tolerance, &mut self.watch);
@@ -307,13 +309,9 @@ impl<O: Observer> Run<'_, '_, O> {
         let proven = Proven::new(&self.difference, portal, &optimum)?;
         *next = WarmStart::Contact(proven.contact_portal());
         match overlap {
-            Overlap::Ample => Ok(Outcome::Contact(proven.contact(
-                self.moving_pose,
-                self.solver,
-                self.watch.steps,
-            ))),
+            Overlap::Ample => Ok(Outcome::Contact(proven.contact(self.solver, self.watch.steps))),
             Overlap::Slight { inward, depth } => {
-                let contact = proven.contact(self.moving_pose, self.solver, self.watch.steps);
+                let contact = proven.contact(self.solver, self.watch.steps);
                 let grazing = proof::grazing(&self.difference, inward, depth, contact);
                 Ok(Outcome::Grazing(grazing))
             }
@@ -333,37 +331,45 @@ impl<O: Observer> Run<'_, '_, O> {
         let Some(Enclosure::Portal(mut portal)) =
             portal::enclose(&self.difference, &start, &mut self.watch)
         else {
-            return Err(self.not_converged());
+            return Err(stalled(Stalled::NoPortal));
         };
         let Some(Refined::Optimum(optimum)) =
             portal::refine(&self.difference, &mut portal, portal::MAX_PORTALS, &mut self.watch)
         else {
-            return Err(self.not_converged());
+            return Err(stalled(Stalled::Cycle));
         };
         let proven = Proven::new(&self.difference, &portal, &optimum)?;
-        let contact = proven.contact(self.moving_pose, self.solver, self.watch.steps);
+        let contact = proven.contact(self.solver, self.watch.steps);
         let grazing = proof::grazing(&self.difference, rim.normal, -rim.margin, contact);
-        *next = self.apart(grazing.separating_direction, rim);
+        *next = self.apart(grazing.separating_direction, rim).0;
         Ok(grazing)
     }
 
-    fn separated(&self, found: &SeparatingLine, next: &mut WarmStart) -> Separated {
-        let separated = proof::separated(&self.difference, found, self.solver, self.watch.steps);
-        *next = self.apart(separated.certificate.normal, found);
-        separated
+    /// The separation that a line proves; `None` if rounding may have made it.
+    #[inline]
+    fn separated(&self, found: &SeparatingLine, next: &mut WarmStart) -> Option<Separated> {
+        if found.margin <= self.difference.noise.lowered() {
+            return None;
+        }
+        let normal = (self.difference.setting_from_shadow * found.normal.extend(0.0)).normalize();
+        let (start, normals) = self.apart(normal, found);
+        let margin = proof::safe_margin(&self.difference, found, &normals);
+        let certificate = Separation { normal, margin };
+        (margin > 0.0).then(|| {
+            *next = start;
+            Separated { certificate, solver: self.solver, steps: self.watch.steps }
+        })
     }
 
-    fn apart(&self, normal: DVec3, found: &SeparatingLine) -> WarmStart {
+    /// What is left to the next query, and the normal in both bodies' frames.
+    #[inline]
+    fn apart(&self, normal: DVec3, found: &SeparatingLine) -> (WarmStart, [DVec3; 2]) {
         let setting = self.difference.setting;
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        WarmStart::Apart { normals, pair: found.point.pair }
+        (WarmStart::Apart { normals, pair: found.point.pair }, normals)
     }
+}
 
-    fn not_converged(&self) -> QueryError {
-        QueryError::NotConverged {
-            lower: f64::NEG_INFINITY,
-            upper: f64::INFINITY,
-            tolerance: self.difference.noise.point(),
-        }
-    }
+fn stalled(reason: Stalled) -> QueryError {
+    QueryError::NotConverged { reason }
 }

@@ -1,6 +1,7 @@
 //! Choices of a query.
 
 use crate::answer::Solver;
+use crate::body::{Body, ConvexPolyhedron};
 use crate::error::QueryError;
 
 /// Choices of a query; the default is right for most.
@@ -16,7 +17,12 @@ pub struct Options {
     pub narrowing: Narrowing,
 }
 
+impl Body for ConvexPolyhedron {
+    type Options = Options;
+}
+
 impl Options {
+    #[inline]
     pub(crate) fn check(&self) -> Result<(), QueryError> {
         let tolerance = self.graze_tolerance;
         if !tolerance.is_finite() || tolerance < 0.0 {

@@ -1,26 +1,23 @@
-//! From what a solver found to the answer: bounds, witness points and contact features, in the
-//! world.
+//! From what a solver found to the answer: bounds, and where they come from, in the world.
 
 use glam::{DVec2, DVec3};
 
-use crate::answer::{Certificate, Separation, gap_tolerance};
-use crate::answer::{Contact, Grazing, Separated, Solver, Steps};
-use crate::body::{Pose, feature};
-use crate::error::QueryError;
-use crate::setting::VertexPair;
+use crate::answer::{Along, Certificate, Contact, Grazing, Solver, Steps, gap_tolerance};
+use crate::error::{QueryError, Stalled};
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::portal::{ContactPortal, Optimum, Portal, SeparatingLine};
 
 /// An optimum and what it proves, in the world. Small and passed by reference: moving an outcome
 /// about costs a tenth of a coherent query.
 pub(crate) struct Proven<'a> {
-    difference: &'a MinkowskiDifference<'a>,
     portal: &'a Portal,
     optimum: &'a Optimum,
     /// The unit contact normal, in the world.
     normal: DVec3,
     /// The same in the frames of the moving and of the fixed body.
     normals: [DVec3; 2],
+    /// The estimate of the collision translation.
+    translation: f64,
     lower: f64,
     upper: f64,
     tolerance: f64,
@@ -32,25 +29,36 @@ impl<'a> Proven<'a> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 5 %")]
     pub(crate) fn new(
-        difference: &'a MinkowskiDifference,
+        difference: &MinkowskiDifference,
         portal: &'a Portal,
         optimum: &'a Optimum,
     ) -> Result<Self, QueryError> {
         let setting = difference.setting;
+        let noise = difference.noise;
         let normal = (difference.setting_from_shadow * optimum.normal).normalize();
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        let [p, q] = setting.vertices(optimum.lowest);
-        let distance = (normals[1].dot(q) - normals[0].dot(p)) + normal.dot(setting.offset);
-        let lower = distance / normal.dot(setting.direction);
+        let steepness = normal.dot(setting.direction);
+        let along = Along::new(setting, noise, normal, &normals, optimum.lowest);
         let [u, v, w] = optimum.weights;
         let [a, b, c] = portal.each_ref().map(Point::height);
-        let upper = (a * u + b * v + c * w) / setting.length;
-        let tolerance = gap_tolerance(setting, normal, difference.noise, difference.widening);
-        let gap = upper - lower;
+        let estimate = (a * u + b * v + c * w) / setting.length;
+        let tolerance = gap_tolerance(setting, normal, noise, difference.widening);
+        let lower = along.distance / steepness;
+        let gap = estimate - lower;
         if gap.is_nan() || gap > tolerance {
-            return Err(QueryError::NotConverged { lower, upper, tolerance });
+            let reason = Stalled::Gap { lower, upper: estimate, tolerance };
+            return Err(QueryError::NotConverged { reason });
         }
-        Ok(Self { difference, portal, optimum, normal, normals, lower, upper, tolerance })
+        let lower = along.lower(steepness);
+        // Of widened bodies nothing is known from above.
+        let upper = if difference.widening == 0.0 {
+            (estimate + noise.raised() / steepness).next_up()
+        } else {
+            f64::INFINITY
+        };
+        let tolerance = tolerance + (noise.raised() + along.error) / steepness;
+        let translation = estimate.max(lower);
+        Ok(Self { portal, optimum, normal, normals, translation, lower, upper, tolerance })
     }
 
     /// What a later query may start from.
@@ -66,24 +74,15 @@ impl<'a> Proven<'a> {
 
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "built where it is to stay: 5 %")]
-    pub(crate) fn contact(&self, moving_pose: &Pose, solver: Solver, steps: Steps) -> Contact {
-        let setting = self.difference.setting;
-        let pairs = self.portal.each_ref().map(|p| p.pair);
-        let [on_moving, on_fixed] = setting.weighted(&pairs, &self.optimum.weights);
-        let origin = moving_pose.translation();
-        let VertexPair { moving, fixed } = self.optimum.lowest;
-        let noise = self.difference.noise.point();
+    pub(crate) fn contact(&self, solver: Solver, steps: Steps) -> Contact {
         Contact {
-            translation: self.upper,
+            translation: self.translation,
             normal: self.normal,
-            point_on_moving: setting.moving_matrix * on_moving + origin,
-            point_on_fixed: setting.fixed_matrix * on_fixed + setting.offset + origin,
-            moving_feature: feature(setting.moving, self.normals[0], moving, noise),
-            fixed_feature: feature(setting.fixed, -self.normals[1], fixed, noise),
+            support: self.optimum.lowest,
             certificate: Certificate {
                 normal: self.normal,
                 lower: self.lower,
-                pairs,
+                pairs: self.portal.each_ref().map(|p| p.pair),
                 weights: self.optimum.weights,
                 upper: self.upper,
                 tolerance: self.tolerance,
@@ -104,13 +103,16 @@ pub(crate) fn grazing(
     Grazing { separating_direction, overlap, contact }
 }
 
-pub(crate) fn separated(
+/// The margin of a separating line, given in both bodies' frames, less what rounding and bodies that
+/// reach beyond the support points may take from it.
+#[inline]
+pub(crate) fn safe_margin(
     difference: &MinkowskiDifference,
     found: &SeparatingLine,
-    solver: Solver,
-    steps: Steps,
-) -> Separated {
-    let normal = (difference.setting_from_shadow * found.normal.extend(0.0)).normalize();
-    let certificate = Separation { normal, margin: found.margin };
-    Separated { certificate, solver, steps }
+    normals: &[DVec3; 2],
+) -> f64 {
+    let (setting, pair) = (difference.setting, found.point.pair);
+    let beyond = setting.moving.excess(normals[0], pair.moving)
+        + setting.fixed.excess(-normals[1], pair.fixed);
+    found.margin - difference.noise.lowered() - beyond
 }

@@ -5,6 +5,7 @@
 //! ([`support`] points, [`sections`]).
 
 mod build;
+mod excess;
 pub(crate) mod sections;
 mod support;
 #[cfg(test)]
@@ -16,6 +17,7 @@ use crate::body::Inertia;
 use crate::body::topology::Topology;
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, convexity_defect};
+use excess::LargeFace;
 use sections::SectionIndex;
 use support::SupportIndex;
 
@@ -31,6 +33,10 @@ pub struct ConvexPolyhedron {
     input_index: Vec<u32>,
     dimension: u8,
     hull_error: f64,
+    /// The largest distance of a corner from its polygon's plane.
+    flatness: f64,
+    /// Faces with many corners, ascending.
+    large_faces: Vec<LargeFace>,
     topology: Topology,
     inertia: Inertia,
     support: SupportIndex,
@@ -151,6 +157,7 @@ impl ConvexPolyhedron {
             + self.vertices.capacity() * size_of::<DVec3>()
             + self.input_index.capacity() * size_of::<u32>()
             + self.topology.heap_bytes()
+            + self.large_faces.capacity() * size_of::<LargeFace>()
             + self.support.heap_bytes()
             + self.sections.heap_bytes()
     }

@@ -110,6 +110,12 @@ impl SupportIndex {
         self.climb_from(vertices, topology, direction, start)
     }
 
+    /// Whether the body is small enough to look at each vertex.
+    #[inline]
+    pub(crate) fn is_scanned(&self) -> bool {
+        self.resolution == 0
+    }
+
     /// Where a climb along `direction` may start; of no use to a body that is scanned.
     #[inline]
     pub(crate) fn guess(&self, direction: DVec3) -> u32 {

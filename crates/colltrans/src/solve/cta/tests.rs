@@ -112,7 +112,7 @@ fn check(
     tolerance: f64,
     name: &str,
 ) -> Narrowed {
-    let setting = Setting::new(p, p_pose, q, q_pose, d).unwrap();
+    let setting = Setting::new(p.at(*p_pose), q.at(*q_pose), d).unwrap();
     let narrowed = minimised(&setting, &EXACT).0;
     let truth = brute_force(&Placed::new(p, p_pose), &Placed::new(q, q_pose), setting.unit);
     match (&truth, narrowed.guess) {
@@ -200,7 +200,7 @@ fn tied_bodies_agree_with_brute_force() {
                     ] {
                         let pose = Pose::new(rotation, shift).unwrap();
                         let name = format!("bodies {i} {j} {d} {rotation} {shift}");
-                        let setting = Setting::new(p, &Pose::IDENTITY, q, &pose, d).unwrap();
+                        let setting = Setting::new(p.at(Pose::IDENTITY), q.at(pose), d).unwrap();
                         check_planar(&setting, &mut random, &name);
                         check((p, &Pose::IDENTITY), (q, &pose), d, 1e-8, &name);
                     }
@@ -233,7 +233,7 @@ fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
         let q = &bodies[random.index(bodies.len())];
         let d = random.unit();
         let poses = [0.0, 3.0].map(|t| Pose::new(random.rotation(), d * t).unwrap());
-        let setting = Setting::new(p, &poses[0], q, &poses[1], d).unwrap();
+        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), d).unwrap();
         let narrowed = minimised(&setting, &EXACT).0;
         let (p, q) = (Placed::new(p, &poses[0]), Placed::new(q, &poses[1]));
         let size = p.vertices.iter().chain(&q.vertices).map(|v| v.length()).fold(0.0, f64::max);
@@ -298,7 +298,7 @@ fn steps_do_not_grow_with_the_bodies() {
         let options = CtaOptions { gap: 2.5e-3, ..EXACT };
         for _ in 0..300 {
             let e = colliding(&mut random);
-            let setting = Setting::new(&p, &e.poses[0], &q, &e.poses[1], e.d).unwrap();
+            let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
             steps += minimised(&setting, &options).1;
         }
         assert!(
@@ -349,7 +349,7 @@ fn planar_problems_agree_with_brute_force() {
         };
         let (p, q) = (body(), body());
         let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
-        let setting = Setting::new(&p, &p_pose, &q, &q_pose, random.unit()).unwrap();
+        let setting = Setting::new(p.at(p_pose), q.at(q_pose), random.unit()).unwrap();
         check_planar(&setting, &mut random, &format!("round {round}"));
     }
 }

@@ -20,12 +20,12 @@ const NAMES: [&str; 7] = [
 /// ```
 /// # use colltrans::glam::DVec3;
 /// # use colltrans::observe::Clock;
-/// # use colltrans::{ConvexPolyhedron, Options, Pose, cast_observed};
+/// # use colltrans::{Cast, ConvexPolyhedron, Pose};
 /// let body = ConvexPolyhedron::from_points(&[DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO])?;
 /// let start = Pose::from_translation(DVec3::new(-5.0, 0.1, 0.1))?;
 /// let mut clock = Clock::new();
-/// let (world, options) = (Pose::IDENTITY, Options::default());
-/// cast_observed(&body, &start, &body, &world, DVec3::X, &options, &mut clock)?;
+/// let cast = Cast::new(body.at(start), body.at(Pose::IDENTITY), DVec3::X)?;
+/// cast.first_contact_observed(&mut clock)?;
 /// assert!(clock.profile().total() > 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -27,12 +27,12 @@ pub enum Event {
 /// ```
 /// # use colltrans::glam::DVec3;
 /// # use colltrans::observe::{Event, Recording};
-/// # use colltrans::{ConvexPolyhedron, Options, Outcome, Pose, Solver, cast_observed};
+/// # use colltrans::{Cast, ConvexPolyhedron, Pose, Solver};
 /// let body = ConvexPolyhedron::from_points(&[DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO])?;
 /// let start = Pose::from_translation(DVec3::new(-5.0, 0.1, 0.1))?;
 /// let mut recording = Recording::default();
-/// let (world, options) = (Pose::IDENTITY, Options { solver: Solver::Cta, ..Options::default() });
-/// let outcome = cast_observed(&body, &start, &body, &world, DVec3::X, &options, &mut recording)?;
+/// let cast = Cast::new(body.at(start), body.at(Pose::IDENTITY), DVec3::X)?;
+/// let outcome = cast.with_solver(Solver::Cta).first_contact_observed(&mut recording)?;
 /// let planar = recording.events().iter().filter(|e| matches!(e, Event::PlanarProblem(_)));
 /// assert_eq!(planar.count(), outcome.steps().planar_problems as usize);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -14,13 +14,13 @@
 //! All this guesses: the old triangle need not be a face of `M` any more. The result is three points
 //! of `M` around the line, whatever way led there; refinement does not ask.
 
-use std::hint::select_unpredictable;
-
 use glam::{DVec2, DVec3};
 
+use super::flat::{Flat, across, has_large_faces};
 use super::start::continued;
-use super::{FirstNormal, Portal, normal_of};
-use crate::body::ConvexPolyhedron;
+use super::tied::{Pointed, crossed_or_tied, lowest_edge, pointed};
+use super::wrap::{Neighbour, Tilt, first_met};
+use super::{FirstNormal, Optimum, Portal, normal_of};
 use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -44,9 +44,6 @@ const CROSSINGS: usize = 20;
 /// A line this many widths of the triangle beyond an edge is not reached face by face (measured).
 const FAR: f64 = 1.2;
 
-/// A vertex with more neighbours than this is not looked around.
-const MOST_NEIGHBOURS: usize = 32;
-
 /// Where the line met `M` in an earlier query.
 ///
 /// In this order in memory: behind the tag of an enum, fields of eight bytes are written once if they
@@ -67,6 +64,7 @@ pub(crate) struct ContactPortal {
 pub(crate) fn follow<O: Observer>(
     difference: &MinkowskiDifference,
     last: &ContactPortal,
+    optimum: &mut Option<Optimum>,
     watch: &mut Watch<O>,
 ) -> Followed {
     let [a, b, c] = last.pairs;
@@ -75,47 +73,52 @@ pub(crate) fn follow<O: Observer>(
     if (b - a).perp_dot(c - a) < 0.0 {
         portal.swap(0, 1);
     }
-    let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
+    let mut edge = match crossed(difference, &portal, optimum, watch) {
+        Some(from) => Edge::of(&portal, from),
+        None => return Followed::Portal(portal),
+    };
     let shift = a * last.weights[0] + b * last.weights[1] + c * last.weights[2];
     let Some(slopes) = slopes(difference, last, shift) else { return Followed::Lost };
     if edge.distance() > FAR * edge.width() {
         let slope = continued(difference, shift, slopes);
-        match jump(difference, slope, last.pairs[0], watch) {
+        match jump(difference, slope, last.pairs[0], optimum, watch) {
+            Some(there) if optimum.is_some() => return Followed::Portal(there),
             Some(there) => portal = there,
             None => return Followed::Lost,
         }
+        match left_behind(difference, &portal, optimum, watch) {
+            Some(from) => edge = Edge::of(&portal, from),
+            None => return Followed::Portal(portal),
+        }
     }
-    walk(difference, portal, CROSSINGS, watch)
+    walk(difference, edge, CROSSINGS, optimum, watch)
 }
 
-/// From a face of `M` to the one that the line pierces, over one edge after another.
-#[inline]
+/// From a face of `M` to the one that the line pierces, over one edge after another, of which the
+/// first is given.
+#[inline(never)]
 fn walk<O: Observer>(
     difference: &MinkowskiDifference,
-    mut portal: Portal,
+    mut edge: Edge,
     most: usize,
+    optimum: &mut Option<Optimum>,
     watch: &mut Watch<O>,
 ) -> Followed {
-    let Some(mut edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
     for _ in 0..most {
-        watch.portal(|| portal.map(|p| p.at));
+        watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
-        match first_met(difference, &edge.from, &tilt) {
-            Neighbour::Met(point) => portal = [edge.to, edge.from, point],
+        // The edge that was crossed has the line on its left now.
+        let portal = match first_met(difference, &edge.from, &tilt) {
+            Neighbour::Met(point) => [edge.to, edge.from, point],
             Neighbour::None => {
                 return Followed::Rim { outward: tilt.outward, near: edge.from.pair };
             }
             Neighbour::TooMany => return Followed::Lost,
-        }
-        // The edge that was crossed has the line on its left now.
-        let [to, from, point] = portal;
-        edge = if !difference.is_left(&from, &point) {
-            Edge { from, to: point, third: to }
-        } else if !difference.is_left(&point, &to) {
-            Edge { from: point, to, third: from }
-        } else {
-            return Followed::Portal(portal);
         };
+        match left_behind(difference, &portal, optimum, watch) {
+            Some(from) => edge = Edge::of(&portal, from),
+            None => return Followed::Portal(portal),
+        }
     }
     Followed::Lost
 }
@@ -131,9 +134,15 @@ const CORRECTIONS: usize = 4;
 const PROGRESS: f64 = 0.5;
 
 /// From a guessed normal: the face of `M` beside its support point, and from there to the line.
+///
+/// Where the support point is itself on the line, or nearly so, its plane may prove that the portal
+/// reached is the lowest; then `optimum` says so.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "passed through memory its result stalls its reader: 3 %")]
 pub(crate) fn approach<O: Observer>(
     difference: &MinkowskiDifference,
     start: &FirstNormal,
+    optimum: &mut Option<Optimum>,
     watch: &mut Watch<O>,
 ) -> Followed {
     let mut slope = start.normal.truncate() / start.normal.z;
@@ -143,12 +152,41 @@ pub(crate) fn approach<O: Observer>(
     };
     watch.support(|| Support::of(normal_of(slope), &vertex));
     for _ in 0..CORRECTIONS {
-        let Some(portal) = beside(difference, &vertex, slope) else { return Followed::Lost };
-        let Some(edge) = crossed(difference, &portal) else { return Followed::Portal(portal) };
-        if edge.distance() <= FAR * edge.width() {
-            return walk(difference, portal, FEW_CROSSINGS, watch);
-        }
         let shadow = vertex.shadow();
+        let mut toward_line = -shadow;
+        if shadow.length_squared() <= difference.touching() * difference.touching() {
+            match pointed(difference, &vertex, slope, watch) {
+                Pointed::Lowest(portal, found) => {
+                    *optimum = Some(found);
+                    return Followed::Portal(portal);
+                }
+                Pointed::Toward(line) => toward_line = line,
+                Pointed::Unknown => {}
+            }
+        }
+        let Some(portal) = beside(difference, &vertex, slope, toward_line, optimum, watch) else {
+            return Followed::Lost;
+        };
+        if optimum.is_some() {
+            return Followed::Portal(portal);
+        }
+        let Some(from) = left_behind(difference, &portal, optimum, watch) else {
+            return Followed::Portal(portal);
+        };
+        let edge = Edge::of(&portal, from);
+        if edge.distance() <= FAR * edge.width() {
+            return walk(difference, edge, FEW_CROSSINGS, optimum, watch);
+        }
+        if has_large_faces(difference) {
+            match across(difference, portal, from, optimum, watch) {
+                Flat::Portal(portal) => return Followed::Portal(portal),
+                Flat::Corner(normal, corner) => {
+                    (slope, vertex) = (normal.truncate() / normal.z, corner);
+                    continue;
+                }
+                Flat::No => {}
+            }
+        }
         slope += start.slope_per_shadow * shadow;
         if !slope.is_finite() {
             break;
@@ -174,27 +212,60 @@ fn slopes(
     near.then(|| [p, q].map(|n| n.truncate() / n.z))
 }
 
+/// The corner after another.
+const NEXT: [usize; 3] = [1, 2, 0];
+
 /// A directed edge of a portal with the third corner on its left and the line on its right.
-struct Edge {
-    from: Point,
-    to: Point,
+pub(super) struct Edge {
+    pub(super) from: Point,
+    pub(super) to: Point,
     third: Point,
 }
 
-/// An edge of the portal over which the line has left it.
+/// The corner of the portal where an edge begins over which the line has left it; none, and perhaps
+/// the `optimum`, if it has not.
 #[inline]
-fn crossed(difference: &MinkowskiDifference, portal: &Portal) -> Option<Edge> {
-    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-        if !difference.is_left(&portal[i], &portal[j]) {
-            return Some(Edge { from: portal[i], to: portal[j], third: portal[k] });
-        }
+fn crossed<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    optimum: &mut Option<Optimum>,
+    watch: &mut Watch<O>,
+) -> Option<usize> {
+    match difference.is_left_rounded(&portal[0], &portal[1]) {
+        Some(true) => left_behind(difference, portal, optimum, watch),
+        Some(false) => Some(0),
+        None => crossed_or_tied(difference, portal, optimum, watch),
     }
-    None
+}
+
+/// The same, if the line is known to be on the left of the first edge.
+#[inline]
+pub(super) fn left_behind<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    optimum: &mut Option<Optimum>,
+    watch: &mut Watch<O>,
+) -> Option<usize> {
+    let second = difference.is_left_rounded(&portal[1], &portal[2]);
+    let third = difference.is_left_rounded(&portal[2], &portal[0]);
+    match (second, third) {
+        (Some(true), Some(true)) => None,
+        (Some(false), _) => Some(1),
+        (_, Some(false)) => Some(2),
+        _ => crossed_or_tied(difference, portal, optimum, watch),
+    }
 }
 
 impl Edge {
+    /// The edge that begins at a corner.
+    #[inline]
+    pub(super) fn of(portal: &Portal, from: usize) -> Self {
+        let [to, third] = [NEXT[from], NEXT[NEXT[from]]];
+        Self { from: portal[from], to: portal[to], third: portal[third] }
+    }
+
     /// From the edge away from the triangle, as long as the edge.
-    fn outward(&self) -> DVec2 {
+    pub(super) fn outward(&self) -> DVec2 {
         -(self.to.shadow() - self.from.shadow()).perp()
     }
 
@@ -215,92 +286,12 @@ impl Edge {
     }
 }
 
-/// A plane that turns downwards on one side.
-struct Tilt {
-    /// Its normal (shadow frame, any length).
-    normal: DVec3,
-    /// Away from the axis of the turn, in the shadow plane, any length.
-    outward: DVec2,
-}
-
-/// What a turning plane meets first.
-enum Neighbour {
-    Met(Point),
-    None,
-    TooMany,
-}
-
-/// Of the neighbours of a vertex of `M` on the axis of the turn, the one with the least rise over
-/// its run.
-#[inline]
-fn first_met(difference: &MinkowskiDifference, vertex: &Point, tilt: &Tilt) -> Neighbour {
-    let VertexPair { moving, fixed } = vertex.pair;
-    let setting = difference.setting;
-    let (normal, outward) = (tilt.normal, tilt.outward.extend(0.0));
-    // A neighbour closer to the axis than this is not beyond it.
-    let least = difference.touching() * tilt.outward.length();
-    let turn =
-        Turn { up: -difference.in_moving(normal), out: -difference.in_moving(outward), least };
-    let p = turn.first(setting.moving, moving);
-    let turn = Turn { up: difference.in_fixed(normal), out: difference.in_fixed(outward), least };
-    let q = turn.first(setting.fixed, fixed);
-    let (Some(p), Some(q)) = (p, q) else { return Neighbour::TooMany };
-    let of_fixed = q.rise * p.run < p.rise * q.run;
-    let found = if of_fixed { q.vertex } else { p.vertex };
-    if found == NOBODY {
-        return Neighbour::None;
-    }
-    let moving = select_unpredictable(of_fixed, moving, found);
-    let fixed = select_unpredictable(of_fixed, found, fixed);
-    Neighbour::Met(difference.vertex(VertexPair { moving, fixed }))
-}
-
-/// A turn seen from one body's frame: `up` and `out` measure rise and run.
-struct Turn {
-    up: DVec3,
-    out: DVec3,
-    /// Least run.
-    least: f64,
-}
-
-/// The neighbour that a turn meets first.
-struct First {
-    vertex: u32,
-    rise: f64,
-    run: f64,
-}
-
-/// No neighbour lies beyond the axis.
-const NOBODY: u32 = u32::MAX;
-
-impl Turn {
-    /// The first among the neighbours of one body's vertex; `None` if there are too many.
-    #[inline]
-    #[expect(clippy::needless_bitwise_bool, reason = "a branch here is not predictable")]
-    fn first(&self, body: &ConvexPolyhedron, vertex: u32) -> Option<First> {
-        let here = body.vertices()[vertex as usize];
-        let neighbours = body.neighbours(vertex);
-        if neighbours.len() > MOST_NEIGHBOURS {
-            return None;
-        }
-        let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
-        for &w in neighbours {
-            let edge = body.vertices()[w as usize] - here;
-            let (rise, run) = (self.up.dot(edge), self.out.dot(edge));
-            let sooner = (run > self.least) & (rise * first.run < first.rise * run);
-            first.vertex = select_unpredictable(sooner, w, first.vertex);
-            first.rise = select_unpredictable(sooner, rise, first.rise);
-            first.run = select_unpredictable(sooner, run, first.run);
-        }
-        Some(first)
-    }
-}
-
 /// The face of `M` at the support point along a slope, on the side of the line.
 fn jump<O: Observer>(
     difference: &MinkowskiDifference,
     slope: DVec2,
     near: VertexPair,
+    optimum: &mut Option<Optimum>,
     watch: &mut Watch<O>,
 ) -> Option<Portal> {
     if !slope.is_finite() {
@@ -308,19 +299,34 @@ fn jump<O: Observer>(
     }
     let vertex = difference.support_from(normal_of(slope), near);
     watch.support(|| Support::of(normal_of(slope), &vertex));
-    beside(difference, &vertex, slope)
+    beside(difference, &vertex, slope, -vertex.shadow(), optimum, watch)
 }
 
-/// The face of `M` at the support point `vertex` along a slope, on the side of the line.
-fn beside(difference: &MinkowskiDifference, vertex: &Point, slope: DVec2) -> Option<Portal> {
+/// The face of `M` at the support point `vertex` along a slope, in the direction of the line, with
+/// the line on the left of its first edge; or an edge under the line, with the `optimum`.
+pub(super) fn beside<O: Observer>(
+    difference: &MinkowskiDifference,
+    vertex: &Point,
+    slope: DVec2,
+    line: DVec2,
+    optimum: &mut Option<Optimum>,
+    watch: &mut Watch<O>,
+) -> Option<Portal> {
     let (vertex, normal) = (*vertex, normal_of(slope));
-    let toward_line = Tilt { normal, outward: -vertex.shadow() };
+    let toward_line = Tilt { normal, outward: line };
     let Neighbour::Met(second) = first_met(difference, &vertex, &toward_line) else { return None };
     // The plane after the turn, which contains both.
     let edge = second.at - vertex.at;
     let turn = normal.dot(edge) / toward_line.outward.dot(edge.truncate());
     let normal = normal_of(slope - toward_line.outward * turn);
-    let line_is_left = difference.is_left(&vertex, &second);
+    let rounded = difference.is_left_rounded(&vertex, &second);
+    if rounded.is_none()
+        && let Some((portal, found)) = lowest_edge(difference, &[vertex, second], normal, watch)
+    {
+        *optimum = Some(found);
+        return Some(portal);
+    }
+    let line_is_left = rounded.unwrap_or_else(|| difference.is_left(&vertex, &second));
     let left = edge.truncate().perp();
     let outward = if line_is_left { left } else { -left };
     let Neighbour::Met(third) = first_met(difference, &vertex, &Tilt { normal, outward }) else {

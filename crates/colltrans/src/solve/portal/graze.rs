@@ -38,12 +38,24 @@ pub(crate) fn overlap<O: Observer>(
     tolerance: f64,
     watch: &mut Watch<O>,
 ) -> Overlap {
-    if is_ample(portal, tolerance) {
+    if is_ample(portal, tolerance) || difference.is_deep(tolerance) {
         return Overlap::Ample;
     }
+    search(difference, portal, tolerance, watch)
+}
+
+/// The polygon, grown until it decides.
+#[cold]
+#[inline(never)]
+fn search<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &[Point; 3],
+    tolerance: f64,
+    watch: &mut Watch<O>,
+) -> Overlap {
     let mut corners = [portal[0]; MAX_CORNERS];
     corners[..3].copy_from_slice(portal);
-    let mut count = if is_triangle(portal) { 3 } else { hull(&mut corners[..3]) };
+    let mut count = first_polygon(&mut corners);
     let mut slightest = Overlap::Ample;
     for _ in 0..MAX_ROUNDS {
         let Some((edge, outward, reach)) = nearest_edge(&corners[..count]) else {
@@ -75,10 +87,24 @@ pub(crate) fn overlap<O: Observer>(
 /// overlap found within the tolerance stands.
 const MAX_ROUNDS: usize = 200;
 
-/// Whether the shadows are in counter-clockwise order.
-fn is_triangle(portal: &[Point; 3]) -> bool {
-    let [a, b, c] = portal.map(|p| p.shadow());
-    accurate_det(b - a, c - a) > 0.0
+/// Puts the first three corners in counter-clockwise order, or, if they have no area, their outermost
+/// ones in front; returns how many corners there are.
+fn first_polygon(corners: &mut [Point; MAX_CORNERS]) -> usize {
+    let [a, b, c] = [0, 1, 2].map(|k| corners[k].shadow());
+    let area = accurate_det(b - a, c - a);
+    if area < 0.0 {
+        corners.swap(1, 2);
+    }
+    if area != 0.0 {
+        return 3;
+    }
+    let order = |p: &Point, q: &Point| {
+        let (p, q) = (p.shadow(), q.shadow());
+        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
+    };
+    corners[..3].sort_unstable_by(order);
+    corners.swap(1, 2);
+    if corners[0].shadow() == corners[1].shadow() { 1 } else { 2 }
 }
 
 /// Adds a corner beyond the edge that follows corner `edge` of a counter-clockwise polygon, takes
@@ -107,41 +133,6 @@ fn insert(corners: &mut [Point; MAX_CORNERS], count: usize, edge: usize, new: Po
     count -= skip;
     corners[count] = new;
     count + 1
-}
-
-/// Moves the corners of the convex hull to the front, counter-clockwise, and returns their number.
-#[cold]
-fn hull(points: &mut [Point]) -> usize {
-    let at = |p: &Point| p.shadow();
-    points.sort_unstable_by(|p, q| {
-        let (p, q) = (at(p), at(q));
-        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
-    });
-    let mut chain = [points[0]; 2 * MAX_CORNERS];
-    let mut count = 0;
-    // The lower chain from left to right, then the upper one back.
-    for (base, upper) in [(0, false), (1, true)] {
-        let first = if upper { count - base } else { 0 };
-        for k in 0..points.len() {
-            let new = points[if upper { points.len() - 1 - k } else { k }];
-            while count > first + 1 {
-                let [a, b] = [chain[count - 2], chain[count - 1]].map(|p| at(&p));
-                if accurate_det(b - a, at(&new) - a) > 0.0 {
-                    break;
-                }
-                count -= 1;
-            }
-            if count > first && at(&chain[count - 1]) == at(&new) {
-                continue;
-            }
-            chain[count] = new;
-            count += 1;
-        }
-    }
-    // The upper chain ends where the lower one began.
-    let count = if count > 1 { count - 1 } else { 1 };
-    points[..count].copy_from_slice(&chain[..count]);
-    count
 }
 
 /// Whether all edges of the portal are farther from the line than `tolerance`.

@@ -11,10 +11,13 @@
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
 mod enclose;
+mod flat;
 mod follow;
 mod graze;
 mod refine;
 mod start;
+mod tied;
+mod wrap;
 
 use glam::{DVec2, DVec3};
 

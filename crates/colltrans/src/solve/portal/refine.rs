@@ -139,7 +139,7 @@ fn lowest_edge(difference: &MinkowskiDifference, portal: &Portal) -> [Point; 2] 
 
 /// How far a point lies below all three of the portal's along `normal`, times the normal's length.
 #[inline]
-fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
+pub(super) fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
     let depth = |corner: &Point| normal.dot(corner.at - point.at);
     depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
 }
@@ -171,7 +171,7 @@ fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -
 /// The upward normal of the plane through the three points; `None` if the portal is too narrow to
 /// have one.
 #[inline]
-fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
+pub(super) fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
     let [a, b, c] = portal.map(|p| p.shadow());
     let longest = (b - a).length_squared().max((c - b).length_squared());
     let longest = longest.max((a - c).length_squared());
@@ -186,7 +186,7 @@ fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVe
 /// From determinants without cancellation, so that narrow portals have accurate ones; if the line
 /// is outside in the rounded coordinates, those of the nearest point of the rim.
 #[inline]
-fn weights(portal: &Portal) -> [f64; 3] {
+pub(super) fn weights(portal: &Portal) -> [f64; 3] {
     let shadows = portal.map(|p| p.shadow());
     let [a, b, c] = shadows;
     let parts = [accurate_det(b, c), accurate_det(c, a), accurate_det(a, b)];
@@ -208,7 +208,7 @@ fn weights(portal: &Portal) -> [f64; 3] {
     nearest.1
 }
 
-fn largest(values: [f64; 3]) -> usize {
+pub(super) fn largest(values: [f64; 3]) -> usize {
     if values[0] >= values[1] && values[0] >= values[2] {
         0
     } else if values[1] >= values[2] {

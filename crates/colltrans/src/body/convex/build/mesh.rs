@@ -68,6 +68,19 @@ pub(super) fn from_mesh<F: AsRef<[u32]>>(
     Ok(surface.body(hull))
 }
 
+/// The topology of a body's own faces, checked to be convex.
+#[cfg(feature = "json")]
+pub(super) fn own_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Topology, BuildError> {
+    let surface = Surface::new(vertices, faces)?;
+    let ConvexityDefect { face, depth } = surface.defect(&surface.hull());
+    // Its polygons were merged within the tolerance of a hull of other points.
+    let tolerance = 4.0 * hull::tolerance(vertices);
+    if depth > tolerance {
+        return Err(BuildError::NotConvex { face, depth, tolerance });
+    }
+    Ok(surface.topology)
+}
+
 /// A closed, oriented surface over the vertices in use.
 struct Surface {
     /// Positions of the vertices in use.

@@ -46,6 +46,27 @@ impl ConvexPolyhedron {
         Ok(Self::from_hull(points, hull::convex_hull(points)))
     }
 
+    /// The box from corner `min` to corner `max`, of 8 vertices and 6 faces; a flat one if they have a
+    /// coordinate in common.
+    ///
+    /// # Errors
+    /// A corner that is not finite or out of range.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let plate = ConvexPolyhedron::cuboid(DVec3::new(-2.0, -2.0, -1.0), DVec3::new(2.0, 2.0, 0.0))?;
+    /// assert_eq!((plate.vertices().len(), plate.face_count()), (8, 6));
+    /// assert_eq!(plate.volume(), 16.0);
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    pub fn cuboid(min: DVec3, max: DVec3) -> Result<Self, BuildError> {
+        let of = |high: bool, axis: usize| if high { max[axis] } else { min[axis] };
+        let corner = |i: usize| DVec3::new(of(i & 1 > 0, 0), of(i & 2 > 0, 1), of(i & 4 > 0, 2));
+        Self::from_points(&std::array::from_fn::<DVec3, 8, _>(corner))
+    }
+
     /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of
     /// vertex indices, counter-clockwise as seen from outside.
     ///
@@ -80,6 +101,38 @@ impl ConvexPolyhedron {
         mesh::from_mesh(vertices, faces, tolerance)
     }
 
+    /// A body from what another one was: its vertices, its faces in their order, the indices of its
+    /// input and its hull error, checked to be convex.
+    ///
+    /// # Errors
+    /// As [`Self::from_mesh`]; [`BuildError::NotABody`] if there are no faces and not one or two
+    /// vertices, or vertices that the hull of all does not have.
+    #[cfg(feature = "json")]
+    pub(crate) fn from_own_faces(
+        vertices: &[DVec3],
+        faces: &[Vec<u32>],
+        input_indices: &[u32],
+        hull_error: f64,
+    ) -> Result<Self, BuildError> {
+        hull::check_points(vertices)?;
+        let sound_error = (0.0..=crate::MAX_MAGNITUDE).contains(&hull_error);
+        let vertex_count = vertices.len();
+        let like = hull::convex_hull(vertices);
+        let same = like.vertices.len() == vertex_count && input_indices.len() == vertex_count;
+        let flat = if faces.is_empty() { vertex_count <= 2 } else { like.dimension >= 2 };
+        if !same || !flat || !sound_error {
+            return Err(BuildError::NotABody { vertices: vertex_count, faces: faces.len() });
+        }
+        let dimension = like.dimension;
+        let topology =
+            if faces.is_empty() { like.topology } else { mesh::own_faces(vertices, faces)? };
+        let in_order = (0..vertex_count as u32).collect();
+        let hull = Hull { dimension, vertices: in_order, topology, violation: hull_error };
+        let mut body = Self::from_hull(vertices, hull);
+        body.input_index = input_indices.to_vec();
+        Ok(body)
+    }
+
     fn from_hull(points: &[DVec3], hull: Hull) -> Self {
         let Hull { dimension, vertices: input_index, topology, violation } = hull;
         let vertices: Vec<DVec3> = input_index.iter().map(|&i| points[i as usize]).collect();
@@ -90,16 +143,20 @@ impl ConvexPolyhedron {
         } else {
             SectionIndex::default()
         };
-        Self {
+        let mut body = Self {
             vertices,
             input_index,
             dimension,
             hull_error: violation,
+            flatness: 0.0,
+            large_faces: Vec::new(),
             topology,
             inertia,
             support,
             sections,
-        }
+        };
+        body.measure_faces();
+        body
     }
 
     /// A body of dimension 3 from its faces, which the caller knows to be convex.

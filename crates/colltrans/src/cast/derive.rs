@@ -1,0 +1,117 @@
+//! Answers that take more than one cast, from whoever runs the casts: one-off, or a tracker.
+
+use glam::DVec3;
+
+use super::Cast;
+use crate::answer::{
+    Clearance, Contact, ContactRange, DirectionalDepth, Grazing, Intersection, Outcome,
+};
+use crate::error::QueryError;
+use crate::number::range::MIN_MAGNITUDE;
+
+/// The contact range, from the casts along a direction and against it.
+pub(crate) fn range_of<'a>(
+    cast: &Cast<'a>,
+    mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
+) -> Result<ContactRange, QueryError> {
+    // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
+    let mut range = match (run(cast)?, run(&cast.reversed())?) {
+        (Outcome::Separated(separated), _) | (_, Outcome::Separated(separated)) => {
+            ContactRange::Separated(separated)
+        }
+        (Outcome::Contact(first), Outcome::Contact(last)) => ContactRange::Contact { first, last },
+        (Outcome::Grazing(first), Outcome::Contact(last)) => {
+            ContactRange::Grazing { first, last: Grazing { contact: last, ..first } }
+        }
+        (Outcome::Contact(first), Outcome::Grazing(last)) => {
+            ContactRange::Grazing { first: Grazing { contact: first, ..last }, last }
+        }
+        (Outcome::Grazing(first), Outcome::Grazing(last)) => ContactRange::Grazing { first, last },
+    };
+    match &mut range {
+        ContactRange::Contact { first, last } => in_order(first, last),
+        ContactRange::Grazing { first, last } => in_order(&mut first.contact, &mut last.contact),
+        ContactRange::Separated(_) => {}
+    }
+    Ok(range)
+}
+
+/// Where both ends are one, rounding may have turned the estimates round: then they are one number
+/// between the bounds of either end, which have some in common as both are right.
+fn in_order(first: &mut Contact, last: &mut Contact) {
+    let (enter, exit) = (first.translation, -last.translation);
+    if enter > exit {
+        let low = first.certificate.lower.max(-last.certificate.upper);
+        let high = first.certificate.upper.min(-last.certificate.lower);
+        let both = f64::midpoint(enter, exit).min(high).max(low);
+        (first.translation, last.translation) = (both, -both);
+    }
+}
+
+/// The clearance, from the cast along a direction and, if need be, the one against it.
+pub(crate) fn clearance_of<'a>(
+    cast: &Cast<'a>,
+    mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
+) -> Result<Clearance, QueryError> {
+    let contact = match run(cast)? {
+        Outcome::Contact(contact) => contact,
+        Outcome::Grazing(grazing) => return Ok(Clearance::Slides(grazing)),
+        Outcome::Separated(separated) => return Ok(Clearance::Separated(separated)),
+    };
+    if contact.translation >= -contact.certificate.tolerance {
+        let distance = contact.certificate.lower.max(0.0);
+        return Ok(Clearance::Blocked { distance, contact });
+    }
+    Ok(match run(&cast.reversed())? {
+        Outcome::Contact(last) if last.translation < -last.certificate.tolerance => {
+            Clearance::Overlapping { first: contact, last }
+        }
+        Outcome::Contact(last) => Clearance::Behind(last),
+        // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
+        Outcome::Grazing(grazing) => Clearance::Slides(grazing),
+        Outcome::Separated(separated) => Clearance::Separated(separated),
+    })
+}
+
+/// The depth of an overlap, from the clearance.
+pub(crate) fn depth_of<'a>(
+    cast: &Cast<'a>,
+    run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
+) -> Result<DirectionalDepth, QueryError> {
+    let clearance = clearance_of(cast, run)?;
+    let depth = match &clearance {
+        // Safe is what is not less than the true depth.
+        Clearance::Overlapping { first, .. } => -first.certificate.lower,
+        _ => 0.0,
+    };
+    Ok(DirectionalDepth { depth, clearance })
+}
+
+/// Whether the bodies meet where they are, from a cast along the line through their centres.
+pub(crate) fn intersection_of<'a>(
+    cast: &Cast<'a>,
+    mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
+) -> Result<Intersection, QueryError> {
+    let direction = between_centers(cast);
+    let through = cast.along(direction)?;
+    let outcome = run(&through)?;
+    let meets = match &outcome {
+        Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {
+            contact.translation <= contact.certificate.tolerance
+        }
+        Outcome::Separated(_) => false,
+    };
+    Ok(Intersection { meets, direction, outcome })
+}
+
+/// The unit vector from the moving body's centre to the fixed one's; any if they are one.
+fn between_centers(cast: &Cast) -> DVec3 {
+    let setting = &cast.setting;
+    let p = setting.moving_matrix * setting.moving.inertia().center;
+    let q = setting.fixed_matrix * setting.fixed.inertia().center;
+    let between = (q - p) + setting.offset;
+    // Components out of the exact range are rounding noise of zero.
+    let significant = |c: f64| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c };
+    let unit = between.try_normalize().map(|unit| unit.to_array().map(significant));
+    unit.map_or(DVec3::X, DVec3::from_array)
+}

@@ -1,0 +1,248 @@
+//! A query as a file, exact in bits.
+//!
+//! Numbers are written as decimals that read back as the same bits. A body is written as it is, with
+//! its faces, not as what it was made from: its vertices and half-edges come back in the same order,
+//! so that the same query takes the same way to the same bits. What is read is checked like a mesh.
+
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::Cast;
+use crate::answer::Solver;
+use crate::body::{ConvexPolyhedron, Pose};
+use crate::error::{BuildError, PoseError, QueryError};
+use crate::solve::options::{NarrowFrom, Narrowing, Options};
+
+/// Why a file is no query.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CaseError {
+    /// It is not JSON, or lacks something.
+    #[error("not a case: {0}")]
+    Syntax(#[from] serde_json::Error),
+    /// It was written by another version.
+    #[error("the format is {found:?}, not {FORMAT:?}")]
+    Format {
+        /// The format that the file names.
+        found: String,
+    },
+    /// A body is none.
+    #[error("{which} body: {error}")]
+    Body {
+        /// `"moving"` or `"fixed"`.
+        which: &'static str,
+        /// What is wrong with it.
+        error: BuildError,
+    },
+    /// A pose is none.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+    /// The direction or a choice is refused.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+}
+
+/// What a file of this version calls itself.
+const FORMAT: &str = "colltrans case 1";
+
+/// A query that owns its bodies, read from a file.
+///
+/// ```
+/// use colltrans::glam::{DQuat, DVec3};
+/// use colltrans::{Case, Cast, ConvexPolyhedron, Pose};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let start = Pose::new(DQuat::from_rotation_x(0.3), DVec3::new(-3.1, 0.3, 0.1))?;
+/// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+///
+/// let saved: String = cast.to_json();
+/// let case = Case::from_json(&saved)?;
+/// assert_eq!(case.cast()?.first_contact()?, cast.first_contact()?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Case {
+    bodies: [ConvexPolyhedron; 2],
+    poses: [Pose; 2],
+    direction: DVec3,
+    options: Options,
+}
+
+impl Case {
+    /// From what [`Cast::to_json`] has written.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        let file: File = serde_json::from_str(text)?;
+        if file.format != FORMAT {
+            return Err(CaseError::Format { found: file.format });
+        }
+        let body = |record: &BodyRecord, which| {
+            record.body().map_err(|error| CaseError::Body { which, error })
+        };
+        let case = Self {
+            bodies: [body(&file.moving, "moving")?, body(&file.fixed, "fixed")?],
+            poses: [file.moving_pose.pose()?, file.fixed_pose.pose()?],
+            direction: DVec3::from_array(file.direction),
+            options: file.options.options(),
+        };
+        case.cast()?;
+        Ok(case)
+    }
+
+    /// The query.
+    ///
+    /// # Errors
+    /// None: it was checked when it was read.
+    pub fn cast(&self) -> Result<Cast<'_>, QueryError> {
+        let [moving, fixed] = &self.bodies;
+        Cast::new(moving.at(self.poses[0]), fixed.at(self.poses[1]), self.direction)?
+            .with_options(self.options)
+    }
+}
+
+impl Cast<'_> {
+    /// The query as a file: bodies, poses, direction and choices, exact in bits.
+    ///
+    /// [`Case::from_json`] reads it. A tracker's memory is not part of it.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        let file = File {
+            format: FORMAT.into(),
+            moving: BodyRecord::of(self.moving()),
+            moving_pose: PoseRecord::of(&self.moving_pose()),
+            fixed: BodyRecord::of(self.fixed()),
+            fixed_pose: PoseRecord::of(&self.fixed_pose()),
+            direction: self.direction().to_array(),
+            options: OptionsRecord::of(&self.options()),
+        };
+        serde_json::to_string(&file).expect("numbers and names")
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    format: String,
+    moving: BodyRecord,
+    moving_pose: PoseRecord,
+    fixed: BodyRecord,
+    fixed_pose: PoseRecord,
+    direction: [f64; 3],
+    options: OptionsRecord,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyRecord {
+    vertices: Vec<[f64; 3]>,
+    /// None for a segment or a point; front and back for a flat polygon.
+    faces: Vec<Vec<u32>>,
+    input_indices: Vec<u32>,
+    hull_error: f64,
+}
+
+impl BodyRecord {
+    fn of(body: &ConvexPolyhedron) -> Self {
+        Self {
+            vertices: body.vertices().iter().map(DVec3::to_array).collect(),
+            faces: (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect(),
+            input_indices: body.input_indices().to_vec(),
+            hull_error: body.hull_error(),
+        }
+    }
+
+    fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
+        let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
+        ConvexPolyhedron::from_own_faces(
+            &vertices,
+            &self.faces,
+            &self.input_indices,
+            self.hull_error,
+        )
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PoseRecord {
+    /// Column by column.
+    matrix: [f64; 9],
+    translation: [f64; 3],
+}
+
+impl PoseRecord {
+    fn of(pose: &Pose) -> Self {
+        Self { matrix: pose.matrix().to_cols_array(), translation: pose.translation().to_array() }
+    }
+
+    fn pose(&self) -> Result<Pose, PoseError> {
+        let translation = DVec3::from_array(self.translation);
+        Pose::from_matrix(DMat3::from_cols_array(&self.matrix), translation)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OptionsRecord {
+    solver: SolverName,
+    graze_tolerance: f64,
+    narrow_from: NarrowFromName,
+    /// Infinite if there is none.
+    narrowing_gap: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum SolverName {
+    Auto,
+    Cta,
+    Portal,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum NarrowFromName {
+    Ellipsoids,
+    Center,
+}
+
+impl OptionsRecord {
+    fn of(options: &Options) -> Self {
+        Self {
+            solver: match options.solver {
+                Solver::Auto => SolverName::Auto,
+                Solver::Cta => SolverName::Cta,
+                Solver::Portal => SolverName::Portal,
+            },
+            graze_tolerance: options.graze_tolerance,
+            narrow_from: match options.narrowing.start {
+                NarrowFrom::Ellipsoids => NarrowFromName::Ellipsoids,
+                NarrowFrom::Center => NarrowFromName::Center,
+            },
+            narrowing_gap: Some(options.narrowing.gap).filter(|gap| gap.is_finite()),
+        }
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            solver: match self.solver {
+                SolverName::Auto => Solver::Auto,
+                SolverName::Cta => Solver::Cta,
+                SolverName::Portal => Solver::Portal,
+            },
+            graze_tolerance: self.graze_tolerance,
+            narrowing: Narrowing {
+                start: match self.narrow_from {
+                    NarrowFromName::Ellipsoids => NarrowFrom::Ellipsoids,
+                    NarrowFromName::Center => NarrowFrom::Center,
+                },
+                gap: self.narrowing_gap.unwrap_or(f64::INFINITY),
+            },
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Where the line passes a vertex, an edge or the rim of a triangle by less than rounding can tell.
+//!
+//! On which side it passes does not matter if what it passes is lowest: if it lies in a supporting
+//! plane of `M`, the plane is the lower bound, and what the line nearly meets there is an upper bound
+//! as soon as the line is deep inside the shadow of `M`
+//! ([`is_met_at`](MinkowskiDifference::is_met_at)). Parts of machines stand like this as a rule, and
+//! then nothing has to be decided exactly. Whatever is not settled so is left to exact decisions.
+
+use glam::{DVec2, DVec3};
+
+use super::enclose::nearest_share;
+use super::follow::beside;
+use super::refine::{Optimum, depth_below, largest, plane_normal, weights};
+use super::{Portal, normal_of};
+use crate::number::determinant::accurate_det;
+use crate::setting::VertexPair;
+use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::solve::observe::{Observer, Support, Watch};
+
+/// What a support point within rounding error of the line says.
+pub(super) enum Pointed {
+    /// The line meets `M` here: the support point's plane is the lower bound, the portal's point on
+    /// the line the upper one.
+    Lowest(Portal, Optimum),
+    /// The direction, any length, in which the line is.
+    Toward(DVec2),
+    /// Nothing, because it is too close to be told.
+    Unknown,
+}
+
+/// Looks for the line around the support point `vertex` along a slope.
+///
+/// If the line is deep inside the shadow of `M`, the point is as low as it can be told. If not, the
+/// exact shadow decides. If the line is on the point, any triangle with this corner is pierced
+/// there. If it is beside it, the face of the point in whose direction it lies is, and the line
+/// passes it at a height that the shadow's exact direction tells, however steep the face is. What
+/// lies higher than the plane by less than the noise is as low as can be told.
+#[cold]
+#[inline(never)]
+pub(super) fn pointed<O: Observer>(
+    difference: &MinkowskiDifference,
+    vertex: &Point,
+    slope: DVec2,
+    watch: &mut Watch<O>,
+) -> Pointed {
+    let normal = normal_of(slope);
+    let optimum = |weights| Optimum { normal, lowest: vertex.pair, weights };
+    let at_corner = || {
+        let portal =
+            difference.setting.fixed.neighbours(vertex.pair.fixed).first().and_then(|&q| {
+                let to = difference.vertex(VertexPair { fixed: q, ..vertex.pair });
+                corner(difference, vertex, &to)
+            });
+        match portal {
+            Some(portal) => {
+                let weights = weights_of(&portal, vertex, 0.0);
+                Pointed::Lowest(portal, optimum(weights))
+            }
+            None => Pointed::Unknown,
+        }
+    };
+    let residual = vertex.shadow().length();
+    if residual <= difference.noise.point() && difference.is_met_at(vertex.at, residual, normal) {
+        return at_corner();
+    }
+    let Some(shadow) = difference.exact_shadow(vertex.pair) else { return Pointed::Unknown };
+    if shadow == DVec2::ZERO {
+        return at_corner();
+    }
+    let line = -shadow.normalize();
+    let Some(portal) = beside(difference, vertex, slope, line, &mut None, watch) else {
+        return Pointed::Toward(line);
+    };
+    if [(1, 2), (2, 0)].iter().any(|&(i, j)| !difference.is_left(&portal[i], &portal[j])) {
+        return Pointed::Toward(line);
+    }
+    // Of the three corners, `vertex` is the first or the second.
+    let here = usize::from(portal[0].pair != vertex.pair);
+    let [i, j] = [1 - here, 2];
+    let [a, b] = [i, j].map(|k| portal[k].at - vertex.at);
+    let (u, v) = (a.truncate(), b.truncate());
+    let area = accurate_det(u, v);
+    let least = difference.touching() * (u.length() + v.length());
+    let parts = [-accurate_det(shadow, v), -accurate_det(u, shadow)].map(|p| (p / area).max(0.0));
+    let sum = parts[0] + parts[1];
+    let height = parts[0] * normal.dot(a) + parts[1] * normal.dot(b);
+    let level = height <= difference.noise.point() * normal.length();
+    // Narrower triangles have no plane.
+    if area.abs() <= least || sum > 1.0 || !level {
+        return Pointed::Toward(line);
+    }
+    let mut weights = [0.0; 3];
+    (weights[here], weights[i], weights[j]) = (1.0 - sum, parts[0], parts[1]);
+    Pointed::Lowest(portal, optimum(weights))
+}
+
+/// The weights of a place on the first edge of a portal, given as a share of the way from one of the
+/// edge's ends.
+fn weights_of(portal: &Portal, from: &Point, share: f64) -> [f64; 3] {
+    if portal[0].pair == from.pair { [1.0 - share, share, 0.0] } else { [share, 1.0 - share, 0.0] }
+}
+
+/// A triangle with an edge of `M` and another edge of the same body at its end `from`,
+/// counter-clockwise.
+fn corner(difference: &MinkowskiDifference, from: &Point, to: &Point) -> Option<Portal> {
+    let VertexPair { moving, fixed } = from.pair;
+    let setting = difference.setting;
+    let other = |neighbours: &[u32], not: u32| neighbours.iter().copied().find(|&w| w != not);
+    let third = if to.pair.fixed == fixed {
+        let moving = other(setting.moving.neighbours(moving), to.pair.moving)?;
+        VertexPair { moving, fixed }
+    } else {
+        let fixed = other(setting.fixed.neighbours(fixed), to.pair.fixed)?;
+        VertexPair { moving, fixed }
+    };
+    let third = difference.vertex(third);
+    let (way, across) = (to.shadow() - from.shadow(), third.shadow() - from.shadow());
+    Some(if way.perp_dot(across) < 0.0 { [*to, *from, third] } else { [*from, *to, third] })
+}
+
+/// The line passes an edge or a corner of the portal by less than rounding can tell.
+///
+/// That does not matter if it is clearly beyond another edge, or if the portal proves to be the
+/// lowest face and the line to be deep inside the shadow of `M`; only else it is decided exactly.
+#[cold]
+#[inline(never)]
+pub(super) fn crossed_or_tied<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    optimum: &mut Option<Optimum>,
+    watch: &mut Watch<O>,
+) -> Option<usize> {
+    let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [&portal[i], &portal[j]]);
+    let clear = edges.iter().position(|[i, j]| difference.is_left_rounded(i, j) == Some(false));
+    if clear.is_some() {
+        return clear;
+    }
+    *optimum = lowest_face(difference, portal, watch);
+    if optimum.is_some() {
+        return None;
+    }
+    edges.iter().position(|[i, j]| !difference.is_left(i, j))
+}
+
+/// The optimum on an edge of `M` that the line meets up to rounding, if the plane through it supports
+/// `M` and the line is so deep inside the shadow of `M` that rounding does not matter.
+#[cold]
+#[inline(never)]
+pub(super) fn lowest_edge<O: Observer>(
+    difference: &MinkowskiDifference,
+    [from, to]: &[Point; 2],
+    normal: DVec3,
+    watch: &mut Watch<O>,
+) -> Option<(Portal, Optimum)> {
+    let share = nearest_share([from.shadow(), to.shadow()]);
+    let contact = from.at + (to.at - from.at) * share;
+    let residual = contact.truncate().length();
+    let noise = difference.noise.point();
+    if residual > noise || !difference.is_met_on([from, to], contact, residual, normal) {
+        return None;
+    }
+    let portal = corner(difference, from, to)?;
+    let point = difference.support_from(normal, from.pair);
+    watch.support(|| Support::of(normal, &point));
+    if normal.dot(contact - point.at) > noise * normal.length() {
+        return None;
+    }
+    let weights = weights_of(&portal, from, share);
+    Some((portal, Optimum { normal, lowest: point.pair, weights }))
+}
+
+/// The optimum in a portal that contains the line up to rounding, if its plane supports `M` and the
+/// line is so deep inside the shadow of `M` that rounding does not matter.
+fn lowest_face<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    watch: &mut Watch<O>,
+) -> Option<Optimum> {
+    let normal = plane_normal(difference, portal)?;
+    let weights = weights(portal);
+    let contact = portal.iter().zip(weights).map(|(corner, w)| corner.at * w).sum::<DVec3>();
+    let residual = contact.truncate().length();
+    let least = 2 - largest([weights[2], weights[1], weights[0]].map(|w| -w));
+    let edge = [&portal[(least + 1) % 3], &portal[(least + 2) % 3]];
+    if residual > difference.noise.point() || !difference.is_met_on(edge, contact, residual, normal)
+    {
+        return None;
+    }
+    let point = difference.support_from(normal, portal[2].pair);
+    watch.support(|| Support::of(normal, &point));
+    let is_lowest =
+        depth_below(portal, normal, &point) <= difference.noise.point() * normal.length();
+    is_lowest.then_some(Optimum { normal, lowest: point.pair, weights })
+}

@@ -1,0 +1,97 @@
+//! Gift wrapping: which neighbour a plane meets first that turns about a vertex or an edge of `M`.
+
+use std::hint::select_unpredictable;
+
+use glam::{DVec2, DVec3};
+
+use crate::body::ConvexPolyhedron;
+use crate::setting::VertexPair;
+use crate::setting::minkowski::{MinkowskiDifference, Point};
+
+/// A vertex with more neighbours than this is not looked around.
+const MOST_NEIGHBOURS: usize = 32;
+
+/// A plane that turns downwards on one side.
+pub(super) struct Tilt {
+    /// Its normal (shadow frame, any length).
+    pub(super) normal: DVec3,
+    /// Away from the axis of the turn, in the shadow plane, any length.
+    pub(super) outward: DVec2,
+}
+
+/// What a turning plane meets first.
+pub(super) enum Neighbour {
+    Met(Point),
+    None,
+    TooMany,
+}
+
+/// Of the neighbours of a vertex of `M` on the axis of the turn, the one with the least rise over
+/// its run.
+#[inline]
+pub(super) fn first_met(
+    difference: &MinkowskiDifference,
+    vertex: &Point,
+    tilt: &Tilt,
+) -> Neighbour {
+    let VertexPair { moving, fixed } = vertex.pair;
+    let setting = difference.setting;
+    let (normal, outward) = (tilt.normal, tilt.outward.extend(0.0));
+    // A neighbour closer to the axis than this is not beyond it.
+    let least = difference.touching() * tilt.outward.length();
+    let turn =
+        Turn { up: -difference.in_moving(normal), out: -difference.in_moving(outward), least };
+    let p = turn.first(setting.moving, moving);
+    let turn = Turn { up: difference.in_fixed(normal), out: difference.in_fixed(outward), least };
+    let q = turn.first(setting.fixed, fixed);
+    let (Some(p), Some(q)) = (p, q) else { return Neighbour::TooMany };
+    let of_fixed = q.rise * p.run < p.rise * q.run;
+    let found = if of_fixed { q.vertex } else { p.vertex };
+    if found == NOBODY {
+        return Neighbour::None;
+    }
+    let moving = select_unpredictable(of_fixed, moving, found);
+    let fixed = select_unpredictable(of_fixed, found, fixed);
+    Neighbour::Met(difference.vertex(VertexPair { moving, fixed }))
+}
+
+/// A turn seen from one body's frame: `up` and `out` measure rise and run.
+struct Turn {
+    up: DVec3,
+    out: DVec3,
+    /// Least run.
+    least: f64,
+}
+
+/// The neighbour that a turn meets first.
+struct First {
+    vertex: u32,
+    rise: f64,
+    run: f64,
+}
+
+/// No neighbour lies beyond the axis.
+const NOBODY: u32 = u32::MAX;
+
+impl Turn {
+    /// The first among the neighbours of one body's vertex; `None` if there are too many.
+    #[inline]
+    #[expect(clippy::needless_bitwise_bool, reason = "a branch here is not predictable")]
+    fn first(&self, body: &ConvexPolyhedron, vertex: u32) -> Option<First> {
+        let here = body.vertices()[vertex as usize];
+        let neighbours = body.neighbours(vertex);
+        if neighbours.len() > MOST_NEIGHBOURS {
+            return None;
+        }
+        let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
+        for &w in neighbours {
+            let edge = body.vertices()[w as usize] - here;
+            let (rise, run) = (self.up.dot(edge), self.out.dot(edge));
+            let sooner = (run > self.least) & (rise * first.run < first.rise * run);
+            first.vertex = select_unpredictable(sooner, w, first.vertex);
+            first.rise = select_unpredictable(sooner, rise, first.rise);
+            first.run = select_unpredictable(sooner, run, first.run);
+        }
+        Some(first)
+    }
+}

@@ -1,0 +1,54 @@
+//! Queries as files: the same bits again, and no file that is not one.
+#![cfg(feature = "json")]
+
+use colltrans::{Case, CaseError, Solver};
+use colltrans_oracle::settings::{FAMILIES, setting};
+
+#[test]
+fn every_family_comes_back_in_bits() {
+    for (family, ..) in FAMILIES {
+        for seed in 0..40 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            for solver in [Solver::Portal, Solver::Cta] {
+                let cast = setting.query(&bodies).expect("a query").with_solver(solver);
+                let saved = cast.to_json();
+                let case = Case::from_json(&saved).unwrap_or_else(|e| panic!("{setting}: {e}"));
+                let again = case.cast().expect("checked");
+                assert_eq!(again.to_json(), saved, "{setting}");
+                // Debug prints a number so that it reads back as the same bits.
+                let answers = [cast, again].map(|cast| {
+                    let range = cast.contact_range().expect("an answer");
+                    let outcome = cast.first_contact().expect("an answer");
+                    format!("{range:?} {outcome:?}")
+                });
+                assert_eq!(answers[0], answers[1], "{setting}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_no_case_is_refused() {
+    let setting = setting("boxes", 3);
+    let bodies = setting.bodies().expect("bodies");
+    let saved = setting.query(&bodies).expect("a query").to_json();
+    let refused = |from: &str, to: &str| {
+        let changed = saved.replacen(from, to, 1);
+        assert_ne!(changed, saved, "{from}");
+        Case::from_json(&changed).expect_err(to)
+    };
+    assert!(matches!(Case::from_json("{}"), Err(CaseError::Syntax(_))));
+    assert!(matches!(refused("case 1", "case 2"), CaseError::Format { .. }));
+    assert!(matches!(refused("\"faces\":[", "\"faces\":[[0,1,2],"), CaseError::Body { .. }));
+    assert!(matches!(refused("\"hull_error\":", "\"hull_error\":-1"), CaseError::Body { .. }));
+    assert!(matches!(refused("\"matrix\":[", "\"matrix\":[9"), CaseError::Pose(_)));
+    assert!(matches!(
+        refused("\"direction\":[", "\"direction\":[1e300,0,0],\"x\":["),
+        CaseError::Syntax(_)
+    ));
+    assert!(matches!(
+        refused("\"graze_tolerance\":", "\"graze_tolerance\":-1"),
+        CaseError::Query(_)
+    ));
+}

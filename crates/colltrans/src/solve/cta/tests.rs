@@ -265,7 +265,7 @@ fn the_exit_test_ends_nearly_every_search_at_the_contact() {
     for round in 0..500 {
         let (p, q) = (&bodies[random.index(bodies.len())], &bodies[random.index(bodies.len())]);
         let Example { poses, d } = colliding(&mut random);
-        let setting = Setting::new(p, &poses[0], q, &poses[1], d).unwrap();
+        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), d).unwrap();
         let mut exits = Exits::default();
         let narrowed = minimise(&setting, &EXACT, &mut Watch::new(&mut exits));
         let truth =
@@ -441,7 +441,7 @@ fn work_per_problem(bodies: &[ConvexPolyhedron; 2], aside: f64, rounds: usize) -
         let shift = random.unit().cross(e.d).normalize() * aside;
         e.poses[1] = Pose::new(e.poses[1].rotation(), e.poses[1].translation() + shift).unwrap();
         let [p, q] = bodies;
-        let setting = Setting::new(p, &e.poses[0], q, &e.poses[1], e.d).unwrap();
+        let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
         problems += minimised(&setting, &EXACT).1;
     }
     let [crossings, steps] = super::section::work::take();

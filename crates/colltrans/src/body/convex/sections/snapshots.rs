@@ -72,6 +72,45 @@ impl Mesh<'_> {
     }
 }
 
+/// Climbs to one level after the other, each along the edges that lead highest. A vertex passes on to
+/// later climbs where the one before arrived, so all climbs to a level visit it once.
+struct Climbs<'a> {
+    mesh: &'a Mesh<'a>,
+    highest: Vec<Option<u32>>,
+    /// For which climb a vertex knows the edge of arrival, and that edge.
+    known: Vec<(u32, u32)>,
+    passed: Vec<u32>,
+}
+
+impl<'a> Climbs<'a> {
+    fn new(mesh: &'a Mesh<'a>) -> Self {
+        let known = vec![(u32::MAX, 0); mesh.vertices.len()];
+        Self { mesh, highest: mesh.highest_edges(), known, passed: Vec::new() }
+    }
+
+    /// The edge that crosses `to`, or the last one below it, on climb number `number`.
+    fn from(&mut self, mut up: u32, (number, to): (u32, f64)) -> u32 {
+        self.passed.clear();
+        loop {
+            let end = self.mesh.topology.target(up) as usize;
+            let Some(ahead) = self.highest[end] else { break };
+            if self.mesh.levels[end] > to {
+                break;
+            }
+            if self.known[end].0 == number {
+                up = self.known[end].1;
+                break;
+            }
+            self.passed.push(end as u32);
+            up = ahead;
+        }
+        for &vertex in &self.passed {
+            self.known[vertex as usize] = (number, up);
+        }
+        up
+    }
+}
+
 /// The sections across one axis.
 #[derive(Debug, Clone)]
 pub(crate) struct AxisSections {
@@ -172,21 +211,14 @@ impl AxisSections {
 
     /// Climbs from every entry to the next snapshot, or the top.
     fn find_ways(&mut self, mesh: &Mesh) {
-        let highest = mesh.highest_edges();
+        let mut climbs = Climbs::new(mesh);
         for index in 0..self.halfway.len() {
             let from = self.halfway[index];
             let to = self.halfway.get(index + 1).map_or(self.range[1], |&next| next);
             for i in self.starts[index] as usize..self.starts[index + 1] as usize {
-                let Entry { mut up, position, .. } = self.entries[i];
-                loop {
-                    let end = mesh.topology.target(up);
-                    let ahead = highest[end as usize];
-                    match ahead {
-                        Some(ahead) if mesh.levels[end as usize] <= to => up = ahead,
-                        _ => break,
-                    }
-                }
-                let there = self.position(mesh.crossing(up, to));
+                let Entry { up, position, .. } = self.entries[i];
+                let arrival = climbs.from(up, (index as u32, to));
+                let there = self.position(mesh.crossing(arrival, to));
                 let way = [0, 1].map(|k| f64::from(there[k] - position[k]) / (to - from));
                 self.entries[i].way = way.map(|w| if w.is_finite() { w as f32 } else { 0.0 });
             }

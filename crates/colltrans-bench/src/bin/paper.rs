@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use colltrans::{
     BuildError, Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Steps,
-    Tracker, cast_with,
+    Tracker,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParrySetting};
@@ -252,12 +252,10 @@ fn one_off(blocks: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
     let mut measured: Vec<Measured> = CONTESTANTS.iter().map(|_| Measured::default()).collect();
     let mut parry = Times::default();
     for (turn, (bodies, settings)) in blocks.iter().enumerate() {
-        let [moving, fixed] = &bodies.pair;
         for k in 0..CONTESTANTS.len() {
             let who = (turn + k) % CONTESTANTS.len();
             let options = options(CONTESTANTS[who].1);
-            let cast =
-                |s: &Setting| cast_with(moving, &s.moving, fixed, &s.fixed, s.direction, &options);
+            let cast = |s: &Setting| s.cast(bodies, &options)?.first_contact();
             for setting in settings {
                 std::hint::black_box(cast(setting).is_ok());
             }
@@ -279,14 +277,14 @@ fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
     let mut measured: Vec<Measured> = contestants.iter().map(|_| Measured::default()).collect();
     let mut parry = Times::default();
     for (turn, (bodies, sequence)) in sequences.iter().enumerate() {
-        let [moving, fixed] = &bodies.pair;
         for k in 0..contestants.len() {
             let who = (turn + k) % contestants.len();
             let (gap, focus) = contestants[who];
             let options = options(Some(Narrowing { start: NarrowFrom::Center, gap }));
-            let mut tracker = Tracker::new(moving, fixed).with_focus(focus).expect("a focus");
-            for Setting { moving: p, fixed: q, direction: d } in sequence {
-                let (outcome, spent) = stopwatch.time(|| tracker.cast_with(p, q, *d, &options));
+            let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
+            for setting in sequence {
+                let (outcome, spent) =
+                    stopwatch.time(|| tracker.first_contact(&setting.cast(bodies, &options)?));
                 measured[who].note(spent, &outcome);
             }
         }

@@ -31,15 +31,21 @@ impl Hash {
     }
 
     fn vector(&mut self, v: DVec3) {
-        v.to_array().into_iter().for_each(|x| self.number(x));
+        for x in v.to_array() {
+            self.number(x);
+        }
     }
 
     fn contact(&mut self, contact: &Contact, cast: &Cast) {
         let proof = &contact.certificate;
         self.number(contact.translation);
         self.vector(contact.normal);
-        [proof.lower, proof.upper, proof.tolerance].into_iter().for_each(|x| self.number(x));
-        proof.weights.into_iter().for_each(|w| self.number(w));
+        for x in [proof.lower, proof.upper, proof.tolerance] {
+            self.number(x);
+        }
+        for weight in proof.weights {
+            self.number(weight);
+        }
         for pair in proof.pairs {
             self.bits(u64::from(pair.moving) << 32 | u64::from(pair.fixed));
         }
@@ -48,7 +54,9 @@ impl Hash {
         self.vector(points.on_fixed);
         let features = contact.features(cast);
         for (feature, body) in [(features.moving, cast.moving()), (features.fixed, cast.fixed())] {
-            feature.vertices(body).into_iter().for_each(|v| self.bits(v.into()));
+            for vertex in feature.vertices(body) {
+                self.bits(vertex.into());
+            }
         }
         let steps = contact.steps;
         for count in [steps.planar_problems, steps.supports, steps.pivots] {

@@ -355,10 +355,21 @@ impl<O: Observer> Run<'_, '_, O> {
         let (start, normals) = self.apart(normal, found);
         let margin = proof::safe_margin(&self.difference, found, &normals);
         let certificate = Separation { normal, margin };
-        (margin > 0.0).then(|| {
-            *next = start;
-            Separated { certificate, solver: self.solver, steps: self.watch.steps }
-        })
+        if margin <= 0.0 || !self.others_agree(&certificate) {
+            return None;
+        }
+        *next = start;
+        Some(Separated { certificate, solver: self.solver, steps: self.watch.steps })
+    }
+
+    /// Whether who checks a separation will find it proven, too.
+    ///
+    /// They round in their own way and may find other support points: together that takes less than
+    /// twice what counts as touching from a margin. A smaller one is checked here, as they will.
+    #[inline]
+    fn others_agree(&self, certificate: &Separation) -> bool {
+        certificate.margin > 2.0 * self.difference.noise.touching()
+            || certificate.verify(self.difference.setting).is_ok()
     }
 
     /// What is left to the next query, and the normal in both bodies' frames.

@@ -30,11 +30,16 @@ pub(super) enum Flat {
 /// Steps around a face: each leaves half of it behind, or nearly so.
 const MAX_STEPS: usize = 12;
 
-/// Whether one of the bodies has faces with many corners.
+/// Bodies with more vertices than this may have faces that are too long to go around (measured).
+const MOST_VERTICES: usize = 256;
+
+/// Whether one of the bodies has faces with many corners, and neither has too many.
 #[inline]
 pub(super) fn has_large_faces(difference: &MinkowskiDifference) -> bool {
+    let setting = difference.setting;
+    let most = setting.moving.vertices().len().max(setting.fixed.vertices().len());
     let large = |body: &ConvexPolyhedron| body.face_count() < body.vertices().len();
-    large(difference.setting.moving) || large(difference.setting.fixed)
+    most <= MOST_VERTICES && (large(setting.moving) || large(setting.fixed))
 }
 
 /// From a triangle of a face, and the corner where an edge begins over which the line has left it.

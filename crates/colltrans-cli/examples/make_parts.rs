@@ -21,7 +21,58 @@ pub(crate) fn write_parts(folder: &Path) -> Result<(), Error> {
     write(&dodecahedron(), folder.join("dodecahedron.off"))?;
     write(&triangulated(&gear_hull()), folder.join("gear_hull.stl"))?;
     write(&ellipsoid(DVec3::new(1.0, 0.7, 1.3), 24, 24), folder.join("ellipsoid_a.obj"))?;
-    write(&ellipsoid(DVec3::new(0.8, 1.2, 0.6), 48, 24), folder.join("ellipsoid_b.off"))
+    write(&ellipsoid(DVec3::new(0.8, 1.2, 0.6), 48, 24), folder.join("ellipsoid_b.off"))?;
+    write(&triangulated(&bolt()), folder.join("bolt.stl"))?;
+    write(&plate(), folder.join("plate.off"))
+}
+
+/// A bolt along z: a shank of radius 1.5 from -5 to 0 with 24 sides, above it a hexagonal head of
+/// circumradius 3 and height 2. It is not convex.
+fn bolt() -> Mesh {
+    let shank: Vec<DVec2> = circle(24).into_iter().map(|c| c * 1.5).collect();
+    let head: Vec<DVec2> = circle(12).into_iter().step_by(2).map(|c| c * 3.0).collect();
+    let at = |outline: &[DVec2], z: f64| outline.iter().map(|c| c.extend(z)).collect::<Vec<_>>();
+    let vertices = [at(&shank, -5.0), at(&shank, 0.0), at(&head, 0.0), at(&head, 2.0)].concat();
+    let mut faces = vec![(0..24).rev().collect(), (54..60).collect()];
+    faces.extend(walls(0, 24, 24));
+    faces.extend(walls(48, 54, 6));
+    // Below the head, from each of its corners to a part of the shank's rim.
+    faces.extend(ring(48, 6, 24, 24).map(|face| face.into_iter().rev().collect()));
+    Mesh::new(vertices, faces)
+}
+
+/// A square plate, 14 x 14, from z = -3 to 0, with a round hole of radius 1.6 in its middle.
+fn plate() -> Mesh {
+    let hole: Vec<DVec2> = circle(48).into_iter().map(|c| c * 1.6).collect();
+    let square = [[7.0, 7.0], [-7.0, 7.0], [-7.0, -7.0], [7.0, -7.0]].map(DVec2::from_array);
+    let at = |outline: &[DVec2], z: f64| outline.iter().map(|c| c.extend(z)).collect::<Vec<_>>();
+    let vertices = [at(&square, -3.0), at(&square, 0.0), at(&hole, -3.0), at(&hole, 0.0)].concat();
+    let mut faces: Vec<Vec<u32>> = walls(0, 4, 4).collect();
+    faces.extend(walls(8, 56, 48).map(|face| face.into_iter().rev().collect()));
+    faces.extend(ring(4, 4, 56, 48));
+    faces.extend(ring(0, 4, 8, 48).map(|face| face.into_iter().rev().collect()));
+    Mesh::new(vertices, faces)
+}
+
+/// The walls between two outlines of `count` vertices, one above the other, facing outwards.
+fn walls(lower: u32, upper: u32, count: u32) -> impl Iterator<Item = Vec<u32>> {
+    (0..count).map(move |i| {
+        let j = (i + 1) % count;
+        vec![lower + i, lower + j, upper + j, upper + i]
+    })
+}
+
+/// Triangles between an outline of `corners` vertices and a circle inside it of `count`, a multiple of
+/// them, facing upwards. Each corner sees an equal part of the circle.
+fn ring(outer: u32, corners: u32, inner: u32, count: u32) -> impl Iterator<Item = Vec<u32>> {
+    let part = count / corners;
+    let shift = if corners == 4 { 0 } else { part / 2 };
+    (0..corners).flat_map(move |corner| {
+        let rim = move |i: u32| inner + (corner * part + i + count - shift) % count;
+        let fan = (0..part).map(move |i| vec![outer + corner, rim(i + 1), rim(i)]);
+        let next = outer + (corner + 1) % corners;
+        fan.chain([vec![outer + corner, next, rim(part)]])
+    })
 }
 
 /// A prism over the convex outline of a bracket, 6 long, 5 high, 2 deep.

@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+mod assembly;
 mod help;
 mod values;
 
@@ -11,14 +12,20 @@ use colltrans::Solver;
 use colltrans::glam::DVec3;
 
 use crate::body::Recipe;
-use help::{BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, FORMATS};
+use crate::solid;
+pub(crate) use assembly::AssemblyArguments;
+use help::{
+    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEAR_ANSWERS, CLEARANCE_ANSWERS, EXIT_CODES,
+    FORMATS,
+};
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, threads};
 
-/// How far can one convex body move along a direction before it touches another?
+/// How far can one body move along a direction before it touches another?
 ///
-/// Every answer comes with proven bounds. Start with `colltrans info MESH` to see whether a mesh can
-/// be used, then `colltrans cast MOVING FIXED --direction -z`.
+/// Start with `colltrans info MESH` to see what a mesh is. Convex bodies: `colltrans cast MOVING FIXED
+/// --direction -z`, with proven bounds. Parts that have holes and hollows: `colltrans clear MOVING
+/// --from FIXED --direction -z`.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXIT_CODES, after_long_help = format!("{CAST_EXAMPLES}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
 pub(crate) struct Arguments {
@@ -40,9 +47,22 @@ pub(crate) enum Command {
     /// the moving one slides.
     #[command(after_help = EXIT_CODES, after_long_help = format!("{CLEARANCE_ANSWERS}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
     Clearance(Box<PairArguments>),
+    /// Say how far a part that need not be convex can move before other parts block it
+    ///
+    /// Several files on one side are one body, in place. Parts are closed surfaces, and are taken as
+    /// they are, with their holes.
+    #[command(after_help = EXIT_CODES, after_long_help = format!("{CLEAR_ANSWERS}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
+    Clear(Box<ClearArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = EXIT_CODES, after_long_help = format!("{BATCH_FORMAT}\n\n{EXIT_CODES}"))]
     Batch(BatchArguments),
+    /// Say which parts of an assembly come out, along which directions, in which order, and what
+    /// holds the rest
+    ///
+    /// Parts are solids of any shape, not only convex ones. Without --direction, directions are
+    /// found: contact normals and what is orthogonal to them, cylinder axes, the world's axes.
+    #[command(after_help = EXIT_CODES, after_long_help = format!("{ASSEMBLY_FORMAT}\n\n{EXIT_CODES}"))]
+    Assembly(Box<AssemblyArguments>),
     /// Say what a mesh file holds, and whether it is convex
     #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
     Info(InfoArguments),
@@ -91,6 +111,67 @@ pub(crate) struct PairArguments {
     pub(crate) hulls: HullArguments,
     #[command(flatten)]
     pub(crate) body: BodyArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ClearArguments {
+    /// The meshes that move, as one body
+    #[arg(required = true, value_name = "MOVING")]
+    pub(crate) moving: Vec<PathBuf>,
+    /// The meshes that stay
+    #[arg(long, required = true, num_args = 1.., value_name = "FIXED")]
+    pub(crate) from: Vec<PathBuf>,
+    /// Where to: three numbers, not all zero, or an axis: x, -x, y, -y, z, -z
+    ///
+    /// The answer is in multiples of this vector: a length, in the unit of the meshes, if it has
+    /// length 1, as the axes have.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) direction: DVec3,
+    /// How deep bodies may enter each other [default: from the files' precision]
+    ///
+    /// In the unit of the meshes. Both bodies are shrunk by half of it. A curved fit of tessellated
+    /// parts needs the chord errors of both together. The default is twice what rounding may have
+    /// made of the coordinates of both files together (2.4e-7 of the largest coordinate for binary
+    /// STL and PLY with float coordinates, else 3.6e-15 of it), and no less than what turned poses
+    /// need. The answer states it.
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// Let what overlaps at the start pass, and say what that is
+    ///
+    /// Faces that cross now do not block; contacts that begin later do.
+    #[arg(long)]
+    pub(crate) ignore_start_overlaps: bool,
+    /// Print the answer as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw the parts and what stops them as an SVG picture
+    #[arg(long, value_name = "OUT.svg", value_parser = picture)]
+    pub(crate) picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) places: PlaceArguments,
+    /// Take surfaces that are not closed, as scans are: they block from their front, without an inside
+    #[arg(long, help_heading = OPEN_OR_UNCLEAN)]
+    pub(crate) open: bool,
+    /// How far apart vertices on open edges may be to be merged, in the unit of the file [default:
+    /// a few roundings of the largest coordinate]
+    ///
+    /// As for `cast`. What was merged is said. A closed surface is left as it is.
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, help_heading = OPEN_OR_UNCLEAN)]
+    pub(crate) merge_tolerance: Option<f64>,
+}
+
+const OPEN_OR_UNCLEAN: &str = "Meshes that are not closed or clean";
+
+impl ClearArguments {
+    /// How the files of the moving and of the fixed body are read.
+    pub(crate) fn recipes(&self) -> [solid::Recipe; 2] {
+        let &Self { merge_tolerance, open, .. } = self;
+        [self.places.moving_scale, self.places.fixed_scale].map(|scale| solid::Recipe {
+            scale,
+            merge_tolerance,
+            open,
+        })
+    }
 }
 
 /// Where the bodies are.
@@ -169,6 +250,12 @@ impl BodyArguments {
     pub(crate) const fn recipe(&self, hull: bool, scale: f64) -> Recipe {
         let Self { convex_tolerance, merge_tolerance } = *self;
         Recipe { hull, scale, convex_tolerance, merge_tolerance }
+    }
+}
+
+impl BodyArguments {
+    pub(crate) const fn merge_tolerance(&self) -> Option<f64> {
+        self.merge_tolerance
     }
 }
 

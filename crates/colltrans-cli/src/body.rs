@@ -8,7 +8,7 @@ use colltrans_mesh::{Mesh, ReadOptions};
 
 use crate::excess::Excess;
 use crate::failure::{Code, Failure};
-use crate::numbers::about;
+use crate::numbers::{about, counted};
 
 /// How deep a face may lie below the hull by default, as a part of the mesh's extent: a hundred
 /// times what single precision makes of it, and what six printed digits make of it.
@@ -69,13 +69,15 @@ pub(crate) fn load_or_fail(path: &Path, recipe: Recipe) -> Result<Part, Failure>
 fn hint(error: &BuildError) -> &'static str {
     match error {
         BuildError::NotConvex { .. } => {
-            "; --hull takes its convex hull, --convex-tolerance allows more"
+            "; `colltrans clear` takes parts that are not convex, --hull takes the convex hull, \
+             --convex-tolerance allows more"
         }
         BuildError::Topology(colltrans::TopologyError::OpenEdge { .. }) => {
             "; --merge-tolerance closes gaps, --hull takes the convex hull of its vertices"
         }
         BuildError::Topology(_) | BuildError::InsideOut { .. } => {
-            "; --hull takes the convex hull of its vertices"
+            "; `colltrans clear` takes parts that are not convex, --hull takes the convex hull of \
+             its vertices"
         }
         _ => "",
     }
@@ -87,21 +89,18 @@ pub(crate) fn merged(mesh: &Mesh) -> Option<String> {
     if merged.vertices == 0 {
         return None;
     }
-    let plural = |count: usize, one: &str, many: &str| {
-        if count == 1 { format!("{count} {one}") } else { format!("{count} {many}") }
-    };
     let mut text = format!(
         "{} on open edges merged with another, at most {} away (tolerance {})",
-        plural(merged.vertices, "vertex", "vertices"),
+        counted(merged.vertices, "vertex", "vertices"),
         about(merged.largest_distance),
         about(merged.tolerance)
     );
     if merged.dropped_faces > 0 {
-        let which = plural(merged.dropped_faces, "face", "faces");
+        let which = counted(merged.dropped_faces, "face", "faces");
         let _ = write!(text, "; {which} without area dropped");
     }
     if merged.ambiguous > 0 {
-        let which = plural(merged.ambiguous, "vertex", "vertices");
+        let which = counted(merged.ambiguous, "vertex", "vertices");
         let _ = write!(text, "; {which} had more than one to choose from: the tolerance is large");
     }
     Some(text)

@@ -1,7 +1,7 @@
 //! `colltrans cast` and `colltrans clearance`: queries on two mesh files.
 
 use std::fs;
-use std::io::{self, Read as _, Write};
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
@@ -9,8 +9,8 @@ use colltrans::{Clearance, ContactRange, Options};
 
 use crate::args::{self, PairArguments};
 use crate::body::{self, Part};
-use crate::failure::{Code, Failure, note};
-use crate::inputs::overwritten;
+use crate::failure::{Code, Failure, note, print};
+use crate::inputs::refuse_picture;
 use crate::picture::{Scene, draw};
 use crate::query::Query;
 use crate::record::{Hulls, Name, Record};
@@ -33,7 +33,7 @@ enum Answer {
 }
 
 pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure> {
-    refuse_own_input(arguments)?;
+    refuse_picture(arguments.picture.as_deref(), &[&arguments.moving, &arguments.fixed])?;
     let places = &arguments.places;
     let usage = |message| Failure::new(Code::Usage, message);
     let moving_pose = places.moving_pose.pose(places.moving_rpy, "--moving").map_err(usage)?;
@@ -63,23 +63,6 @@ pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure
     match directions {
         Directions::One(direction) => answer_one(arguments, asked, &query(direction), parts),
         Directions::Many(all) => scan(arguments.json, asked, all.into_iter().map(query), parts),
-    }
-}
-
-/// The picture must not take the place of what is read.
-fn refuse_own_input(arguments: &PairArguments) -> Result<(), Failure> {
-    let Some(picture) = &arguments.picture else { return Ok(()) };
-    let inputs: [&Path; 2] = [&arguments.moving, &arguments.fixed];
-    match overwritten(picture, &inputs) {
-        Some(input) => Err(Failure::new(
-            Code::Input,
-            format!(
-                "{}: is the same file as {}, which would be lost; give the picture another name",
-                picture.display(),
-                input.display()
-            ),
-        )),
-        None => Ok(()),
     }
 }
 
@@ -159,7 +142,7 @@ fn answer_one(
     let answered = ask(asked, query, parts);
     let (answer, record) = answered.map_err(|error| replay::failure(error, query))?;
     let text = if arguments.json {
-        json(&record)?
+        record.json()?
     } else {
         match &answer {
             Answer::Contact(answer) => report::cast(answer, &record, query.direction),
@@ -195,12 +178,12 @@ fn scan<'a>(
     for query in queries {
         let record = match ask(asked, &query, parts) {
             Ok((_, record)) => record,
-            Err(error) => Record::of_error(error.to_string()),
+            Err(error) => Record::of_error(replay::failure(error, &query).into_message()),
         };
         failed += usize::from(record.outcome == Name::Error);
         let record = Record { direction: Some(query.direction.to_array()), ..record };
         let text =
-            if as_json { json(&record)? } else { report::scan_line(&record, query.direction) };
+            if as_json { record.json()? } else { report::scan_line(&record, query.direction) };
         print(&text)?;
     }
     if failed > 0 {
@@ -208,16 +191,4 @@ fn scan<'a>(
         return Err(Failure::new(Code::Lines, message));
     }
     Ok(())
-}
-
-fn json(record: &Record) -> Result<String, Failure> {
-    let text =
-        serde_json::to_string(record).map_err(|e| Failure::new(Code::Output, e.to_string()))?;
-    Ok(text + "\n")
-}
-
-fn print(text: &str) -> Result<(), Failure> {
-    io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(|error| Failure::output("standard output", &error))
 }

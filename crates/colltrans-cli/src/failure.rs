@@ -25,6 +25,12 @@ pub(crate) fn note(text: &str) {
     let _ = io::Write::write_all(&mut io::stderr(), format!("note: {text}\n").as_bytes());
 }
 
+/// Says an answer on standard output.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    io::Write::write_all(&mut io::stdout(), text.as_bytes())
+        .map_err(|error| Failure::output("standard output", &error))
+}
+
 /// Why a command did not succeed.
 #[derive(Debug)]
 pub(crate) struct Failure {
@@ -43,6 +49,11 @@ impl Failure {
         let message = (error.kind() != io::ErrorKind::BrokenPipe)
             .then(|| format!("{place}: cannot be written: {error}"));
         Self { code: Code::Output, message }
+    }
+
+    /// What is said, for a line among others.
+    pub(crate) fn into_message(self) -> String {
+        self.message.unwrap_or_default()
     }
 
     pub(crate) fn report(self) -> ExitCode {

@@ -1,6 +1,5 @@
 //! `colltrans info`: what a mesh file holds.
 
-use std::io::{self, Write};
 use std::path::Path;
 
 use colltrans::{BuildError, ConvexPolyhedron};
@@ -9,9 +8,10 @@ use colltrans_mesh::{Mesh, ReadOptions};
 use crate::args::InfoArguments;
 use crate::body;
 use crate::excess::Excess;
-use crate::failure::{Code, Failure};
+use crate::failure::{Code, Failure, print};
 use crate::numbers::{about, known, six_digits, vector};
 use crate::report::{exceeds, line};
+use crate::solid;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut unreadable = Vec::new();
@@ -23,9 +23,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
             }
             Ok(mesh) => {
                 let text = describe(path, &mesh, arguments.convex_tolerance);
-                io::stdout()
-                    .write_all(text.as_bytes())
-                    .map_err(|error| Failure::output("standard output", &error))?;
+                print(&text)?;
             }
             Err(error) => unreadable.push(error.to_string()),
         }
@@ -59,6 +57,9 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         "none: the faces do not enclose a body".into()
     };
     line(&mut text, "volume", &volume);
+    for (name, what) in solid::describe(mesh) {
+        line(&mut text, name, &what);
+    }
     // Tolerance 0 makes the library say how deep the worst face lies, however little.
     match ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 0.0) {
         Ok(_) => line(&mut text, "convex", "yes, to rounding error"),
@@ -121,8 +122,11 @@ fn surface(mesh: &Mesh) -> String {
 fn not_quite(mesh: &Mesh, face: usize, depth: f64, asked_tolerance: Option<f64>) -> String {
     let tolerance = body::tolerance(mesh, asked_tolerance);
     let relative = depth / mesh.extent();
-    let verdict =
-        if depth <= tolerance { "yes, within tolerance" } else { "no; --hull takes its hull" };
+    let verdict = if depth <= tolerance {
+        "yes, within tolerance"
+    } else {
+        "no; `clear` takes it as it is, --hull takes its hull"
+    };
     format!(
         "{verdict}: face {face} lies {} below the hull, {} of the extent (tolerated: {})",
         six_digits(depth),

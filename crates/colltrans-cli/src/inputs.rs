@@ -6,6 +6,8 @@ use std::io;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+use crate::failure::{Code, Failure};
+
 /// A file by its identity: another name, a symbolic or a hard link leads to the same.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) enum Identity {
@@ -42,6 +44,22 @@ impl Identity {
 pub(crate) fn overwritten<'a>(output: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
     let output = Identity::of(output)?;
     inputs.iter().copied().find(|input| Identity::of(input).as_ref() == Some(&output))
+}
+
+/// A picture must not take the place of what is read.
+pub(crate) fn refuse_picture(picture: Option<&Path>, inputs: &[&Path]) -> Result<(), Failure> {
+    let Some(picture) = picture else { return Ok(()) };
+    match overwritten(picture, inputs) {
+        Some(input) => Err(Failure::new(
+            Code::Input,
+            format!(
+                "{}: is the same file as {}, which would be lost; give the picture another name",
+                picture.display(),
+                input.display()
+            ),
+        )),
+        None => Ok(()),
+    }
 }
 
 /// The files that have been read, by any thread.

@@ -1,25 +1,30 @@
-//! `colltrans`: how far can one convex body translate before it touches another.
+//! `colltrans`: how far can one body translate before it touches another.
 //!
 //! The data's way: [`args`] -> [`body`] (mesh file to polyhedron; [`excess`]: what a hull has more)
 //! -> [`query`] (the library's part) -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read.
-//! [`info`] looks at one mesh.
+//! [`info`] looks at one mesh, [`assembly`] at many parts. Parts that need not be convex go from [`solid`] (mesh files to
+//! solids, and the library's part) by way of [`clear`]; [`progress`] shows how far work is.
 
 mod args;
+mod assembly;
 mod batch;
 mod body;
 mod cast;
+mod clear;
 mod excess;
 mod failure;
 mod info;
 mod inputs;
 mod numbers;
 mod picture;
+mod progress;
 mod query;
 mod record;
 mod replay;
 mod report;
+mod solid;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -36,7 +41,9 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Cast(arguments) => cast::run(&arguments, Asked::Contact),
         Command::Clearance(arguments) => cast::run(&arguments, Asked::Clearance),
+        Command::Clear(arguments) => clear::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
+        Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
     };

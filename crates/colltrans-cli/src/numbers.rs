@@ -57,12 +57,37 @@ pub(crate) fn about(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return number(value);
     }
-    format!("{value:.0e}")
+    let nearest = format!("{value:.0e}");
+    let shown: f64 = nearest.parse().unwrap_or(value);
+    if shown.abs() >= value.abs() {
+        return nearest;
+    }
+    // Rounded down; half a unit of the digit more is rounded up.
+    let exponent = nearest.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0);
+    format!("{:.0e}", value + 0.5 * 10.0_f64.powi(exponent).copysign(value))
+}
+
+/// How many there are of something.
+pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_error_is_never_shown_smaller() {
+        for (value, shown) in [
+            (1.117e-12, "2e-12"),
+            (3.87e-13, "4e-13"),
+            (9.2, "1e1"),
+            (1e-6, "1e-6"),
+            (-1.2, "-2e0"),
+        ] {
+            assert_eq!(about(value), shown);
+        }
+    }
 
     #[test]
     fn zero_is_zero() {

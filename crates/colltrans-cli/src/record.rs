@@ -1,5 +1,7 @@
 //! What is said about an answer, in the fields that `batch --help` documents.
 
+use std::path::Path;
+
 use colltrans::glam::DVec3;
 use colltrans::{
     Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, Separated, Solver,
@@ -9,8 +11,10 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::excess::Excess;
-use crate::numbers::{about, unit_vector};
+use crate::failure::{Code, Failure};
+use crate::numbers::{six_digits, unit_vector};
 use crate::query::exit_of;
+use crate::solid::{Answer, Kind};
 
 /// One result; fields that do not apply are left out.
 #[derive(Debug, Default, Serialize)]
@@ -23,6 +27,9 @@ pub(crate) struct Record {
     pub(crate) direction: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) distance: Option<f64>,
+    /// Of solids.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) nominal: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) back: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -31,6 +38,11 @@ pub(crate) struct Record {
     pub(crate) translation: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) exit: Option<f64>,
+    /// The file that touches, of a body of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) moving: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fixed: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) normal: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,6 +53,9 @@ pub(crate) struct Record {
     pub(crate) upper: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) tolerance: Option<f64>,
+    /// Of solids.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) start_overlaps: Vec<StartOverlap>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) features: Option<Features>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,6 +77,7 @@ pub(crate) enum Name {
     Contact,
     Grazing,
     Separated,
+    Free,
     Blocked,
     Slides,
     Behind,
@@ -77,6 +93,7 @@ impl Name {
             Self::Contact => "contact",
             Self::Grazing => "grazing",
             Self::Separated => "separated",
+            Self::Free => "free",
             Self::Blocked => "blocked",
             Self::Slides => "slides",
             Self::Behind => "behind",
@@ -84,6 +101,17 @@ impl Name {
             Self::Error => "error",
         }
     }
+}
+
+/// Two files that overlap where they are, or two bodies without names.
+#[derive(Debug, Serialize)]
+pub(crate) struct StartOverlap {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) moving: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fixed: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    depth: Option<f64>,
 }
 
 /// What the hulls have that their parts have not.
@@ -180,6 +208,53 @@ impl Record {
         }
     }
 
+    /// The result of a query between solids.
+    pub(crate) fn of_solids(answer: &Answer<'_>) -> Self {
+        let name = |path: &Path| Some(path.display().to_string());
+        let start_overlaps: Vec<StartOverlap> = answer
+            .overlaps
+            .iter()
+            .map(|o| StartOverlap { moving: name(o.moving), fixed: name(o.fixed), depth: o.depth })
+            .collect();
+        let record = match &answer.kind {
+            Kind::Free => Self { outcome: Name::Free, ..Self::default() },
+            Kind::Overlapping => Self {
+                outcome: Name::Overlapping,
+                moving: answer.overlaps.first().and_then(|o| name(o.moving)),
+                fixed: answer.overlaps.first().and_then(|o| name(o.fixed)),
+                ..Self::default()
+            },
+            Kind::Blocked(stop) => Self {
+                outcome: Name::Blocked,
+                distance: Some(stop.distance),
+                nominal: Some(stop.nominal),
+                moving: name(stop.moving.file),
+                fixed: name(stop.fixed.file),
+                normal: Some(coordinates(stop.normal)),
+                point: Some(coordinates(stop.point)),
+                ..Self::default()
+            },
+        };
+        Self { exit: answer.exit, tolerance: Some(answer.tolerance), start_overlaps, ..record }
+    }
+
+    /// Without the names of files, where a body is one.
+    #[must_use]
+    pub(crate) fn without_names(mut self) -> Self {
+        (self.moving, self.fixed) = (None, None);
+        for overlap in &mut self.start_overlaps {
+            (overlap.moving, overlap.fixed) = (None, None);
+        }
+        self
+    }
+
+    /// One line.
+    pub(crate) fn json(&self) -> Result<String, Failure> {
+        let text =
+            serde_json::to_string(self).map_err(|e| Failure::new(Code::Output, e.to_string()))?;
+        Ok(text + "\n")
+    }
+
     fn of_separated(separated: &Separated) -> Self {
         let Separated { certificate, solver, steps } = separated;
         Self {
@@ -233,7 +308,7 @@ impl FeatureRecord {
 impl StepCounts {
     fn of(steps: Steps) -> Self {
         // One-off queries start from scratch.
-        let Steps { planar_problems, supports, pivots, started_from: _ } = steps;
+        let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
         Self { planar_problems, supports, pivots }
     }
 }
@@ -244,7 +319,7 @@ fn coordinates(v: DVec3) -> [f64; 3] {
 }
 
 fn describe(grazing: &Grazing) -> String {
-    let (overlap, along) = (about(grazing.overlap), unit_vector(grazing.separating_direction));
+    let (overlap, along) = (six_digits(grazing.overlap), unit_vector(grazing.separating_direction));
     format!("the shadows overlap by {overlap} along [{along}]")
 }
 

@@ -114,14 +114,14 @@ fn align(columns: &[String]) -> String {
 }
 
 /// A translation, which has an error, and its length.
-fn along(t: f64, error: f64, direction: DVec3) -> String {
+pub(crate) fn along(t: f64, error: f64, direction: DVec3) -> String {
     let length = direction.length();
     let shown = known(t * length, error * length);
     format!("{} times the direction, a length of {shown}", known(t, error))
 }
 
 /// A proven bound, with all its digits.
-fn times(t: f64) -> String {
+pub(crate) fn times(t: f64) -> String {
     format!("{} times the direction", number(t))
 }
 
@@ -167,7 +167,7 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
 
 fn overlap(text: &mut String, grazing: &Grazing) {
     let direction = unit_vector(grazing.separating_direction);
-    line(text, "overlap", &format!("{} sideways, along {direction}", about(grazing.overlap)));
+    line(text, "overlap", &format!("{} sideways, along {direction}", six_digits(grazing.overlap)));
     text.push_str("  the contact, if the overlap is taken for real:\n");
 }
 
@@ -201,7 +201,7 @@ fn hulls(text: &mut String, record: &Record) {
         Name::Overlapping => {
             format!("a bound for {whose}: free after these ways, perhaps no overlap at all")
         }
-        Name::Contact | Name::Blocked | Name::Error => {
+        Name::Contact | Name::Blocked | Name::Free | Name::Error => {
             format!("a bound for {whose}: no contact before this one, perhaps later or none")
         }
     };
@@ -256,6 +256,6 @@ fn feature(feature: &FeatureRecord) -> String {
 
 fn work(solver: &str, steps: Steps) -> String {
     // One-off queries start from scratch.
-    let Steps { planar_problems, supports, pivots, started_from: _ } = steps;
+    let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
     format!("{solver}: {planar_problems} planar problems, {supports} supports, {pivots} pivots")
 }

@@ -7,4 +7,5 @@
 pub mod provenance;
 pub mod random;
 pub mod shapes;
+pub mod solids;
 pub mod timing;

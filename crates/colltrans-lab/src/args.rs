@@ -14,6 +14,7 @@ Translations of Convex Polyhedra\", IEEE Transactions on Robotics 23(3), 2007, s
 Results, in the folder given by --output (files of these names are replaced):
   report.html              every figure and table beside the claims it supports or refutes, and
                            where the numbers come from; one page that needs nothing else
+  claims.csv               every claim with its numbers, intervals and verdict
   figure-NN....csv         the data: series,x,y,low,high,count
   figure-NN....svg, .png   the figure
   table-N....csv           the table
@@ -53,6 +54,12 @@ pub(crate) enum Command {
         #[command(flatten)]
         options: Options,
     },
+    /// Other shapes than the paper's, and real parts
+    #[command(after_help = RESULTS)]
+    Beyond {
+        #[command(flatten)]
+        options: Options,
+    },
     /// All figures and tables
     #[command(after_help = RESULTS)]
     All {
@@ -77,6 +84,9 @@ pub(crate) struct Options {
     /// The same seed draws the same bodies, positions and directions. Times differ all the same.
     #[arg(long, value_name = "S", default_value_t = 2007)]
     seed: u64,
+    /// A folder with mesh files of real parts, to be measured beside other shapes (`beyond`)
+    #[arg(long, value_name = "DIR")]
+    parts: Option<PathBuf>,
     /// The folder of the results, made if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "lab-results")]
     pub(crate) output: PathBuf,
@@ -89,7 +99,7 @@ impl Options {
             Self { tiny: true, .. } => Scale::Tiny,
             _ => Scale::Quick,
         };
-        Plan { scale, seed: self.seed }
+        Plan { scale, seed: self.seed, parts: self.parts.clone() }
     }
 }
 

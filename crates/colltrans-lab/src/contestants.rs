@@ -1,7 +1,7 @@
 //! Who is measured: every algorithm behind the same three words.
 
-use colltrans::{Focus, NarrowFrom, Narrowing, Options, Outcome, Region, Solver, Tracker};
-use colltrans_yardsticks::egjk::Egjk;
+use colltrans::{Focus, NarrowFrom, Narrowing, Options, Outcome, Region, Solver, Steps, Tracker};
+use colltrans_yardsticks::egjk::{Egjk, SupportSearch};
 use colltrans_yardsticks::hwalk::HWalk;
 use colltrans_yardsticks::pqp::Pqp;
 use colltrans_yardsticks::raycast::{RayCast, RayCastAnswer};
@@ -22,11 +22,12 @@ pub(crate) enum Who {
     /// What `colltrans` does by default from query to query: feature focus.
     Tracker,
     /// Distance by enhanced GJK.
-    Egjk,
+    Egjk(SupportSearch),
     /// Distance by swept sphere trees over triangles.
     Pqp,
-    /// Distance by H-Walk with this patience: the steps on a layer before it goes to a coarser one.
-    HWalk(u32),
+    /// Distance by H-Walk, features being picked on this layer: the paper's `l`, as a share of the
+    /// way from the finest layer to the coarsest.
+    HWalk(f64),
     /// Collision translation by GJK ray cast, to `1e-6` of the size: not exact.
     RayCast,
 }
@@ -81,8 +82,8 @@ pub(crate) struct Work {
     /// The algorithm's own steps: planar problems of the collision translation algorithm, portals,
     /// simplices, pairs of bounding volumes or features.
     pub(crate) steps: u32,
-    /// Portals visited and supporting planes computed after the collision translation algorithm.
-    pub(crate) finish: [u32; 2],
+    /// Iterations of all loops, outer and inner, where they are counted (`ARCHITECTURE.md`).
+    pub(crate) iterations: u32,
 }
 
 /// An algorithm at work on two bodies.
@@ -103,9 +104,10 @@ impl Who {
             Self::CtaRegion(_, Until::End) => "CTA to the end, region focus".into(),
             Self::Portal => "portal refinement".into(),
             Self::Tracker => "feature focus".into(),
-            Self::Egjk => "EGJK".into(),
+            Self::Egjk(SupportSearch::Climbing) => "EGJK, climbing".into(),
+            Self::Egjk(SupportSearch::Linear) => "EGJK, linear search".into(),
             Self::Pqp => "PQP".into(),
-            Self::HWalk(patience) => format!("H-Walk, patience {patience}"),
+            Self::HWalk(share) => format!("H-Walk, {:.0} % of the layers", 100.0 * share),
             Self::RayCast => "GJK ray cast".into(),
         }
     }
@@ -124,14 +126,16 @@ impl Who {
                 Box::new(Tracked::new(bodies, Focus { features: false, region }, until.options()))
             }
             Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
-            Self::Egjk => Box::new(Egjk::new(moving, fixed)),
+            Self::Egjk(search) => Box::new(Egjk::new(moving, fixed).with_support_search(search)),
             Self::Pqp => {
                 let [moving, fixed] = bodies.soups();
                 Box::new(Pqp::new(moving, fixed))
             }
-            Self::HWalk(patience) => {
+            Self::HWalk(share) => {
                 let [moving, fixed] = bodies.hierarchies();
-                Box::new(HWalk::new(moving, fixed).with_patience(patience))
+                let coarsest = moving.layer_count().max(fixed.layer_count()) - 1;
+                let layer = (share * coarsest as f64).round() as usize;
+                Box::new(HWalk::new(moving, fixed).with_start_layer(layer))
             }
             Self::RayCast => Box::new(RayCast::new(moving, fixed)),
         }
@@ -179,17 +183,15 @@ impl Contestant for Tracked<'_> {
 
 fn work<E>(outcome: &Result<Outcome, E>) -> Work {
     let Ok(outcome) = outcome else {
-        return Work { answer: Answer::Failed, steps: 0, finish: [0; 2] };
+        return Work { answer: Answer::Failed, steps: 0, iterations: 0 };
     };
     let answer = match outcome {
         Outcome::Contact(contact) => Answer::Meet(contact.translation),
         Outcome::Grazing(_) | Outcome::Separated(_) => Answer::Pass,
     };
-    let steps = outcome.steps();
-    if steps.planar_problems == 0 {
-        return Work { answer, steps: steps.pivots, finish: [0, steps.supports] };
-    }
-    Work { answer, steps: steps.planar_problems, finish: [steps.pivots, steps.supports] }
+    let Steps { planar_problems, supports, pivots, iterations, .. } = outcome.steps();
+    let steps = if planar_problems == 0 { pivots } else { planar_problems };
+    Work { answer, steps, iterations: iterations + planar_problems + pivots + supports }
 }
 
 impl Contestant for Egjk<'_> {
@@ -200,7 +202,8 @@ impl Contestant for Egjk<'_> {
     fn ask(&mut self, setting: &Setting) -> Work {
         let found = self.distance(&setting.moving, &setting.fixed);
         let answer = Answer::Distance(found.distance);
-        Work { answer, steps: found.steps.iterations, finish: [0; 2] }
+        let iterations = found.steps.iterations + found.steps.climbed;
+        Work { answer, steps: found.steps.iterations, iterations }
     }
 }
 
@@ -217,7 +220,7 @@ impl Contestant for RayCast<'_> {
             RayCastAnswer::Miss { steps } => (Answer::Pass, steps),
             RayCastAnswer::Exhausted { steps, .. } => (Answer::Failed, steps),
         };
-        Work { answer, steps: steps.iterations, finish: [0; 2] }
+        Work { answer, steps: steps.iterations, iterations: steps.iterations }
     }
 }
 
@@ -229,7 +232,7 @@ impl Contestant for Pqp<'_> {
     fn ask(&mut self, setting: &Setting) -> Work {
         let found = self.distance(&setting.moving, &setting.fixed);
         let steps = u32::try_from(found.steps.volume_tests).unwrap_or(u32::MAX);
-        Work { answer: Answer::Distance(found.distance), steps, finish: [0; 2] }
+        Work { answer: Answer::Distance(found.distance), steps, iterations: steps }
     }
 }
 
@@ -240,6 +243,7 @@ impl Contestant for HWalk<'_> {
 
     fn ask(&mut self, setting: &Setting) -> Work {
         let found = self.distance(&setting.moving, &setting.fixed);
-        Work { answer: Answer::Distance(found.distance), steps: found.steps.pairs, finish: [0; 2] }
+        let colltrans_yardsticks::hwalk::Steps { pairs, iterations, .. } = found.steps;
+        Work { answer: Answer::Distance(found.distance), steps: pairs, iterations }
     }
 }

@@ -1,6 +1,9 @@
 //! What an experiment found: figures and tables from data, and the claims they support or refute.
 
-use colltrans_kit::timing::{mean_and_deviation, quantile};
+use colltrans_kit::timing::quantile;
+
+use crate::claims::{PaperClaim, Verdict};
+use crate::statistics::{Estimate, mean};
 
 /// The result of an experiment.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +58,7 @@ pub struct Point {
     pub x: f64,
     /// The value: a median or a mean, as the figure's title says.
     pub y: f64,
-    /// Lower end of the spread (quartile, or mean minus a standard deviation).
+    /// Lower end of the spread: a quartile, or an end of a 95 % interval, as the figure's title says.
     pub low: f64,
     /// Upper end.
     pub high: f64,
@@ -70,10 +73,12 @@ impl Point {
         Self { x, y, low, high, count: values.len() }
     }
 
-    /// Mean, plus and minus a standard deviation.
+    /// Mean with quartiles; where more than three quarters of the values lie to one side of their
+    /// mean, the spread ends there.
     pub(crate) fn mean(x: f64, values: &[f64]) -> Self {
-        let [y, deviation] = mean_and_deviation(values);
-        Self { x, y, low: y - deviation, high: y + deviation, count: values.len() }
+        let y = mean(values);
+        let [low, high] = [0.25, 0.75].map(|share| quantile(values, share));
+        Self { x, y, low: low.min(y), high: high.max(y), count: values.len() }
     }
 }
 
@@ -93,12 +98,14 @@ pub struct Table {
 /// Something the paper says, held against the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
-    /// What is claimed.
-    pub statement: String,
-    /// What was measured.
-    pub measured: String,
-    /// Whether it holds, computed from the data.
-    pub holds: bool,
-    /// Why it does not hold here, as far as the data of this run tell.
+    /// What is claimed, and by what it is judged.
+    pub paper: &'static PaperClaim,
+    /// What was measured, one number for each of the claim's criteria.
+    pub measured: Vec<Estimate>,
+    /// More about it: other numbers, and circumstances.
+    pub details: String,
+    /// Computed from the numbers and the criteria.
+    pub verdict: Verdict,
+    /// Why it does not hold here, or is undecided, as far as the data of this run tell.
     pub why: Option<String>,
 }

@@ -4,11 +4,13 @@
 //! Collision Translations of Convex Polyhedra", IEEE Transactions on Robotics 23(3), 2007. Its
 //! section V reports nine figures (11 to 19) and a table; each is an [`Experiment`] here.
 //!
-//! The data's way: [`plan`] (how much) -> `shapes`, `settings` (what on) -> `experiments` (what is
-//! measured, by `contestants`) -> [`finding`] (figures, tables, claims with verdicts)
+//! The data's way: [`claims`] (what is to be tested) and [`plan`] (how much) -> `shapes`, `shadow`,
+//! `settings` (what on) -> `experiments` (what is measured, by `contestants`) -> [`statistics`]
+//! (intervals) -> [`finding`] (figures, tables, claims with verdicts)
 //! -> [`draw`], [`csv`], [`report`] (what a reader sees). [`run()`] goes all the way and writes the
 //! files.
 
+pub mod claims;
 mod contestants;
 pub mod csv;
 pub mod draw;
@@ -19,7 +21,9 @@ pub mod plan;
 pub mod report;
 mod run;
 pub mod settings;
+mod shadow;
 pub mod shapes;
+pub mod statistics;
 
 use finding::Finding;
 use plan::{Plan, Progress};
@@ -31,7 +35,7 @@ pub use run::{Done, Summary, run};
 /// One figure or table of the paper.
 #[derive(Debug, Clone, Copy)]
 pub struct Experiment {
-    /// `"figure-11"` ... `"figure-19"`, `"table-1"`.
+    /// `"figure-11"` ... `"figure-19"`, `"table-1"`, `"beyond"`.
     pub id: &'static str,
     /// What it is about, in a few words.
     pub title: &'static str,
@@ -42,6 +46,7 @@ pub struct Experiment {
 impl Experiment {
     /// The id for people: `Figure 12`.
     pub fn name(&self) -> String {
-        self.id.replacen("figure-", "Figure ", 1).replacen("table-", "Table ", 1)
+        let name = self.id.replacen("figure-", "Figure ", 1).replacen("table-", "Table ", 1);
+        name.replacen("beyond", "Beyond the paper", 1)
     }
 }

@@ -19,6 +19,7 @@ fn main() -> ExitCode {
     let (chosen, options) = match Arguments::parse().command {
         Command::Figure { numbers, options } => (choose("figure-", &numbers), options),
         Command::Table { numbers, options } => (choose("table-", &numbers), options),
+        Command::Beyond { options } => (choose("", &["beyond".into()]), options),
         Command::All { options } => (experiments().to_vec(), options),
     };
     let mut bar = Bar::new();

@@ -1,5 +1,7 @@
 //! How much to measure.
 
+use std::path::PathBuf;
+
 /// The scale of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
@@ -23,12 +25,14 @@ impl Scale {
 }
 
 /// What an experiment is given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Plan {
     /// How much.
     pub scale: Scale,
     /// Everything random is drawn from it; the same seed draws the same bodies and settings.
     pub seed: u64,
+    /// A folder of mesh files, real parts to be measured as well.
+    pub parts: Option<PathBuf>,
 }
 
 /// Told how far an experiment is.

@@ -4,6 +4,7 @@
 use std::fmt::{self, Write};
 use std::time::Duration;
 
+use crate::claims::{PaperClaim, Verdict};
 use crate::draw::Picture;
 use crate::finding::{Claim, Figure, Table};
 use crate::plan::Plan;
@@ -36,20 +37,24 @@ pub fn html(report: &Report) -> String {
 /// What is to be said of such a build.
 pub(crate) const UNOPTIMISED: &str = "This is an unoptimised build: its times mean nothing.";
 
-/// A verdict in words.
-pub(crate) fn verdict(holds: bool) -> &'static str {
-    if holds { "holds" } else { "does not hold" }
-}
+/// All verdicts, the worst first.
+const VERDICTS: [Verdict; 4] =
+    [Verdict::Fails, Verdict::Undecided, Verdict::Holds, Verdict::Better];
 
 /// How many of the claims hold, in words.
 pub(crate) fn count(done: &[Done]) -> String {
     let claims = || done.iter().flat_map(|done| &done.finding.claims);
-    let (hold, all) = (claims().filter(|claim| claim.holds).count(), claims().count());
-    match all {
-        0 => "No claim was put to the test".into(),
-        1 => format!("The claim {}", verdict(hold == 1)),
-        _ => format!("{hold} of {all} claims hold"),
+    let with = |verdict: Verdict| claims().filter(|claim| claim.verdict == verdict).count();
+    let all = claims().count();
+    if all == 0 {
+        return "No claim was put to the test".into();
     }
+    let [fail, undecided, hold, better] = VERDICTS.map(with);
+    format!(
+        "{} of {all} claims hold, {better} of them better than the paper says; {fail} do not hold, \
+         {undecided} are undecided",
+        hold + better
+    )
 }
 
 fn write_page(page: &mut String, report: &Report) -> fmt::Result {
@@ -61,13 +66,14 @@ fn write_page(page: &mut String, report: &Report) -> fmt::Result {
          <title>Collision translations: the paper's experiments</title>\n\
          <style>\n{style}</style>\n</head>\n<body>\n<header>\n\
          <h1>Collision translations: the paper’s experiments, run anew</h1>\n\
-         <p>The paper: Mirolo, Carpin and Pagello, “Incremental Convex Minimization for Computing \
+         <p class=\"faint\">The paper: Mirolo, Carpin and Pagello, “Incremental Convex Minimization for Computing \
          Collision Translations of Convex Polyhedra”, IEEE Transactions on Robotics 23(3), 2007, \
          section V.</p>\n"
     )?;
     write_state(page, report)?;
-    write_facts(page, report)?;
     write_overview(page, report.done)?;
+    write_reasons(page, report.done)?;
+    write_facts(page, report)?;
     page.push_str("</header>\n<main>\n");
     for done in report.done {
         write_experiment(page, done)?;
@@ -113,29 +119,48 @@ fn write_facts(page: &mut String, report: &Report) -> fmt::Result {
     Ok(())
 }
 
-/// All claims in a table, each linked to its figure.
+/// All claims, a line each, by verdict: the paper's number, and what was measured first.
 fn write_overview(page: &mut String, done: &[Done]) -> fmt::Result {
-    if done.iter().all(|done| done.finding.claims.is_empty()) {
-        return Ok(());
-    }
-    page.push_str("<div class=\"wide\"><table class=\"overview\">\n");
-    page.push_str(
-        "<thead><tr><th>Where</th><th>Claim</th><th>Verdict</th></tr></thead>\n<tbody>\n",
-    );
-    for done in done {
-        let (id, name) = (done.experiment.id, done.experiment.name());
-        for claim in &done.finding.claims {
-            let (class, words) = (class(claim), verdict(claim.holds));
-            let statement = Escaped(&claim.statement);
+    page.push_str("<div class=\"overview\">\n");
+    for verdict in VERDICTS {
+        for (id, claim) in claims_of(done, verdict) {
+            let PaperClaim { id: name, statement, paper, .. } = claim.paper;
+            let here = claim.measured.first().map_or(String::new(), ToString::to_string);
             writeln!(
                 page,
-                "<tr class=\"{class}\"><td><a href=\"#{id}\">{name}</a></td><td>{statement}</td>\
-                 <td><span class=\"verdict\">{words}</span></td></tr>"
+                "<p class=\"{}\"><a href=\"#{id}\" title=\"{}\">{name}</a> <span \
+                 class=\"faint\">{}:</span> {here} <span class=\"verdict\">{verdict}</span></p>",
+                class(verdict),
+                Escaped(statement),
+                Escaped(paper)
             )?;
         }
     }
-    page.push_str("</tbody></table></div>\n");
+    page.push_str("</div>\n");
     Ok(())
+}
+
+/// The reasons for what does not hold or is undecided, by their first sentence.
+fn write_reasons(page: &mut String, done: &[Done]) -> fmt::Result {
+    page.push_str("<ul class=\"reasons\">\n");
+    for verdict in [Verdict::Fails, Verdict::Undecided] {
+        for (id, claim) in claims_of(done, verdict) {
+            let why = claim.why.as_deref().unwrap_or("");
+            let end = why.find(". ").map_or(why.len(), |end| end + 1);
+            let (name, why) = (claim.paper.id, Escaped(&why[..end]));
+            writeln!(page, "<li><a href=\"#{id}\">{name}</a>: {why}</li>")?;
+        }
+    }
+    page.push_str("</ul>\n");
+    Ok(())
+}
+
+/// The claims with a verdict, with the ids of their experiments.
+fn claims_of(done: &[Done], verdict: Verdict) -> impl Iterator<Item = (&'static str, &Claim)> {
+    let claims = done
+        .iter()
+        .flat_map(|done| done.finding.claims.iter().map(|claim| (done.experiment.id, claim)));
+    claims.filter(move |(_, claim)| claim.verdict == verdict)
 }
 
 fn write_experiment(page: &mut String, done: &Done) -> fmt::Result {
@@ -190,13 +215,25 @@ fn write_table(page: &mut String, table: &Table) -> fmt::Result {
 }
 
 fn write_claim(page: &mut String, claim: &Claim) -> fmt::Result {
-    let (class, words) = (class(claim), verdict(claim.holds));
-    let (statement, measured) = (Escaped(&claim.statement), Escaped(&claim.measured));
+    let PaperClaim { id, statement, paper, place, criteria } = claim.paper;
     write!(
         page,
-        "<li class=\"{class}\"><span class=\"verdict\">{words}</span>\n\
-         <p class=\"statement\">{statement}</p>\n<p>Measured: {measured}</p>\n"
+        "<li class=\"{}\"><span class=\"verdict\">{}</span> <span class=\"faint\">{id}</span>\n\
+         <p class=\"statement\">{}</p>\n<p>The paper: {} ({}).</p>\n",
+        class(claim.verdict),
+        claim.verdict,
+        Escaped(statement),
+        Escaped(paper),
+        Escaped(place)
     )?;
+    for (criterion, measured) in criteria.iter().zip(&claim.measured) {
+        let what = Escaped(criterion.what);
+        let judged = Escaped(&criterion.band());
+        writeln!(page, "<p>Measured: <strong>{measured}</strong>: {what}; {judged}</p>")?;
+    }
+    if !claim.details.is_empty() {
+        writeln!(page, "<p>{}</p>", Escaped(&claim.details))?;
+    }
     if let Some(why) = &claim.why {
         writeln!(page, "<p>Why: {}</p>", Escaped(why))?;
     }
@@ -204,8 +241,13 @@ fn write_claim(page: &mut String, claim: &Claim) -> fmt::Result {
     Ok(())
 }
 
-fn class(claim: &Claim) -> &'static str {
-    if claim.holds { "holds" } else { "fails" }
+fn class(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "holds",
+        Verdict::Better => "better",
+        Verdict::Undecided => "undecided",
+        Verdict::Fails => "fails",
+    }
 }
 
 /// Text as HTML, in elements and in quoted attributes.

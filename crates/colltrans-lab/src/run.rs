@@ -1,7 +1,7 @@
 //! Runs experiments and leaves what they find in a folder.
 //!
-//! The folder gets, for each figure, `ID.csv`, `ID.svg` and `ID.png`, for each table `ID.csv`, and
-//! one `report.html`. Everything is written as soon as it is known: a long run that is interrupted
+//! The folder gets, for each figure, `ID.csv`, `ID.svg` and `ID.png`, for each table `ID.csv`, the
+//! verdicts in `claims.csv`, and one `report.html`. Everything is written as soon as it is known: a long run that is interrupted
 //! leaves a report about what was finished, and a folder that cannot be written to is found out
 //! before anything is measured.
 
@@ -9,12 +9,13 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::claims::PaperClaim;
 use crate::draw::{Picture, draw};
 use crate::error::LabError;
 use crate::finding::Finding;
 use crate::plan::{Plan, Progress};
 use crate::report::{self, Report};
-use crate::{Experiment, csv};
+use crate::{Experiment, csv, shapes};
 use colltrans_kit::provenance::{Provenance, for_people};
 
 /// An experiment that was run.
@@ -63,6 +64,8 @@ pub fn run(
     let write_report = |done: &[Done]| {
         let (all, wall) = (experiments.len(), start.elapsed());
         let report = Report { provenance: &provenance, plan, done, all, wall };
+        let claims = csv::claims(done.iter().flat_map(|done| &done.finding.claims));
+        write(&directory.join("claims.csv"), claims.as_bytes())?;
         write(&path, report::html(&report).as_bytes())
     };
     std::fs::create_dir_all(directory)
@@ -78,6 +81,7 @@ pub fn run(
             whole: &mut *progress,
         };
         let finding = (experiment.run)(plan, &mut part);
+        shapes::forget_large();
         let wall = began.elapsed();
         let pictures = write_finding(&finding, directory)?;
         done.push(Done { experiment, finding, pictures, wall });
@@ -129,9 +133,11 @@ impl fmt::Display for Summary {
         for done in &self.done {
             writeln!(f, "{}: {}", done.experiment.name(), done.experiment.title)?;
             for claim in &done.finding.claims {
-                let verdict = report::verdict(claim.holds);
-                writeln!(f, "  {verdict:13}  {}", claim.statement)?;
-                writeln!(f, "  {:13}  measured: {}", "", claim.measured)?;
+                let PaperClaim { id, statement, paper, criteria, .. } = claim.paper;
+                writeln!(f, "  {:21}  {id}: {statement} (The paper: {paper}.)", claim.verdict)?;
+                for (criterion, measured) in criteria.iter().zip(&claim.measured) {
+                    writeln!(f, "  {:21}  {measured}: {}", "", criterion.what)?;
+                }
             }
         }
         if !self.provenance.is_optimised {

@@ -1,15 +1,18 @@
 //! Settings: two poses and a direction, for bodies that meet, or pass each other at a known
 //! distance, by construction.
 //!
-//! Notation. `D` is the bodies' diameter. The *shadow gap* is the distance of the bodies'
-//! projections along the direction, measured along one random lateral direction; the *gap ahead* is
-//! by how much a plane across the direction keeps the bodies apart at the start.
+//! Notation. `D` is the bodies' diameter. The *least distance* is that of the bodies while the moving
+//! one goes along the direction, which is the distance of their shadows (`shadow`): it is the asked
+//! one to rounding. The *gap ahead* is by how much a plane across the direction keeps the bodies
+//! apart at the start; the paper does not say how far apart its bodies start, here it is uniform in
+//! 0.05 to 1 `D`, and for sequences in 0.75 to 1.25 `D`, so that the motion leads into no overlap.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use colltrans::{Cast, ConvexPolyhedron, Options, Pose, QueryError};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
+use crate::shadow::Shadow;
 use crate::shapes::Bodies;
 use colltrans_kit::random::Random;
 
@@ -29,14 +32,29 @@ pub struct Setting {
 pub enum Meeting {
     /// They do.
     Colliding,
-    /// They pass with this shadow gap, in `D`.
+    /// They pass with this least distance, in `D`.
     Passing(f64),
-    /// They pass with a shadow gap up to this many `D`.
+    /// They pass with a least distance up to this many `D`, uniform.
     PassingWithin(f64),
 }
 
+/// How a body moves from setting to setting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// It is displaced.
+    Translation,
+    /// It turns about its centre.
+    Rotation,
+    /// Both, along and about one axis.
+    Screw,
+}
+
+/// All motions.
+pub const MOTIONS: [Motion; 3] = [Motion::Translation, Motion::Rotation, Motion::Screw];
+
 /// Bounds of the gap ahead, in `D`.
 const AHEAD: [f64; 2] = [0.05, 1.0];
+const AHEAD_OF_SEQUENCES: [f64; 2] = [0.75, 1.25];
 
 impl Setting {
     /// The query about two bodies.
@@ -55,23 +73,32 @@ impl Setting {
     /// # Panics
     /// If the bodies are out of the range of poses.
     pub fn draw(bodies: &Bodies, meeting: Meeting, random: &mut Random) -> Self {
+        Self::draw_ahead(bodies, meeting, AHEAD, random)
+    }
+
+    fn draw_ahead(bodies: &Bodies, meeting: Meeting, ahead: [f64; 2], random: &mut Random) -> Self {
         let [p, q] = &bodies.pair;
         let (turn_p, turn_q) = (random.rotation(), random.rotation());
         let direction = random.direction();
         let lateral = direction.cross(random.direction()).normalize();
         // First so that a point inside P is opposite to one inside Q.
-        let mut offset = turn_p * inside(p, random) - turn_q * inside(q, random);
-        let shadow_gap = match meeting {
+        let [inside_p, inside_q] = [0, 1].map(|k| inside(bodies, k, random));
+        let mut offset = turn_p * inside_p - turn_q * inside_q;
+        let least_distance = match meeting {
             Meeting::Colliding => None,
             Meeting::Passing(gap) => Some(gap),
             Meeting::PassingWithin(most) => Some(random.range(0.0, most)),
         };
-        if let Some(gap) = shadow_gap {
-            let now = gap_along(lateral, (p, turn_p), (q, turn_q)) + offset.dot(lateral);
-            offset += lateral * (gap * bodies.diameter - now);
+        if let Some(gap) = least_distance {
+            let plane = [lateral, direction.cross(lateral)];
+            let [p, q] = [(p, turn_p), (q, turn_q)].map(|(b, turn)| Shadow::of(b, turn, plane));
+            let here = DVec2::from_array(plane.map(|axis| axis.dot(offset)));
+            let way = DVec2::X;
+            offset += lateral
+                * p.differences(&q.displaced(here)).ray_to_distance(-way, gap * bodies.diameter);
         }
         let now = gap_along(direction, (p, turn_p), (q, turn_q)) + offset.dot(direction);
-        offset += direction * (random.range(AHEAD[0], AHEAD[1]) * bodies.diameter - now);
+        offset += direction * (random.range(ahead[0], ahead[1]) * bodies.diameter - now);
         Self { moving: pose(turn_p, DVec3::ZERO), fixed: pose(turn_q, offset), direction }
     }
 
@@ -87,31 +114,61 @@ impl Setting {
         count: usize,
         random: &mut Random,
     ) -> Vec<Self> {
-        let middle = Self::draw(bodies, meeting, random);
+        let middle = Self::draw_ahead(bodies, meeting, AHEAD_OF_SEQUENCES, random);
+        let motion = MOTIONS[random.index(3)];
+        middle.moved(bodies, motion, delta, count, random)
+    }
+
+    /// As [`sequence`](Self::sequence), with this kind of motion.
+    ///
+    /// # Panics
+    /// If the bodies are out of the range of poses.
+    pub fn sequence_of(
+        bodies: &Bodies,
+        motion: Motion,
+        delta: f64,
+        count: usize,
+        random: &mut Random,
+    ) -> Vec<Self> {
+        let middle = Self::draw_ahead(bodies, Meeting::Colliding, AHEAD_OF_SEQUENCES, random);
+        middle.moved(bodies, motion, delta, count, random)
+    }
+
+    fn moved(
+        &self,
+        bodies: &Bodies,
+        motion: Motion,
+        delta: f64,
+        count: usize,
+        random: &mut Random,
+    ) -> Vec<Self> {
         let axis = random.direction();
-        let [displaced, turned] =
-            [[1.0, 0.0], [0.0, 1.0], [FRAC_1_SQRT_2, FRAC_1_SQRT_2]][random.index(3)];
+        let [displaced, turned] = match motion {
+            Motion::Translation => [1.0, 0.0],
+            Motion::Rotation => [0.0, 1.0],
+            Motion::Screw => [FRAC_1_SQRT_2; 2],
+        };
         (0..count)
             .map(|k| {
                 let by = delta * (k as f64 - 0.5 * (count - 1) as f64);
                 // A point half a diameter from the axis moves by `delta` diameters.
                 let turn = DQuat::from_axis_angle(axis, 2.0 * by * turned);
-                let rotation = (turn * middle.moving.rotation()).normalize();
-                Self { moving: pose(rotation, axis * (by * displaced * bodies.diameter)), ..middle }
+                let rotation = (turn * self.moving.rotation()).normalize();
+                Self { moving: pose(rotation, axis * (by * displaced * bodies.diameter)), ..*self }
             })
             .collect()
     }
 
     /// The paper's motion of variable coherence (section V-E), for spheres: the moving one goes
     /// round the fixed one, aiming at a point in its neighbourhood, and turns about an axis of its
-    /// own by as much, `alpha_deg` a step.
+    /// own by as much, `alpha_deg` a step. The spheres always meet: no line of motion passes the fixed
+    /// one's centre at more than three quarters of both radii together.
     ///
     /// # Panics
     /// Never: the poses are in range.
     pub fn orbit(bodies: &Bodies, alpha_deg: f64, count: usize, random: &mut Random) -> Vec<Self> {
         let (axis, spin_axis) = (random.direction(), random.direction());
         let start = axis.any_orthonormal_vector() * (2.0 * bodies.diameter);
-        // Up to three quarters of a diameter from the centre: one in four or so passes.
         let aim = random.direction() * (random.range(0.0, 0.75) * bodies.diameter);
         let (turn_p, turn_q) = (random.rotation(), random.rotation());
         (0..count)
@@ -134,9 +191,9 @@ fn pose(rotation: DQuat, translation: DVec3) -> Pose {
 }
 
 /// A point inside a body: between its middle and a vertex.
-fn inside(body: &ConvexPolyhedron, random: &mut Random) -> DVec3 {
-    let vertices = body.vertices();
-    let middle = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+fn inside(bodies: &Bodies, which: usize, random: &mut Random) -> DVec3 {
+    let vertices = bodies.pair[which].vertices();
+    let middle = bodies.middles[which];
     middle.lerp(vertices[random.index(vertices.len())], 0.95 * random.unit().sqrt())
 }
 
@@ -176,6 +233,21 @@ mod tests {
                         (Meeting::Passing(_), Outcome::Separated(_)) => {}
                         (meeting, outcome) => panic!("{meeting:?}: {outcome:?}"),
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn orbits_collide() {
+        let bodies = bodies(5, Kind::Spheres, 200, 0);
+        let mut random = Random::new(7, &[]);
+        for alpha_deg in [0.1, 30.0, 180.0] {
+            for _ in 0..20 {
+                for s in Setting::orbit(&bodies, alpha_deg, 20, &mut random) {
+                    let [p, q] = &bodies.pair;
+                    let outcome = cast(p, &s.moving, q, &s.fixed, s.direction).unwrap();
+                    assert!(matches!(outcome, Outcome::Contact(_)), "{outcome:?}");
                 }
             }
         }

@@ -15,4 +15,5 @@ pub mod sequences;
 pub mod settings;
 pub mod shadow;
 pub mod simplex;
+pub mod solids;
 pub mod tracked;

@@ -11,7 +11,7 @@ use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_oracle::distance::{Distance, distance_of_bodies, distance_of_point};
 use colltrans_oracle::settings::{FAMILIES, Rng, cuboid, setting};
 use colltrans_yardsticks::Proximity;
-use colltrans_yardsticks::egjk::{Egjk, Steps};
+use colltrans_yardsticks::egjk::{Egjk, Steps, SupportSearch};
 use glam::{DQuat, DVec3};
 
 type Placed<'a> = (&'a ConvexPolyhedron, &'a Pose);
@@ -47,8 +47,10 @@ fn check(name: &str, answer: &Proximity<Steps>, moving: Placed, fixed: Placed) -
 }
 
 fn check_from_scratch(name: &str, moving: Placed, fixed: Placed) -> Distance {
-    let answer = Egjk::new(moving.0, fixed.0).distance(moving.1, fixed.1);
-    check(name, &answer, moving, fixed)
+    let egjk = || Egjk::new(moving.0, fixed.0);
+    let mut linear = egjk().with_support_search(SupportSearch::Linear);
+    check(name, &linear.distance(moving.1, fixed.1), moving, fixed);
+    check(name, &egjk().distance(moving.1, fixed.1), moving, fixed)
 }
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
@@ -101,6 +103,21 @@ fn every_family_of_settings() {
             let fixed = (&bodies.fixed, &setting.fixed_pose);
             check_from_scratch(&setting.to_string(), moving, fixed);
         }
+    }
+}
+
+/// Every support point costs a look at all vertices.
+#[test]
+fn linear_search_looks_at_all_vertices() {
+    let mut rng = Rng::new(9);
+    for count in [5, 40] {
+        let (p, q) = (rings(count, DVec3::ONE), rings(count, DVec3::ONE));
+        let (at, world) = (pose(&mut rng, 3.0), pose(&mut rng, 0.0));
+        let mut egjk = Egjk::new(&p, &q).with_support_search(SupportSearch::Linear);
+        let steps = egjk.distance(&at, &world).steps;
+        let vertices = p.vertices().len() + q.vertices().len();
+        assert!(steps.supports > 0);
+        assert_eq!(steps.climbed as usize, steps.supports as usize * vertices);
     }
 }
 

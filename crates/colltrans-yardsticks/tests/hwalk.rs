@@ -111,3 +111,49 @@ fn shortcuts_are_taken_when_bodies_jump() {
     let error = Placed { moving_pose: poses[1], ..placed }.error(answer.distance);
     assert!(error <= 1e-14, "{error:e}");
 }
+
+/// Along a motion the answer is the same from every layer; the coarser it is, the less a query starts
+/// from the one before.
+#[test]
+fn start_layers_change_the_work_and_not_the_answer() {
+    let placed = large(2_000, 11);
+    let [moving, fixed] = hierarchies(&placed);
+    let poses = coherent(&placed, 0.001, 60, 5);
+    let walked = |layer: usize| {
+        let mut solver = HWalk::new(&moving, &fixed).with_start_layer(layer);
+        let mut plain = HWalk::new(&moving, &fixed);
+        solver.distance(&poses[0], &placed.fixed_pose);
+        let mut iterations = 0;
+        for pose in &poses[1..] {
+            let answer = solver.distance(pose, &placed.fixed_pose);
+            plain.reset();
+            let expected = plain.distance(pose, &placed.fixed_pose);
+            let difference = (answer.distance - expected.distance).abs();
+            assert!(difference <= 1e-14 * placed.size(), "{layer}: {difference:e}");
+            assert!(answer.steps.iterations >= answer.steps.pairs + answer.steps.layers);
+            assert_eq!(answer.steps.shortcuts, 0, "{layer}");
+            iterations += answer.steps.iterations;
+        }
+        iterations
+    };
+    let coarsest = moving.layer_count().max(fixed.layer_count()) - 1;
+    let [strong, weak, beyond] = [0, coarsest, coarsest + 7].map(walked);
+    assert!(2 * strong < weak, "{strong} and {weak}");
+    assert_eq!(weak, beyond);
+}
+
+/// On ties, needles and plates, from scratch and again, from every layer there is.
+#[test]
+fn start_layers_on_hard_settings() {
+    for placed in hard_settings(6) {
+        let [moving, fixed] = hierarchies(&placed);
+        for layer in 0..moving.layer_count().max(fixed.layer_count()) {
+            let mut solver = HWalk::new(&moving, &fixed).with_start_layer(layer);
+            for _ in 0..2 {
+                let answer = solver.distance(&placed.moving_pose, &placed.fixed_pose);
+                let error = placed.error(answer.distance);
+                assert!(error <= 1e-14 && !answer.steps.gave_up, "{}: {error:e}", placed.name);
+            }
+        }
+    }
+}

@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for event in recording.events() {
         match event {
             Event::Support(support) => {
-                println!("support point {} along {}", support.at, support.normal)
+                println!("support point {} along {}", support.at, support.normal);
             }
             Event::Portal(corners) => println!("portal {corners:?}"),
             Event::PlanarProblem(problem) => println!("planar problem {problem:?}"),

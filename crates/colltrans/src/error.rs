@@ -192,7 +192,8 @@ pub enum PoseError {
     NotARotationMatrix {
         /// The columns as given.
         columns: [[f64; 3]; 3],
-        /// The largest entry of `R^T R - I` by magnitude, or 2 for a reflection.
+        /// The largest entry of `R^T R - I` by magnitude; at least 2 for a reflection, infinite if an
+        /// entry is not finite.
         defect: f64,
         /// The defect that would have been accepted.
         tolerance: f64,
@@ -226,6 +227,21 @@ pub enum QueryError {
     /// The graze tolerance is negative or not finite.
     #[error("the graze tolerance {tolerance} is negative or not finite")]
     GrazeTolerance {
+        /// The tolerance as given.
+        tolerance: f64,
+    },
+    /// The tolerance by which solids are shrunk is negative or not finite.
+    #[error("the tolerance {tolerance} is negative or not finite")]
+    Tolerance {
+        /// The tolerance as given.
+        tolerance: f64,
+    },
+    /// A graze tolerance was set on a query between solids.
+    #[error(
+        "a graze tolerance ({tolerance}) on a solid would depend on how finely it is meshed; \
+         `with_tolerance` shrinks both bodies instead"
+    )]
+    GrazeOnSolid {
         /// The tolerance as given.
         tolerance: f64,
     },

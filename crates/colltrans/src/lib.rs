@@ -47,7 +47,8 @@
 //! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
 //! convex hull), from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
 //! ([`ConvexPolyhedron::cuboid`]), and then asked as often as one likes, from any thread. Flat
-//! polygons, segments and single points are bodies too.
+//! polygons, segments and single points are bodies too. Bodies that are not convex are [`Solid`]s,
+//! asked in the same way.
 //!
 //! # Frames and units
 //!
@@ -128,6 +129,7 @@ pub use answer::{
     Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
     Intersection, Outcome, Proof, Separated, Separation, Solver, StartedFrom, Steps,
 };
+pub use body::solid::{Shell, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{Body, ConvexPolyhedron, ConvexityDefect, Feature, Placed, Pose, convexity_defect};
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
@@ -136,6 +138,7 @@ pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;
+pub use solve::facets::{SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
 pub use tracker::Tracker;
@@ -144,3 +147,8 @@ pub use tracker::Tracker;
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
+
+/// The examples of `docs/solids.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/solids.md")]
+pub struct Solids;

@@ -265,7 +265,12 @@ fn matrices_are_taken_as_they_are() {
         let PoseError::NotARotationMatrix { defect, .. } = refused else { panic!("{refused}") };
         assert!((least..1.2 * least).contains(&defect), "{defect:e}");
     }
-    assert!(Pose::from_matrix(DMat3::from_diagonal(DVec3::splat(f64::NAN)), DVec3::ZERO).is_err());
+    for bad in [f64::NAN, f64::INFINITY, 1e200] {
+        let matrix = DMat3::from_diagonal(DVec3::new(bad, 1.0, 1.0));
+        let refused = Pose::from_matrix(matrix, DVec3::ZERO).unwrap_err();
+        let PoseError::NotARotationMatrix { defect, .. } = refused else { panic!("{refused}") };
+        assert_eq!(defect, f64::INFINITY);
+    }
 }
 
 #[test]

@@ -384,6 +384,7 @@ fn steps_are_those_of_all_casts() {
                     planar_problems: a.planar_problems + b.planar_problems,
                     supports: a.supports + b.supports,
                     pivots: a.pivots + b.pivots,
+                    iterations: a.iterations + b.iterations,
                     started_from: a.started_from.max(b.started_from),
                 },
             );

@@ -97,7 +97,7 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
     }
     building(&mut page, &table)?;
     for (kind, (name, text)) in &runs {
-        if name.ends_with(".txt") {
+        if Path::new(name).extension().is_some_and(|ending| ending == "txt") {
             write!(
                 page,
                 "\n## {}\n\n[{name}](measurements/{name})\n\n```text\n{}\n```\n",
@@ -318,25 +318,41 @@ fn solids(page: &mut String, run: &Value) -> Result<(), Failure> {
     page.push_str("\n## Solids that are not convex\n");
     provenance(page, run)?;
     page.push_str(
-        "Medians in µs; *x* is the median of parry3d-f64's `cast_shapes` of two `TriMesh` over ours, \
-         on the same settings in the same run.\n\n\
-         | pair | facets | build ms | bytes a facet | ours | parry | x |\n\
-         |---|---:|---:|---:|---:|---:|---:|\n",
+        "Times in µs. Of pairs *x* is parry3d-f64's `cast_shapes` of two `TriMesh` over ours, on the \
+         same settings in the same run, by medians (by means). *flat*: a plate of many facets on \
+         another, as its name says.\n\n\
+         | what | facets | median | mean | parry, median | x |\n\
+         |---|---:|---:|---:|---:|---:|\n",
     );
+    let micros = |row: &Value, key: &str| rounded(number(row, &[key]) / 1e3);
     for row in rows(run) {
-        let micros = |who: &str| rounded(number(row, &[who, "median_ns"]) / 1e3);
+        let group = text(row, "group");
+        let name = if group == "pairs" {
+            text(row, "name").into()
+        } else {
+            format!("{group}: {}", text(row, "name"))
+        };
+        let is_pair = row["ratio_of_medians"].is_number();
+        let ratio = || {
+            format!(
+                "{} ({})",
+                rounded(number(row, &["ratio_of_medians"])),
+                rounded(number(row, &["ratio"]))
+            )
+        };
         writeln!(
             page,
-            "| {} | {} | {} | {} | {} | {} | {} |",
-            text(row, "pair"),
+            "| {} | {} | {} | {} | {} | {} |",
+            name.trim_end_matches(": ?"),
             thousands(number(row, &["facets"])),
-            rounded(number(row, &["build_ms"])),
-            rounded(number(row, &["bytes_per_facet"])),
-            micros("ours"),
-            micros("parry"),
-            rounded(number(row, &["parry_over_ours"])),
+            micros(row, "median_ns"),
+            micros(row, "mean_ns"),
+            micros(row, "parry_median_ns"),
+            if is_pair { ratio() } else { "-".into() },
         )?;
     }
+    let differ: f64 = rows(run).iter().filter_map(|row| row["answers_apart"].as_f64()).sum();
+    writeln!(page, "\nAnswers that differ from parry's: {differ}.")?;
     Ok(())
 }
 

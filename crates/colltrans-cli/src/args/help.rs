@@ -2,7 +2,7 @@
 
 pub(super) const EXIT_CODES: &str = "\
 Exit codes:
-  0  answered (contact, grazing, separated are all answers)
+  0  answered (contact, separated, free, blocked, overlapping are all answers)
   1  batch, --directions: some lines have no answer; the results say which and why
   2  the command line is wrong
   3  an input file cannot be read, a body is not what it should be, or an output would overwrite an
@@ -39,26 +39,64 @@ Answers:
 Example:
   colltrans clearance drawer.stl cabinet.stl --direction -y --hull-moving";
 
+pub(super) const CLEAR_ANSWERS: &str = "\
+Answers:
+  free         it can go on for ever
+  blocked      it can go so far: `nominal` is the distance at which the faces that stop it meet,
+               `distance` that of the bodies shrunk by half the tolerance, for which it is exact
+  overlapping  the bodies overlap now, by more than the tolerance; `depth` is the least tolerance
+               with which they would not
+`exit` is the distance after which they never meet again. Distances are in multiples of the
+direction; tolerance, depth and point are in the unit of the meshes. Vertices and faces are numbered
+from 0 as in their files.
+
+With --json one object, with those of these fields that apply:
+  {\"outcome\": \"free\"|\"blocked\"|\"overlapping\", \"distance\", \"nominal\", \"exit\",
+   \"moving\": FILE, \"fixed\": FILE (what touches, or overlaps deepest), \"point\": [x,y,z] (of the
+   contact, on the fixed part), \"normal\": [x,y,z] (from moving to fixed), \"tolerance\",
+   \"start_overlaps\": [{\"moving\": FILE, \"fixed\": FILE, \"depth\"}]}
+
+Examples:
+  How far does a bolt go down into a plate with a hole, from 7 above it?
+    colltrans clear bolt.stl --from plate.stl --direction -z --moving-pose 0,0,7
+  Does the bearing come out of its housing, when curved fits are tessellated to 0.05?
+    colltrans clear ring.stl balls.stl --from housing.stl shaft.stl --direction x --tolerance 0.1
+  Parts that are pressed into each other at the start, with a picture:
+    colltrans clear pin.stl --from block.stl --direction z --ignore-start-overlaps \\
+      --picture pin.svg";
+
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,
-   "direction": [x,y,z], "graze_tolerance": L, "solver": "auto"|"cta"|"portal"}
+   "direction": [x,y,z], "query": "contact"|"clearance",
+   "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
+   "tolerance": L, "ignore_start_overlaps": true|false (of solids)}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
        or {"mesh": "path", "hull": true|false, "scale": FACTOR}
+       or {"solid": "path", "scale": FACTOR} (need not be convex)
   (hull and scale may be missing: as --hull says, and 1)
+  query is "contact", as of `colltrans cast`, or "clearance": as of `colltrans clear` where a body
+  is a solid, else as of `colltrans clearance`. Solids are asked for their clearance only, which is
+  the default there.
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
 moving, fixed and direction are required. Paths are relative to the folder of the query file, or to
 the current folder for standard input. Blank lines are skipped, unknown fields are errors.
 
 Each result is one JSON object with those of these fields that apply:
   id           as in the query (null if it cannot be read)
-  outcome      "contact", "grazing", "separated" or "error"; of `clearance`: "blocked", "slides",
-               "behind", "separated" or "overlapping"
+  outcome      "contact", "grazing", "separated" or "error"; of a clearance: "blocked", "slides",
+               "behind", "separated" or "overlapping"; of solids: "free", "blocked" or "overlapping"
   direction    with --directions: the direction as it was read
-  distance     of `clearance`, blocked: how far the body can go for certain
-  back on      of `clearance`, overlapping: how far to go back, or on, to be free for certain
+  distance     of a clearance, blocked: how far the body can go for certain; of solids: how far, when
+               both are shrunk by half the tolerance
+  nominal      of solids, blocked: where the faces that stop them meet in their true place
+  back on      of a clearance, overlapping: how far to go back, or on, to be free for certain
   translation  first contact, in multiples of the direction; negative: behind, or overlapping
-  exit         last contact; behind: where that is (and normal, point, features are those there)
-  tolerance    what rounding alone can make of upper - lower; digits below it are not known
+  exit         last contact; behind: where that is (and normal, point, features are those there);
+               of solids: after it they never meet
+  tolerance    what rounding alone can make of upper - lower; digits below it are not known; of
+               solids: the one that was used
+  start_overlaps  of solids that overlap now: [{"depth"}], the least tolerance with which they
+               would not
   normal       unit normal from moving to fixed: of the contact plane, or of the separating plane
   point        the contact point on the fixed body, in the world
   lower upper  the proven bounds of translation: never above, never below the true one; upper is
@@ -78,3 +116,32 @@ Translations, bounds and tolerance are in multiples of the direction, other leng
 the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
 that exists is replaced when all lines are answered, and never if a query reads it. A line may have
 up to 64 MiB."#;
+
+pub(super) const ASSEMBLY_FORMAT: &str = r#"SOURCE is a folder of meshes, each a part in its place (STL, OBJ, PLY, OFF); a manifest (.toml, .json);
+a URDF file (metres); .glb, .gltf (metres) or .3mf (the unit it says).
+
+A manifest, in TOML (JSON has the same fields):
+  unit = "mm"                                # said, never guessed; may be missing
+  ignore = [["pin", "block"]]                # pairs that may overlap and never block
+  [[part]]
+  file = "pin.stl"                           # or several: ["a.stl", "b.stl"]
+  name = "pin"                               # the file's name, if missing
+  translation = [0, 0, 5]
+  rotation = { rpy_degrees = [0, 90, 0] }    # or quaternion = [x, y, z, w], or matrix = rows
+  scale = 0.9
+  fixed = true                               # never moved
+
+With --json:
+  {"parts": [{"name", "facets", "volume"}], "unit", "tolerance",
+   "overlaps": [{"parts": [a, b], "depth"}], "suggested_tolerance",
+   "liaisons": [{"parts": [a, b], "area", "center"}],
+   "rooms": [{"part", "direction", "outcome", "distance", "by", "nominal", "point", "normal"}],
+   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within"}],
+   "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
+   "maps": [...]}
+  Directions have length 1, so distances are lengths; distance is that of the bodies shrunk by half
+  the tolerance each, nominal that of the parts as they are. outcome is "free", "blocked" or
+  "overlapping". A step with "within" takes apart the group that step (from 0) took out.
+
+With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each
+map a .svg, .png and .json."#;

@@ -10,18 +10,37 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use crate::body::Part;
+use crate::solid;
 
 /// What a body is made from.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Key {
     /// A mesh file, whether its hull is taken, and the bits of its scale.
     Mesh { path: PathBuf, hull: bool, scale: u64 },
+    /// A mesh file that need not be convex, and the bits of its scale.
+    Solid { path: PathBuf, scale: u64 },
     /// Points, by the exact bits of their coordinates.
     Points(Vec<[u64; 3]>),
 }
 
+/// What is built.
+#[derive(Debug)]
+pub(crate) enum Shape {
+    Convex(Part),
+    Solid(solid::Body),
+}
+
+impl Shape {
+    fn memory_bytes(&self) -> usize {
+        match self {
+            Self::Convex(part) => part.body.memory_bytes(),
+            Self::Solid(body) => body.memory_bytes(),
+        }
+    }
+}
+
 /// A body, or why there is none.
-pub(crate) type Built = Result<Arc<Part>, String>;
+pub(crate) type Built = Result<Arc<Shape>, String>;
 
 /// Bytes that an entry takes beyond its body and its points.
 const OVERHEAD: usize = 512;
@@ -78,9 +97,9 @@ impl Cache {
 fn weight(key: &Key, body: &Built) -> usize {
     let key = match key {
         Key::Points(points) => points.len() * size_of::<[u64; 3]>(),
-        Key::Mesh { path, .. } => path.as_os_str().len(),
+        Key::Mesh { path, .. } | Key::Solid { path, .. } => path.as_os_str().len(),
     };
-    key + body.as_ref().map_or(0, |part| part.body.memory_bytes()) + OVERHEAD
+    key + body.as_ref().map_or(0, |shape| shape.memory_bytes()) + OVERHEAD
 }
 
 impl State {
@@ -130,7 +149,7 @@ mod tests {
     /// How often bodies of one vertex were built after each of these uses.
     fn builds(capacity: usize, uses: &[f64]) -> Vec<u32> {
         let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
-        let one: Built = Ok(Arc::new(Part { body, excess: None, note: None }));
+        let one: Built = Ok(Arc::new(Shape::Convex(Part { body, excess: None, note: None })));
         let cache = Cache::new(capacity);
         let mut builds = 0;
         let count = |&x: &f64| {

@@ -11,15 +11,16 @@ mod query;
 mod results;
 
 use std::fs::File;
-use std::io::{self, BufReader, IsTerminal, Read};
+use std::io::{self, BufReader, Read};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use crate::args::BatchArguments;
 use crate::failure::{Code, Failure};
 use crate::inputs::{FilesRead, overwritten};
+use crate::progress;
 use cache::Cache;
 use pipeline::Pipeline;
 use query::Desk;
@@ -98,17 +99,11 @@ fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure>
     Ok((BufReader::with_capacity(1 << 16, Box::new(file)), size, folder))
 }
 
-/// Bytes of the query file that were read; nothing where nobody looks at it.
+/// Bytes of the query file that were read.
 fn progress_bar(size: Option<u64>) -> ProgressBar {
-    if !io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let (bar, template) = match size {
-        Some(size) => {
-            (ProgressBar::new(size), "{wide_bar} {bytes}/{total_bytes} {eta} left, {msg} queries")
-        }
-        None => (ProgressBar::no_length(), "{spinner} {bytes} {elapsed}, {msg} queries"),
+    let template = match size {
+        Some(_) => "{wide_bar} {bytes}/{total_bytes} {eta} left, {msg} queries",
+        None => "{spinner} {bytes} {elapsed}, {msg} queries",
     };
-    bar.set_style(ProgressStyle::with_template(template).unwrap_or(ProgressStyle::default_bar()));
-    bar
+    progress::bar(size, template)
 }

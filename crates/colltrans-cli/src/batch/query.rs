@@ -5,17 +5,19 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{ConvexPolyhedron, Options, Pose};
+use colltrans::{ConvexPolyhedron, Options, Pose, QueryError};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use super::cache::{Built, Cache, Key};
+use super::cache::{Built, Cache, Key, Shape};
 use super::pipeline::Line;
 use crate::args::{BodyArguments, SolverName};
 use crate::body::{self, Part};
 use crate::inputs::FilesRead;
 use crate::query;
 use crate::record::{Hulls, Name, Record};
+use crate::replay;
+use crate::solid::{self, Question};
 
 /// Where lines are answered.
 pub(crate) struct Desk {
@@ -40,10 +42,21 @@ struct Query {
     #[serde(default)]
     fixed_pose: PoseSource,
     direction: [f64; 3],
-    #[serde(default)]
-    graze_tolerance: f64,
+    #[serde(rename = "query")]
+    asked: Option<Asked>,
+    graze_tolerance: Option<f64>,
     #[serde(default)]
     solver: SolverName,
+    tolerance: Option<f64>,
+    ignore_start_overlaps: Option<bool>,
+}
+
+/// Which question is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Asked {
+    Contact,
+    Clearance,
 }
 
 #[derive(Deserialize)]
@@ -51,6 +64,7 @@ struct Query {
 struct BodySource {
     points: Option<Vec<[f64; 3]>>,
     mesh: Option<PathBuf>,
+    solid: Option<PathBuf>,
     hull: Option<bool>,
     scale: Option<f64>,
 }
@@ -103,7 +117,7 @@ impl Desk {
         let Query { id, .. } = &query;
         let id = id.clone();
         // A bug must not take the other lines with it.
-        let solved = catch_unwind(AssertUnwindSafe(|| self.solve(query)));
+        let solved = catch_unwind(AssertUnwindSafe(|| self.solve(&query)));
         let record = match solved {
             Ok(Ok(record)) => record,
             Ok(Err(message)) => Record::of_error(format!("line {number}: {message}")),
@@ -112,65 +126,147 @@ impl Desk {
         (id, record)
     }
 
-    fn solve(&self, query: Query) -> Result<Record, String> {
-        let moving = self.body(query.moving).map_err(|e| format!("moving: {e}"))?;
-        let fixed = self.body(query.fixed).map_err(|e| format!("fixed: {e}"))?;
+    fn solve(&self, query: &Query) -> Result<Record, String> {
+        let moving = self.body(&query.moving).map_err(|e| format!("moving: {e}"))?;
+        let fixed = self.body(&query.fixed).map_err(|e| format!("fixed: {e}"))?;
         let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
         let fixed_pose = query.fixed_pose.pose().map_err(|e| format!("fixed_pose: {e}"))?;
-        let direction = DVec3::from_array(query.direction);
-        let options = Options {
-            solver: query.solver.into(),
-            graze_tolerance: query.graze_tolerance,
-            ..Options::default()
-        };
-        let (moving_body, fixed_body) = (&moving.body, &fixed.body);
-        let query = query::Query {
-            moving: moving_body,
-            moving_pose,
-            fixed: fixed_body,
-            fixed_pose,
-            direction,
-            options,
-        };
-        let cast = query.cast().map_err(|e| e.to_string())?;
-        let answer = cast.contact_range().map_err(|e| e.to_string())?;
-        let hull = Hulls::of(moving.excess, fixed.excess);
-        Ok(Record { hull, ..Record::of_answer(&answer, &cast) })
+        let poses = [moving_pose, fixed_pose];
+        match (&*moving, &*fixed) {
+            (Shape::Convex(moving), Shape::Convex(fixed)) => {
+                query.of_convex([moving, fixed], poses)
+            }
+            (moving, fixed) => query.of_solids([moving, fixed], poses),
+        }
     }
 
-    fn body(&self, source: BodySource) -> Built {
-        match source {
-            BodySource { points: Some(points), mesh: None, hull: None, scale: None } => {
+    fn body(&self, source: &BodySource) -> Built {
+        let &BodySource { ref points, ref mesh, ref solid, hull, scale } = source;
+        match (points, mesh, solid) {
+            (Some(points), None, None) if hull.is_none() && scale.is_none() => {
                 let bits = points.iter().map(|p| p.map(f64::to_bits)).collect();
-                self.cache.get(Key::Points(bits), |_| hull(&points))
+                self.cache.get(Key::Points(bits), |_| hull_of(points))
             }
-            BodySource { points: None, mesh: Some(path), hull, scale } => {
-                self.mesh(&path, hull.unwrap_or(self.hull), scale.unwrap_or(1.0))
+            (Some(_), None, None) => Err("`hull` and `scale` are for meshes".into()),
+            (None, Some(path), None) => {
+                self.mesh(path, hull.unwrap_or(self.hull), positive(scale)?)
             }
-            BodySource { points: Some(_), mesh: None, .. } => {
-                Err("`hull` and `scale` are for meshes".into())
-            }
-            _ => Err("a body has either `points` or `mesh`".into()),
+            (None, None, Some(path)) if hull.is_none() => self.solid(path, positive(scale)?),
+            (None, None, Some(_)) => Err("`hull` is for a `mesh`".into()),
+            _ => Err("a body has either `points` or `mesh` or `solid`".into()),
         }
+    }
+
+    fn solid(&self, path: &Path, scale: f64) -> Built {
+        let path = self.folder.join(path);
+        let key = Key::Solid { path: path.clone(), scale: scale.to_bits() };
+        self.cache.get(key, |_| {
+            self.read.note(&path);
+            let merge_tolerance = self.body.merge_tolerance();
+            let recipe = solid::Recipe { scale, merge_tolerance, open: false };
+            let body = solid::Body::load(&[path], recipe, || ())?;
+            Ok(Arc::new(Shape::Solid(body)))
+        })
     }
 
     fn mesh(&self, path: &Path, hull: bool, scale: f64) -> Built {
-        if !scale.is_finite() || scale <= 0.0 {
-            return Err(format!("the scale {scale} is not finite and positive"));
-        }
         let path = self.folder.join(path);
         let key = Key::Mesh { path: path.clone(), hull, scale: scale.to_bits() };
         self.cache.get(key, |_| {
             self.read.note(&path);
-            body::load(&path, self.body.recipe(hull, scale)).map(Arc::new)
+            let part = body::load(&path, self.body.recipe(hull, scale))?;
+            Ok(Arc::new(Shape::Convex(part)))
         })
     }
 }
 
-fn hull(points: &[[f64; 3]]) -> Built {
+fn positive(scale: Option<f64>) -> Result<f64, String> {
+    match scale.unwrap_or(1.0) {
+        scale if scale.is_finite() && scale > 0.0 => Ok(scale),
+        scale => Err(format!("the scale {scale} is not finite and positive")),
+    }
+}
+
+fn hull_of(points: &[[f64; 3]]) -> Built {
     let points: Vec<DVec3> = points.iter().copied().map(DVec3::from_array).collect();
     let body = ConvexPolyhedron::from_points(&points).map_err(|e| e.to_string())?;
-    Ok(Arc::new(Part { body, excess: None, note: None }))
+    Ok(Arc::new(Shape::Convex(Part { body, excess: None, note: None })))
+}
+
+impl Query {
+    fn of_convex(&self, [moving, fixed]: [&Part; 2], poses: [Pose; 2]) -> Result<Record, String> {
+        if self.tolerance.is_some() || self.ignore_start_overlaps.is_some() {
+            let fields = "`tolerance` and `ignore_start_overlaps`";
+            return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
+        }
+        let options = Options {
+            solver: self.solver.into(),
+            graze_tolerance: self.graze_tolerance.unwrap_or_default(),
+            ..Options::default()
+        };
+        let query = query::Query {
+            moving: &moving.body,
+            moving_pose: poses[0],
+            fixed: &fixed.body,
+            fixed_pose: poses[1],
+            direction: DVec3::from_array(self.direction),
+            options,
+        };
+        let answer = || {
+            let cast = query.cast()?;
+            Ok(match self.asked.unwrap_or(Asked::Contact) {
+                Asked::Contact => Record::of_answer(&cast.contact_range()?, &cast),
+                Asked::Clearance => Record::of_clearance(&cast.clearance()?, &cast),
+            })
+        };
+        let record = answer().map_err(|e: QueryError| replay::failure(e, &query).into_message())?;
+        Ok(Record { hull: Hulls::of(moving.excess, fixed.excess), ..record })
+    }
+
+    /// At least one of the bodies is a solid.
+    fn of_solids(&self, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Record, String> {
+        if self.asked == Some(Asked::Contact) {
+            return Err(r#"solids are asked for their clearance: "query": "clearance""#.into());
+        }
+        if self.graze_tolerance.is_some() {
+            return Err("`graze_tolerance` is for convex bodies; solids have `tolerance`".into());
+        }
+        let [moving, fixed] = shapes.map(as_solid);
+        let (moving, fixed) = (moving?, fixed?);
+        let question = Question {
+            moving: moving.get(),
+            moving_pose: poses[0],
+            fixed: fixed.get(),
+            fixed_pose: poses[1],
+            direction: DVec3::from_array(self.direction),
+            tolerance: self.tolerance,
+            ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
+        };
+        let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
+        Ok(Record::of_solids(&answer).without_names())
+    }
+}
+
+/// A solid, or one made of a convex body.
+enum AsSolid<'a> {
+    Is(&'a solid::Body),
+    Made(Box<solid::Body>),
+}
+
+fn as_solid(shape: &Shape) -> Result<AsSolid<'_>, String> {
+    match shape {
+        Shape::Solid(body) => Ok(AsSolid::Is(body)),
+        Shape::Convex(part) => Ok(AsSolid::Made(Box::new(solid::Body::of_convex(&part.body)?))),
+    }
+}
+
+impl AsSolid<'_> {
+    fn get(&self) -> &solid::Body {
+        match self {
+            Self::Is(body) => body,
+            Self::Made(body) => body,
+        }
+    }
 }
 
 impl PoseSource {

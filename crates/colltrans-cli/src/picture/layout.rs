@@ -48,7 +48,7 @@ pub(super) fn working_size(moving: f64, fixed: f64, way: f64) -> f64 {
 }
 
 impl Layout {
-    pub(super) fn of(cast: &Cast, story: &Story<'_>, view: &View) -> Self {
+    pub(super) fn of(cast: &Cast, story: &Story, view: &View) -> Self {
         let radii = [cast.stop.ball().1, cast.fixed.ball().1];
         let size = working_size(radii[0], radii[1], cast.way.length());
         let is_whole = radii[0].max(radii[1]) <= WHOLE * size / 3.0;

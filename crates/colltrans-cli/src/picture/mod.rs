@@ -12,11 +12,15 @@
 //! Where the contact lies behind, the start may overlap `Q`; it is drawn last, as an outline that
 //! hides nothing.
 //!
+//! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths.
+//!
 //! The data's way: [`story`] (what is to be shown) -> [`view`] (from where) -> [`layout`] (how
 //! large) -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
 
 mod layout;
 mod notes;
+mod parts;
+mod raster;
 mod solid;
 mod story;
 mod svg;
@@ -28,6 +32,7 @@ use colltrans::glam::{DVec2, DVec3};
 use crate::query::Query;
 use layout::Layout;
 use notes::Notes;
+pub(crate) use parts::draw_solids;
 use solid::{Paint, Solid};
 use story::Story;
 use svg::Page;
@@ -93,17 +98,22 @@ pub(crate) fn draw(scene: &Scene<'_>) -> String {
 }
 
 /// Which of the bodies may hide the other; the plane between them decides.
-fn fixed_is_nearer(story: &Story<'_>, view: &View) -> bool {
+fn fixed_is_nearer(story: &Story, view: &View) -> bool {
     story.normal.dot(view.toward) > 0.0
 }
 
 impl Cast {
-    fn of(scene: &Scene<'_>, story: &Story<'_>) -> Self {
+    fn of(scene: &Scene<'_>, story: &Story) -> Self {
         let query = scene.query;
-        let unit = query.direction.normalize();
         let fixed = Solid::new(query.fixed, &query.fixed_pose, story.origin);
-        let stop =
-            Solid::new(query.moving, &query.moving_pose, story.origin).moved(unit * story.stop);
+        let moving = Solid::new(query.moving, &query.moving_pose, story.origin);
+        Self::placed(&moving, fixed, query.direction, story)
+    }
+
+    /// From where the bodies are.
+    fn placed(moving: &Solid, fixed: Solid, direction: DVec3, story: &Story) -> Self {
+        let unit = direction.normalize();
+        let stop = moving.moved(unit * story.stop);
         let size = layout::working_size(stop.ball().1, fixed.ball().1, story.stop.abs());
         let longest = 5.0 * size;
         let shown = story.stop.clamp(-longest, longest);
@@ -117,7 +127,7 @@ impl Cast {
         &self,
         page: &mut Page,
         view: &View,
-        story: &Story<'_>,
+        story: &Story,
         on_page: impl Fn(DVec3) -> DVec2 + Copy,
     ) {
         let fixed_is_nearer = fixed_is_nearer(story, view);

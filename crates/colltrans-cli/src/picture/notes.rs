@@ -28,7 +28,7 @@ const MOSTLY_OUTSIDE: u32 = 34;
 
 pub(super) struct Notes<'a> {
     pub(super) cast: &'a Cast,
-    pub(super) story: &'a Story<'a>,
+    pub(super) story: &'a Story,
     pub(super) layout: &'a Layout,
     pub(super) view: &'a View,
 }
@@ -129,7 +129,7 @@ impl Notes<'_> {
     }
 
     fn draw_contact(&self, page: &mut Page) {
-        if self.story.contact.is_none() {
+        if !self.story.touches {
             return;
         }
         // The contact is the origin.
@@ -162,18 +162,23 @@ impl Notes<'_> {
     }
 
     fn draw_legend(&self, page: &mut Page, at: DVec2, look: &str) {
-        let contact = self.story.contact.is_some();
-        let stop = if contact { "moving, at contact" } else { "moving, beside the fixed one" };
+        let Story { touches, margin, features, .. } = self.story;
+        let stop = match (touches, margin) {
+            (true, _) => "moving, at contact",
+            (false, Some(_)) => "moving, beside the fixed one",
+            (false, None) => "moving",
+        };
         let mut entries = Vec::new();
         if self.cast.start.is_some() {
             entries.push(("#dce7f5", MOVING.fine, "moving, at the start"));
         }
         entries.push(("#9db8de", MOVING.line, stop));
         entries.push(("#d9cfbe", FIXED.line, "fixed"));
-        if contact {
+        if features.is_some() {
             entries.push(("#ffffff", MOVING_MARK, "contact feature, moving"));
             entries.push(("#ffffff", FIXED_MARK, "contact feature, fixed"));
-        } else {
+        }
+        if margin.is_some() {
             entries.push(("#fbe7bb", "#a87600", "separating plane"));
         }
         let mut x = at.x;

@@ -33,13 +33,24 @@ pub(super) struct Paint {
 }
 
 /// Number of shades: neighbouring faces of dense meshes share a path.
-const SHADES: usize = 40;
+pub(super) const SHADES: usize = 40;
 /// Edges that bend less are part of a smooth surface (cosine of 25 degrees).
-const SMOOTH: f64 = 0.906;
+pub(super) const SMOOTH: f64 = 0.906;
 /// Hidden edges are drawn for bodies with no more edges than this.
 const FEW_EDGES: usize = 64;
 /// On smooth surfaces, edges are drawn if they are longer than this on average, in pixels.
 const DENSE: f64 = 7.0;
+
+impl Paint {
+    /// The colour of one of [`SHADES`], from dark to light.
+    pub(super) fn shade(&self, shade: usize) -> String {
+        let part = shade as f64 / SHADES as f64;
+        let [r, g, b]: [u8; 3] = std::array::from_fn(|i| {
+            (self.dark[i] + part * (self.light[i] - self.dark[i])).round() as u8
+        });
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
+}
 
 impl Solid {
     pub(super) fn new(body: &ConvexPolyhedron, pose: &Pose, origin: DVec3) -> Self {
@@ -52,6 +63,13 @@ impl Solid {
         let areas = faces.iter().map(|face| area(&vertices, face)).collect();
         let edges = if faces.is_empty() { Vec::new() } else { edges(&faces) };
         Self { vertices, faces, areas, edges }
+    }
+
+    /// Triangles, relative to a point, with outward normals; edges are not looked at.
+    pub(super) fn of_triangles(vertices: Vec<DVec3>, triangles: &[[u32; 3]]) -> Self {
+        let faces: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
+        let areas = faces.iter().map(|face| area(&vertices, face)).collect();
+        Self { vertices, faces, areas, edges: Vec::new() }
     }
 
     pub(super) fn moved(&self, by: DVec3) -> Self {
@@ -112,14 +130,9 @@ impl Solid {
             by_shade[shade].push(corners.iter().map(|&v| flat[v as usize]).collect());
         }
         for (shade, polygons) in by_shade.into_iter().enumerate() {
-            let part = shade as f64 / SHADES as f64;
-            let [r, g, b]: [u8; 3] = std::array::from_fn(|i| {
-                (paint.dark[i] + part * (paint.light[i] - paint.dark[i])).round() as u8
-            });
+            let colour = paint.shade(shade);
             // The thin rim closes the seams that anti-aliasing leaves between faces.
-            let look = format!(
-                r##"fill="#{r:02x}{g:02x}{b:02x}" stroke="#{r:02x}{g:02x}{b:02x}" stroke-width="0.7""##
-            );
+            let look = format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.7""#);
             page.polygons(&look, polygons);
         }
     }
@@ -285,7 +298,7 @@ fn edges(faces: &[Vec<u32>]) -> Vec<([u32; 2], [u32; 2])> {
 }
 
 /// Light from the upper left, before the page.
-fn brightness(view: &View, normal: DVec3) -> f64 {
+pub(super) fn brightness(view: &View, normal: DVec3) -> f64 {
     let on_page = view.project(normal);
     let light = DVec3::new(-0.45, 0.65, 0.61);
     let lit = light.dot(DVec3::new(on_page.x, on_page.y, normal.dot(view.toward)));

@@ -7,14 +7,15 @@ use super::{Cast, Scene, Solid, layout};
 use crate::query::{When, when};
 
 /// What is shown and said.
-pub(super) struct Story<'a> {
+pub(super) struct Story {
     /// The point of the world that coordinates are relative to.
     pub(super) origin: DVec3,
     /// How far the moving body goes from its start until it stops, as a length.
     pub(super) stop: f64,
     /// The contact normal, or that of the separating plane.
     pub(super) normal: DVec3,
-    pub(super) contact: Option<&'a Contact>,
+    /// Whether the bodies touch where the moving one stops, which is at the origin.
+    pub(super) touches: bool,
     /// What touches there.
     pub(super) features: Option<Features>,
     pub(super) margin: Option<f64>,
@@ -24,8 +25,8 @@ pub(super) struct Story<'a> {
     pub(super) details: Vec<String>,
 }
 
-impl<'a> Story<'a> {
-    pub(super) fn of(scene: &Scene<'a>) -> Self {
+impl Story {
+    pub(super) fn of(scene: &Scene<'_>) -> Self {
         match scene.answer {
             ContactRange::Contact { first, last } => {
                 Self::of_contact(scene, first, "Contact", when(first, last), None)
@@ -42,7 +43,7 @@ impl<'a> Story<'a> {
 
     fn of_contact(
         scene: &Scene<'_>,
-        contact: &'a Contact,
+        contact: &Contact,
         name: &str,
         when: When,
         also: Option<String>,
@@ -70,7 +71,7 @@ impl<'a> Story<'a> {
             origin: points.on_fixed,
             stop: contact.translation * length,
             normal: contact.normal,
-            contact: Some(contact),
+            touches: true,
             features: Some(features),
             margin: None,
             headline: match when {
@@ -97,7 +98,7 @@ impl<'a> Story<'a> {
             origin,
             stop: ahead.max(0.0),
             normal,
-            contact: None,
+            touches: false,
             features: None,
             margin: Some(margin),
             way: "d".into(),
@@ -139,12 +140,12 @@ impl<'a> Story<'a> {
 }
 
 /// A unit vector, with rounding noise as 0.
-fn components(unit: DVec3) -> String {
+pub(super) fn components(unit: DVec3) -> String {
     let [x, y, z] = unit.to_array().map(|c| if c.abs() < 1e-12 { 0.0 } else { c }).map(short);
     format!("({x}, {y}, {z})")
 }
 
-fn quantity(translation: f64, length: f64) -> String {
+pub(super) fn quantity(translation: f64, length: f64) -> String {
     if (length - 1.0).abs() < 1e-12 {
         format!("t = {}", short(translation))
     } else {

@@ -59,7 +59,7 @@ impl Frame {
     }
 
     /// The part of a segment inside the frame.
-    fn clip_segment(&self, [mut a, mut b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
+    pub(super) fn clip_segment(&self, [mut a, mut b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
         for side in self.sides() {
             let (at_a, at_b) = (side(a), side(b));
             if at_a < 0.0 && at_b < 0.0 {
@@ -108,6 +108,15 @@ impl Page {
 
     pub(super) fn close_group(&mut self) {
         self.body.push_str("</g>\n");
+    }
+
+    /// Axis-parallel rectangles of one look, by corners at whole pixels, all within the frame.
+    pub(super) fn tiles(&mut self, look: &str, all: &[[usize; 4]]) {
+        let mut data = String::new();
+        for [x, y, right, bottom] in all {
+            let _ = write!(data, "M{x} {y}L{right} {y}L{right} {bottom}L{x} {bottom}Z");
+        }
+        self.path(look, &data);
     }
 
     /// Convex polygons of one look.

@@ -152,7 +152,11 @@ fn bad_files_are_named_with_what_helps() {
     assert_error(&cast("cube.step", &[]), 3, &["cube.step", "stl, obj, ply, off"]);
     assert_error(&cast("broken.off", &[]), 3, &["broken.off", "line 12", "`zero`"]);
     assert_error(&cast("open.off", &[]), 3, &["open.off", "open", "--hull"]);
-    assert_error(&cast("dent.off", &[]), 3, &["dent.off", "not convex", "2.5e-1", "--hull"]);
+    assert_error(
+        &cast("dent.off", &[]),
+        3,
+        &["dent.off", "not convex", "2.5e-1", "--hull", "`colltrans clear`"],
+    );
     assert_error(&cast("points.ply", &[]), 3, &["points.ply", "no faces", "--hull"]);
     for good in [
         cast("dent.off", &["--hull"]),
@@ -212,7 +216,8 @@ fn info_says_what_is_there_and_what_is_wrong() {
         &[
             "vertices     9",
             "surface      closed",
-            "no; --hull takes its hull: face 1 lies 0.25 below",
+            "solid        yes: 1 shell, 0 holes through",
+            "no; `clear` takes it as it is, --hull takes its hull: face 1 lies 0.25 below",
             "volume       0.9166",
             "hull volume  1\n",
             "hull exceeds 0.0833333 of its volume 1 is not the part (8.333 %); the part's surface \
@@ -223,6 +228,7 @@ fn info_says_what_is_there_and_what_is_wrong() {
         "open.off",
         &[
             "surface      not closed: 4 edges",
+            "solid        no: the surface is not closed: 4 edges",
             "convex       no: the surface is open",
             "hull volume  1\n",
         ],

@@ -12,7 +12,7 @@ fn the_program_writes_the_committed_files() {
     let mut names: Vec<_> =
         std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     names.sort();
-    assert_eq!(names.len(), 5);
+    assert_eq!(names.len(), 7);
     for name in names {
         let written = std::fs::read(folder.path().join(&name)).unwrap();
         let committed = std::fs::read(data().join(&name)).unwrap_or_default();

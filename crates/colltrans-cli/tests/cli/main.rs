@@ -2,6 +2,7 @@
 
 mod batch;
 mod cast;
+mod clear;
 mod door;
 mod example_parts;
 mod picture;

@@ -127,3 +127,30 @@ fn example_parts() {
         }
     }
 }
+
+#[test]
+fn parts_that_are_not_convex() {
+    let folder = folder();
+    let [bolt, plate] = ["bolt.stl", "plate.off"].map(|part| data().join(part));
+    for part in [&bolt, &plate] {
+        std::fs::copy(part, folder.path().join(part.file_name().unwrap())).unwrap();
+    }
+    let ask = |more: &[&str]| {
+        let words = ["clear", "bolt.stl", "--from", "plate.off", "--direction"];
+        picture(folder.path(), &[&words[..], more].concat())
+    };
+    let svg = ask(&["-z", "--moving-pose", "0,0,7"]);
+    for part in ["Blocked at t = 7", "moving, at the start", "normal n = (0, 0, -1)", ">n<"] {
+        assert!(svg.contains(part), "{part:?}");
+    }
+    assert!(!svg.contains("contact feature") && !svg.contains("separating plane"));
+    assert!(svg.contains("stroke-dasharray"), "hidden edges");
+    assert!(svg.len() < 100_000, "{} bytes", svg.len());
+    let free = ask(&["z", "--moving-pose", "0,0,7"]);
+    assert!(free.contains("Free: nothing stops it along d") && !free.contains(">n<"));
+    assert!(ask(&["1,2,3", "--moving-pose", "1,0,-1"]).contains("Overlapping"));
+    // Far larger than what it touches, and far away.
+    ask(&["-z", "--moving-pose", "0,0,9000"]);
+    ask(&["-z", "--moving-pose", "0,0,5000", "--fixed-scale", "1000"]);
+    ask(&["1,0.3,-0.2", "--moving-pose", "-30,-9,6", "--moving-rpy", "20,30,40"]);
+}

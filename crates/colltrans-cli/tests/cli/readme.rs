@@ -27,7 +27,7 @@ fn blocks() -> Vec<Block> {
                 open = Some(Block { language: language.into(), text: String::new(), before });
             }
             (Some(_), Some(_)) => blocks.extend(open.take()),
-            (Some(block), None) => block.text += &format!("{line}\n"),
+            (Some(block), None) => block.text.extend([line, "\n"]),
             (None, None) => last = line.into(),
         }
     }

@@ -39,6 +39,15 @@ impl Curve<'_> {
         self.marks().count() > MOST_BARS
     }
 
+    /// With its marks moved aside, unless there are so many that they are not marked.
+    pub(super) fn moved(&self, aside: impl Fn(f64) -> f64) -> Self {
+        let mut moved = self.clone();
+        if !self.is_dense() {
+            moved.stretches.iter_mut().flatten().for_each(|mark| mark.x = aside(mark.x));
+        }
+        moved
+    }
+
     pub(super) fn marks(&self) -> impl Iterator<Item = Mark> {
         self.stretches.iter().flatten().copied()
     }

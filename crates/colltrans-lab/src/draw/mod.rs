@@ -16,7 +16,7 @@ use kuva::plot::{
 use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
-use kuva::render::render::{Scene, render_multiple};
+use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
 use crate::finding::{Axis, Figure};
 use curve::{Curve, Spread};
@@ -35,6 +35,12 @@ pub struct Picture {
 /// Pixels of the SVG.
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 500.0;
+/// Where the label of the vertical axis begins.
+const LABEL_AT: [f64; 2] = [16.0, 66.0];
+/// Room for the title and that label.
+const TOP: f64 = 82.0;
+/// Room for the ticks' labels.
+const LEFT: f64 = 64.0;
 /// Pixels of the PNG for each of the SVG.
 const PNG_SCALE: f32 = 2.0;
 
@@ -52,7 +58,8 @@ const SHAPES: [MarkerShape; 7] = [
 ];
 /// Greys and dashes of curves to compare with. In PNG the dashes have pixels for their unit: short
 /// ones would flow together.
-const GREYS: [(&str, &str); 3] = [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "14 5 3 5")];
+const GREYS: [(&str, &str); 4] =
+    [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "9 4 2 4"), ("#aaaaaa", "16 4")];
 
 /// Draws a figure.
 ///
@@ -63,9 +70,23 @@ pub fn draw(figure: &Figure) -> Result<Picture, String> {
     let (measured, mut notes) = curve::measured(figure);
     let (references, more) = curve::references(figure);
     notes.extend(more);
-    let scene = scene(figure, &measured, &references, !notes.is_empty());
+    let mut scene = scene(figure, &measured, &references, !notes.is_empty());
+    lay_down_labels(&mut scene);
     let png = RasterBackend::new().with_scale(PNG_SCALE).render_scene(&scene)?;
     Ok(Picture { svg: svg(figure, &scene), png, notes })
+}
+
+/// The label of the vertical axis lies above it. Standing along it, as the plotting crate puts it, the
+/// crate's rasteriser (0.6.0) copies it without the soft edges of its letters, so that they look as if
+/// they were printed twice.
+fn lay_down_labels(scene: &mut Scene) {
+    for element in &mut scene.elements {
+        if let Primitive::Text { x, y, anchor, rotate, .. } = element
+            && rotate.take().is_some()
+        {
+            (*x, *y, *anchor) = (LABEL_AT[0], LABEL_AT[1], TextAnchor::Start);
+        }
+    }
 }
 
 fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: bool) -> Scene {
@@ -85,8 +106,9 @@ fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: 
     for (curve, &(grey, dash)) in references.iter().zip(GREYS.iter().cycle()) {
         add_reference(&mut plots, curve, grey, dash);
     }
-    for (curve, (&colour, &shape)) in measured.iter().zip(styles()) {
-        add_measured(&mut plots, curve, colour, shape, y.0);
+    for (k, (curve, (&colour, &shape))) in measured.iter().zip(styles()).enumerate() {
+        let aside = aside(figure, x, k, measured.len());
+        add_measured(&mut plots, &curve.moved(aside), colour, shape, y.0);
         let sign = if curve.is_dense() { LegendShape::Line } else { LegendShape::Marker(shape) };
         legend.push(entry(curve, colour, sign, None));
     }
@@ -98,6 +120,15 @@ fn scene(figure: &Figure, measured: &[Curve], references: &[Curve], incomplete: 
         layout = layout.with_subtitle("Not all data can be drawn: the report says which, and why.");
     }
     render_multiple(plots, layout)
+}
+
+/// Curves with the same places side by side by a few pixels, so that marks and bars of one do not
+/// hide those of another. Where the curve is dense its places are the data: it stays.
+fn aside(figure: &Figure, x: (f64, f64), k: usize, count: usize) -> impl Fn(f64) -> f64 + use<> {
+    const SPREAD: f64 = 0.035;
+    let share = SPREAD * ((k as f64 + 0.5) / count as f64 - 0.5);
+    let log = figure.x.log;
+    move |at| if log { at * (x.1 / x.0).powf(share) } else { at + (x.1 - x.0) * share }
 }
 
 fn styles() -> impl Iterator<Item = (&'static &'static str, &'static MarkerShape)> {
@@ -183,6 +214,8 @@ fn layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
     layout.log_y = figure.y.log;
     // Half a label such as `200,000` may stand out beyond the last tick.
     layout.force_margin_right = Some(34.0);
+    layout.force_margin_top = Some(TOP);
+    layout.force_margin_left = Some(LEFT);
     layout.theme.grid_color = "#e4e4e4".into();
     layout
 }

@@ -1,8 +1,10 @@
 //! The experiments, one file per family, and what they have in common: sizes, races, figures.
 //!
 //! A *race*: on the same blocks of settings of the same bodies every contestant takes its turn,
-//! block by block, the order rotating; each query is timed alone.
+//! block by block, the order rotating; each query is timed alone. Queries from scratch are each a
+//! group of their own for the intervals, those of a sequence are one group.
 
+mod beyond;
 mod focus;
 mod growth;
 mod incremental;
@@ -15,19 +17,20 @@ use std::sync::Arc;
 
 use crate::Experiment;
 use crate::contestants::{Answer, Contestant, Who, Work};
-use crate::finding::{Axis, Claim, Figure, Point, Series};
+use crate::finding::{Axis, Figure, Point, Series};
 use crate::plan::{Plan, Progress, Scale};
 use crate::settings::Setting;
 use crate::shapes::{self, Bodies, Kind};
+use crate::statistics::{Sample, mean};
 use colltrans_kit::random::Random;
-use colltrans_kit::timing::Stopwatch;
+use colltrans_kit::timing::{Stopwatch, exponent, median};
 
 /// All experiments, in the paper's order.
 pub fn experiments() -> &'static [Experiment] {
     &EXPERIMENTS
 }
 
-const EXPERIMENTS: [Experiment; 10] = [
+const EXPERIMENTS: [Experiment; 11] = [
     growth::FIGURE_11,
     profile::TABLE_1,
     separation::FIGURE_12,
@@ -38,6 +41,7 @@ const EXPERIMENTS: [Experiment; 10] = [
     rivals::FIGURE_17,
     incremental::FIGURE_18,
     variable::FIGURE_19,
+    beyond::BEYOND,
 ];
 
 /// What is told apart by scale.
@@ -62,9 +66,14 @@ impl Plan {
         self.by_scale(200, n, n)
     }
 
-    /// Pairs of bodies of every kind and size.
-    fn pairs(&self) -> u64 {
-        self.by_scale(1, 1, 3)
+    /// Pairs of bodies of a kind with `n` vertices: fewer of those that take seconds to build.
+    fn pairs(&self, n: usize) -> u64 {
+        let [small, middle, large] = self.by_scale([1; 3], [6, 4, 2], [12, 6, 3]);
+        match n {
+            ..5_000 => small,
+            5_000..20_000 => middle,
+            _ => large,
+        }
     }
 }
 
@@ -82,6 +91,8 @@ enum Coherence {
 struct Measured {
     nanoseconds: f64,
     work: Work,
+    /// What belongs together when settings are drawn anew.
+    group: u32,
 }
 
 /// Who races on what.
@@ -92,6 +103,8 @@ struct Race<'a> {
     kind: Kind,
     /// Vertices.
     n: usize,
+    /// These bodies in place of some of that kind and size.
+    given: Option<Arc<Bodies>>,
     who: &'a [Who],
     coherence: Coherence,
     /// Settings in a block.
@@ -117,34 +130,62 @@ impl Race<'_> {
         purpose: u64,
         draw: impl Fn(&Bodies, usize, &mut Random) -> Vec<Setting>,
     ) -> Results {
-        let pairs = self.plan.pairs();
-        let mut lanes = vec![Vec::new(); self.who.len()];
-        let (mut vertices, mut diameter) = (0.0, 0.0);
+        let [results] =
+            self.run_in_turns(purpose, |_, bodies, count, random| draw(bodies, count, random));
+        results
+    }
+
+    /// As [`run`](Self::run) for `N` variants of settings, which `draw` is told: a block of each in
+    /// turn, so that whatever disturbs the machine disturbs all alike.
+    fn run_in_turns<const N: usize>(
+        &self,
+        purpose: u64,
+        draw: impl Fn(usize, &Bodies, usize, &mut Random) -> Vec<Setting>,
+    ) -> [Results; N] {
+        let pairs = if self.given.is_some() { 1 } else { self.plan.pairs(self.n) };
+        let mut all = [(); N].map(|()| Results {
+            vertices: 0.0,
+            diameter: 0.0,
+            lanes: vec![Vec::new(); self.who.len()],
+        });
         for which in 0..pairs {
             let bodies = self.bodies(which);
-            vertices += bodies.vertices() / pairs as f64;
-            diameter += bodies.diameter / pairs as f64;
             let labels = [self.figure, self.kind as u64, self.n as u64, which, purpose];
             let mut random = Random::new(self.plan.seed, &labels);
             let mut field: Vec<_> = self.who.iter().map(|who| who.enter(&bodies)).collect();
+            for results in &mut all {
+                results.vertices += bodies.vertices() / pairs as f64;
+                results.diameter += bodies.diameter / pairs as f64;
+            }
             let blocks = self.blocks.div_ceil(pairs as usize);
             for turn in 0..blocks {
-                let block = draw(&bodies, self.length, &mut random);
-                for k in 0..field.len() {
-                    let who = (turn + k) % field.len();
-                    self.follow(field[who].as_mut(), &block, &mut lanes[who]);
+                let first = (which as usize * blocks + turn) * self.length;
+                for (variant, results) in all.iter_mut().enumerate() {
+                    let block = draw(variant, &bodies, self.length, &mut random);
+                    for k in 0..field.len() {
+                        let who = (turn + k) % field.len();
+                        let lane = &mut results.lanes[who];
+                        self.follow(field[who].as_mut(), &block, first as u32, lane);
+                    }
                 }
             }
         }
-        Results { vertices, lanes, diameter }
+        all
     }
 
     fn bodies(&self, which: u64) -> Arc<Bodies> {
-        shapes::bodies(self.plan.seed, self.kind, self.n, which)
+        let build = || shapes::bodies(self.plan.seed, self.kind, self.n, which);
+        self.given.clone().unwrap_or_else(build)
     }
 
     /// One contestant's turn at a block.
-    fn follow(&self, who: &mut dyn Contestant, block: &[Setting], lane: &mut Vec<Measured>) {
+    fn follow(
+        &self,
+        who: &mut dyn Contestant,
+        block: &[Setting],
+        first: u32,
+        lane: &mut Vec<Measured>,
+    ) {
         let stopwatch = Stopwatch::new();
         let scratch = self.coherence == Coherence::Scratch;
         who.forget();
@@ -158,7 +199,8 @@ impl Race<'_> {
             }
             let (work, nanoseconds) = stopwatch.time(|| who.ask(setting));
             if scratch || k > 0 {
-                lane.push(Measured { nanoseconds, work });
+                let group = if scratch { first + k as u32 } else { first };
+                lane.push(Measured { nanoseconds, work, group });
             }
         }
     }
@@ -170,15 +212,28 @@ impl Results {
         self.lanes[who].iter().map(|m| m.nanoseconds).collect()
     }
 
-    /// A number of every query of a contestant.
-    fn counts(&self, who: usize, count: impl Fn(&Work) -> u32) -> Vec<f64> {
-        self.lanes[who].iter().map(|m| f64::from(count(&m.work))).collect()
+    /// A number of every query of a contestant, in groups.
+    fn sample(&self, who: usize, number: impl Fn(&Measured) -> f64) -> Sample {
+        Sample::of(self.lanes[who].iter().map(|m| (m.group, number(m))))
+    }
+
+    fn steps(&self, who: usize) -> Sample {
+        self.sample(who, |m| f64::from(m.work.steps))
+    }
+
+    /// Iterations of all loops, on average.
+    fn iterations(&self, who: usize) -> f64 {
+        mean(&self.sample(who, |m| f64::from(m.work.iterations)).values())
+    }
+
+    fn time_sample(&self, who: usize) -> Sample {
+        self.sample(who, |m| m.nanoseconds)
     }
 
     /// Query by query, how many times as long one contestant took as another.
-    fn ratios(&self, who: usize, other: usize) -> Vec<f64> {
+    fn ratios(&self, who: usize, other: usize) -> Sample {
         let pairs = self.lanes[who].iter().zip(&self.lanes[other]);
-        pairs.map(|(a, b)| a.nanoseconds / b.nanoseconds).collect()
+        Sample::of(pairs.map(|(a, b)| (a.group, a.nanoseconds / b.nanoseconds)))
     }
 
     /// How often a contestant failed or contradicted the first who answered the same question.
@@ -268,25 +323,12 @@ fn fitted(name: &str, points: &[Point], curve: impl Fn(f64) -> f64) -> Series {
     reference(name, points.iter().map(|p| p.x), |x| scale * curve(x))
 }
 
-/// A verdict, with the reason where it is against the claim.
-fn claim(statement: &str, measured: String, holds: bool, why: impl FnOnce() -> String) -> Claim {
-    let why = (!holds).then(why);
-    Claim { statement: statement.into(), measured, holds, why }
-}
-
-/// How far a number may be off, as a share of it, where the paper says "about".
-const ABOUT: f64 = 0.25;
-
-fn about(measured: f64, claimed: f64) -> bool {
-    (measured / claimed - 1.0).abs() <= ABOUT
-}
-
 /// A time for people.
 fn time(nanoseconds: f64) -> String {
     if nanoseconds < 1e3 {
         format!("{nanoseconds:.0} ns")
     } else if nanoseconds < 1e6 {
-        format!("{:.1} us", nanoseconds / 1e3)
+        format!("{:.1} µs", nanoseconds / 1e3)
     } else {
         format!("{:.1} ms", nanoseconds / 1e6)
     }
@@ -305,13 +347,20 @@ fn thousands(n: f64) -> String {
     if n < 10_000 { n.to_string() } else { format!("{},{:03}", n / 1_000, n % 1_000) }
 }
 
-/// The points of largest and smallest `y`.
-fn extremes(points: &[Point]) -> [f64; 2] {
-    let fold = |f: fn(f64, f64) -> f64, from| points.iter().map(|p| p.y).fold(from, f);
-    [fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY)]
+/// The middle of the medians.
+fn middle(samples: &[Vec<f64>]) -> f64 {
+    median(&samples.iter().map(|values| median(values)).collect::<Vec<_>>())
 }
 
-/// The middle of all points' `y`.
-fn middle(points: &[Point]) -> f64 {
-    colltrans_kit::timing::median(&points.iter().map(|p| p.y).collect::<Vec<_>>())
+fn means(samples: &[Vec<f64>]) -> Vec<f64> {
+    samples.iter().map(|values| mean(values)).collect()
+}
+
+fn medians(samples: &[Vec<f64>]) -> Vec<f64> {
+    samples.iter().map(|values| median(values)).collect()
+}
+
+/// The exponent of medians as a power of the sizes.
+fn exponent_of(sizes: &[f64], samples: &[Vec<f64>]) -> f64 {
+    exponent(sizes.iter().copied().zip(medians(samples)))
 }

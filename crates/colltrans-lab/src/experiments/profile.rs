@@ -4,13 +4,15 @@ use std::hint::black_box;
 
 use colltrans::observe::{Clock, Profile};
 
-use super::{ABOUT, Parts, claim, share, shares, thousands};
+use super::{Parts, share, shares, thousands};
 use crate::Experiment;
+use crate::claims::judged;
 use crate::contestants::{PAPER_GAP, Until};
 use crate::finding::{Claim, Finding, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::{Kind, bodies};
+use crate::statistics::{Estimate, Sample, estimate};
 use colltrans_kit::random::Random;
 
 pub(super) const TABLE_1: Experiment =
@@ -21,6 +23,8 @@ struct Profiled {
     vertices: f64,
     /// Shares of the time, by name.
     shares: Vec<(&'static str, f64)>,
+    /// Nanoseconds of planar problems, of the region, and of everything, query by query.
+    each: Sample,
     queries: usize,
 }
 
@@ -62,7 +66,13 @@ fn measure(plan: &Plan, n: usize) -> Profiled {
     let names = profiles.first().map_or(Vec::new(), |p| p.phases().map(|(name, _)| name).to_vec());
     let part = |k: usize| profiles.iter().map(|p| p.phases()[k].1).sum::<f64>() / total;
     let shares = names.into_iter().enumerate().map(|(k, name)| (name, part(k))).collect();
-    Profiled { vertices: bodies.vertices(), shares, queries }
+    let of = |p: &Profile, name: &str| {
+        p.phases().iter().filter(|(phase, _)| *phase == name).map(|(_, t)| t).sum::<f64>()
+    };
+    let three =
+        |(k, p): (u32, &Profile)| [of(p, PLANAR), of(p, REGION), p.total()].map(|time| (k, time));
+    let each = Sample::of((0..).zip(&profiles).flat_map(three));
+    Profiled { vertices: bodies.vertices(), shares, each, queries }
 }
 
 /// Name of the phases in [`colltrans::observe`] that the claims are about.
@@ -73,6 +83,14 @@ impl Profiled {
     /// The part of a phase.
     fn part(&self, name: &str) -> f64 {
         self.shares.iter().find(|(phase, _)| *phase == name).map_or(f64::NAN, |(_, part)| *part)
+    }
+
+    /// The per cent of the time that a phase takes, the first or the second of `each`.
+    fn estimated(&self, phase: usize) -> Estimate {
+        estimate(std::slice::from_ref(&self.each), |s| {
+            let sum = |k: usize| s[0].iter().skip(k).step_by(3).sum::<f64>();
+            100.0 * sum(phase) / sum(2)
+        })
     }
 
     /// The phases of the minimisation, without the frame around it: the certificate and the answer.
@@ -103,46 +121,40 @@ fn parts(profiled: &[Profiled], part: impl Fn(&Profiled) -> f64) -> String {
     profiled.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// The paper's "almost half", give or take a quarter of it, at the middle size.
+/// Judged at the middle size.
 fn planar_problems(profiled: &[Profiled]) -> Claim {
-    let middle = profiled.get(profiled.len() / 2).map_or(f64::NAN, |p| p.part(PLANAR));
-    let statement = "Almost half of the time goes into planar problems.";
-    let measured = format!(
+    let middle = &profiled[profiled.len() / 2];
+    let details = format!(
         "{} of the whole query; of the minimisation alone {}.",
         parts(profiled, |p| p.part(PLANAR)),
         parts(profiled, |p| p.part_of_minimisation(PLANAR))
     );
-    claim(statement, measured, (middle / 0.5 - 1.0).abs() <= ABOUT, || {
-        let rest = profiled.get(profiled.len() / 2).map_or(f64::NAN, |p| {
-            p.part("portal refinement") + p.part("answer") + p.part("lower bound")
-        });
-        if middle > 0.5 {
-            "More than half. Here a planar problem includes finding the edges of both sections, \
-             and its part grows with the bodies as that finds less and less of them in the \
-             processor's caches (figure 11); what a step does besides touches no body at all."
+    judged("table-1-planar", vec![middle.estimated(0)], details, || {
+        if middle.part(PLANAR) > 0.5 {
+            "Here a planar problem includes finding the edges of both sections, and its part grows with \
+             the bodies as less and less of them is found in the processor's caches (figure 11). What a \
+             step does besides touches no body at all."
                 .into()
         } else {
+            let rest =
+                ["portal refinement", "answer", "lower bound"].map(|phase| middle.part(phase));
             format!(
-                "Less than half: a proven lower bound, portal refinement and the certificate, \
-                 which the paper does not have, take {:.0} % of the query.",
-                100.0 * rest
+                "A proven lower bound, portal refinement and the certificate, which the paper does not \
+                 have, take {:.0} % of the query.",
+                100.0 * rest.iter().sum::<f64>()
             )
         }
     })
 }
 
-/// The paper's "negligible", taken as less than a twentieth, at all sizes.
+/// The paper's "negligible", taken as less than a twentieth, at the size where it is most.
 fn region(profiled: &[Profiled]) -> Claim {
-    let most = profiled.iter().map(|p| p.part(REGION)).fold(0.0, f64::max);
-    claim(
-        "The time for the search region is negligible.",
-        format!("{}; less than 5 % is taken as negligible.", parts(profiled, |p| p.part(REGION))),
-        most < 0.05,
-        || {
-            "The region is cut and its centroid computed at every step, a few dozen operations, \
-             while planar problems have become cheap: a part that was small beside them is no \
-             longer."
-                .into()
-        },
-    )
+    let each = profiled.iter().map(|p| p.estimated(1));
+    let most = each.max_by(|a, b| a.value.total_cmp(&b.value)).expect("three sizes");
+    let details = parts(profiled, |p| p.part(REGION)) + ".";
+    judged("table-1-region", vec![most], details, || {
+        "The region is cut and its centroid computed at every step, a few dozen operations, while \
+         planar problems have become cheap: a part that was small beside them is no longer."
+            .into()
+    })
 }

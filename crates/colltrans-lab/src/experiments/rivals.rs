@@ -1,16 +1,20 @@
 //! Figures 15 to 17: single queries beside enhanced GJK and PQP, which compute the distance at the
 //! start of the same settings, and beside the ray cast, which asks the same question.
 
+use colltrans_yardsticks::egjk::SupportSearch;
+
 use super::{
-    Coherence, Parts, Race, Results, about, against_size, axis, claim, extremes, listed, middle,
-    reference, series, share, shares, thousands, time,
+    Coherence, Parts, Race, Results, against_size, axis, exponent_of, listed, middle, reference,
+    series, share, shares, thousands, time,
 };
 use crate::Experiment;
+use crate::claims::judged;
 use crate::contestants::{Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
+use crate::statistics::{Estimate, Sample, estimate, mean};
 use colltrans_kit::timing::median;
 
 pub(super) const FIGURE_15: Experiment =
@@ -25,14 +29,18 @@ pub(super) const FIGURE_17: Experiment = Experiment {
     run: thin_and_near,
 };
 
-const WHO: [Who; 6] =
-    [Who::Cta(Until::Near), Who::Egjk, Who::Pqp, Who::Portal, Who::RayCast, Who::HWalk(PATIENCE)];
+pub(super) const WHO: [Who; 6] = [
+    Who::Cta(Until::Near),
+    Who::Egjk(SupportSearch::Climbing),
+    Who::Egjk(SupportSearch::Linear),
+    Who::Pqp,
+    Who::Portal,
+    Who::RayCast,
+];
 const CTA: usize = 0;
-const EGJK: usize = 1;
-const PQP: usize = 2;
-
-/// From scratch H-Walk's patience matters little: it comes down through all layers.
-const PATIENCE: u32 = 16;
+const CLIMBING: usize = 1;
+const LINEAR: usize = 2;
+const PQP: usize = 3;
 
 /// One race at every size.
 struct Field(Vec<Results>);
@@ -49,11 +57,12 @@ impl Field {
                 figure,
                 kind,
                 n: *n,
+                given: None,
                 who: &WHO,
                 coherence: Coherence::Scratch,
                 // Long blocks: an algorithm in use finds its bodies in the caches.
-                length: plan.by_scale(5, 60, 100),
-                blocks: plan.by_scale(2, 12, 80),
+                length: plan.by_scale(5, 50, 100),
+                blocks: plan.by_scale(2, if *n < 20_000 { 12 } else { 8 }, 48),
             };
             race.run(0, |bodies, count, random| {
                 (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
@@ -62,17 +71,45 @@ impl Field {
         Self(plan.sizes().iter().map(measure).collect())
     }
 
-    /// `time(who) / time(CTA)`, query by query: medians with quartiles.
-    fn ratio(&self, who: usize) -> Vec<Point> {
-        self.0.iter().map(|at| Point::median(at.vertices, &at.ratios(who, CTA))).collect()
+    fn sizes(&self) -> Vec<f64> {
+        self.0.iter().map(|at| at.vertices).collect()
     }
 
-    fn figure(&self, id: &str, title: &str) -> Figure {
-        let lines = (1..WHO.len()).map(|who| series(WHO[who].name(), self.ratio(who))).collect();
+    /// `time(who) / time(CTA)`, query by query.
+    fn ratios(&self, who: usize) -> Vec<Sample> {
+        self.0.iter().map(|at| at.ratios(who, CTA)).collect()
+    }
+
+    /// Its medians with quartiles.
+    fn points(&self, who: usize) -> Vec<Point> {
+        let ratios = self.ratios(who);
+        ratios.iter().zip(&self.0).map(|(s, at)| Point::median(at.vertices, &s.values())).collect()
+    }
+
+    /// The median ratio at one size; the largest size there is if that is smaller.
+    fn ratio_at(&self, who: usize, n: f64) -> Estimate {
+        let last = self.0.len() - 1;
+        let k = self.0.iter().position(|at| at.vertices > 0.9 * n).unwrap_or(last);
+        estimate(&[self.0[k].ratios(who, CTA)], |s| median(&s[0]))
+    }
+
+    /// The exponent of the median time as a power of the size, from a size on.
+    fn exponent(&self, who: usize, from: f64) -> Estimate {
+        let few = self.0.len().saturating_sub(2);
+        let first = self.0.iter().position(|at| at.vertices > 0.9 * from).unwrap_or(few).min(few);
+        let sizes = self.sizes().split_off(first);
+        let times: Vec<_> = self.0[first..].iter().map(|at| at.time_sample(who)).collect();
+        estimate(&times, |s| exponent_of(&sizes, s))
+    }
+
+    fn figure(&self, id: &str, title: &str, paper: &[(&str, f64)]) -> Figure {
+        let lines = (1..WHO.len()).map(|who| series(WHO[who].name(), self.points(who))).collect();
         let y = axis("time / time(CTA)", true);
         let title = format!("{title}: time over the time of CTA, median and quartiles");
         let mut figure = against_size(id, &title, y, lines);
-        figure.references = vec![reference("CTA", self.0.iter().map(|at| at.vertices), |_| 1.0)];
+        let level = |name: &str, y: f64| reference(name, self.sizes().into_iter(), move |_| y);
+        figure.references = vec![level("CTA", 1.0)];
+        figure.references.extend(paper.iter().map(|(name, y)| level(name, *y)));
         figure
     }
 
@@ -104,39 +141,32 @@ impl Field {
         ends.into_iter().flatten().map(at).collect::<Vec<_>>().join("; ")
     }
 
-    /// Average steps of one at the smallest and largest size.
-    fn steps(&self, who: usize) -> [f64; 2] {
-        [self.0.first(), self.0.last()].map(|at| {
-            at.map_or(f64::NAN, |at| {
-                colltrans_kit::timing::mean_and_deviation(&at.counts(who, |w| w.steps))[0]
-            })
-        })
-    }
-
-    /// Why EGJK does better against CTA than in the paper, from what was measured.
     fn why_egjk(&self) -> String {
-        let [least, most] = self.steps(EGJK);
-        let growth = |who: usize| {
-            let [small, large] = [self.0.first(), self.0.last()]
-                .map(|at| at.map_or(f64::NAN, |at| median(&at.times(who))));
-            large / small
-        };
+        let ends = [self.0.first(), self.0.last()];
+        let [least, most] =
+            ends.map(|at| at.map_or(f64::NAN, |at| mean(&at.steps(CLIMBING).values())));
         format!(
-            "Median times {}. From the smallest to the largest bodies EGJK's time grows by a \
-             factor of {:.0}, its iterations only from {least:.1} to {most:.1}: what grows is the \
-             climbing to support points. CTA's grows by {:.0}, for reasons that figure 11 tells \
-             apart.",
-            self.times(&[CTA, EGJK]),
-            growth(EGJK),
-            growth(CTA)
+            "Median times {}. EGJK's iterations grow only from {least:.1} to {most:.1}: what grows is \
+             the way to a support point, by climbing far less than by looking at all vertices.",
+            self.times(&[CTA, CLIMBING, LINEAR])
         )
     }
 
     fn why_pqp(&self) -> String {
-        let [least, most] = self.steps(PQP);
+        let ends = [self.0.first(), self.0.last()];
+        let [least, most] = ends.map(|at| at.map_or(f64::NAN, |at| mean(&at.steps(PQP).values())));
         format!(
             "Median times {}. PQP tests {least:.0} and {most:.0} pairs of volumes on average.",
             self.times(&[CTA, PQP])
+        )
+    }
+
+    fn all_ratios(&self) -> String {
+        format!(
+            "Medians by size: EGJK climbing {}; EGJK with linear search {}; PQP {}.",
+            listed(&self.points(CLIMBING), 2),
+            listed(&self.points(LINEAR), 2),
+            listed(&self.points(PQP), 1)
         )
     }
 }
@@ -145,107 +175,115 @@ fn balanced(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let mut parts = Parts::new(progress, 2.0 * shares(plan.sizes()));
     let field = Field::race(plan, 15, Kind::Balanced, Meeting::Colliding, &mut parts);
     let triangles = Field::race(plan, 15, Kind::Triangles, Meeting::Colliding, &mut parts);
+    let fifth = ("the paper, EGJK: from 1/5", 0.2);
+    let band = [("the paper, PQP: 6.5", 6.5), ("the paper, PQP: 10", 10.0)];
+    let five = ("the paper, PQP: 5.5", 5.5);
+    let mut claims = vec![grow(&field), egjk_rises(&field)];
+    claims.extend(fastest(["15-fastest", "15-fastest-climbing"], &field));
+    claims.push(pqp("15-pqp-trapezoids", &field));
+    claims.push(pqp("15-pqp-triangles", &triangles));
     Finding {
         figures: vec![
-            field.figure("figure-15-trapezoids", "Balanced trapezoids"),
-            triangles.figure("figure-15-triangles", "Balanced triangles"),
+            field.figure("figure-15-trapezoids", "Balanced trapezoids", &[fifth, band[0], band[1]]),
+            triangles.figure("figure-15-triangles", "Balanced triangles", &[fifth, five]),
         ],
         tables: vec![
             field.table("figure-15-times-trapezoids", "Balanced trapezoids, collisions"),
             triangles.table("figure-15-times-triangles", "Balanced triangles, collisions"),
         ],
-        claims: vec![
-            egjk_rises(&field),
-            fastest_from(&field),
-            pqp_on_trapezoids(&field),
-            pqp_on_triangles(&triangles),
-        ],
+        claims,
     }
 }
 
-fn egjk_rises(field: &Field) -> Claim {
-    let ratio = field.ratio(EGJK);
-    let ends = [ratio.first(), ratio.last()].map(|p| p.map_or(f64::NAN, |p| p.y));
-    claim(
-        "Balanced: time(EGJK)/time(CTA) is 1/5 for small bodies and rises with size.",
-        format!("Medians: {}. About 1/5 is 0.15 to 0.25.", listed(&ratio, 2)),
-        about(ends[0], 0.2) && ends[1] > ends[0],
-        || field.why_egjk(),
-    )
-}
-
-/// The size from which CTA is fastest in the paper, and how far off the crossing may be.
-const FASTEST_FROM: f64 = 20_000.0;
-const FACTOR: f64 = 2.0;
-
-fn fastest_from(field: &Field) -> Claim {
-    let rivals = [field.ratio(EGJK), field.ratio(PQP)];
-    let slowest_rival_wins = |k: usize| rivals.iter().all(|ratio| ratio[k].y > 1.0);
-    let sizes: Vec<_> = field.0.iter().map(|at| at.vertices).collect();
-    let large: Vec<_> = (0..sizes.len()).filter(|k| sizes[*k] >= FASTEST_FROM * FACTOR).collect();
-    let from = (0..sizes.len()).find(|k| (*k..sizes.len()).all(slowest_rival_wins));
-    claim(
-        "Balanced: CTA is the fastest of CTA, EGJK and PQP from about 20,000 vertices.",
-        match from {
-            Some(k) => format!("CTA is fastest from {} vertices on.", thousands(sizes[k])),
-            None => format!(
-                "CTA is not fastest at the largest size; {}.",
-                field.times(&[CTA, EGJK, PQP])
-            ),
-        },
-        !large.is_empty() && large.into_iter().all(slowest_rival_wins),
-        || {
-            if sizes.last().is_none_or(|n| *n < FASTEST_FROM * FACTOR) {
-                return "No body of this run is that large.".into();
-            }
+fn grow(field: &Field) -> Claim {
+    let measured =
+        vec![field.exponent(LINEAR, 3_200.0), field.exponent(CTA, 0.0), field.exponent(PQP, 0.0)];
+    let details = format!(
+        "Exponents of median times as powers of the number of vertices. EGJK with climbing: {}. Up to \
+         0.75 is taken as sublinear.",
+        field.exponent(CLIMBING, 3_200.0)
+    );
+    judged("15-growth", measured, details, || {
+        format!(
+            "Looks at all vertices take more than linear time here, perhaps because those of large \
+             bodies do not fit the processor's caches. {}",
             field.why_egjk()
-        },
-    )
+        )
+    })
 }
 
-fn pqp_on_trapezoids(field: &Field) -> Claim {
-    let ratio = field.ratio(PQP);
-    let typical = middle(&ratio);
-    claim(
-        "Balanced trapezoids: time(PQP)/time(CTA) is 6.5 to 10.",
-        format!("{typical:.1} in the middle of all sizes: {}.", listed(&ratio, 1)),
-        (6.5..=10.0).contains(&typical),
-        || field.why_pqp(),
-    )
+fn egjk_rises(field: &Field) -> Claim {
+    let ratios = field.ratios(LINEAR);
+    let ends = [ratios[0].clone(), ratios[ratios.len() - 1].clone()];
+    let growth = estimate(&ends, |s| median(&s[1]) / median(&s[0]));
+    let measured = vec![field.ratio_at(LINEAR, 0.0), growth, field.ratio_at(CLIMBING, 0.0)];
+    judged("15-egjk", measured, field.all_ratios(), || field.why_egjk())
 }
 
-fn pqp_on_triangles(triangles: &Field) -> Claim {
-    let ratio = triangles.ratio(PQP);
-    let typical = middle(&ratio);
-    claim(
-        "Balanced triangles: time(PQP)/time(CTA) is about 5.5.",
-        format!("{typical:.1} in the middle of all sizes: {}.", listed(&ratio, 1)),
-        about(typical, 5.5),
-        || triangles.why_pqp(),
-    )
+/// The paper's 20,000 vertices lie between two of the sizes here: judged is the one above.
+fn fastest(ids: [&str; 2], field: &Field) -> [Claim; 2] {
+    let at = |who: &[usize]| who.iter().map(|who| field.ratio_at(*who, 51_200.0)).collect();
+    [
+        judged(ids[0], at(&[LINEAR, PQP]), field.all_ratios(), || field.why_egjk()),
+        judged(ids[1], at(&[CLIMBING]), field.all_ratios(), || field.why_egjk()),
+    ]
+}
+
+fn pqp(id: &str, field: &Field) -> Claim {
+    let measured = estimate(&field.ratios(PQP), middle);
+    let details = format!("Medians by size: {}.", listed(&field.points(PQP), 1));
+    judged(id, vec![measured], details, || field.why_pqp())
 }
 
 fn thin(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let mut parts = Parts::new(progress, shares(plan.sizes()));
+    let mut parts = Parts::new(progress, 2.0 * shares(plan.sizes()));
     let field = Field::race(plan, 16, Kind::Thin, Meeting::Colliding, &mut parts);
-    let [egjk, pqp] = [field.ratio(EGJK), field.ratio(PQP)];
+    let meridians = Field::race(plan, 16, Kind::ThinMeridians, Meeting::Colliding, &mut parts);
+    let paper = [
+        ("the paper, EGJK: from 1/5", 0.2),
+        ("the paper, EGJK: to 14", 14.0),
+        ("the paper, PQP: over 100", 100.0),
+    ];
+    let beside = |text: String| {
+        format!(
+            "Faces of a fixed stretch of 100. {text} With 16 meridians at any size: {}",
+            meridians.all_ratios()
+        )
+    };
+    let egjk = vec![
+        field.ratio_at(LINEAR, 0.0),
+        field.ratio_at(LINEAR, 200_000.0),
+        field.ratio_at(CLIMBING, 200_000.0),
+    ];
+    let most = |field: &Field| {
+        estimate(&field.ratios(PQP), |s| super::medians(s).into_iter().fold(0.0, f64::max))
+    };
+    let growth = [&field, &meridians].map(|field| field.exponent(PQP, 3_200.0));
     let claims = vec![
-        claim(
-            "Thin faces: time(EGJK)/time(CTA) reaches about 14.",
-            format!("At most {:.1}: {}.", extremes(&egjk)[1], listed(&egjk, 2)),
-            about(extremes(&egjk)[1], 14.0),
-            || field.why_egjk(),
+        judged("16-egjk", egjk, beside(field.all_ratios()), || field.why_egjk()),
+        judged(
+            "16-pqp",
+            vec![most(&field)],
+            format!("With 16 meridians at any size: {}.", most(&meridians)),
+            || field.why_pqp(),
         ),
-        claim(
-            "Thin faces: time(PQP)/time(CTA) exceeds 100.",
-            format!("At most {:.0}: {}.", extremes(&pqp)[1], listed(&pqp, 1)),
-            extremes(&pqp)[1] > 100.0,
+        judged(
+            "16-pqp-growth",
+            vec![growth[0]],
+            format!("With 16 meridians at any size: {}. Above 0.9 is taken as linear.", growth[1]),
             || field.why_pqp(),
         ),
     ];
     Finding {
-        figures: vec![field.figure("figure-16", "Thin trapezoids")],
-        tables: vec![field.table("figure-16-times", "Thin trapezoids, collisions")],
+        figures: vec![
+            field.figure("figure-16", "Thin trapezoids, a stretch of 100", &paper),
+            meridians.figure("figure-16-meridians", "Thin trapezoids, 16 meridians", &paper),
+        ],
+        tables: vec![
+            field.table("figure-16-times", "Thin trapezoids, a stretch of 100, collisions"),
+            meridians
+                .table("figure-16-times-meridians", "Thin trapezoids, 16 meridians, collisions"),
+        ],
         claims,
     }
 }
@@ -253,26 +291,9 @@ fn thin(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 fn thin_and_near(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let mut parts = Parts::new(progress, shares(plan.sizes()));
     let field = Field::race(plan, 17, Kind::Thin, Meeting::PassingWithin(0.01), &mut parts);
-    let [egjk, pqp] = [field.ratio(EGJK), field.ratio(PQP)];
-    let least = [extremes(&egjk)[0], extremes(&pqp)[0]];
-    let fastest = claim(
-        "Thin faces, bodies that pass within 1 % of the diameter: CTA is the fastest of CTA, EGJK \
-         and PQP.",
-        format!(
-            "time(EGJK)/time(CTA): {}; time(PQP)/time(CTA): {}.",
-            listed(&egjk, 2),
-            listed(&pqp, 1)
-        ),
-        least.iter().all(|ratio| *ratio > 1.0),
-        || {
-            let slower: Vec<_> =
-                egjk.iter().filter(|p| p.y <= 1.0).map(|p| thousands(p.x)).collect();
-            format!("EGJK is faster at {} vertices. {}", slower.join(", "), field.why_egjk())
-        },
-    );
     Finding {
-        figures: vec![field.figure("figure-17", "Thin trapezoids, passing within 1 %")],
+        figures: vec![field.figure("figure-17", "Thin trapezoids, passing within 1 %", &[])],
         tables: vec![field.table("figure-17-times", "Thin trapezoids, passing within 1 %")],
-        claims: vec![fastest],
+        claims: fastest(["17-fastest", "17-fastest-climbing"], &field).into(),
     }
 }

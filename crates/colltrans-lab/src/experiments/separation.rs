@@ -1,26 +1,29 @@
 //! Figure 12: what it costs to find that bodies pass each other.
 
 use super::{
-    Coherence, Parts, Race, Results, about, against_size, axis, claim, listed, reference, series,
-    share, shares, thousands, time,
+    Coherence, Parts, Race, Results, against_size, axis, listed, median, reference, series, share,
+    shares, thousands, time,
 };
 use crate::Experiment;
+use crate::claims::judged;
 use crate::contestants::{PAPER_GAP, Until, Who};
 use crate::finding::{Claim, Finding, Point};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
-use colltrans_kit::timing::{mean_and_deviation, median};
+use crate::statistics::{Sample, estimate, mean};
 
 pub(super) const FIGURE_12: Experiment =
     Experiment { id: "figure-12", title: "separation beside collision", run };
 
 const WHO: [Who; 2] = [Who::Cta(Until::Near), Who::Portal];
 
-/// Shadow gaps, in diameters: near, and far.
+/// The paper's least distances during the motion, in diameters: from very close to far.
 const GAPS: [f64; 4] = [0.005, 0.05, 0.5, 1.5];
+const NEAR: usize = 0;
+const FAR: usize = 3;
 
-/// At every size, the settings that collide, and those that pass, by gap.
+/// At every size, the settings that collide, and those that pass, by least distance.
 struct Measured {
     colliding: Results,
     passing: [Results; GAPS.len()],
@@ -33,14 +36,10 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         .iter()
         .map(|&n| {
             parts.begin(share(n), &format!("{} vertices", thousands(n as f64)));
-            let passing = |k: usize| measure(plan, n, 1 + k as u64, Meeting::Passing(GAPS[k]));
-            Measured {
-                colliding: measure(plan, n, 0, Meeting::Colliding),
-                passing: std::array::from_fn(passing),
-            }
+            measure(plan, n)
         })
         .collect();
-    // All gaps for the paper's algorithm, the nearest and farthest for ours.
+    // All distances for the paper's algorithm, the least and largest for ours.
     let drawn = [(0, 0), (0, 1), (0, 2), (0, 3), (1, 0), (1, 3)];
     let lines = drawn.map(|(who, gap)| {
         let name = format!("{}, passing at {} D", WHO[who].name(), GAPS[gap]);
@@ -49,29 +48,38 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let mut figure = against_size(
         "figure-12",
         "Time to find a separation over the median time to find a collision, median and quartiles",
-        axis("time(separation) / time(collision)", false),
+        axis("time(separation) / time(collision)", true),
         lines.to_vec(),
     );
     let at = || all.iter().map(|m| m.colliding.vertices);
-    figure.references =
-        vec![reference("1/2", at(), |_| 0.5), reference("1/3", at(), |_| 1.0 / 3.0)];
-    Finding { figures: vec![figure], tables: Vec::new(), claims: vec![near(&all), far(&all)] }
+    figure.references = vec![
+        reference("the paper, 0.005 D: half", at(), |_| 0.5),
+        reference("the paper, 1.5 D: a third", at(), |_| 1.0 / 3.0),
+    ];
+    let claims = vec![passes(&all, "12-near", NEAR), passes(&all, "12-far", FAR)];
+    Finding { figures: vec![figure], tables: Vec::new(), claims }
 }
 
-fn measure(plan: &Plan, n: usize, purpose: u64, meeting: Meeting) -> Results {
+fn measure(plan: &Plan, n: usize) -> Measured {
     let race = Race {
         plan,
         figure: 12,
         kind: Kind::Balanced,
         n,
+        given: None,
         who: &WHO,
         coherence: Coherence::Scratch,
-        length: plan.by_scale(5, 60, 100),
-        blocks: plan.by_scale(2, 20, 80),
+        length: plan.by_scale(5, 50, 100),
+        blocks: plan.by_scale(2, 12, 60),
     };
-    race.run(purpose, |bodies, count, random| {
+    let [colliding, a, b, c, d] = race.run_in_turns(0, |variant, bodies, count, random| {
+        let meeting = match variant {
+            0 => Meeting::Colliding,
+            gap => Meeting::Passing(GAPS[gap - 1]),
+        };
         (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
-    })
+    });
+    Measured { colliding, passing: [a, b, c, d] }
 }
 
 /// Times of separations over the median time of collisions, at every size.
@@ -84,48 +92,45 @@ fn ratios(all: &[Measured], who: usize, gap: usize) -> Vec<Point> {
     all.iter().map(point).collect()
 }
 
-/// The mean over all sizes.
-fn typical(all: &[Measured], gap: usize) -> f64 {
-    let points = ratios(all, 0, gap);
-    points.iter().map(|p| p.y).sum::<f64>() / points.len() as f64
-}
-
-fn near(all: &[Measured]) -> Claim {
-    let typical = typical(all, 0);
-    claim(
-        "Bodies that pass at 0.005 diameters cost about half as much as bodies that collide.",
-        format!("{typical:.2} on average over all sizes: {}.", listed(&ratios(all, 0, 0), 2)),
-        about(typical, 0.5),
-        || why(all),
-    )
-}
-
-fn far(all: &[Measured]) -> Claim {
-    let each = [1, 2, 3].map(|gap| typical(all, gap));
-    let text: Vec<_> =
-        GAPS[1..].iter().zip(each).map(|(gap, t)| format!("{t:.2} at {gap} D")).collect();
-    claim(
-        "Bodies that pass at 0.05 diameters or more cost about a third.",
-        format!("On average over all sizes {}.", text.join(", ")),
-        each.iter().all(|typical| about(*typical, 1.0 / 3.0)),
-        || why(all),
-    )
+/// The ratio of medians, the mean over all sizes.
+fn passes(all: &[Measured], id: &str, gap: usize) -> Claim {
+    let of = |results: fn(&Measured, usize) -> &Results| {
+        all.iter().map(move |m| results(m, gap).time_sample(0))
+    };
+    let samples: Vec<Sample> =
+        of(|m, gap| &m.passing[gap]).chain(of(|m, _| &m.colliding)).collect();
+    let measured = estimate(&samples, |s| {
+        let (passing, colliding) = s.split_at(s.len() / 2);
+        let ratios = passing.iter().zip(colliding).map(|(p, c)| median(p) / median(c));
+        mean(&ratios.collect::<Vec<_>>())
+    });
+    let others: Vec<_> = (0..GAPS.len())
+        .map(|k| {
+            let typical: Vec<_> = ratios(all, 0, k).iter().map(|p| p.y).collect();
+            format!("{:.2} at {} D", mean(&typical), GAPS[k])
+        })
+        .collect();
+    let details = format!(
+        "The mean over all sizes; by size {}. All distances: {}.",
+        listed(&ratios(all, 0, gap), 2),
+        others.join(", ")
+    );
+    judged(id, vec![measured], details, || why(all))
 }
 
 /// What the planar problems say, at the middle size.
 fn why(all: &[Measured]) -> String {
     let Some(m) = all.get(all.len() / 2) else { return String::new() };
-    let steps = |r: &Results| mean_and_deviation(&r.counts(0, |w| w.steps))[0];
     let each = |r: &Results| {
-        let steps = steps(r);
-        format!("{steps:.1}, {} each", time(median(&r.times(0)) / steps))
+        let steps = mean(&r.steps(0).values());
+        let (each, inner) = (time(median(&r.times(0)) / steps), r.iterations(0) / steps);
+        format!("{steps:.1}, {each} and {inner:.0} iterations each")
     };
     let passing: Vec<_> =
         GAPS.iter().zip(&m.passing).map(|(gap, r)| format!("{} at {gap} D", each(r))).collect();
     format!(
-        "It is not the number of steps alone. At {} vertices a collision takes as many planar \
-         problems as this, down to a gap of {PAPER_GAP}, where portal refinement takes over: {}, \
-         all the rest of the query shared out among them. A separation: {}.",
+        "Planar problems at {} vertices, and the time of a query shared out among them: {} for a \
+         collision, down to a gap of {PAPER_GAP}, where portal refinement takes over; {}.",
         thousands(m.colliding.vertices),
         each(&m.colliding),
         passing.join("; ")

@@ -1,8 +1,10 @@
 //! Findings that nobody found.
 
 use colltrans_lab::Experiment;
+use colltrans_lab::claims::{Better, Criterion, PaperClaim};
 use colltrans_lab::finding::{Axis, Claim, Figure, Finding, Point, Series, Table};
 use colltrans_lab::plan::{Plan, Progress};
+use colltrans_lab::statistics::Estimate;
 
 /// A series through `f` at sizes from 20 to 200,000 with a spread around it.
 pub(crate) fn series(name: &str, f: impl Fn(f64) -> f64) -> Series {
@@ -32,12 +34,27 @@ pub(crate) fn figure(id: &str) -> Figure {
     }
 }
 
+static GROWS: PaperClaim = PaperClaim {
+    id: "12-grows",
+    statement: "Time grows like log n & not faster.",
+    paper: "<log n>",
+    place: "V-A, figure 12",
+    criteria: &[Criterion { what: "exponent", low: 0.0, high: 0.2, better: Better::Neither }],
+};
+
+static FASTER: PaperClaim = PaperClaim {
+    id: "12-faster",
+    statement: "It is faster than the others.",
+    paper: "half",
+    place: "V-A, figure 12",
+    criteria: &[Criterion { what: "ratio", low: 0.4, high: 0.6, better: Better::Less }],
+};
+
 pub(crate) fn finding(id: &str) -> Finding {
-    let claim = |statement: &str, holds: bool, why: Option<&str>| Claim {
-        statement: statement.into(),
-        measured: "exponent 0.12 (0.10 to 0.14)".into(),
-        holds,
-        why: why.map(Into::into),
+    let claim = |paper: &'static PaperClaim, [value, low, high]: [f64; 3], why: Option<&str>| {
+        let measured = vec![Estimate { value, low, high }];
+        let (verdict, details) = (paper.judge(&measured), "More <about> it.".into());
+        Claim { paper, measured, details, verdict, why: why.map(Into::into) }
     };
     let cells = |cells: [&str; 3]| cells.map(String::from).to_vec();
     Finding {
@@ -49,8 +66,10 @@ pub(crate) fn finding(id: &str) -> Finding {
             rows: vec![cells(["ball, round", "20", "1.5"]), cells(["needle", "1,000", "2.5"])],
         }],
         claims: vec![
-            claim("Time grows like log n & not faster", true, None),
-            claim("It is faster than the others", false, Some("caches hold <64 vertices")),
+            claim(&GROWS, [0.12, 0.1, 0.14], None),
+            claim(&FASTER, [2.0, 1.5, 2.5], Some("caches hold <64 vertices. Nothing else.")),
+            claim(&FASTER, [2.0, 0.5, 2.5], Some("too few queries")),
+            claim(&FASTER, [0.2, 0.1, 0.3], None),
         ],
     }
 }

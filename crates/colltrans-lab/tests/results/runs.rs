@@ -8,7 +8,7 @@ use colltrans_lab::{LabError, Summary, run};
 
 use crate::made_up::experiments;
 
-const PLAN: Plan = Plan { scale: Scale::Tiny, seed: 31 };
+const PLAN: Plan = Plan { scale: Scale::Tiny, seed: 31, parts: None };
 
 #[derive(Default)]
 struct Heard(Vec<(f64, f64, String)>);
@@ -34,6 +34,7 @@ fn the_folder_holds_everything() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     let expected = [
+        "claims.csv",
         "figure-12-near.csv",
         "figure-12-near.png",
         "figure-12-near.svg",
@@ -49,6 +50,10 @@ fn the_folder_holds_everything() {
     let report = std::fs::read_to_string(&summary.report).unwrap();
     assert!(report.contains("Figure 12") && report.contains("Table 1"));
     assert!(!report.contains("were finished when"), "the last report is complete");
+    let claims = std::fs::read_to_string(results.join("claims.csv")).unwrap();
+    assert_eq!(claims.lines().count(), 1 + 8);
+    let row = "12-faster,It is faster than the others.,half,\"V-A, figure 12\",ratio,2,1.5,2.5,does not hold";
+    assert!(claims.lines().any(|line| line == row), "{claims}");
     let table = std::fs::read_to_string(results.join("table-1-table.csv")).unwrap();
     assert!(table.ends_with("31,31,31\n"), "the plan reaches the experiments");
     let parts: Vec<_> = heard.0.iter().map(|(done, all, what)| (*done, *all, &**what)).collect();
@@ -66,11 +71,14 @@ fn the_summary_lists_the_claims() {
     let folder = tempfile::tempdir().unwrap();
     let text = run_in(folder.path()).unwrap().to_string();
     assert!(
-        text.starts_with("Figure 12: time against <size>\n  holds          Time grows"),
+        text.starts_with("Figure 12: time against <size>\n  holds                  12-grows: Time"),
         "{text}"
     );
-    assert!(text.contains("\n  does not hold  It is faster than the others\n"), "{text}");
-    assert!(text.lines().last().unwrap().starts_with("2 of 4 claims hold, "), "{text}");
+    assert!(
+        text.contains("\n  does not hold          12-faster: It is faster than the others."),
+        "{text}"
+    );
+    assert!(text.lines().last().unwrap().starts_with("4 of 8 claims hold, "), "{text}");
 }
 
 #[test]

@@ -49,6 +49,20 @@ pub(crate) fn climb(
     }
 }
 
+/// A vertex of `body` farthest along `direction`, the first of several; `looked_at` counts all.
+pub(crate) fn scan(body: &ConvexPolyhedron, direction: DVec3, looked_at: &mut u32) -> u32 {
+    let vertices = body.vertices();
+    *looked_at += vertices.len() as u32;
+    let (mut best, mut highest) = (0, f64::NEG_INFINITY);
+    for (vertex, at) in (0..).zip(vertices) {
+        let height = direction.dot(*at);
+        if height > highest {
+            (best, highest) = (vertex, height);
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,8 @@
 use colltrans::{ConvexPolyhedron, VertexPair};
 use glam::DVec3;
 
-use super::climb::climb;
+use super::SupportSearch;
+use super::climb::{climb, scan};
 use super::simplex::{Corner, Simplex};
 use crate::placed::Relative;
 
@@ -16,6 +17,7 @@ pub(crate) struct Difference<'a> {
     reach: f64,
     /// Where the last support points were found.
     seed: VertexPair,
+    pub(super) search: SupportSearch,
 }
 
 impl<'a> Difference<'a> {
@@ -27,7 +29,8 @@ impl<'a> Difference<'a> {
             body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
         };
         let reach = reach(moving) + reach(fixed);
-        Self { moving, fixed, reach, seed: VertexPair::default() }
+        let (seed, search) = (VertexPair::default(), SupportSearch::default());
+        Self { moving, fixed, reach, seed, search }
     }
 
     /// Climbing starts from the first vertices again.
@@ -59,9 +62,13 @@ impl<'a> Difference<'a> {
         climbed: &mut u32,
     ) -> Corner {
         let in_moving = relative.to_moving(direction);
+        let mut find = |body: &ConvexPolyhedron, along: DVec3, from: u32| match self.search {
+            SupportSearch::Climbing => climb(body, along, from, climbed),
+            SupportSearch::Linear => scan(body, along, climbed),
+        };
         self.seed = VertexPair {
-            moving: climb(self.moving, in_moving, self.seed.moving, climbed),
-            fixed: climb(self.fixed, -direction, self.seed.fixed, climbed),
+            moving: find(self.moving, in_moving, self.seed.moving),
+            fixed: find(self.fixed, -direction, self.seed.fixed),
         };
         self.last(relative)
     }

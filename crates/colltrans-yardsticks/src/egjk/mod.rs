@@ -39,6 +39,16 @@ const MAX_ITERATIONS: u32 = 1000;
 /// is for a while: as long as it takes to walk over a face.
 const PATIENCE: u32 = 30;
 
+/// How a support point of a body is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SupportSearch {
+    /// From vertex to vertex along edges, from where the last one was found: Cameron's enhancement.
+    #[default]
+    Climbing,
+    /// Over all vertices, as in GJK before it was enhanced: the time grows linearly.
+    Linear,
+}
+
 /// Work done by one query, and what it proved.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Steps {
@@ -46,7 +56,8 @@ pub struct Steps {
     pub iterations: u32,
     /// Support points of `M`, each made of one of either body.
     pub supports: u32,
-    /// Vertices whose neighbours were looked at while climbing.
+    /// Vertices whose neighbours were looked at while climbing; all vertices of both bodies for each
+    /// support point if the search is linear.
     pub climbed: u32,
     /// Upper minus lower bound of the distance, in world units: the answer's error is at most this
     /// plus twice the rounding error of a point, `32 u S`.
@@ -116,6 +127,13 @@ impl<'a> Egjk<'a> {
     pub fn new(moving: &'a ConvexPolyhedron, fixed: &'a ConvexPolyhedron) -> Self {
         let simplex = Simplex::new(Corner::default());
         Self { difference: Difference::new(moving, fixed), simplex }
+    }
+
+    /// With another way to find support points; unless said, it is [`SupportSearch::Climbing`].
+    #[must_use]
+    pub fn with_support_search(mut self, search: SupportSearch) -> Self {
+        self.difference.search = search;
+        self
     }
 
     /// Forgets what the last query left behind: the next one starts from scratch.

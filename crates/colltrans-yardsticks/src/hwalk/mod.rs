@@ -40,6 +40,9 @@ pub struct Steps {
     pub shortcuts: u32,
     /// Scans of all faces of a layer, in local minima of the walk.
     pub scans: u32,
+    /// Iterations of all loops: pairs of features looked at, faces scanned, and layers entered, also
+    /// those that are only passed on the way to the layer where the walk starts.
+    pub iterations: u32,
     /// How often an end that was not proven was left for nearer features around, or for a new walk.
     pub rescues: u32,
     /// The distance is at most what is reported and at least that less this gap, up to rounding
@@ -70,6 +73,8 @@ pub struct HWalk<'a> {
     moving: &'a Hierarchy,
     fixed: &'a Hierarchy,
     patience: u32,
+    /// The layer where a query picks the features of the last one, if that is fixed.
+    start_layer: Option<usize>,
     /// Where the last query ended: a layer and a pair of features there.
     level: usize,
     pair: Pair,
@@ -78,16 +83,24 @@ pub struct HWalk<'a> {
 impl<'a> HWalk<'a> {
     /// A solver for two bodies; its first query starts at their coarsest layers.
     pub fn new(moving: &'a Hierarchy, fixed: &'a Hierarchy) -> Self {
-        let mut solver =
-            Self { moving, fixed, patience: DEFAULT_PATIENCE, level: 0, pair: FIRST_VERTICES };
+        let (patience, start_layer, pair) = (DEFAULT_PATIENCE, None, FIRST_VERTICES);
+        let mut solver = Self { moving, fixed, patience, start_layer, level: 0, pair };
         solver.reset();
         solver
     }
 
-    /// With a limit of steps on a layer before a shortcut: the paper's `l`, at least 1.
+    /// With a limit of steps on a layer before a shortcut, at least 1.
     #[must_use]
     pub fn with_patience(self, steps: u32) -> Self {
         Self { patience: steps.max(1), ..self }
+    }
+
+    /// With a fixed layer where a query picks the features of the last one, in place of shortcuts:
+    /// the paper's parameter `l`. 0 is the body itself, the strongest initialisation; the coarsest
+    /// layer, and any number beyond it, hardly initialises at all.
+    #[must_use]
+    pub fn with_start_layer(self, layer: usize) -> Self {
+        Self { start_layer: Some(layer), ..self }
     }
 
     /// Forgets the closest features of the last query.
@@ -101,12 +114,25 @@ impl<'a> HWalk<'a> {
         let scene = Scene::new((body(self.moving), moving_pose), (body(self.fixed), fixed_pose));
         let mut work = Work::default();
         let mut steps = Steps::default();
+        self.pick_start(&mut steps);
         let end = self.descend(&scene, &mut work, &mut steps);
         let end = self.ascend(&scene, end, &mut work, &mut steps);
         let settled = settle(&self.on_layer(&scene), &mut self.pair, end, &mut work);
         let Settled { gap, rescues, gave_up, .. } = settled;
-        let Work { pairs, scans } = work;
-        settled.proximity(fixed_pose, Steps { pairs, scans, rescues, gap, gave_up, ..steps })
+        let Work { pairs, scans, scanned } = work;
+        let iterations = pairs + scanned + steps.layers;
+        let steps = Steps { pairs, scans, iterations, rescues, gap, gave_up, ..steps };
+        settled.proximity(fixed_pose, steps)
+    }
+
+    /// To the features on the layer where a walk is to start. A query that ended inside starts where
+    /// it ended, if that is coarser.
+    fn pick_start(&mut self, steps: &mut Steps) {
+        let start = self.start_layer.map_or(0, |layer| layer.min(self.coarsest()));
+        while self.level < start {
+            self.coarsen();
+            steps.layers += 1;
+        }
     }
 
     /// To coarser layers until a walk ends in time. In a local minimum as well: the layers inside
@@ -115,11 +141,12 @@ impl<'a> HWalk<'a> {
         loop {
             let layer = self.on_layer(scene);
             let coarsest = self.level == self.coarsest();
-            let patience = if coarsest { layer.patience() } else { self.patience };
+            let no_shortcuts = coarsest || self.start_layer.is_some();
+            let patience = if no_shortcuts { layer.patience() } else { self.patience };
             steps.layers += 1;
             let end = layer.walk(&mut self.pair, patience, work);
             let stuck = matches!(end, End::OutOfPatience | End::LocalMinimum(_));
-            if coarsest || !stuck {
+            if no_shortcuts || !stuck {
                 return end;
             }
             steps.shortcuts += 1;

@@ -45,6 +45,8 @@ pub(crate) struct Work {
     pub(crate) pairs: u32,
     /// Scans of all faces of a body.
     pub(crate) scans: u32,
+    /// Faces looked at in them.
+    pub(crate) scanned: u32,
 }
 
 enum Step {
@@ -114,6 +116,7 @@ impl<'a> Scene<'a> {
             let End::LocalMinimum(body) = end else { return end };
             let Feature::Vertex(vertex) = pair[1 - body] else { return end };
             work.scans += 1;
+            work.scanned += self.views[body].own.face_count() as u32;
             let Some(face) = self.views[body].face_below(vertex) else {
                 return End::Penetrating(body, self.views[body].seen(vertex));
             };

@@ -23,6 +23,9 @@ pub struct Steps {
     pub supports: u32,
     /// Portals visited.
     pub pivots: u32,
+    /// Iterations of the loops inside planar problems: vertices of sections computed, vertices of
+    /// the bodies climbed over, halvings in searches.
+    pub iterations: u32,
     /// What the search began with.
     pub started_from: StartedFrom,
 }
@@ -33,6 +36,7 @@ impl Steps {
         self.planar_problems += other.planar_problems;
         self.supports += other.supports;
         self.pivots += other.pivots;
+        self.iterations += other.iterations;
         self.started_from = self.started_from.max(other.started_from);
     }
 }

@@ -3,8 +3,9 @@
 pub(crate) mod convex;
 mod feature;
 pub(crate) mod inertia;
-mod placed;
+pub(crate) mod placed;
 mod pose;
+pub(crate) mod solid;
 pub(crate) mod topology;
 
 pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};

@@ -2,7 +2,8 @@
 
 use super::{ConvexPolyhedron, Pose};
 
-/// What queries can be asked about: [`ConvexPolyhedron`] so far. Sealed.
+/// What queries can be asked about: a [`ConvexPolyhedron`] or a
+/// [`Solid`](crate::Solid). Sealed.
 pub trait Body: sealed::Sealed {
     /// The choices of a query about two such bodies.
     type Options: Copy + Default + std::fmt::Debug;

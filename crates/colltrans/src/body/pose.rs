@@ -77,8 +77,14 @@ impl Pose {
     pub fn from_matrix(matrix: DMat3, translation: DVec3) -> Result<Self, PoseError> {
         let off = (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array();
         let defect = off.into_iter().map(f64::abs).fold(0.0, f64::max);
-        let defect = if matrix.determinant() < 0.0 { 2.0 } else { defect };
-        if !matrix.is_finite() || defect > TOLERANCE {
+        let defect = if !matrix.is_finite() {
+            f64::INFINITY
+        } else if matrix.determinant() < 0.0 {
+            2.0_f64.max(defect)
+        } else {
+            defect
+        };
+        if defect > TOLERANCE {
             let columns = matrix.to_cols_array_2d();
             return Err(PoseError::NotARotationMatrix { columns, defect, tolerance: TOLERANCE });
         }

@@ -310,10 +310,12 @@ impl Cast<'_> {
     ///
     /// Nothing of the search is used: two support points for the lower bound or the margin, three
     /// pairs of vertices for the upper bound. The cast must be the one that was answered; for the
-    /// `last` contact of a [`ContactRange`] it is the [reversed](Self::reversed) one.
+    /// `last` contact of a [`ContactRange`] it is the [reversed](Self::reversed) one. Support points
+    /// are searched anew, so a claim may exceed what they prove by as much as rounding explains: the
+    /// tolerance, which is derived here and not taken from the certificate.
     ///
     /// # Errors
-    /// What is not proven.
+    /// What is not proven, to within that tolerance.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;

@@ -7,6 +7,7 @@
 //! enclosure and refinement, so a wrong proposal costs time and nothing else.
 
 pub(crate) mod cta;
+pub(crate) mod facets;
 pub mod observe;
 pub(crate) mod options;
 pub(crate) mod portal;

@@ -6,12 +6,14 @@
 //! ```text
 //! campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
 //! campaign --sequences QUERIES [--seed S] [--only FAMILY]
+//! campaign --solids N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 //! ```
 //! Exit code 1 if anything disagrees.
 
 mod casts;
 mod sequences;
+mod solids;
 
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -27,6 +29,7 @@ const SHOWN: usize = 12;
 struct Arguments {
     settings: u64,
     sequences: Option<u64>,
+    solids: Option<u64>,
     lp: u64,
     seed: u64,
     only: Option<String>,
@@ -48,6 +51,9 @@ fn main() -> ExitCode {
         };
         return exit_code(clean);
     }
+    if let Some(count) = arguments.solids {
+        return exit_code(solids::run(count, arguments.seed, arguments.only.as_deref()));
+    }
     exit_code(if let Some(queries) = arguments.sequences {
         run(&arguments, queries.div_ceil(sequences::QUERIES), sequences::examine)
     } else {
@@ -63,13 +69,21 @@ fn exit_code(clean: bool) -> ExitCode {
 }
 
 fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
-    let mut arguments =
-        Arguments { settings: 20_000, sequences: None, lp: 1_000, seed: 1, only: None, case: None };
+    let mut arguments = Arguments {
+        settings: 20_000,
+        sequences: None,
+        solids: None,
+        lp: 1_000,
+        seed: 1,
+        only: None,
+        case: None,
+    };
     while let Some(word) = words.next() {
         let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
         match word.as_str() {
             "--settings" => arguments.settings = number(&value)?,
             "--sequences" => arguments.sequences = Some(number(&value)?),
+            "--solids" => arguments.solids = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,
             "--only" => arguments.only = Some(value),

@@ -26,7 +26,7 @@ use crate::number::plane::polygon_normal;
 const VISITED: usize = 16;
 
 /// Of bodies with up to this many vertices each is looked at: that is faster than to visit some.
-const SMALL: usize = 128;
+const SMALL: usize = 48;
 
 /// A face with more corners is measured at three.
 const FEW: usize = 8;

@@ -82,33 +82,42 @@ pub(crate) fn minimise<O: Observer>(
 ) -> Narrowed {
     let sections = SectionPair::new(setting);
     watch.ended(Phase::Setup);
-    let begin = sections.begin(&options.start);
-    let levels = begin.at.to_array();
-    let first = planar::solve(&sections.sides, levels, &Hint::NONE);
-    watch.ended(Phase::Planar);
-    let Some(first) = first else {
-        watch.planar_problem(|| PlanarProblem::hidden(levels));
-        return Narrowed::nothing();
-    };
-    let gap = options.gap * sections.extent;
-    let mut search = Minimisation {
-        sections: &sections,
-        region: Region::rectangle(-sections.half, sections.half),
-        square: begin.square,
-        bound: LowerBound::new([-sections.half, sections.half], begin.floor),
-        upper: f64::INFINITY,
-        best: None,
-        solved: None,
-        last_separation: None,
-        contradiction: None,
-        right: None,
-        watch,
-        steps: 1,
-    };
-    if search.learn(begin.at - sections.origin, levels, &first) {
-        search.run(gap);
+    let narrowed = sections.minimise(options, watch);
+    let inner = sections.sides.each_ref().map(|side| side.iterations.get());
+    watch.steps.iterations += inner[0] + inner[1];
+    narrowed
+}
+
+impl SectionPair<'_> {
+    fn minimise<O: Observer>(&self, options: &CtaOptions, watch: &mut Watch<O>) -> Narrowed {
+        let begin = self.begin(&options.start);
+        let levels = begin.at.to_array();
+        let first = planar::solve(&self.sides, levels, &Hint::NONE);
+        watch.ended(Phase::Planar);
+        let Some(first) = first else {
+            watch.planar_problem(|| PlanarProblem::hidden(levels));
+            return Narrowed::nothing();
+        };
+        let gap = options.gap * self.extent;
+        let mut search = Minimisation {
+            sections: self,
+            region: Region::rectangle(-self.half, self.half),
+            square: begin.square,
+            bound: LowerBound::new([-self.half, self.half], begin.floor),
+            upper: f64::INFINITY,
+            best: None,
+            solved: None,
+            last_separation: None,
+            contradiction: None,
+            right: None,
+            watch,
+            steps: 1,
+        };
+        if search.learn(begin.at - self.origin, levels, &first) {
+            search.run(gap);
+        }
+        search.result()
     }
-    search.result()
 }
 
 /// The state of a minimisation; levels are relative to the middle of all.

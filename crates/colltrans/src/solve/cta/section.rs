@@ -29,26 +29,6 @@ pub(super) struct Bottom {
     pub(super) directions: [DVec2; 2],
 }
 
-/// Crossings computed and mesh steps made by this thread.
-#[cfg(test)]
-pub(super) mod work {
-    use std::cell::Cell;
-
-    thread_local!(static STEPS: Cell<[u64; 2]> = const { Cell::new([0; 2]) });
-
-    pub(super) fn count(kind: usize) {
-        STEPS.with(|steps| {
-            let mut all = steps.get();
-            all[kind] += 1;
-            steps.set(all);
-        });
-    }
-
-    pub(in crate::solve::cta) fn take() -> [u64; 2] {
-        STEPS.with(|steps| steps.replace([0; 2]))
-    }
-}
-
 /// The section of a body at one level.
 #[derive(Debug)]
 pub(super) struct Section<'a> {
@@ -81,8 +61,7 @@ impl<'a> Section<'a> {
     }
 
     fn crossing(&self, up: u32) -> Crossing {
-        #[cfg(test)]
-        work::count(0);
+        self.side.count(1);
         let topology = self.side.topology;
         let vertices = [topology.half_edge(up).origin, topology.target(up)];
         let (low, high) = (self.side.point(vertices[0]), self.side.point(vertices[1]));
@@ -133,12 +112,11 @@ impl<'a> Section<'a> {
         let topology = self.side.topology;
         let mut up = from;
         loop {
-            #[cfg(test)]
-            work::count(1);
             let vertex = topology.target(up);
             if self.side.level(vertex) > self.x {
                 return Some(up);
             }
+            self.side.count(1);
             let start = self.side.point(vertex);
             let mut best = f64::INFINITY;
             let mut next = None;
@@ -191,6 +169,7 @@ impl<'a> Section<'a> {
         let (snapshot, lowest) = self.lowest()?;
         let highest = *self.highest.get_or_init(|| snapshot.extreme(height, -1.0));
         let turn = self.side.turn_up(chain);
+        self.side.count(snapshot.halvings());
         let index = snapshot.locate(height, (lowest, highest), turn, (h, self.x));
         let up = self.climb(snapshot.up(index), |height| (height - h).abs())?;
         let start = self.crossing(up);

@@ -3,6 +3,8 @@
 //! Notation. A point of the body has a *level* (`x` for the moving, `y` for the fixed body) and
 //! shadow coordinates `w = (h, g)`; all three are affine in the body frame.
 
+use std::cell::Cell;
+
 use glam::{DVec2, DVec3};
 
 use super::crossing::Chain;
@@ -28,6 +30,9 @@ pub(super) struct Side<'a> {
     pub(super) height: SectionForm,
     /// The turn that leads up the left chain.
     left_turn: Turn,
+    /// Iterations of the loops of planar problems so far: section vertices computed, mesh vertices
+    /// climbed over, halvings of a snapshot.
+    pub(super) iterations: Cell<u32>,
 }
 
 impl<'a> Side<'a> {
@@ -51,7 +56,12 @@ impl<'a> Side<'a> {
             // counter-clockwise leads from +h to +g, and from the bottom, at -h, to -g: up the left
             // chain.
             left_turn: if along > 0.0 { Turn::CounterClockwise } else { Turn::Clockwise },
+            iterations: Cell::new(0),
         }
+    }
+
+    pub(super) fn count(&self, iterations: u32) {
+        self.iterations.set(self.iterations.get() + iterations);
     }
 
     /// Lowest and highest level.

@@ -329,6 +329,11 @@ impl Snapshot<'_> {
         self.entries.is_empty()
     }
 
+    /// How often its entries can be halved.
+    pub(crate) fn halvings(&self) -> u32 {
+        self.entries.len().max(1).ilog2()
+    }
+
     /// The crossing edge of entry `index`.
     pub(crate) fn up(&self, index: usize) -> u32 {
         self.entries[index].up

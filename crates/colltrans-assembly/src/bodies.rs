@@ -1,0 +1,229 @@
+//! Two parts and a direction: everything that is asked of `colltrans`.
+//!
+//! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
+//! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
+
+use colltrans::{Cast, Pose, Solid, SolidClearance, SolidOptions, StartOverlap, Workspace};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::boxes::{Aabb, BoxTree};
+use crate::error::AssemblyError;
+use crate::part::{Assembly, Part};
+
+/// How tight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fit {
+    /// Both bodies of a pair are shrunk by half of this length: up to so much of an overlap, of
+    /// rounding, chord errors or a press fit, does not block.
+    Tolerance(f64),
+    /// Both bodies are grown by half of this length: that far apart they must stay. Pairs that touch
+    /// on purpose have to be listed as ignored.
+    Margin(f64),
+}
+
+/// The default tolerance: a few last digits of single precision, in which most files are written.
+const SINGLE_DIGITS: f64 = 1.0 / (1 << 21) as f64;
+
+impl Fit {
+    /// What is used where nobody says anything: `2^-21` of the assembly's size, four times the
+    /// rounding of a coordinate in single precision.
+    pub fn default_for(assembly: &Assembly) -> Self {
+        Self::Tolerance(assembly.size() * SINGLE_DIGITS)
+    }
+
+    /// The tolerance; a margin is a negative one.
+    pub const fn tolerance(self) -> f64 {
+        match self {
+            Self::Tolerance(length) => length,
+            Self::Margin(length) => -length,
+        }
+    }
+}
+
+/// What stops a part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// How far the bodies, shrunk or grown, can move; never negative.
+    pub distance: f64,
+    /// Unit contact normal in the world, from the moving part to the other one.
+    pub normal: DVec3,
+    /// The contact point on the other part, in the world.
+    pub point: DVec3,
+}
+
+/// How far one part can move before another stops it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Room {
+    /// They never meet.
+    Free,
+    /// They meet.
+    Blocked(Stop),
+    /// They overlap where they are.
+    Overlapping,
+}
+
+/// The parts of an assembly, made ready to be asked with one fit.
+pub struct Bodies<'a> {
+    assembly: &'a Assembly,
+    fit: Fit,
+    /// The bodies, shrunk or grown.
+    solids: Vec<Solid>,
+    boxes: Vec<Aabb>,
+    tree: BoxTree,
+    /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
+    overlapping: Vec<[usize; 2]>,
+}
+
+impl<'a> Bodies<'a> {
+    /// Makes the bodies ready, and looks which pairs overlap where they are.
+    ///
+    /// # Errors
+    /// A tolerance or margin that is negative, not finite or too large for a part.
+    pub fn new(assembly: &'a Assembly, fit: Fit) -> Result<Self, AssemblyError> {
+        let (what, value) = match fit {
+            Fit::Tolerance(value) => ("tolerance", value),
+            Fit::Margin(value) => ("margin", value),
+        };
+        if !(value.is_finite() && value >= 0.0) {
+            return Err(AssemblyError::Length { what, value });
+        }
+        let displaced = |part: &Part| {
+            let refused = |source| AssemblyError::Part { part: part.name().into(), source };
+            let solid = match fit {
+                Fit::Tolerance(length) => part.solid().shrunk(length / 2.0),
+                Fit::Margin(length) => part.solid().grown(length / 2.0),
+            };
+            solid.map(|(solid, _)| solid).map_err(refused)
+        };
+        let solids: Result<Vec<Solid>, AssemblyError> =
+            assembly.parts().par_iter().map(displaced).collect();
+        let solids = solids?;
+        let boxes: Vec<Aabb> = solids.iter().map(|s| Aabb::of(s.bounds())).collect();
+        let tree = BoxTree::new(boxes.iter().copied());
+        let mut bodies = Self { assembly, fit, solids, boxes, tree, overlapping: Vec::new() };
+        let pairs = bodies.neighbours(0.0);
+        let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
+        bodies.overlapping = overlapping.collect();
+        Ok(bodies)
+    }
+
+    /// The parts.
+    pub const fn assembly(&self) -> &'a Assembly {
+        self.assembly
+    }
+
+    /// How tight.
+    pub const fn fit(&self) -> Fit {
+        self.fit
+    }
+
+    /// Number of parts.
+    pub fn len(&self) -> usize {
+        self.boxes.len()
+    }
+
+    /// Whether there are no parts.
+    pub fn is_empty(&self) -> bool {
+        self.boxes.is_empty()
+    }
+
+    pub(crate) fn bounds(&self, part: usize) -> Aabb {
+        self.boxes[part]
+    }
+
+    /// Parts that a part's box meets along a unit direction, with lower bounds, nearest first.
+    pub(crate) fn ahead(&self, part: usize, d: DVec3) -> Vec<(f64, usize)> {
+        let mut found = self.tree.ahead(&self.boxes[part], d);
+        found.retain(|&(_, other)| other != part && !self.assembly.ignores(part, other));
+        found
+    }
+
+    /// Pairs whose boxes, grown by a length, meet; the smaller index first, in order.
+    pub(crate) fn neighbours(&self, by: f64) -> Vec<[usize; 2]> {
+        let mut pairs = Vec::new();
+        for a in 0..self.len() {
+            let met = self.tree.meeting(&self.boxes[a].grown(by));
+            pairs.extend(met.into_iter().filter(|&b| b > a).map(|b| [a, b]));
+        }
+        pairs.retain(|&[a, b]| !self.assembly.ignores(a, b));
+        pairs
+    }
+
+    /// How far part `a` can move along unit direction `d` before `b` stops it; contacts from
+    /// `before` on are of no interest. Parts that overlap where they are do so, or, with
+    /// [`StartOverlap::Ignore`], are stopped by contacts that begin later.
+    pub fn room(
+        &self,
+        [a, b]: [usize; 2],
+        d: DVec3,
+        before: Option<f64>,
+        start: StartOverlap,
+        workspace: &mut Workspace,
+    ) -> Room {
+        let start = match (self.overlaps(a, b), start) {
+            (false, _) => StartOverlap::Apart,
+            (true, StartOverlap::Ignore | StartOverlap::KnownIgnore) => StartOverlap::KnownIgnore,
+            (true, _) => return Room::Overlapping,
+        };
+        let options = SolidOptions { start_overlap: start, tolerance: Some(0.0), before };
+        let at = |k: usize| self.solids[k].at(Pose::IDENTITY);
+        // Directions and tolerances are checked at the door, so nothing is refused here.
+        let cast = Cast::new(at(a), at(b), d).and_then(|c| c.with_options(options));
+        match cast.map(|cast| cast.clearance_in(workspace)) {
+            Ok(SolidClearance::Blocked { distance, contact, .. }) => Room::Blocked(Stop {
+                distance,
+                normal: contact.normal,
+                point: contact.point_on_fixed,
+            }),
+            _ => Room::Free,
+        }
+    }
+
+    /// Where the planes that stop two parts meet in their true place, before they were shrunk or
+    /// grown: what a person expects to read. Exact where a facet stops a facet.
+    pub fn nominal(&self, stop: &Stop, d: DVec3) -> f64 {
+        (stop.distance - self.fit.tolerance() / stop.normal.dot(d)).max(0.0)
+    }
+
+    /// Whether two parts overlap where they are, with this fit.
+    pub fn overlaps(&self, a: usize, b: usize) -> bool {
+        self.overlapping.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    }
+
+    fn overlap_displaced(&self, a: usize, b: usize) -> bool {
+        self.overlaps_displaced(a, DVec3::ZERO, b)
+    }
+
+    /// Whether two parts, as the files have them, overlap; and the least tolerance with which they do
+    /// not, if there is one up to their size.
+    pub fn overlap_as_given(&self, a: usize, b: usize) -> Option<Option<f64>> {
+        let parts = self.assembly.parts();
+        let at = |k: usize| parts[k].solid().at(Pose::IDENTITY);
+        let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
+        let cast = Cast::new(at(a), at(b), DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
+        cast.overlaps().then(|| cast.depth())
+    }
+
+    /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, if their
+    /// shadows' boxes meet; 0 if it is there already, or they do not.
+    pub fn past(&self, a: usize, b: usize, d: DVec3) -> f64 {
+        let (u, v) = d.any_orthonormal_pair();
+        let around = |part: usize| {
+            let vertices = self.assembly.parts()[part].solid().vertices().iter();
+            Aabb::of_points(vertices.map(|p| DVec3::new(p.dot(u), p.dot(v), p.dot(d))))
+        };
+        let (moving, fixed) = (around(a), around(b));
+        let beside = (0..2).any(|k| fixed.low[k] > moving.high[k] || fixed.high[k] < moving.low[k]);
+        if beside { 0.0 } else { (fixed.high.z - moving.low.z).max(0.0) }
+    }
+
+    /// Whether part `a`, displaced by `by`, and part `b` overlap, by more than rounding.
+    pub fn overlaps_displaced(&self, a: usize, by: DVec3, b: usize) -> bool {
+        let Ok(pose) = Pose::from_translation(by) else { return false };
+        let moving = self.solids[a].at(pose);
+        let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
+        let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
+        cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
+    }
+}

@@ -1,0 +1,206 @@
+//! Boxes along the axes, and a tree over them.
+//!
+//! A box `A` swept along `d` meets `B` at the translations `t` for which `t d` lies in the box
+//! `B - A` (Minkowski difference): one slab test. Faces that only touch count, and the test allows
+//! for its own rounding, so that it never loses a pair.
+
+use glam::DVec3;
+
+/// A box along the axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Aabb {
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+}
+
+impl Aabb {
+    pub(crate) const fn of([low, high]: [DVec3; 2]) -> Self {
+        Self { low, high }
+    }
+
+    pub(crate) fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        points.into_iter().fold(none, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
+    }
+
+    pub(crate) fn join(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    pub(crate) fn grown(&self, by: f64) -> Self {
+        Self { low: self.low - by, high: self.high + by }
+    }
+
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+
+    pub(crate) fn center(&self) -> DVec3 {
+        (self.low + self.high) * 0.5
+    }
+
+    /// The least translation `t >= 0` along `d` at which this box meets the other, from below.
+    pub(crate) fn entry(&self, other: &Self, d: DVec3) -> Option<f64> {
+        let size = self.low.abs().max(self.high.abs()).max(other.low.abs()).max(other.high.abs());
+        let slack = 8.0 * f64::EPSILON * size.max_element();
+        let (low, high) = (other.low - self.high - slack, other.high - self.low + slack);
+        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+        for k in 0..3 {
+            if d[k] == 0.0 {
+                if low[k] > 0.0 || high[k] < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (x, y) = (low[k] / d[k], high[k] / d[k]);
+            enter = enter.max(x.min(y));
+            leave = leave.min(x.max(y));
+        }
+        (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter * (1.0 - 8.0 * f64::EPSILON))
+    }
+}
+
+const LEAF: usize = 4;
+
+struct Node {
+    bounds: Aabb,
+    /// The second child is so far behind; 0 for a leaf.
+    skip: usize,
+    first: usize,
+    count: usize,
+}
+
+/// A tree over boxes, halved along the longest side of their centres.
+pub(crate) struct BoxTree {
+    nodes: Vec<Node>,
+    /// Boxes and their numbers, in the order of the leaves.
+    items: Vec<(Aabb, usize)>,
+}
+
+impl BoxTree {
+    pub(crate) fn new(boxes: impl IntoIterator<Item = Aabb>) -> Self {
+        let items = boxes.into_iter().enumerate().map(|(k, b)| (b, k)).collect();
+        let mut tree = Self { nodes: Vec::new(), items };
+        let count = tree.items.len();
+        if count > 0 {
+            tree.grow(0, count);
+        }
+        tree
+    }
+
+    fn grow(&mut self, first: usize, count: usize) {
+        let at = self.nodes.len();
+        let items = &mut self.items[first..first + count];
+        let bounds = items.iter().map(|i| i.0).reduce(|a, b| a.join(&b)).unwrap_or(items[0].0);
+        self.nodes.push(Node { bounds, skip: 0, first, count });
+        if count <= LEAF {
+            return;
+        }
+        let centers = Aabb::of_points(items.iter().map(|i| i.0.center()));
+        let axis = (centers.high - centers.low).max_position();
+        let half = count / 2;
+        items.select_nth_unstable_by(half, |a, b| {
+            a.0.center()[axis].total_cmp(&b.0.center()[axis]).then(a.1.cmp(&b.1))
+        });
+        self.grow(first, half);
+        self.nodes[at].skip = self.nodes.len() - at;
+        self.grow(first + half, count - half);
+    }
+
+    /// Calls with the number of each box for which `wanted` holds, and holds for the boxes around.
+    pub(crate) fn visit(
+        &self,
+        mut wanted: impl FnMut(&Aabb) -> bool,
+        mut call: impl FnMut(&Aabb, usize),
+    ) {
+        let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(at) = stack.pop() {
+            let node = &self.nodes[at];
+            if !wanted(&node.bounds) {
+                continue;
+            }
+            if node.skip == 0 {
+                for (bounds, k) in &self.items[node.first..node.first + node.count] {
+                    if wanted(bounds) {
+                        call(bounds, *k);
+                    }
+                }
+            } else {
+                stack.push(at + node.skip);
+                stack.push(at + 1);
+            }
+        }
+    }
+
+    /// Numbers of boxes that meet `query`, in increasing order.
+    pub(crate) fn meeting(&self, query: &Aabb) -> Vec<usize> {
+        let mut found = Vec::new();
+        self.visit(|b| b.meets(query), |_, k| found.push(k));
+        found.sort_unstable();
+        found
+    }
+
+    /// Numbers of boxes that `moving` meets along `d`, each with a lower bound of where, nearest
+    /// first.
+    pub(crate) fn ahead(&self, moving: &Aabb, d: DVec3) -> Vec<(f64, usize)> {
+        let mut found = Vec::new();
+        let wanted = |b: &Aabb| moving.entry(b, d).is_some();
+        self.visit(wanted, |b, k| found.extend(moving.entry(b, d).map(|t| (t, k))));
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_kit::random::Random;
+
+    use super::*;
+
+    fn random_box(random: &mut Random, snapped: bool) -> Aabb {
+        let mut point = |scale: f64| {
+            let p = DVec3::from_array([0; 3].map(|_| scale * (random.unit() - 0.5)));
+            if snapped { p.round() } else { p }
+        };
+        let (low, size) = (point(20.0), point(6.0).abs());
+        Aabb { low, high: low + size }
+    }
+
+    #[test]
+    fn the_tree_finds_what_a_list_finds() {
+        let mut random = Random::new(7, &[]);
+        for round in 0..200 {
+            let snapped = round % 2 == 0;
+            let boxes: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, snapped)).collect();
+            let tree = BoxTree::new(boxes.iter().copied());
+            let query = random_box(&mut random, snapped);
+            let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
+            let listed: Vec<usize> = (0..round).filter(|&k| boxes[k].meets(&query)).collect();
+            assert_eq!(tree.meeting(&query), listed);
+            let mut ahead: Vec<usize> = tree.ahead(&query, d).iter().map(|x| x.1).collect();
+            ahead.sort_unstable();
+            let swept: Vec<usize> =
+                (0..round).filter(|&k| query.entry(&boxes[k], d).is_some()).collect();
+            assert_eq!(ahead, swept);
+        }
+    }
+
+    #[test]
+    fn a_box_enters_another_where_small_steps_first_meet_it() {
+        let mut random = Random::new(8, &[]);
+        for round in 0..400 {
+            let snapped = round % 2 == 0;
+            let (a, b) = (random_box(&mut random, snapped), random_box(&mut random, snapped));
+            let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
+            let moved = |t: f64| Aabb { low: a.low + d * t, high: a.high + d * t };
+            let stepped = (0..60_000).map(|k| f64::from(k) * 1e-3).find(|&t| moved(t).meets(&b));
+            match (a.entry(&b, d), stepped) {
+                (Some(t), Some(s)) => assert!((t - s).abs() < 1.1e-3, "{t} {s}"),
+                (None, None) => (),
+                // Corners that pass between two steps.
+                (Some(t), None) => assert!(b.grown(2e-3).meets(&moved(t))),
+                (None, Some(s)) => panic!("missed at {s}"),
+            }
+        }
+    }
+}

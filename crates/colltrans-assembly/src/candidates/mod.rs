@@ -1,0 +1,268 @@
+//! Directions worth asking.
+//!
+//! A sphere of samples misses tight fits, whose free directions are isolated. Those come from the
+//! parts: normals of contacts, and what is orthogonal to two of them (a pin in a hole, a key in its
+//! groove); axes of cylinders ([`cylinders`]); principal axes of inertia ([`inertia`]); the axes of
+//! the world. Directions closer than an angle to one that was found before are left out; the most
+//! significant (largest contact, longest cylinder) come first, so that slivers do not stand for
+//! them.
+
+pub mod cylinders;
+pub mod inertia;
+
+use colltrans::glam::DVec3;
+
+use rayon::prelude::*;
+
+use crate::bodies::Bodies;
+use crate::error::AssemblyError;
+use crate::liaisons::Liaison;
+use crate::sphere::angle;
+
+/// Where a direction comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Origin {
+    /// The caller gave it.
+    Given,
+    /// An axis of the world.
+    World,
+    /// The normal of a contact.
+    Contact,
+    /// Orthogonal to the normals of two contacts of one part.
+    Orthogonal,
+    /// The axis of a cylinder.
+    Cylinder,
+    /// A principal axis of inertia.
+    Inertia,
+    /// A sample of the sphere.
+    Sample,
+}
+
+impl Origin {
+    /// A word or two for people.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::World => "axis of the world",
+            Self::Contact => "contact normal",
+            Self::Orthogonal => "orthogonal to two contacts",
+            Self::Cylinder => "axis of a cylinder",
+            Self::Inertia => "principal axis",
+            Self::Sample => "sample",
+        }
+    }
+}
+
+/// A direction worth asking.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Of length 1.
+    pub direction: DVec3,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+/// How directions are chosen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// The caller's, of any length; they are kept whatever else there is.
+    pub given: Vec<DVec3>,
+    /// Whether to look for more than those.
+    pub search: bool,
+    /// Two directions closer than this are one, in radians.
+    pub apart: f64,
+    /// At most so many directions for all parts, beside those given; the rest are finer ones.
+    pub main: usize,
+    /// At most so many finer directions.
+    pub finer: usize,
+}
+
+impl Default for Choice {
+    fn default() -> Self {
+        Self { given: Vec::new(), search: true, apart: 0.005, main: 14, finer: 512 }
+    }
+}
+
+/// A direction that is asked only of some parts, if no other moves them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finer {
+    /// Of length 1.
+    pub direction: DVec3,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The part that it comes from; `None` if it may concern any.
+    pub part: Option<usize>,
+}
+
+impl Finer {
+    /// Whether it comes from one of the parts that are `true`.
+    pub fn concerns(&self, parts: &[bool]) -> bool {
+        self.part.is_none_or(|part| parts[part])
+    }
+}
+
+/// The directions to ask of all parts, the caller's first, and finer ones.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Candidates {
+    /// To ask of all parts.
+    pub main: Vec<Candidate>,
+    /// To ask of parts that none of those moves.
+    pub finer: Vec<Finer>,
+}
+
+impl Candidates {
+    /// The main directions.
+    pub fn directions(&self) -> Vec<DVec3> {
+        self.main.iter().map(|c| c.direction).collect()
+    }
+}
+
+/// The directions to ask.
+///
+/// # Errors
+/// A direction of the caller that is zero or not finite.
+pub fn candidates(
+    bodies: &Bodies,
+    liaisons: &[Liaison],
+    choice: &Choice,
+) -> Result<Candidates, AssemblyError> {
+    let mut main = Vec::new();
+    for given in &choice.given {
+        main.push(Candidate { direction: unit(*given)?, origin: Origin::Given });
+    }
+    if !choice.search {
+        return Ok(Candidates { main, finer: Vec::new() });
+    }
+    let given = main.len();
+    let mut chosen = Chosen { found: Candidates { main, finer: Vec::new() }, apart: choice.apart };
+    for axis in DVec3::AXES {
+        chosen.add_main(axis, Origin::World);
+    }
+    let mut axes: Vec<Axis> = (0..bodies.len())
+        .into_par_iter()
+        .flat_map_iter(|part| axes_of(bodies, liaisons, part))
+        .collect();
+    axes.sort_by(|x, y| x.rank.cmp(&y.rank).then(y.weight.total_cmp(&x.weight)));
+    for axis in axes {
+        if chosen.found.main.len() + 2 <= given + choice.main && axis.rank < 2 {
+            chosen.add_main(axis.along, axis.origin);
+        } else if chosen.found.finer.len() + 2 <= choice.finer {
+            chosen.add_finer(&axis);
+        }
+    }
+    Ok(chosen.found)
+}
+
+/// A direction of length 1; axes stay as they are.
+///
+/// # Errors
+/// It is zero, not finite or out of range.
+pub fn unit(direction: DVec3) -> Result<DVec3, AssemblyError> {
+    let scale = direction.abs().max_element();
+    let sound = scale.is_finite() && scale >= colltrans::MIN_MAGNITUDE;
+    let scaled = if sound { direction / scale } else { DVec3::ZERO };
+    let refused = AssemblyError::Direction { direction: direction.to_array() };
+    scaled.try_normalize().filter(|d| d.is_finite()).ok_or(refused)
+}
+
+struct Chosen {
+    found: Candidates,
+    apart: f64,
+}
+
+impl Chosen {
+    fn is_new(&self, direction: DVec3) -> bool {
+        self.found.main.iter().all(|c| angle(c.direction, direction) > self.apart)
+    }
+
+    fn add_main(&mut self, axis: DVec3, origin: Origin) {
+        for direction in [positive(axis), positive(-axis)] {
+            if self.is_new(direction) {
+                self.found.main.push(Candidate { direction, origin });
+            }
+        }
+    }
+
+    fn add_finer(&mut self, axis: &Axis) {
+        for direction in [positive(axis.along), positive(-axis.along)] {
+            let same = |f: &Finer| {
+                f.part == Some(axis.part) && angle(f.direction, direction) <= self.apart
+            };
+            if self.is_new(direction) && !self.found.finer.iter().any(same) {
+                let Axis { origin, part, .. } = *axis;
+                self.found.finer.push(Finer { direction, origin, part: Some(part) });
+            }
+        }
+    }
+}
+
+/// Zeros without a sign.
+fn positive(d: DVec3) -> DVec3 {
+    d + DVec3::ZERO
+}
+
+struct Axis {
+    /// Axes of cylinders and what is orthogonal to contacts of large areas first.
+    rank: usize,
+    weight: f64,
+    along: DVec3,
+    origin: Origin,
+    part: usize,
+}
+
+/// Contact normals that are looked at in pairs, for each part.
+const NORMALS: usize = 6;
+
+/// The axes of one part.
+fn axes_of(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
+    let solid = bodies.assembly().parts()[part].solid();
+    let mut axes = Vec::new();
+    let mut add =
+        |rank, weight, axis, origin| axes.push(Axis { rank, weight, along: axis, origin, part });
+    for (length, axis) in cylinders::axes(solid) {
+        add(0, length, axis, Origin::Cylinder);
+    }
+    let normals = normals_of(liaisons, part, NORMALS);
+    for (k, &(weight, n)) in normals.iter().enumerate() {
+        // The largest contact of a part may well say where it goes; the others are finer.
+        add(if k == 0 { 1 } else { 3 }, weight, n, Origin::Contact);
+        for &(other, m) in &normals[..k] {
+            let cross = n.cross(m);
+            // Nearly parallel normals define no axis; the squarer, the better it is defined.
+            if cross.length() > 0.1 {
+                let weight = weight.min(other) * cross.length_squared();
+                add(if k == 1 { 1 } else { 2 }, weight, cross.normalize(), Origin::Orthogonal);
+            }
+        }
+    }
+    for axis in inertia::axes(solid) {
+        add(4, 1.0, axis, Origin::Inertia);
+    }
+    axes
+}
+
+/// The normals of a part's contacts, largest area first, those within a degree of a larger one with
+/// it; without signs.
+fn normals_of(liaisons: &[Liaison], part: usize, most: usize) -> Vec<(f64, DVec3)> {
+    const TOGETHER: f64 = 0.017;
+    let own = liaisons.iter().filter(|l| l.parts.contains(&part));
+    let mut patches: Vec<(f64, DVec3)> = own
+        .flat_map(|l| &l.patches)
+        .flat_map(|p| [(p.area, p.normal), (p.area, p.other)])
+        .collect();
+    patches.sort_by(|x, y| y.0.total_cmp(&x.0));
+    let mut normals: Vec<(f64, DVec3)> = Vec::new();
+    for (area, normal) in patches {
+        let near = |m: DVec3| angle(m, normal).min(angle(m, -normal)) < TOGETHER;
+        let count = normals.len();
+        match normals.iter_mut().find(|x| near(x.1)) {
+            Some(known) => known.0 += area,
+            // Round contacts have many; those of the largest facets are enough to define an axis.
+            None if count < 8 * most => normals.push((area, normal)),
+            None => (),
+        }
+    }
+    normals.sort_by(|x, y| y.0.total_cmp(&x.0));
+    normals.truncate(most);
+    normals
+}

@@ -1,0 +1,118 @@
+//! What can go wrong, with the file and the place.
+
+use std::path::PathBuf;
+
+use colltrans::SolidError;
+use thiserror::Error;
+
+/// Why an assembly could not be read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// A file or folder cannot be opened.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Neither a folder nor a kind of file that is known.
+    #[error(
+        "{}: neither a folder of meshes nor a known file: a manifest (.toml, .json), .urdf, .glb, \
+         .gltf, .3mf, or a mesh",
+        path.display()
+    )]
+    UnknownSource {
+        /// What was given.
+        path: PathBuf,
+    },
+    /// The contents are not what the format prescribes.
+    #[error("{}: {place}: {reason}", path.display())]
+    Contents {
+        /// The file.
+        path: PathBuf,
+        /// Where in it.
+        place: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Files that are named and do not exist.
+    #[error(
+        "{}: {} of the meshes it names cannot be found, the first is {}; give the roots of \
+         packages, or skip what is missing",
+        path.display(), missing.len(), missing[0]
+    )]
+    Missing {
+        /// The file that names them.
+        path: PathBuf,
+        /// Their names, as written there.
+        missing: Vec<String>,
+    },
+    /// A mesh cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] colltrans_mesh::Error),
+    /// The parts do not make an assembly.
+    #[error("{}: {source}", path.display())]
+    Assembly {
+        /// Where they come from.
+        path: PathBuf,
+        /// What is wrong.
+        source: AssemblyError,
+    },
+}
+
+/// Why something about an assembly cannot be answered.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AssemblyError {
+    /// A part's surface is not one of a solid.
+    #[error("part {part}: {source}")]
+    Part {
+        /// Its name.
+        part: String,
+        /// What is wrong.
+        source: SolidError,
+    },
+    /// Two parts have one name.
+    #[error("two parts are named {name}")]
+    SameName {
+        /// The name.
+        name: String,
+    },
+    /// No part has this name.
+    #[error("no part is named {name}{}", hint(near.as_deref()))]
+    UnknownPart {
+        /// The name.
+        name: String,
+        /// The most similar name that exists.
+        near: Option<String>,
+    },
+    /// A length that is negative or not finite.
+    #[error("{what} {value} is not a length: it must be finite and not negative")]
+    Length {
+        /// What it is for.
+        what: &'static str,
+        /// As given.
+        value: f64,
+    },
+    /// A direction that is zero or not finite.
+    #[error("direction {direction:?} is zero, not finite or out of range")]
+    Direction {
+        /// As given.
+        direction: [f64; 3],
+    },
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// A step of the plan did not pass its own check: a bug, with the facts to report.
+    #[error("a step of the plan does not hold when it is replayed: {facts}; please report this")]
+    Replay {
+        /// Which parts and direction.
+        facts: String,
+    },
+}
+
+fn hint(near: Option<&str>) -> String {
+    near.map_or_else(String::new, |name| format!("; is it {name}?"))
+}

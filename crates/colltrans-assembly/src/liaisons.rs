@@ -1,0 +1,188 @@
+//! Which parts touch which, and where (*liaisons*).
+//!
+//! Two facets are in contact if their normals are nearly opposite, and somewhere over the common
+//! shadow, seen along the first one's normal, they lie within `reach` of each other. Curved fits are
+//! tessellated differently on either side: hence "nearly", and a reach of the tolerance.
+//! Notation: `n` is the unit normal of the first part's facet, outwards: from the first part to the
+//! second.
+
+use colltrans::Solid;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::bodies::Bodies;
+use crate::boxes::{Aabb, BoxTree};
+use crate::error::AssemblyError;
+use crate::watch::{Stage, Watch};
+
+/// Normals farther from opposite than this are no contact: the cosine of 25 degrees, a step of a
+/// round of 14 sides.
+const OPPOSITE: f64 = 0.906;
+
+/// Two facets in contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Patch {
+    /// Unit normal of the first part's facet, from the first part to the second.
+    pub normal: DVec3,
+    /// Unit normal of the second part's facet, turned round: from the first part to the second.
+    pub other: DVec3,
+    /// Area of the common shadow, seen along the normal.
+    pub area: f64,
+    /// Its centre, in the world.
+    pub center: DVec3,
+}
+
+/// Two parts that touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Liaison {
+    /// Positions of the parts, the smaller first.
+    pub parts: [usize; 2],
+    /// Where.
+    pub patches: Vec<Patch>,
+}
+
+impl Liaison {
+    /// The area of contact.
+    pub fn area(&self) -> f64 {
+        self.patches.iter().map(|p| p.area).sum()
+    }
+
+    /// The middle of the contact, weighted by area.
+    pub fn center(&self) -> DVec3 {
+        let sum: DVec3 = self.patches.iter().map(|p| p.center * p.area).sum();
+        sum / self.area()
+    }
+}
+
+/// How far apart surfaces may be that touch: the tolerance, or the default one if that is larger.
+pub fn reach(bodies: &Bodies) -> f64 {
+    let least = crate::bodies::Fit::default_for(bodies.assembly()).tolerance();
+    bodies.fit().tolerance().max(least)
+}
+
+/// All pairs that touch, as the files have them.
+///
+/// # Errors
+/// Cancelled.
+pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyError> {
+    let reach = reach(bodies);
+    let pairs = bodies.neighbours(reach);
+    let tally = watch.stage(Stage::Liaisons, pairs.len());
+    let parts = bodies.assembly().parts();
+    let look = |&[a, b]: &[usize; 2]| {
+        let patches = contacts(parts[a].solid(), parts[b].solid(), reach);
+        let found = (!patches.is_empty()).then_some(Liaison { parts: [a, b], patches });
+        tally.step().map(|()| found)
+    };
+    let found: Result<Vec<Option<Liaison>>, AssemblyError> = pairs.par_iter().map(look).collect();
+    Ok(found?.into_iter().flatten().collect())
+}
+
+type Triangle = [DVec3; 3];
+
+fn triangles_in(solid: &Solid, region: &Aabb) -> Vec<Triangle> {
+    let corner = |v: u32| solid.vertices()[v as usize];
+    let all = solid.triangles().iter().map(|t| t.map(corner));
+    all.filter(|t| Aabb::of_points(*t).meets(region)).collect()
+}
+
+fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
+    let (p, q) = (Aabb::of(a.bounds()).grown(reach), Aabb::of(b.bounds()).grown(reach));
+    let region = Aabb { low: p.low.max(q.low), high: p.high.min(q.high) };
+    let (first, second) = (triangles_in(a, &region), triangles_in(b, &region));
+    let tree = BoxTree::new(second.iter().map(|t| Aabb::of_points(*t)));
+    let mut patches = Vec::new();
+    for t in &first {
+        for k in tree.meeting(&Aabb::of_points(*t).grown(reach)) {
+            patches.extend(contact(t, &second[k], reach));
+        }
+    }
+    patches
+}
+
+/// The contact of two facets, if they are in contact.
+fn contact(first: &Triangle, second: &Triangle, reach: f64) -> Option<Patch> {
+    let normal = |t: &Triangle| (t[1] - t[0]).cross(t[2] - t[0]).try_normalize();
+    let (n, m) = (normal(first)?, normal(second)?);
+    if -n.dot(m) < OPPOSITE {
+        return None;
+    }
+    let u = (first[1] - first[0]).try_normalize()?;
+    let v = n.cross(u);
+    let flat = |p: DVec3| DVec2::new((p - first[0]).dot(u), (p - first[0]).dot(v));
+    // The second runs clockwise, as seen along the first one's normal.
+    let mut shadow: Vec<DVec2> = [second[0], second[2], second[1]].map(flat).to_vec();
+    let corners = first.map(flat);
+    for k in 0..3 {
+        shadow = clipped(&shadow, corners[k], corners[(k + 1) % 3]);
+    }
+    let (area, center) = centroid(&shadow)?;
+    let largest = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();
+    if area <= largest * 1e-9 {
+        return None;
+    }
+    // Height of the second facet's plane over the first one's.
+    let height = |s: DVec2| {
+        let foot = first[0] + u * s.x + v * s.y;
+        (second[0] - foot).dot(m) / n.dot(m)
+    };
+    let heights = shadow.iter().map(|s| height(*s));
+    let (low, high) =
+        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    (low <= reach && high >= -reach).then_some(Patch {
+        normal: n,
+        other: -m,
+        area,
+        center: first[0] + u * center.x + v * center.y,
+    })
+}
+
+/// What of a convex polygon lies to the left of a line.
+fn clipped(polygon: &[DVec2], from: DVec2, to: DVec2) -> Vec<DVec2> {
+    let side = |p: DVec2| (to - from).perp_dot(p - from);
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (k, &p) in polygon.iter().enumerate() {
+        let q = polygon[(k + 1) % polygon.len()];
+        let (x, y) = (side(p), side(q));
+        if x >= 0.0 {
+            kept.push(p);
+        }
+        if (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0) {
+            kept.push(p + (q - p) * (x / (x - y)));
+        }
+    }
+    kept
+}
+
+/// Area and centre of a convex polygon that has an area.
+fn centroid(polygon: &[DVec2]) -> Option<(f64, DVec2)> {
+    let first = *polygon.first()?;
+    let (mut twice, mut sum) = (0.0, DVec2::ZERO);
+    for pair in polygon[1..].windows(2) {
+        let area = (pair[0] - first).perp_dot(pair[1] - first);
+        twice += area;
+        sum += (first + pair[0] + pair[1]) * (area / 3.0);
+    }
+    (twice > 0.0).then(|| (twice / 2.0, sum / twice))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stacked_triangles_touch_where_they_overlap() {
+        let low = [DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(0.0, 4.0, 0.0)];
+        let up =
+            |z: f64| [DVec3::new(0.0, 0.0, z), DVec3::new(0.0, 2.0, z), DVec3::new(2.0, 0.0, z)];
+        let patch = contact(&low, &up(0.01), 0.02).expect("they touch");
+        assert_eq!(patch.normal, DVec3::Z);
+        assert!((patch.area - 2.0).abs() < 1e-12);
+        assert!((patch.center - DVec3::new(2.0 / 3.0, 2.0 / 3.0, 0.0)).length() < 1e-12);
+        assert!(contact(&low, &up(0.03), 0.02).is_none());
+        let beside = up(0.0).map(|p| p + DVec3::new(5.0, 0.0, 0.0));
+        assert!(contact(&low, &beside, 0.02).is_none());
+        let facing_away = [low[0], low[1], low[2]];
+        assert!(contact(&low, &facing_away, 0.02).is_none());
+    }
+}

@@ -1,0 +1,36 @@
+//! Assemblies: which parts come out, along which directions, in which order, and what holds the rest.
+//!
+//! The data's way: files -> [`read`] (parts in one world, one unit) -> [`Assembly`] -> [`Fit`] (how
+//! tight: shrunk by a tolerance, or grown by a margin) -> `bodies` (two parts and a direction: the
+//! only module that asks `colltrans`) -> [`start`] (overlaps now), [`liaisons`] (who touches whom) ->
+//! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
+//! [`blocking`] (the graph) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
+//! directions) -> [`report`] (pictures, one HTML file, an animation).
+//!
+//! Lengths are in the unit of the files. Directions have length 1, so distances are lengths.
+//! Everything is the same on any number of threads. The memory of a run is that of the parts and 64
+//! bytes for each pair of parts that meets along a direction asked.
+
+mod bodies;
+mod boxes;
+mod error;
+mod orient;
+mod part;
+mod watch;
+
+pub mod blocking;
+pub mod candidates;
+pub mod liaisons;
+pub mod map;
+pub mod matrix;
+pub mod plan;
+pub mod read;
+pub mod report;
+pub mod rooms;
+pub mod sphere;
+pub mod start;
+
+pub use bodies::{Bodies, Fit, Room, Stop};
+pub use error::{AssemblyError, ReadError};
+pub use part::{Assembly, Part, Piece};
+pub use watch::{Stage, Watch};

@@ -1,0 +1,250 @@
+//! The removal map of a part or group: its room over the whole sphere of directions.
+//!
+//! Samples on an icosahedron, then three refinements: triangles between a free corner and one that is
+//! not, until the border is known to the angle asked for; the surroundings of directions that go
+//! farthest, where a thin free region may hide; and the surroundings of candidate directions that are
+//! free. A candidate that is free though none of the samples around it is, is *isolated*: a tight
+//! fit.
+
+mod draw;
+mod regions;
+
+use std::collections::BTreeSet;
+
+use colltrans::{StartOverlap, Workspace};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::bodies::Bodies;
+use crate::error::AssemblyError;
+use crate::rooms::{PartRoom, room_of};
+use crate::sphere::{Sphere, angle};
+use crate::watch::{Stage, Watch};
+
+pub use draw::{png, svg};
+pub use regions::Region;
+
+/// Choices for a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapOptions {
+    /// At least so many samples before anything is refined.
+    pub samples: usize,
+    /// The border of free regions is known to this angle, in radians.
+    pub border: f64,
+    /// What overlaps at the start mean.
+    pub start: StartOverlap,
+}
+
+impl Default for MapOptions {
+    fn default() -> Self {
+        Self { samples: 2_562, border: 0.01, start: StartOverlap::Refuse }
+    }
+}
+
+/// The rooms of a group over the sphere.
+#[derive(Debug, Clone)]
+pub struct RemovalMap {
+    /// Positions of the parts of the group.
+    pub group: Vec<usize>,
+    /// Directions and triangles.
+    pub sphere: Sphere,
+    /// The room in each direction of the sphere.
+    pub rooms: Vec<PartRoom>,
+    /// Connected sets of free directions, largest first.
+    pub regions: Vec<Region>,
+    /// Free directions that lie in no region: all around them is blocked, as far as was looked.
+    pub isolated: Vec<DVec3>,
+    /// The size of the assembly, for a scale.
+    pub size: f64,
+}
+
+impl RemovalMap {
+    /// Maps the room of a group against all parts that are not in it.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn new(
+        bodies: &Bodies,
+        group: &[usize],
+        candidates: &[DVec3],
+        options: MapOptions,
+        watch: Watch,
+    ) -> Result<Self, AssemblyError> {
+        let mut mapper = Mapper {
+            bodies,
+            group,
+            options,
+            watch,
+            sphere: Sphere::with_directions(options.samples),
+            rooms: Vec::new(),
+        };
+        mapper.ask()?;
+        let free = mapper.free_candidates(candidates)?;
+        mapper.refine_farthest()?;
+        mapper.refine_around(&free)?;
+        mapper.refine_border()?;
+        let Mapper { sphere, rooms, .. } = mapper;
+        let mut regions = regions::regions(&sphere, &rooms);
+        // Smaller than the border is known: single directions.
+        let smallest = std::f64::consts::PI * options.border * options.border;
+        let single: Vec<DVec3> =
+            regions.iter().filter(|r| r.solid_angle < smallest).map(|r| r.center).collect();
+        regions.retain(|r| r.solid_angle >= smallest);
+        let open = |d: &DVec3| {
+            let corners = sphere.triangles[sphere.locate(*d).0].corners;
+            corners.iter().all(|&k| !rooms[k as usize].is_free())
+        };
+        let mut isolated: Vec<DVec3> = free.into_iter().filter(open).collect();
+        for d in single {
+            if isolated.iter().all(|known| angle(*known, d) > options.border) {
+                isolated.push(d);
+            }
+        }
+        let [low, high] = bodies.assembly().bounds();
+        let size = (high - low).length();
+        Ok(Self { group: group.to_vec(), sphere, rooms, regions, isolated, size })
+    }
+
+    /// The share of the sphere that is free.
+    pub fn free_share(&self) -> f64 {
+        let area: f64 = self.regions.iter().map(|r| r.solid_angle).sum();
+        (area / (4.0 * std::f64::consts::PI)).max(0.0)
+    }
+
+    /// The map as JSON: samples, free regions with points of their borders, isolated directions.
+    pub fn to_json(&self, bodies: &Bodies) -> serde_json::Value {
+        let name = |k: usize| bodies.assembly().parts()[k].name();
+        let sample = |(d, room): (&DVec3, &PartRoom)| {
+            let distance = room.distance();
+            serde_json::json!({
+                "direction": d.to_array(),
+                "outcome": room.outcome(),
+                "distance": distance.is_finite().then_some(distance),
+                "by": room.by().map(name),
+            })
+        };
+        let region = |r: &Region| {
+            let border: Vec<[f64; 3]> = r.border.iter().map(DVec3::to_array).collect();
+            serde_json::json!({
+                "solid_angle": r.solid_angle,
+                "center": r.center.to_array(),
+                "border": border,
+            })
+        };
+        serde_json::json!({
+            "parts": bodies.assembly().names(&self.group),
+            "free_share": self.free_share(),
+            "regions": self.regions.iter().map(region).collect::<Vec<_>>(),
+            "isolated": self.isolated.iter().map(DVec3::to_array).collect::<Vec<_>>(),
+            "samples": self.sphere.directions.iter().zip(&self.rooms).map(sample).collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// Local farthest directions whose surroundings are refined, at most.
+const MOST_PEAKS: usize = 24;
+/// Rounds of refinement around each.
+const PEAK_ROUNDS: usize = 3;
+
+struct Mapper<'a> {
+    bodies: &'a Bodies<'a>,
+    group: &'a [usize],
+    options: MapOptions,
+    watch: Watch<'a>,
+    sphere: Sphere,
+    rooms: Vec<PartRoom>,
+}
+
+impl Mapper<'_> {
+    /// Asks the directions that have no room yet.
+    fn ask(&mut self) -> Result<(), AssemblyError> {
+        let fresh = self.rooms_of(&self.sphere.directions[self.rooms.len()..])?;
+        self.rooms.extend(fresh);
+        Ok(())
+    }
+
+    fn rooms_of(&self, directions: &[DVec3]) -> Result<Vec<PartRoom>, AssemblyError> {
+        let tally = self.watch.stage(Stage::Map, directions.len());
+        let others = vec![true; self.bodies.len()];
+        let look = |workspace: &mut Workspace, d: &DVec3| {
+            let start = self.options.start;
+            let room = room_of(self.bodies, self.group, &others, *d, start, workspace);
+            tally.step().map(|()| room)
+        };
+        directions.par_iter().map_init(Workspace::default, look).collect()
+    }
+
+    fn free_candidates(&self, candidates: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
+        let rooms = self.rooms_of(candidates)?;
+        let free = candidates.iter().zip(rooms).filter(|(_, room)| room.is_free());
+        Ok(free.map(|(d, _)| *d).collect())
+    }
+
+    /// Cuts around the directions that go farther than all around them, if none of those is free.
+    fn refine_farthest(&mut self) -> Result<(), AssemblyError> {
+        for _ in 0..PEAK_ROUNDS {
+            let mut highest = vec![0.0_f64; self.rooms.len()];
+            for t in self.sphere.leaves() {
+                let corners = self.sphere.triangles[t].corners.map(|k| k as usize);
+                let best =
+                    corners.map(|k| self.rooms[k].distance()).into_iter().fold(0.0, f64::max);
+                for k in corners {
+                    highest[k] = highest[k].max(best);
+                }
+            }
+            let peak = |k: &usize| {
+                let distance = self.rooms[*k].distance();
+                distance.is_finite() && distance > 0.0 && distance >= highest[*k]
+            };
+            let mut peaks: Vec<usize> = (0..self.rooms.len()).filter(peak).collect();
+            let far = |k: usize| self.rooms[k].distance();
+            peaks.sort_by(|a, b| far(*b).total_cmp(&far(*a)).then(a.cmp(b)));
+            peaks.truncate(MOST_PEAKS);
+            let peaks: BTreeSet<u32> = peaks.into_iter().map(|k| k as u32).collect();
+            let around =
+                |t: &usize| self.sphere.triangles[*t].corners.iter().any(|k| peaks.contains(k));
+            let cuts: Vec<usize> = self.sphere.leaves().filter(around).collect();
+            self.cut(cuts)?;
+        }
+        Ok(())
+    }
+
+    /// Cuts towards free directions until the samples around them are free too, or as close as the
+    /// border is to be known.
+    fn refine_around(&mut self, free: &[DVec3]) -> Result<(), AssemblyError> {
+        loop {
+            let wanted = |d: &DVec3| {
+                let t = self.sphere.locate(*d).0;
+                let corners = self.sphere.triangles[t].corners;
+                let shut = corners.iter().all(|&k| !self.rooms[k as usize].is_free());
+                (shut && self.sphere.widest(t) > self.options.border).then_some(t)
+            };
+            let cuts: BTreeSet<usize> = free.iter().filter_map(wanted).collect();
+            if cuts.is_empty() {
+                return Ok(());
+            }
+            self.cut(cuts)?;
+        }
+    }
+
+    /// Cuts the triangles on the border of free regions.
+    fn refine_border(&mut self) -> Result<(), AssemblyError> {
+        loop {
+            let mixed = |t: &usize| {
+                let [a, b, c] =
+                    self.sphere.triangles[*t].corners.map(|k| self.rooms[k as usize].is_free());
+                (a != b || b != c) && self.sphere.widest(*t) > self.options.border
+            };
+            let cuts: Vec<usize> = self.sphere.leaves().filter(mixed).collect();
+            if cuts.is_empty() {
+                return Ok(());
+            }
+            self.cut(cuts)?;
+        }
+    }
+
+    fn cut(&mut self, triangles: impl IntoIterator<Item = usize>) -> Result<(), AssemblyError> {
+        triangles.into_iter().for_each(|t| self.sphere.cut(t));
+        self.ask()
+    }
+}

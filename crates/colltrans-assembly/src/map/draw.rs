@@ -1,0 +1,293 @@
+//! Removal maps as pictures, in Mollweide's projection: equal areas, the poles `+z` and `-z` at top and
+//! bottom, `+x` in the middle.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt::Write;
+
+use glam::{DVec2, DVec3};
+
+use super::RemovalMap;
+use crate::rooms::PartRoom;
+
+/// Colours of blocked directions, from stopped at once to stopped far away.
+const BLOCKED: [[u8; 3]; 8] = [
+    [22, 32, 72],
+    [30, 55, 110],
+    [40, 82, 148],
+    [58, 110, 178],
+    [90, 141, 200],
+    [128, 172, 217],
+    [170, 202, 231],
+    [211, 228, 243],
+];
+const FREE: [u8; 3] = [246, 150, 40];
+const OVERLAP: [u8; 3] = [150, 60, 60];
+
+/// The direction at a place of the map, whose half-axes are 2 and 1; `None` outside.
+fn direction(at: DVec2) -> Option<DVec3> {
+    if at.x * at.x / 4.0 + at.y * at.y >= 1.0 {
+        return None;
+    }
+    let theta = at.y.asin();
+    let latitude = ((2.0 * theta + (2.0 * theta).sin()) / PI).asin();
+    let longitude = PI * at.x / (2.0 * theta.cos());
+    let (s, c) = longitude.sin_cos();
+    Some(DVec3::new(c * latitude.cos(), s * latitude.cos(), latitude.sin()))
+}
+
+/// Where a direction is on the map.
+fn place(d: DVec3) -> DVec2 {
+    let latitude = d.z.clamp(-1.0, 1.0).asin();
+    let longitude = d.y.atan2(d.x);
+    let mut theta = latitude;
+    // Newton's method; at the poles the equation is flat, and its solution the latitude.
+    for _ in 0..32 {
+        let slope = 2.0 + 2.0 * (2.0 * theta).cos();
+        if slope < 1e-9 {
+            break;
+        }
+        theta -= (2.0 * theta + (2.0 * theta).sin() - PI * latitude.sin()) / slope;
+    }
+    let theta = theta.clamp(-FRAC_PI_2, FRAC_PI_2);
+    DVec2::new(2.0 * longitude / PI * theta.cos(), theta.sin())
+}
+
+impl RemovalMap {
+    /// The class of a direction: 0 to 7 blocked, 8 free, 9 overlapping.
+    fn class(&self, d: DVec3) -> usize {
+        let (t, weights) = self.sphere.locate(d);
+        let corners = self.sphere.triangles[t].corners;
+        let nearest = weights.max_position();
+        match self.rooms[corners[nearest] as usize] {
+            PartRoom::Free => 8,
+            PartRoom::Overlapping { .. } => 9,
+            PartRoom::Blocked { stop, .. } => step(stop.distance / self.size),
+        }
+    }
+}
+
+/// Eight steps, each twice as far as the one before, the last one from half the size on.
+fn step(share: f64) -> usize {
+    (8.0 + share.max(1e-9).log2()).floor().clamp(0.0, 7.0) as usize
+}
+
+fn color(class: usize) -> [u8; 3] {
+    match class {
+        8 => FREE,
+        9 => OVERLAP,
+        k => BLOCKED[k],
+    }
+}
+
+fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// The map as a PNG picture of `width` times half that many pixels, transparent outside the map;
+/// isolated directions are white discs with a dark rim.
+pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
+    let (width, height) = (width.max(16), width.max(16) / 2);
+    let mut pixels = vec![0_u8; (width * height * 4) as usize];
+    let marks: Vec<DVec2> = map.isolated.iter().map(|d| place(*d)).collect();
+    for row in 0..height {
+        for column in 0..width {
+            let at = DVec2::new(
+                (f64::from(column) + 0.5) / f64::from(width) * 4.0 - 2.0,
+                1.0 - (f64::from(row) + 0.5) / f64::from(height) * 2.0,
+            );
+            let Some(d) = direction(at) else { continue };
+            let near = marks.iter().map(|m| m.distance(at)).fold(f64::INFINITY, f64::min);
+            let rgb = match near {
+                r if r < 0.02 => [255, 255, 255],
+                r if r < 0.03 => [20, 20, 20],
+                _ => color(map.class(d)),
+            };
+            let first = ((row * width + column) * 4) as usize;
+            pixels[first..first + 3].copy_from_slice(&rgb);
+            pixels[first + 3] = 255;
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    // Writing to memory fails only for sizes that do not match, which they do.
+    if let Ok(mut writer) = encoder.write_header() {
+        let _ = writer.write_image_data(&pixels);
+    }
+    bytes
+}
+
+/// Cells of the map, from left to right.
+const COLUMNS: usize = 480;
+const ROWS: usize = 240;
+/// Size of the map in the picture, and where it begins.
+const SCALE: f64 = 170.0;
+const MIDDLE: DVec2 = DVec2::new(360.0, 190.0);
+
+/// The map as an SVG picture with axes, marks and a legend.
+pub fn svg(map: &RemovalMap, title: &str) -> String {
+    let mut text = String::from(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 440\" \
+         font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"720\" height=\"440\" \
+         fill=\"#fff\"/>\n",
+    );
+    for (class, path) in runs(map).into_iter().enumerate().filter(|(_, path)| !path.is_empty()) {
+        let _ = writeln!(text, "<path fill=\"{}\" d=\"{path}\"/>", hex(color(class)));
+    }
+    let _ = writeln!(
+        text,
+        "<ellipse cx=\"{}\" cy=\"{}\" rx=\"{}\" ry=\"{SCALE}\" fill=\"none\" stroke=\"#333\"/>",
+        MIDDLE.x,
+        MIDDLE.y,
+        2.0 * SCALE
+    );
+    graticule(&mut text);
+    axes(&mut text);
+    for d in &map.isolated {
+        let at = in_picture(place(*d));
+        let _ = writeln!(
+            text,
+            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"#fff\" stroke=\"#111\" \
+             stroke-width=\"2\"/>",
+            at.x, at.y
+        );
+    }
+    legend(&mut text, map);
+    let _ = writeln!(
+        text,
+        "<text x=\"360\" y=\"16\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n</svg>",
+        crate::report::escaped(title)
+    );
+    text
+}
+
+fn in_picture(at: DVec2) -> DVec2 {
+    MIDDLE + DVec2::new(at.x, -at.y) * SCALE
+}
+
+/// For each class, the cells of the map as runs along rows.
+fn runs(map: &RemovalMap) -> Vec<String> {
+    let mut paths = vec![String::new(); 10];
+    let (w, h) = (4.0 * SCALE / COLUMNS as f64, 2.0 * SCALE / ROWS as f64);
+    for row in 0..ROWS {
+        let y = 1.0 - (row as f64 + 0.5) / ROWS as f64 * 2.0;
+        let class = |column: usize| {
+            let x = (column as f64 + 0.5) / COLUMNS as f64 * 4.0 - 2.0;
+            direction(DVec2::new(x, y)).map(|d| map.class(d))
+        };
+        let classes: Vec<Option<usize>> = (0..COLUMNS).map(class).collect();
+        let mut from = 0;
+        while from < COLUMNS {
+            let to = (from..COLUMNS).find(|&k| classes[k] != classes[from]).unwrap_or(COLUMNS);
+            if let Some(class) = classes[from] {
+                let (x, y) =
+                    (MIDDLE.x - 2.0 * SCALE + from as f64 * w, MIDDLE.y - SCALE + row as f64 * h);
+                let (width, height) = ((to - from) as f64 * w + 0.1, h + 0.1);
+                let _ = write!(paths[class], "M{x:.1} {y:.1}h{width:.1}v{height:.1}h-{width:.1}z");
+            }
+            from = to;
+        }
+    }
+    paths
+}
+
+/// Meridians and parallels every 30 degrees.
+fn graticule(text: &mut String) {
+    let line = |points: Vec<DVec3>| {
+        let mut path = String::new();
+        for (k, d) in points.into_iter().enumerate() {
+            let at = in_picture(place(d));
+            let _ = write!(path, "{}{:.1} {:.1}", if k == 0 { "M" } else { "L" }, at.x, at.y);
+        }
+        path
+    };
+    let at = |longitude: f64, latitude: f64| {
+        let (s, c) = longitude.to_radians().sin_cos();
+        let (z, r) = latitude.to_radians().sin_cos();
+        DVec3::new(r * c, r * s, z)
+    };
+    let mut path = String::new();
+    for k in -2..=2 {
+        let latitude = f64::from(k) * 30.0;
+        path += &line((-60..=60).map(|j| at(f64::from(j) * 2.999, latitude)).collect());
+    }
+    for k in -5..=5 {
+        let longitude = f64::from(k) * 30.0;
+        path += &line((-44..=44).map(|j| at(longitude, f64::from(j) * 2.0)).collect());
+    }
+    let _ = writeln!(
+        text,
+        "<path d=\"{path}\" fill=\"none\" stroke=\"#888\" stroke-opacity=\"0.45\" \
+         stroke-width=\"0.6\"/>"
+    );
+}
+
+fn axes(text: &mut String) {
+    let names = [
+        (DVec3::X, "+x"),
+        (DVec3::Y, "+y"),
+        (DVec3::NEG_Y, "−y"),
+        (DVec3::Z, "+z"),
+        (DVec3::NEG_Z, "−z"),
+    ];
+    let mut label = |at: DVec2, name: &str| {
+        let _ = writeln!(
+            text,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#111\" stroke=\"#fff\" \
+             stroke-width=\"3\" paint-order=\"stroke\">{name}</text>",
+            at.x,
+            at.y + 4.0
+        );
+    };
+    for (d, name) in names {
+        // Names of the poles stay inside.
+        label(in_picture(place(d)) + DVec2::Y * 12.0 * d.z, name);
+    }
+    label(in_picture(DVec2::new(-2.0, 0.0)), "−x");
+    label(in_picture(DVec2::new(2.0, 0.0)), "−x");
+}
+
+fn legend(text: &mut String, map: &RemovalMap) {
+    let mut x = 40.0;
+    let mut entry = |class: usize, name: &str, width: f64| {
+        let _ = writeln!(
+            text,
+            "<rect x=\"{x}\" y=\"388\" width=\"22\" height=\"14\" fill=\"{}\" stroke=\"#333\" \
+             stroke-width=\"0.5\"/><text x=\"{x}\" y=\"418\" font-size=\"11\">{name}</text>",
+            hex(color(class))
+        );
+        x += width;
+    };
+    entry(8, "free", 60.0);
+    for k in 0..8 {
+        let from = map.size * 2.0_f64.powi(k - 8);
+        let name = if k == 0 { "0".to_owned() } else { rounded(from) };
+        entry(k as usize, &name, 58.0);
+    }
+    entry(9, "overlapping", 60.0);
+    text.push_str(
+        "<text x=\"40\" y=\"434\" font-size=\"11\" fill=\"#555\">blocked after, from</text>\n",
+    );
+}
+
+/// Three digits.
+fn rounded(x: f64) -> String {
+    let digits = (2 - x.abs().max(1e-12).log10().floor() as i32).max(0) as usize;
+    format!("{x:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_and_directions_are_inverse() {
+        let mut random = colltrans_kit::random::Random::new(2, &[]);
+        for _ in 0..1_000 {
+            let d = random.direction();
+            let back = direction(place(d)).expect("inside");
+            assert!((back - d).length() < 1e-6, "{d} {back}");
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Connected sets of free directions.
+//!
+//! Free corners that share an edge of an uncut triangle belong together. A triangle counts for the
+//! share of its corners that are free.
+
+use glam::DVec3;
+
+use crate::rooms::PartRoom;
+use crate::sphere::Sphere;
+
+/// A connected set of free directions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// Its solid angle, in steradians.
+    pub solid_angle: f64,
+    /// Its mean direction, of length 1; one of its samples if the mean is none.
+    pub center: DVec3,
+    /// Directions half-way between free samples and others on its rim, by angle around the centre.
+    pub border: Vec<DVec3>,
+}
+
+pub(super) fn regions(sphere: &Sphere, rooms: &[PartRoom]) -> Vec<Region> {
+    let free = |k: u32| rooms[k as usize].is_free();
+    let mut set = Sets::new(rooms.len());
+    for t in sphere.leaves() {
+        let [a, b, c] = sphere.triangles[t].corners;
+        for (a, b) in [(a, b), (b, c), (c, a)] {
+            if free(a) && free(b) {
+                set.join(a, b);
+            }
+        }
+    }
+    let mut found: Vec<(u32, Gathered)> = Vec::new();
+    for t in sphere.leaves() {
+        let corners = sphere.triangles[t].corners;
+        let share = sphere.area(t) / 3.0;
+        for k in corners.into_iter().filter(|&k| free(k)) {
+            let root = set.root(k);
+            let place = found.iter().position(|f| f.0 == root).unwrap_or_else(|| {
+                let first = sphere.directions[k as usize];
+                found.push((root, Gathered { first, ..Gathered::default() }));
+                found.len() - 1
+            });
+            let region = &mut found[place].1;
+            region.area += share;
+            region.sum += sphere.directions[k as usize] * share;
+            for other in corners.into_iter().filter(|&o| !free(o)) {
+                let sum = sphere.directions[k as usize] + sphere.directions[other as usize];
+                region.border.push(sum.normalize());
+            }
+        }
+    }
+    let mut regions: Vec<Region> = found.into_iter().map(|(_, region)| region.finish()).collect();
+    regions.sort_by(|x, y| y.solid_angle.total_cmp(&x.solid_angle));
+    regions
+}
+
+#[derive(Default)]
+struct Gathered {
+    area: f64,
+    sum: DVec3,
+    first: DVec3,
+    border: Vec<DVec3>,
+}
+
+impl Gathered {
+    fn finish(mut self) -> Region {
+        let center = self.sum.try_normalize().unwrap_or(self.first);
+        let (u, v) = center.any_orthonormal_pair();
+        let around = |d: &DVec3| d.dot(v).atan2(d.dot(u));
+        self.border.sort_by(|x, y| around(x).total_cmp(&around(y)));
+        self.border.dedup();
+        Region { solid_angle: self.area, center, border: self.border }
+    }
+}
+
+/// Disjoint sets of numbers.
+struct Sets(Vec<u32>);
+
+impl Sets {
+    fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    fn root(&mut self, mut k: u32) -> u32 {
+        while self.0[k as usize] != k {
+            let above = self.0[self.0[k as usize] as usize];
+            self.0[k as usize] = above;
+            k = above;
+        }
+        k
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}

@@ -1,0 +1,190 @@
+//! The whole matrix: every ordered pair of parts, by direction.
+//!
+//! `A` moving along `d` meets `B` after as far as `B` moving along `-d` meets `A`. So of two opposite
+//! directions one is asked, and the other is its mirror image. Pairs that never meet are not stored.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use colltrans::{StartOverlap, Workspace};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::bodies::{Bodies, Room, Stop};
+use crate::error::AssemblyError;
+use crate::rooms::PartRoom;
+use crate::watch::{Stage, Watch};
+
+/// One part meets another along a direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    /// The part that moves.
+    pub moving: usize,
+    /// The part that stops it.
+    pub fixed: usize,
+    /// Where; `None` if they overlap where they are.
+    pub stop: Option<Stop>,
+}
+
+impl Meeting {
+    /// How far; 0 if they overlap where they are.
+    pub fn distance(&self) -> f64 {
+        self.stop.map_or(0.0, |stop| stop.distance)
+    }
+
+    /// The same meeting, as the other part sees it that moves along the opposite of `d`.
+    fn mirrored(&self, d: DVec3) -> Self {
+        let turn = |s: Stop| Stop { normal: -s.normal, point: s.point - d * s.distance, ..s };
+        Self { moving: self.fixed, fixed: self.moving, stop: self.stop.map(turn) }
+    }
+}
+
+/// Who meets whom along which directions.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Matrix {
+    directions: Vec<DVec3>,
+    meetings: Vec<Vec<Meeting>>,
+}
+
+impl Matrix {
+    /// Asks every ordered pair of the parts that are `true` in `among`, along unit directions.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn new(
+        bodies: &Bodies,
+        directions: &[DVec3],
+        among: &[bool],
+        start: StartOverlap,
+        watch: Watch,
+    ) -> Result<Self, AssemblyError> {
+        let key = |d: DVec3| d.to_array().map(|x| (x + 0.0).to_bits());
+        let index: HashMap<[u64; 3], usize> =
+            directions.iter().enumerate().map(|(k, d)| (key(*d), k)).collect();
+        let opposite = |k: usize| index.get(&key(-directions[k])).copied();
+        let asked: Vec<usize> =
+            (0..directions.len()).filter(|&k| opposite(k).is_none_or(|o| o > k)).collect();
+        let moving: Vec<usize> = (0..bodies.len()).filter(|&k| among[k]).collect();
+        let tally = watch.stage(Stage::Rooms, asked.len() * moving.len());
+        let jobs: Vec<(usize, usize)> =
+            asked.iter().flat_map(|&k| moving.iter().map(move |&part| (k, part))).collect();
+        let row = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
+            let met = meetings(bodies, part, directions[k], among, start, workspace);
+            tally.step().map(|()| (k, met))
+        };
+        let rows: Result<Vec<(usize, Vec<Meeting>)>, AssemblyError> =
+            jobs.par_iter().map_init(Workspace::default, row).collect();
+        let mut all = vec![Vec::new(); directions.len()];
+        for (k, met) in rows? {
+            if let Some(other) = opposite(k) {
+                all[other].extend(met.iter().map(|m| m.mirrored(directions[k])));
+            }
+            all[k].extend(met);
+        }
+        for met in &mut all {
+            met.sort_by_key(|m: &Meeting| (m.moving, m.fixed));
+        }
+        Ok(Self { directions: directions.to_vec(), meetings: all })
+    }
+
+    /// The directions, of length 1.
+    pub fn directions(&self) -> &[DVec3] {
+        &self.directions
+    }
+
+    /// All meetings along a direction, sorted by moving and fixed part.
+    pub fn meetings(&self, direction: usize) -> &[Meeting] {
+        &self.meetings[direction]
+    }
+
+    /// What a part meets along a direction.
+    pub fn of_part(&self, direction: usize, part: usize) -> &[Meeting] {
+        let all = &self.meetings[direction];
+        let from = all.partition_point(|m| m.moving < part);
+        let to = all.partition_point(|m| m.moving <= part);
+        &all[from..to]
+    }
+
+    /// The room of a part along a direction, against all others.
+    pub fn room(&self, direction: usize, part: usize) -> PartRoom {
+        let met = self.of_part(direction, part);
+        let first = met.iter().min_by(|x, y| {
+            let key = |m: &Meeting| (m.stop.is_some(), m.distance());
+            key(x).partial_cmp(&key(y)).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        match first {
+            None => PartRoom::Free,
+            Some(&Meeting { moving: part, fixed: by, stop: None }) => {
+                PartRoom::Overlapping { part, by }
+            }
+            Some(&Meeting { moving: part, fixed: by, stop: Some(stop) }) => {
+                PartRoom::Blocked { part, by, stop }
+            }
+        }
+    }
+
+    /// The matrix as CSV: a line for each ordered pair and direction that is not free.
+    pub fn to_csv(&self, bodies: &Bodies) -> String {
+        let parts = bodies.assembly().parts();
+        let mut text =
+            "direction_x,direction_y,direction_z,moving,fixed,outcome,distance\n".to_owned();
+        let quoted = |name: &str| {
+            if name.contains([',', '"', '\n']) {
+                format!("\"{}\"", name.replace('"', "\"\""))
+            } else {
+                name.to_owned()
+            }
+        };
+        for (d, met) in self.directions.iter().zip(&self.meetings) {
+            for m in met {
+                let (a, b) = (quoted(parts[m.moving].name()), quoted(parts[m.fixed].name()));
+                let outcome = if m.stop.is_some() { "blocked" } else { "overlapping" };
+                let distance = m.distance();
+                let _ = writeln!(text, "{},{},{},{a},{b},{outcome},{distance}", d.x, d.y, d.z);
+            }
+        }
+        text
+    }
+
+    /// The matrix as JSON: for each direction the ordered pairs that are not free.
+    pub fn to_json(&self, bodies: &Bodies) -> serde_json::Value {
+        let name = |k: usize| bodies.assembly().parts()[k].name();
+        let pair = |m: &Meeting| {
+            serde_json::json!({
+                "moving": name(m.moving),
+                "fixed": name(m.fixed),
+                "outcome": if m.stop.is_some() { "blocked" } else { "overlapping" },
+                "distance": m.distance(),
+            })
+        };
+        let row = |(d, met): (&DVec3, &Vec<Meeting>)| {
+            let pairs: Vec<_> = met.iter().map(pair).collect();
+            serde_json::json!({ "direction": d.to_array(), "pairs": pairs })
+        };
+        self.directions.iter().zip(&self.meetings).map(row).collect()
+    }
+}
+
+fn meetings(
+    bodies: &Bodies,
+    part: usize,
+    d: DVec3,
+    among: &[bool],
+    start: StartOverlap,
+    workspace: &mut Workspace,
+) -> Vec<Meeting> {
+    let mut met = Vec::new();
+    for (_, other) in bodies.ahead(part, d) {
+        if !among[other] {
+            continue;
+        }
+        match bodies.room([part, other], d, None, start, workspace) {
+            Room::Free => (),
+            Room::Overlapping => met.push(Meeting { moving: part, fixed: other, stop: None }),
+            Room::Blocked(stop) => {
+                met.push(Meeting { moving: part, fixed: other, stop: Some(stop) });
+            }
+        }
+    }
+    met
+}

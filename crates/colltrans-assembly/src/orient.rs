@@ -1,0 +1,101 @@
+//! Facets that are oriented against their neighbours, turned: some exporters leave single ones so.
+//!
+//! Facets that share an edge must run along it in opposite directions. From one facet of each
+//! connected part that is carried on to all; the smaller set is turned. Which side is outside is not
+//! decided here.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+/// Turns facets until neighbours agree; how many. `None` if they cannot, on a one-sided surface.
+pub(crate) fn consistent(vertices: &[DVec3], faces: &mut [Vec<u32>]) -> Option<usize> {
+    let neighbours = neighbours(vertices, faces);
+    let mut turned: Vec<Option<bool>> = vec![None; faces.len()];
+    let mut count = 0;
+    for first in 0..faces.len() {
+        if turned[first].is_some() {
+            continue;
+        }
+        turned[first] = Some(false);
+        let mut part = vec![first];
+        let mut next = 0;
+        while let Some(&face) = part.get(next) {
+            next += 1;
+            for &(other, agrees) in &neighbours[face] {
+                let wanted = turned[face] == Some(agrees);
+                match turned[other] {
+                    None => {
+                        turned[other] = Some(wanted);
+                        part.push(other);
+                    }
+                    Some(found) if found != wanted => return None,
+                    Some(_) => (),
+                }
+            }
+        }
+        let against = part.iter().filter(|&&f| turned[f] == Some(true)).count();
+        let most = against > part.len() / 2;
+        for &face in part.iter().filter(|&&f| turned[f] == Some(!most)) {
+            faces[face].reverse();
+            count += 1;
+        }
+    }
+    Some(count)
+}
+
+/// For each facet those with which it shares an edge that no third one has, and whether they agree.
+fn neighbours(vertices: &[DVec3], faces: &[Vec<u32>]) -> Vec<Vec<(usize, bool)>> {
+    let mut index = HashMap::new();
+    let bits = |v: u32| vertices[v as usize].to_array().map(|c| (c + 0.0).to_bits());
+    let mut edges: HashMap<[usize; 2], Vec<(usize, bool)>> = HashMap::new();
+    for (k, face) in faces.iter().enumerate() {
+        for (i, &a) in face.iter().enumerate() {
+            let b = face[(i + 1) % face.len()];
+            let [a, b] = [a, b].map(|v| {
+                let next = index.len();
+                *index.entry(bits(v)).or_insert(next)
+            });
+            edges.entry([a.min(b), a.max(b)]).or_default().push((k, a < b));
+        }
+    }
+    let mut neighbours = vec![Vec::new(); faces.len()];
+    for shared in edges.values() {
+        if let [(f, x), (g, y)] = shared[..] {
+            neighbours[f].push((g, x != y));
+            neighbours[g].push((f, x != y));
+        }
+    }
+    neighbours
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_kit::random::Random;
+    use colltrans_kit::shapes::ring_sphere;
+
+    use super::*;
+
+    #[test]
+    fn facets_turned_at_random_agree_again() {
+        let mut random = Random::new(6, &[]);
+        let mesh = ring_sphere(9, 5);
+        for _ in 0..50 {
+            let mut faces = mesh.faces.clone();
+            let mut turned = 0;
+            for face in &mut faces {
+                if random.unit() < 0.3 {
+                    face.reverse();
+                    turned += 1;
+                }
+            }
+            assert_eq!(consistent(&mesh.vertices, &mut faces), Some(turned));
+            assert_eq!(faces, mesh.faces);
+        }
+        // Moebius' band.
+        let band: Vec<DVec3> =
+            (0..6).map(|k| DVec3::new(f64::from(k), f64::from(k * k), 1.0)).collect();
+        let mut faces: Vec<Vec<u32>> = vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4], vec![4, 5, 0, 1]];
+        assert_eq!(consistent(&band, &mut faces), None);
+    }
+}

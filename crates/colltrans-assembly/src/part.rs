@@ -1,0 +1,248 @@
+//! Parts in one world.
+
+use std::collections::HashMap;
+
+use colltrans::{Solid, SolidError};
+use glam::{DAffine3, DVec3};
+
+use crate::boxes::Aabb;
+use crate::error::AssemblyError;
+use crate::orient;
+
+/// A mesh and its place: a part has one or several, which may overlap each other.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// Vertices in the piece's own frame.
+    pub vertices: Vec<DVec3>,
+    /// Faces, counter-clockwise as seen from outside.
+    pub faces: Vec<Vec<u32>>,
+    /// From the piece's frame to the world; may scale and mirror.
+    pub world_from_piece: DAffine3,
+}
+
+/// A rigid part, where it stands in the assembly.
+#[derive(Debug, Clone)]
+pub struct Part {
+    name: String,
+    solid: Solid,
+    facets: usize,
+    fixed: bool,
+    defects: Vec<String>,
+}
+
+impl Part {
+    /// A part of pieces; a surface that is open becomes one without an inside, which is noted.
+    ///
+    /// # Errors
+    /// A surface that is not one of a solid; no pieces.
+    pub fn new(name: impl Into<String>, pieces: &[Piece]) -> Result<Self, AssemblyError> {
+        let name = name.into();
+        let refused = |source| AssemblyError::Part { part: name.clone(), source };
+        let mut defects = Vec::new();
+        let mut solids = Vec::with_capacity(pieces.len());
+        for piece in pieces {
+            solids.push(solid(piece, &mut defects).map_err(refused)?);
+        }
+        let facets = pieces.iter().map(|p| p.faces.len()).sum();
+        let solid = match &solids[..] {
+            [] => return Err(refused(SolidError::Empty)),
+            [_] => solids.remove(0),
+            _ => Solid::from_pieces(&solids).map_err(refused)?,
+        };
+        Ok(Self { name, solid, facets, fixed: false, defects })
+    }
+
+    /// The same part, which is never moved if `fixed`.
+    #[must_use]
+    pub fn with_fixed(self, fixed: bool) -> Self {
+        Self { fixed, ..self }
+    }
+
+    /// Its name, unique in an assembly.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The surface, in the world.
+    pub const fn solid(&self) -> &Solid {
+        &self.solid
+    }
+
+    /// Number of facets in the file.
+    pub const fn facets(&self) -> usize {
+        self.facets
+    }
+
+    /// Whether it is never moved.
+    pub const fn fixed(&self) -> bool {
+        self.fixed
+    }
+
+    /// What is wrong with its surface, in words.
+    pub fn defects(&self) -> &[String] {
+        &self.defects
+    }
+
+    pub(crate) fn bounds(&self) -> Aabb {
+        Aabb::of(self.solid.bounds())
+    }
+}
+
+fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> {
+    let place = |v: &DVec3| piece.world_from_piece.transform_point3(*v);
+    let vertices: Vec<DVec3> = piece.vertices.iter().map(place).collect();
+    let mirrored = piece.world_from_piece.matrix3.determinant() < 0.0;
+    let mut faces = piece.faces.clone();
+    if mirrored {
+        for face in &mut faces {
+            face.reverse();
+        }
+    }
+    let mut built = Solid::from_mesh(&vertices, &faces);
+    if let Err(SolidError::Inconsistent { .. }) = built
+        && let Some(turned) = orient::consistent(&vertices, &mut faces)
+    {
+        defects.push(format!("{turned} facets were oriented against the others, and are turned"));
+        built = Solid::from_mesh(&vertices, &faces);
+    }
+    let solid = match built {
+        Err(open @ SolidError::Open { .. }) => {
+            let solid = Solid::from_open_mesh(&vertices, &faces)?;
+            defects.push(format!("{open}; taken as a surface without an inside"));
+            solid
+        }
+        other => other?,
+    };
+    let report = solid.report();
+    if report.turned() > 0 {
+        defects.push(format!("{} shells were inside out and have been turned", report.turned()));
+    }
+    if report.crowded_edges > 0 {
+        let count = report.crowded_edges;
+        defects.push(format!("more than two facets meet at {count} edges"));
+    }
+    Ok(solid)
+}
+
+/// Parts with different names in one world, and pairs that are not asked about.
+#[derive(Debug, Clone, Default)]
+pub struct Assembly {
+    parts: Vec<Part>,
+    ignored: Vec<[usize; 2]>,
+    unit: Option<String>,
+    notes: Vec<String>,
+}
+
+impl Assembly {
+    /// An assembly of these parts, in this order.
+    ///
+    /// # Errors
+    /// Two parts with one name.
+    pub fn new(parts: Vec<Part>) -> Result<Self, AssemblyError> {
+        let mut seen = HashMap::new();
+        for (k, part) in parts.iter().enumerate() {
+            if seen.insert(part.name.as_str(), k).is_some() {
+                return Err(AssemblyError::SameName { name: part.name.clone() });
+            }
+        }
+        Ok(Self { parts, ..Self::default() })
+    }
+
+    /// The same, with pairs (by name) that never block each other and may overlap.
+    ///
+    /// # Errors
+    /// A name that no part has.
+    pub fn with_ignored<S: AsRef<str>>(mut self, pairs: &[[S; 2]]) -> Result<Self, AssemblyError> {
+        for [a, b] in pairs {
+            let (a, b) = (self.index(a.as_ref())?, self.index(b.as_ref())?);
+            self.ignored.push([a.min(b), a.max(b)]);
+        }
+        self.ignored.sort_unstable();
+        self.ignored.dedup();
+        Ok(self)
+    }
+
+    /// The same, with parts (by name) that are never moved.
+    ///
+    /// # Errors
+    /// A name that no part has.
+    pub fn with_fixed<S: AsRef<str>>(mut self, names: &[S]) -> Result<Self, AssemblyError> {
+        for name in names {
+            let index = self.index(name.as_ref())?;
+            self.parts[index].fixed = true;
+        }
+        Ok(self)
+    }
+
+    /// The same, with the unit of its lengths, as the file says it.
+    #[must_use]
+    pub fn with_unit(self, unit: impl Into<String>) -> Self {
+        Self { unit: Some(unit.into()), ..self }
+    }
+
+    /// The same, with something that the reader has to say.
+    #[must_use]
+    pub fn with_note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// The parts.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The unit of lengths, if the file says it.
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
+    /// What the reader noted: meshes skipped, for instance.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Pairs (smaller index first) that are not asked about.
+    pub fn ignored(&self) -> &[[usize; 2]] {
+        &self.ignored
+    }
+
+    /// Position of the part with a name.
+    ///
+    /// # Errors
+    /// There is none; the error names the most similar one.
+    pub fn index(&self, name: &str) -> Result<usize, AssemblyError> {
+        let found = self.parts.iter().position(|p| p.name == name);
+        found.ok_or_else(|| {
+            let shared = |p: &&Part| common_prefix(&p.name, name);
+            let near = self.parts.iter().max_by_key(shared).filter(|p| shared(p) > 0);
+            AssemblyError::UnknownPart { name: name.into(), near: near.map(|p| p.name.clone()) }
+        })
+    }
+
+    /// Names of parts by position.
+    pub fn names(&self, parts: &[usize]) -> Vec<&str> {
+        parts.iter().map(|&k| self.parts[k].name()).collect()
+    }
+
+    /// The box around all parts; of no extent at the origin without parts.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let all = self.parts.iter().map(Part::bounds).reduce(|a, b| a.join(&b));
+        all.map_or([DVec3::ZERO; 2], |b| [b.low, b.high])
+    }
+
+    /// The largest distance of a vertex's coordinate from the world's origin, or between two: what
+    /// rounding errors grow with.
+    pub fn size(&self) -> f64 {
+        let [low, high] = self.bounds();
+        low.abs().max(high.abs()).max(high - low).max_element()
+    }
+
+    pub(crate) fn ignores(&self, a: usize, b: usize) -> bool {
+        !self.ignored.is_empty() && self.ignored.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    }
+}
+
+fn common_prefix(a: &str, b: &str) -> usize {
+    a.chars().zip(b.chars()).take_while(|(x, y)| x.eq_ignore_ascii_case(y)).count()
+}

@@ -1,0 +1,285 @@
+//! Disassembly by straight moves: steps, what is left, and why.
+//!
+//! All parts stand where they were, so what a part meets along a direction does not depend on what
+//! was taken out before: one matrix answers for every state, as the subgraph of the parts that are
+//! left. A step takes the smallest removable group over all directions; of equal ones the *base* (the
+//! largest part if none is fixed) comes last. Each group is then taken apart by itself. Where no direction of the
+//! matrix helps, finer candidates of what is left are asked, and then a sphere of samples.
+//!
+//! Every step is replayed before it is reported: asked again, pair by pair, against what is left, and
+//! looked at in a few places on its way for overlaps.
+
+mod hold;
+mod loose;
+mod replay;
+
+use colltrans::StartOverlap;
+use glam::DVec3;
+
+use crate::blocking::Blocking;
+use crate::bodies::Bodies;
+use crate::candidates::Finer;
+use crate::error::AssemblyError;
+use crate::matrix::Matrix;
+use crate::sphere::Sphere;
+use crate::watch::{Stage, Tally, Watch};
+
+pub use hold::Hold;
+
+/// A group that is taken out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Positions of the parts, in increasing order.
+    pub parts: Vec<usize>,
+    /// Where to, of length 1.
+    pub direction: DVec3,
+    /// How far until it never meets what is left again; 0 if nothing is ahead.
+    pub travel: f64,
+    /// For a step that takes a group apart: the step that took the group out.
+    pub within: Option<usize>,
+}
+
+/// Parts that straight moves cannot part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stuck {
+    /// Positions of the parts, in increasing order.
+    pub parts: Vec<usize>,
+    /// How many directions were asked.
+    pub directions: usize,
+    /// For each part, the least sets of others that hold it.
+    pub holds: Vec<Hold>,
+    /// Pairs that overlap with this fit, and so never move apart.
+    pub overlapping: Vec<[usize; 2]>,
+    /// Whether parts that are fixed are among them.
+    pub fixed: bool,
+}
+
+/// How an assembly comes apart.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Plan {
+    /// What to do, in order; steps that take a group apart follow the one that took it out.
+    pub steps: Vec<Step>,
+    /// Parts that stay: fixed, or stuck to each other.
+    pub left: Vec<usize>,
+    /// What cannot be taken apart.
+    pub stuck: Vec<Stuck>,
+}
+
+/// Choices for a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanOptions {
+    /// What overlaps at the start mean: parts that overlap move as one, or what they do later counts.
+    pub start: StartOverlap,
+    /// How many directions to sample for what no other direction moves; 0 for none.
+    pub samples: usize,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        Self { start: StartOverlap::Refuse, samples: 162 }
+    }
+}
+
+/// Takes everything apart along the directions of a matrix of all parts, and, for what those do not
+/// move, finer ones.
+///
+/// # Errors
+/// Cancelled; or a step does not pass its own check.
+pub fn disassemble(
+    bodies: &Bodies,
+    matrix: &Matrix,
+    finer: &[Finer],
+    options: PlanOptions,
+    watch: Watch,
+) -> Result<Plan, AssemblyError> {
+    let tally = watch.stage(Stage::Plan, bodies.len());
+    let mut planner =
+        Planner { bodies, finer, options, watch, tally, plan: Plan::default(), base: base(bodies) };
+    let all: Vec<usize> = (0..bodies.len()).collect();
+    planner.plan.left = planner.take_apart(&all, matrix, None)?;
+    Ok(planner.plan)
+}
+
+/// The parts that come last: those that are fixed, or the one with the largest box.
+fn base(bodies: &Bodies) -> Vec<bool> {
+    let parts = bodies.assembly().parts();
+    let mut base: Vec<bool> = parts.iter().map(crate::part::Part::fixed).collect();
+    if !base.contains(&true) {
+        let volume = |k: &usize| {
+            let b = bodies.bounds(*k);
+            (b.high - b.low).element_product()
+        };
+        let largest = (0..parts.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b)));
+        if let Some(largest) = largest {
+            base[largest] = true;
+        }
+    }
+    base
+}
+
+/// Of the finer directions of what is stuck, at most so many are asked.
+const MOST_FINER: usize = 64;
+
+struct Planner<'a> {
+    bodies: &'a Bodies<'a>,
+    finer: &'a [Finer],
+    options: PlanOptions,
+    watch: Watch<'a>,
+    tally: Tally<'a>,
+    plan: Plan,
+    base: Vec<bool>,
+}
+
+/// A group that can be taken out, and the direction.
+struct Way {
+    parts: Vec<usize>,
+    direction: DVec3,
+}
+
+impl Planner<'_> {
+    /// Takes a group apart; what of it is left, nothing if it comes apart wholly.
+    fn take_apart(
+        &mut self,
+        group: &[usize],
+        matrix: &Matrix,
+        within: Option<usize>,
+    ) -> Result<Vec<usize>, AssemblyError> {
+        let mut alive = self.mask(group);
+        let mut left = group.to_vec();
+        let mut asked = matrix.directions().len();
+        while !left.is_empty() {
+            self.watch.check()?;
+            if left.len() == 1 && !self.fixed(left[0]) {
+                self.finish(&left, matrix, within);
+                return Ok(Vec::new());
+            }
+            let mut way = self.smallest(matrix, &alive, left.len());
+            if way.is_none() {
+                way = self.search_finer(&left, &alive, &mut asked)?;
+            }
+            let Some(way) = way else {
+                self.explain(&left, matrix, asked);
+                let alone = within.is_none() && !self.plan.steps.is_empty();
+                if alone && !left.iter().any(|&k| self.fixed(k)) {
+                    // All others are gone: what is left comes out, as one.
+                    self.finish(&left, matrix, within);
+                    return Ok(Vec::new());
+                }
+                return Ok(left);
+            };
+            left.retain(|k| !way.parts.contains(k));
+            way.parts.iter().for_each(|&k| alive[k] = false);
+            self.take_out(way, &left, matrix, within)?;
+        }
+        Ok(left)
+    }
+
+    /// Takes a group out of what is left, and then apart.
+    fn take_out(
+        &mut self,
+        way: Way,
+        left: &[usize],
+        matrix: &Matrix,
+        within: Option<usize>,
+    ) -> Result<(), AssemblyError> {
+        let travel = replay::checked(self.bodies, &way, left, self.options.start)?;
+        let at = self.plan.steps.len();
+        let Way { parts, direction } = way;
+        self.plan.steps.push(Step { parts: parts.clone(), direction, travel, within });
+        for _ in &parts {
+            self.tally.step()?;
+        }
+        if parts.len() > 1 {
+            // What stays together is explained there.
+            self.take_apart(&parts, matrix, Some(at))?;
+        }
+        Ok(())
+    }
+
+    /// The last part or group: nothing else is there. Of a group that was taken apart the last part
+    /// needs no step.
+    fn finish(&mut self, left: &[usize], matrix: &Matrix, within: Option<usize>) {
+        if within.is_none() {
+            let direction = matrix.directions().first().copied().unwrap_or(DVec3::Z);
+            self.plan.steps.push(Step { parts: left.to_vec(), direction, travel: 0.0, within });
+        }
+    }
+
+    /// The smallest group that can be taken out, the of equal ones not the base; then that of the
+    /// first direction and the first part.
+    fn smallest(&self, matrix: &Matrix, alive: &[bool], count: usize) -> Option<Way> {
+        let mut best: Option<((usize, bool, usize), Way)> = None;
+        for (k, &direction) in matrix.directions().iter().enumerate() {
+            for parts in Blocking::new(matrix, k, alive).removable() {
+                if parts.len() == count || parts.iter().any(|&p| self.fixed(p)) {
+                    continue;
+                }
+                let based = parts.iter().any(|&p| self.base[p]);
+                let key = (parts.len(), based, k);
+                if best.as_ref().is_none_or(|b| key < b.0) {
+                    best = Some((key, Way { parts, direction }));
+                }
+            }
+            if best.as_ref().is_some_and(|b| b.0.0 == 1 && !b.0.1) {
+                break;
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// A way along directions that the matrix does not have: of contacts of these parts, then of the
+    /// sphere. Counts them.
+    fn search_finer(
+        &self,
+        left: &[usize],
+        alive: &[bool],
+        asked: &mut usize,
+    ) -> Result<Option<Way>, AssemblyError> {
+        if left.iter().filter(|&&k| !self.fixed(k)).count() == 0 {
+            return Ok(None);
+        }
+        let concerning = |any: bool| {
+            let own = self.finer.iter().filter(move |f| f.part.is_none() == any);
+            own.filter(|f| f.concerns(alive)).map(|f| f.direction)
+        };
+        let own: Vec<DVec3> = concerning(true).chain(concerning(false).take(MOST_FINER)).collect();
+        let sphere = match self.options.samples {
+            0 => Vec::new(),
+            count => Sphere::with_directions(count).directions,
+        };
+        let allowed = |group: &[usize]| {
+            let movable = !group.iter().any(|&k| self.fixed(k));
+            movable.then(|| group.iter().any(|&k| self.base[k]))
+        };
+        for directions in [own, sphere] {
+            *asked += directions.len();
+            let start = self.options.start;
+            let way = loose::smallest(self.bodies, &directions, alive, start, allowed, self.watch)?;
+            if way.is_some() {
+                return Ok(way);
+            }
+        }
+        Ok(None)
+    }
+
+    fn explain(&mut self, left: &[usize], matrix: &Matrix, asked: usize) {
+        let movable = left.iter().any(|&k| !self.fixed(k));
+        if !movable {
+            return;
+        }
+        let fixed = left.iter().any(|&k| self.fixed(k));
+        self.plan.stuck.push(hold::explain(self.bodies, left, matrix, asked, fixed));
+    }
+
+    fn fixed(&self, part: usize) -> bool {
+        self.bodies.assembly().parts()[part].fixed()
+    }
+
+    fn mask(&self, parts: &[usize]) -> Vec<bool> {
+        let mut mask = vec![false; self.bodies.len()];
+        for &k in parts {
+            mask[k] = true;
+        }
+        mask
+    }
+}

@@ -1,0 +1,109 @@
+//! What holds parts that are stuck.
+
+use std::fmt::Write;
+
+use glam::DVec3;
+
+use super::Stuck;
+use crate::blocking::Blocking;
+use crate::bodies::Bodies;
+use crate::matrix::Matrix;
+
+/// Least sets are listed up to this many for a part.
+const MOST_SETS: usize = 4;
+
+/// The least that would have to go for a part to come out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hold {
+    /// The part.
+    pub part: usize,
+    /// The smallest sets of other parts without which it is free along one of the directions asked,
+    /// each with such a direction; some, if there are many.
+    pub by: Vec<(Vec<usize>, DVec3)>,
+}
+
+/// Why these parts do not come apart along any direction: the least sets over those of the matrix.
+pub(super) fn explain(
+    bodies: &Bodies,
+    left: &[usize],
+    matrix: &Matrix,
+    directions: usize,
+    fixed: bool,
+) -> Stuck {
+    let mut among = vec![false; bodies.len()];
+    for &k in left {
+        among[k] = true;
+    }
+    let mut holds: Vec<Hold> = Vec::new();
+    for &part in left.iter().filter(|&&k| !bodies.assembly().parts()[k].fixed()) {
+        holds.push(Hold { part, by: Vec::new() });
+    }
+    let mut overlapping = Vec::new();
+    for (k, &d) in matrix.directions().iter().enumerate() {
+        let graph = Blocking::new(matrix, k, &among);
+        for hold in &mut holds {
+            keep_least(&mut hold.by, graph.blockers(hold.part), d);
+        }
+        let met = matrix.meetings(k).iter().filter(|m| m.stop.is_none());
+        overlapping.extend(
+            met.filter(|m| m.moving < m.fixed && among[m.moving] && among[m.fixed])
+                .map(|m| [m.moving, m.fixed]),
+        );
+    }
+    overlapping.sort_unstable();
+    overlapping.dedup();
+    Stuck { parts: left.to_vec(), directions, holds, overlapping, fixed }
+}
+
+fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
+    match sets.first().map_or(usize::MAX, |s| s.0.len()).cmp(&set.len()) {
+        std::cmp::Ordering::Greater => *sets = vec![(set, d)],
+        std::cmp::Ordering::Equal if sets.len() < MOST_SETS && sets.iter().all(|s| s.0 != set) => {
+            sets.push((set, d));
+        }
+        _ => (),
+    }
+}
+
+impl Stuck {
+    /// The reason in words.
+    pub fn because(&self, bodies: &Bodies) -> String {
+        let name = |k: usize| bodies.assembly().parts()[k].name();
+        let directions = self.directions;
+        let mut text = match (&self.overlapping[..], self.fixed) {
+            ([], false) => {
+                format!(
+                    "they hold each other along all of {directions} directions: translations \
+                         cannot take them apart"
+                )
+            }
+            ([], true) => {
+                format!(
+                    "they are held, along all of {directions} directions, by what is fixed or \
+                         by each other"
+                )
+            }
+            ([[a, b], rest @ ..], _) => {
+                let more = if rest.is_empty() {
+                    String::new()
+                } else {
+                    format!(", and {} more pairs", rest.len())
+                };
+                format!("{} and {} overlap with this tolerance{more}", name(*a), name(*b))
+            }
+        };
+        let easiest =
+            self.holds.iter().filter(|h| !h.by.is_empty()).min_by_key(|h| h.by[0].0.len());
+        if let Some(hold) = easiest {
+            let (set, _) = &hold.by[0];
+            let names: Vec<&str> = set.iter().map(|&k| name(k)).collect();
+            let _ = write!(
+                text,
+                "; the least that holds a part: {} is held by {}",
+                name(hold.part),
+                names.join(", ")
+            );
+        }
+        text
+    }
+}

@@ -1,0 +1,133 @@
+//! More directions for parts that none of the matrix moves: the finer candidates of these parts, then
+//! samples of the sphere.
+//!
+//! Here only one thing is asked of a direction: is there a group, not of all parts, that no arc
+//! leaves? So arcs are asked as needed. Of the arcs known, take a strongly connected component that
+//! none leaves, and ask its pairs with the parts outside: if one blocks, there is one arc more; if
+//! none does, the group is removable. Once all parts are one component there is none. For parts that
+//! hold each other, that takes about as many casts as parts, not as pairs.
+
+use colltrans::{StartOverlap, Workspace};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Way;
+use crate::blocking::Blocking;
+use crate::bodies::{Bodies, Room};
+use crate::error::AssemblyError;
+use crate::watch::Watch;
+
+/// The smallest group that can be taken out along one of the directions; of equal ones not the base,
+/// then that of the first direction.
+///
+/// Along `-d` all arcs are turned round, so what is one component along `d` is one along `-d`, and
+/// need not be asked.
+pub(super) fn smallest(
+    bodies: &Bodies,
+    directions: &[DVec3],
+    alive: &[bool],
+    start: StartOverlap,
+    allowed: impl Fn(&[usize]) -> Option<bool> + Sync,
+    watch: Watch,
+) -> Result<Option<Way>, AssemblyError> {
+    let opposite = |k: usize| directions.iter().position(|d| *d == -directions[k]);
+    let look = |workspace: &mut Workspace, k: usize| {
+        watch.check()?;
+        if opposite(k).is_some_and(|o| o < k) {
+            return Ok(Vec::new());
+        }
+        let mut found = Vec::new();
+        for k in std::iter::once(k).chain(opposite(k)) {
+            let search = |g: &[usize]| allowed(g).is_some();
+            match removable(bodies, alive, directions[k], start, workspace, search) {
+                Search::OneComponent => break,
+                Search::NoneAllowed => (),
+                Search::Found(group) => {
+                    let base = allowed(&group).unwrap_or(true);
+                    found.push(((group.len(), base, k), group));
+                }
+            }
+        }
+        Ok(found)
+    };
+    let found: Result<Vec<Vec<Ranked>>, AssemblyError> =
+        (0..directions.len()).into_par_iter().map_init(Workspace::default, look).collect();
+    let best = found?.into_iter().flatten().min_by_key(|x| x.0);
+    Ok(best.map(|((_, _, k), parts)| Way { parts, direction: directions[k] }))
+}
+
+/// A group with its size, whether the base is in it, and the position of its direction.
+type Ranked = ((usize, bool, usize), Vec<usize>);
+
+enum Search {
+    /// All parts hold each other.
+    OneComponent,
+    /// There are groups that could be taken out, but they are fixed.
+    NoneAllowed,
+    Found(Vec<usize>),
+}
+
+/// A group that can be taken out along `d` and is allowed to; the smallest that was come across.
+fn removable(
+    bodies: &Bodies,
+    alive: &[bool],
+    d: DVec3,
+    start: StartOverlap,
+    workspace: &mut Workspace,
+    allowed: impl Fn(&[usize]) -> bool,
+) -> Search {
+    let count = alive.iter().filter(|a| **a).count();
+    let ahead = |part: usize| -> Vec<usize> {
+        let all = bodies.ahead(part, d).into_iter().map(|x| x.1);
+        all.filter(|&k| alive[k]).collect()
+    };
+    let mut unasked: Vec<Vec<usize>> =
+        (0..alive.len()).map(|k| if alive[k] { ahead(k) } else { Vec::new() }).collect();
+    let mut arcs: Vec<(usize, usize)> = Vec::new();
+    loop {
+        let graph = Blocking::from_arcs(arcs.iter().copied(), alive);
+        let mut groups = graph.removable();
+        groups.retain(|g| g.len() < count);
+        if groups.is_empty() {
+            return Search::OneComponent;
+        }
+        groups.sort_by_key(Vec::len);
+        let before = arcs.len();
+        for group in groups {
+            match leaving(bodies, &group, &mut unasked, d, start, workspace) {
+                Some(arc) => arcs.push(arc),
+                None if allowed(&group) => return Search::Found(group),
+                None => (),
+            }
+        }
+        if arcs.len() == before {
+            return Search::NoneAllowed;
+        }
+    }
+}
+
+/// An arc from the group to a part outside, of the pairs that were not asked before.
+fn leaving(
+    bodies: &Bodies,
+    group: &[usize],
+    unasked: &mut [Vec<usize>],
+    d: DVec3,
+    start: StartOverlap,
+    workspace: &mut Workspace,
+) -> Option<(usize, usize)> {
+    for &a in group {
+        let mut k = 0;
+        while k < unasked[a].len() {
+            let b = unasked[a][k];
+            if group.contains(&b) {
+                k += 1;
+                continue;
+            }
+            unasked[a].remove(k);
+            if bodies.room([a, b], d, None, start, workspace) != Room::Free {
+                return Some((a, b));
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,201 @@
+//! A manifest: which files, where, which of them stay, and pairs not to ask about.
+//!
+//! The same fields in TOML and JSON; `docs/assemblies.md` lists them.
+
+use std::path::Path;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use serde::Deserialize;
+
+use super::{ReadOptions, assembled, contents, in_file, io, piece, stem};
+use crate::error::ReadError;
+use crate::part::{Assembly, Part};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Manifest {
+    unit: Option<String>,
+    #[serde(default, alias = "part")]
+    parts: Vec<Entry>,
+    #[serde(default)]
+    ignore: Vec<[String; 2]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    file: OneOrMany,
+    name: Option<String>,
+    #[serde(default)]
+    translation: [f64; 3],
+    rotation: Option<Rotation>,
+    scale: Option<Scale>,
+    #[serde(default)]
+    fixed: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum OneOrMany {
+    One(String),
+    Many(Vec<String>),
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Scale {
+    Same(f64),
+    Each([f64; 3]),
+}
+
+/// A quaternion `x, y, z, w`; or roll, pitch and yaw in degrees; or the rows of a matrix.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Rotation {
+    Quaternion([f64; 4]),
+    Named(NamedRotation),
+    Matrix([[f64; 3]; 3]),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+enum NamedRotation {
+    Quaternion([f64; 4]),
+    RpyDegrees([f64; 3]),
+    Matrix([[f64; 3]; 3]),
+}
+
+/// How far a rotation's numbers may be from one.
+const ROUNDED: f64 = 1e-3;
+
+pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadError> {
+    let text = std::fs::read_to_string(path).map_err(io(path))?;
+    let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    let manifest: Manifest = if toml {
+        toml::from_str(&text).map_err(|e| contents(path, toml_place(&text, &e), e.message()))?
+    } else {
+        serde_json::from_str(&text)
+            .map_err(|e| contents(path, format!("line {}, column {}", e.line(), e.column()), e))?
+    };
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let (mut parts, mut missing) = (Vec::new(), Vec::new());
+    for (k, entry) in manifest.parts.iter().enumerate() {
+        let files: Vec<&String> = match &entry.file {
+            OneOrMany::One(file) => vec![file],
+            OneOrMany::Many(files) => files.iter().collect(),
+        };
+        let gone: Vec<String> =
+            files.iter().filter(|f| !folder.join(f).is_file()).map(|f| (*f).clone()).collect();
+        if !gone.is_empty() {
+            missing.extend(gone);
+            continue;
+        }
+        parts.push(part(path, folder, k, entry, &files)?);
+    }
+    if !missing.is_empty() && !options.skip_missing {
+        return Err(ReadError::Missing { path: path.into(), missing });
+    }
+    let mut assembly = assembled(path, parts)?;
+    let known = |n: &String| missing.is_empty() || assembly.index(n).is_ok();
+    let ignore: Vec<[String; 2]> =
+        manifest.ignore.iter().filter(|pair| pair.iter().all(known)).cloned().collect();
+    assembly = assembly.with_ignored(&ignore).map_err(in_file(path))?;
+    for file in missing {
+        assembly = assembly.with_note(format!("{file} cannot be found and is left out"));
+    }
+    Ok(if let Some(unit) = manifest.unit { assembly.with_unit(unit) } else { assembly })
+}
+
+fn part(
+    path: &Path,
+    folder: &Path,
+    k: usize,
+    entry: &Entry,
+    files: &[&String],
+) -> Result<Part, ReadError> {
+    let first = files.first().ok_or_else(|| contents(path, place(k), "no file is given"))?;
+    let name = entry.name.clone().unwrap_or_else(|| stem(Path::new(first)));
+    let world = entry
+        .world_from_mesh()
+        .map_err(|reason| contents(path, format!("{} ({name})", place(k)), reason))?;
+    let pieces: Result<Vec<_>, ReadError> =
+        files.iter().map(|file| piece(&folder.join(file), world)).collect();
+    Ok(Part::new(name, &pieces?).map_err(in_file(path))?.with_fixed(entry.fixed))
+}
+
+fn place(k: usize) -> String {
+    format!("part {}", k + 1)
+}
+
+fn toml_place(text: &str, error: &toml::de::Error) -> String {
+    let offset = error.span().map_or(0, |span| span.start.min(text.len()));
+    let before = text.get(..offset).unwrap_or_default();
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    format!("line {line}, column {column}")
+}
+
+impl Entry {
+    fn world_from_mesh(&self) -> Result<DAffine3, String> {
+        let rotation = self.rotation.as_ref().map_or(Ok(DMat3::IDENTITY), Rotation::matrix)?;
+        let scale = match self.scale {
+            None => DVec3::ONE,
+            Some(Scale::Same(s)) => DVec3::splat(s),
+            Some(Scale::Each(s)) => DVec3::from_array(s),
+        };
+        let translation = DVec3::from_array(self.translation);
+        if !scale.is_finite() || scale.element_product() == 0.0 {
+            return Err(format!("scale {:?} is zero or not finite", scale.to_array()));
+        }
+        if !translation.is_finite() {
+            return Err(format!("translation {:?} is not finite", self.translation));
+        }
+        let matrix = rotation * DMat3::from_diagonal(scale);
+        Ok(DAffine3::from_mat3_translation(matrix, translation))
+    }
+}
+
+impl Rotation {
+    fn matrix(&self) -> Result<DMat3, String> {
+        match self {
+            Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => quaternion(*q),
+            Self::Named(NamedRotation::RpyDegrees(rpy)) => Ok(rpy_matrix(rpy.map(f64::to_radians))),
+            Self::Matrix(rows) | Self::Named(NamedRotation::Matrix(rows)) => matrix(rows),
+        }
+    }
+}
+
+fn quaternion(q: [f64; 4]) -> Result<DMat3, String> {
+    let rotation = DQuat::from_array(q);
+    if (rotation.length() - 1.0).abs() > ROUNDED || !rotation.is_finite() {
+        return Err(format!(
+            "quaternion {q:?} (x, y, z, w) has length {}, not 1",
+            rotation.length()
+        ));
+    }
+    Ok(DMat3::from_quat(rotation.normalize()))
+}
+
+fn matrix(rows: &[[f64; 3]; 3]) -> Result<DMat3, String> {
+    let matrix = DMat3::from_cols_array_2d(rows).transpose();
+    let off = matrix * matrix.transpose() - DMat3::IDENTITY;
+    let worst = off.to_cols_array().iter().fold(0.0_f64, |w, x| w.max(x.abs()));
+    if !(worst <= ROUNDED && matrix.determinant() > 0.0) {
+        return Err(format!("matrix {rows:?} is no rotation; lengths belong into scale"));
+    }
+    Ok(matrix)
+}
+
+/// About x by the first, then about y, then about z, in radians; quarter turns are exact.
+pub(super) fn rpy_matrix([roll, pitch, yaw]: [f64; 3]) -> DMat3 {
+    let turn = |angle: f64| {
+        let (s, c) = angle.sin_cos();
+        let tidy = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+        (tidy(s), tidy(c))
+    };
+    let ((sr, cr), (sp, cp), (sy, cy)) = (turn(roll), turn(pitch), turn(yaw));
+    let x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, cr, sr), DVec3::new(0.0, -sr, cr));
+    let y = DMat3::from_cols(DVec3::new(cp, 0.0, -sp), DVec3::Y, DVec3::new(sp, 0.0, cp));
+    let z = DMat3::from_cols(DVec3::new(cy, sy, 0.0), DVec3::new(-sy, cy, 0.0), DVec3::Z);
+    z * y * x
+}

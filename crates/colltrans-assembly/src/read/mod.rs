@@ -1,0 +1,112 @@
+//! Assemblies as people have them: a folder of meshes, a manifest, URDF, glTF, 3MF.
+//!
+//! Every reader gives parts in one world and one unit. Units are what the file says (metres for URDF
+//! and glTF, what a 3MF file or a manifest names); a folder of meshes does not say, and its lengths
+//! are taken as they are.
+
+mod folder;
+mod gltf;
+mod manifest;
+mod shapes;
+mod threemf;
+mod urdf;
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use glam::DAffine3;
+
+use crate::error::{AssemblyError, ReadError};
+use crate::part::{Assembly, Part, Piece};
+
+/// Which geometry of a URDF link is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Geometry {
+    /// What collision checkers use.
+    #[default]
+    Collision,
+    /// What is drawn.
+    Visual,
+}
+
+/// What readers need to know beside the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ReadOptions {
+    /// Folders in which `package://name/rest` is looked for: as `name/rest`, then as `rest`, then
+    /// with fewer leading folders.
+    pub packages: Vec<PathBuf>,
+    /// Whether meshes that cannot be found are left out, with a note.
+    pub skip_missing: bool,
+    /// Which geometry of a URDF link is read.
+    pub geometry: Geometry,
+    /// Positions of joints by name, in radians or metres; 0 for those not named.
+    pub joints: BTreeMap<String, f64>,
+}
+
+/// Reads an assembly: a folder, a manifest (`.toml`, `.json`), `.urdf`, `.glb`, `.gltf`, `.3mf`, or a
+/// single mesh.
+///
+/// # Errors
+/// What cannot be read, with the file and the place.
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
+    let path = path.as_ref();
+    if path.is_dir() {
+        return folder::read(path);
+    }
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    match extension.to_ascii_lowercase().as_str() {
+        "toml" | "json" => manifest::read(path, options),
+        "urdf" => urdf::read(path, options),
+        "glb" | "gltf" => gltf::read(path),
+        "3mf" => threemf::read(path),
+        _ if colltrans_mesh::Format::of_path(path).is_ok() => {
+            folder::read_files(path, &[path.into()])
+        }
+        _ if path.exists() => Err(ReadError::UnknownSource { path: path.into() }),
+        _ => Err(io(path)(std::io::Error::from(std::io::ErrorKind::NotFound))),
+    }
+}
+
+fn io(path: &Path) -> impl Fn(std::io::Error) -> ReadError + '_ {
+    move |source| ReadError::Io { path: path.into(), source }
+}
+
+fn in_file(path: &Path) -> impl Fn(AssemblyError) -> ReadError + '_ {
+    move |source| ReadError::Assembly { path: path.into(), source }
+}
+
+fn contents(path: &Path, place: impl Into<String>, reason: impl std::fmt::Display) -> ReadError {
+    ReadError::Contents { path: path.into(), place: place.into(), reason: reason.to_string() }
+}
+
+/// A mesh file as a piece.
+fn piece(path: &Path, world_from_piece: DAffine3) -> Result<Piece, ReadError> {
+    let mesh = colltrans_mesh::read(path)?;
+    Ok(Piece { vertices: mesh.vertices, faces: mesh.faces, world_from_piece })
+}
+
+/// The file's name without its extension.
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Names that a file gives more than once are numbered, from the second on.
+#[derive(Default)]
+struct Names(HashSet<String>);
+
+impl Names {
+    fn unique(&mut self, name: &str) -> String {
+        let mut chosen = name.to_owned();
+        let mut number = 2;
+        while !self.0.insert(chosen.clone()) {
+            chosen = format!("{name}_{number}");
+            number += 1;
+        }
+        chosen
+    }
+}
+
+/// An assembly of parts that came from one file.
+fn assembled(path: &Path, parts: Vec<Part>) -> Result<Assembly, ReadError> {
+    Assembly::new(parts).map_err(in_file(path))
+}

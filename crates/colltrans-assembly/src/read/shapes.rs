@@ -1,0 +1,86 @@
+//! The shapes of URDF that are no meshes. Round ones are polyhedra with 64 sides, inscribed.
+
+use std::f64::consts::TAU;
+
+use glam::{DAffine3, DVec3};
+
+use crate::part::Piece;
+
+const SIDES: usize = 64;
+
+pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
+    let half = size * 0.5;
+    let corner = |k: usize| {
+        let sign = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        half * DVec3::new(sign(0), sign(1), sign(2))
+    };
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = faces.iter().map(|f| f.to_vec()).collect();
+    Piece { vertices: (0..8).map(corner).collect(), faces, world_from_piece }
+}
+
+pub(super) fn cylinder(radius: f64, length: f64, world_from_piece: DAffine3) -> Piece {
+    turned(&[(radius, -length / 2.0), (radius, length / 2.0)], None, world_from_piece)
+}
+
+pub(super) fn sphere(radius: f64, world_from_piece: DAffine3) -> Piece {
+    let rings = SIDES / 2;
+    let at = |k: usize| (k as f64 / rings as f64 * TAU / 2.0).sin_cos();
+    let profile: Vec<(f64, f64)> =
+        (1..rings).map(at).map(|(s, c)| (radius * s, -radius * c)).collect();
+    turned(&profile, Some([-radius, radius]), world_from_piece)
+}
+
+/// The profile (radius, height), from below, turned about z; with poles, or flat ends.
+fn turned(profile: &[(f64, f64)], poles: Option<[f64; 2]>, world_from_piece: DAffine3) -> Piece {
+    let angle = |k: usize| (k as f64 / SIDES as f64 * TAU).sin_cos();
+    let mut vertices: Vec<DVec3> = Vec::new();
+    for &(r, z) in profile {
+        vertices.extend((0..SIDES).map(angle).map(|(s, c)| DVec3::new(r * c, r * s, z)));
+    }
+    let n = SIDES as u32;
+    let mut faces = Vec::new();
+    for ring in 0..profile.len() as u32 - 1 {
+        for k in 0..n {
+            let (a, b) = (ring * n + k, ring * n + (k + 1) % n);
+            faces.push(vec![a, b, b + n, a + n]);
+        }
+    }
+    let top = (profile.len() as u32 - 1) * n;
+    if let Some([low, high]) = poles {
+        let pole = vertices.len() as u32;
+        vertices.extend([DVec3::Z * low, DVec3::Z * high]);
+        for k in 0..n {
+            let l = (k + 1) % n;
+            faces.push(vec![l, k, pole]);
+            faces.push(vec![top + k, top + l, pole + 1]);
+        }
+    } else {
+        faces.push((0..n).rev().collect());
+        faces.push((top..top + n).collect());
+    }
+    Piece { vertices, faces, world_from_piece }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::part::Part;
+
+    #[test]
+    fn shapes_are_closed_and_have_their_volumes() {
+        let at = DAffine3::IDENTITY;
+        let round = 0.5 * SIDES as f64 * (TAU / SIDES as f64).sin();
+        let cases = [
+            (cuboid(DVec3::new(1.0, 2.0, 3.0), at), 6.0, 1e-12),
+            (cylinder(2.0, 3.0, at), round * 12.0, 1e-9),
+            (sphere(1.0, at), 4.0 / 3.0 * TAU / 2.0, 0.02),
+        ];
+        for (piece, volume, error) in cases {
+            let part = Part::new("shape", &[piece]).unwrap();
+            assert!(part.defects().is_empty());
+            assert!((part.solid().volume() - volume).abs() < error * volume);
+        }
+    }
+}

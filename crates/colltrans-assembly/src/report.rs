@@ -1,0 +1,97 @@
+//! What people read: pictures of steps ([`scene`]), blocking graphs ([`graph`]), one HTML file
+//! ([`html`]), and an animation ([`glb`]). The same facts as JSON: [`facts`].
+
+pub mod facts;
+pub mod glb;
+pub mod graph;
+pub mod html;
+pub mod scene;
+
+use glam::DVec3;
+
+use crate::bodies::Bodies;
+use crate::candidates::Candidate;
+use crate::liaisons::Liaison;
+use crate::map::RemovalMap;
+use crate::matrix::Matrix;
+use crate::plan::Plan;
+use crate::rooms::PartRoom;
+use crate::start::Start;
+
+/// All that was found out about an assembly.
+pub struct Findings<'a> {
+    /// The parts, with the fit.
+    pub bodies: &'a Bodies<'a>,
+    /// Overlaps at the start.
+    pub start: &'a Start,
+    /// Who touches whom.
+    pub liaisons: &'a [Liaison],
+    /// The directions asked, and why.
+    pub candidates: &'a [Candidate],
+    /// Who meets whom along them.
+    pub matrix: &'a Matrix,
+    /// Rooms of all parts in more directions, by direction.
+    pub more: &'a [(DVec3, Vec<PartRoom>)],
+    /// How it comes apart.
+    pub plan: &'a Plan,
+    /// Removal maps, with the names they were asked by.
+    pub maps: &'a [(String, RemovalMap)],
+}
+
+/// Text for XML and HTML.
+pub(crate) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Up to four significant digits, for people.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return if x == 0.0 { "0".into() } else { "∞".into() };
+    }
+    let magnitude = x.abs().log10().floor() as i32;
+    if !(-4..7).contains(&magnitude) {
+        return format!("{x:.2e}");
+    }
+    let text = format!("{x:.*}", (3 - magnitude).max(0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
+/// A direction, for people: an axis by name.
+pub(crate) fn arrow(d: glam::DVec3) -> String {
+    let names = [(glam::DVec3::X, "x"), (glam::DVec3::Y, "y"), (glam::DVec3::Z, "z")];
+    for (axis, name) in names {
+        if d == axis {
+            return format!("+{name}");
+        }
+        if d == -axis {
+            return format!("−{name}");
+        }
+    }
+    format!("({:.3}, {:.3}, {:.3})", d.x, d.y, d.z)
+}
+
+/// A colour for each part, spread by the golden angle.
+pub(crate) fn tint(part: usize) -> [f64; 3] {
+    let hue = (part as f64 * 0.381_966_011_250_105 + 0.58) % 1.0;
+    let channel = |shift: f64| {
+        let h = (hue + shift).fract() * 6.0;
+        let ramp = ((h - 3.0).abs() - 1.0).clamp(0.0, 1.0);
+        0.40 + 0.48 * ramp
+    };
+    [channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_for_people() {
+        let cases =
+            [(0.0, "0"), (27.0, "27"), (0.0617, "0.0617"), (1234.56, "1235"), (1e-9, "1.00e-9")];
+        for (x, text) in cases {
+            assert_eq!(short(x), text);
+        }
+        assert_eq!(arrow(glam::DVec3::NEG_Y), "−y");
+    }
+}

@@ -1,0 +1,120 @@
+//! The findings as JSON.
+
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use super::Findings;
+use crate::rooms::PartRoom;
+
+/// All findings; `docs/assemblies.md` describes the fields.
+pub fn json(f: &Findings) -> Value {
+    let assembly = f.bodies.assembly();
+    let name = |k: usize| assembly.parts()[k].name();
+    let parts: Vec<Value> = assembly
+        .parts()
+        .iter()
+        .map(|p| {
+            let mut part =
+                json!({ "name": p.name(), "facets": p.facets(), "volume": p.solid().volume() });
+            if !p.defects().is_empty() {
+                part["defects"] = json!(p.defects());
+            }
+            part
+        })
+        .collect();
+    let overlaps: Vec<Value> = f
+        .start
+        .overlaps
+        .iter()
+        .map(|o| json!({ "parts": o.parts.map(name), "depth": o.depth }))
+        .collect();
+    let touching: Vec<Value> = f
+        .liaisons
+        .iter()
+        .map(|l| {
+            let center = l.center().to_array();
+            json!({ "parts": l.parts.map(name), "area": l.area(), "center": center })
+        })
+        .collect();
+    json!({
+        "parts": parts,
+        "unit": assembly.unit(),
+        "tolerance": f.bodies.fit().tolerance(),
+        "overlaps": overlaps,
+        "suggested_tolerance": f.start.suggested,
+        "liaisons": touching,
+        "rooms": rooms(f),
+        "plan": steps(f),
+        "left": assembly.names(&f.plan.left),
+        "stuck": stuck(f),
+        "notes": assembly.notes(),
+    })
+}
+
+fn rooms(f: &Findings) -> Vec<Value> {
+    let mut rooms = Vec::new();
+    for part in 0..f.bodies.len() {
+        for (k, &d) in f.matrix.directions().iter().enumerate() {
+            rooms.push(room(f, part, d, &f.matrix.room(k, part)));
+        }
+        for (d, all) in f.more {
+            rooms.push(room(f, part, *d, &all[part]));
+        }
+    }
+    rooms
+}
+
+fn room(f: &Findings, part: usize, d: DVec3, room: &PartRoom) -> Value {
+    let name = |k: usize| f.bodies.assembly().parts()[k].name();
+    let distance = room.distance();
+    let mut entry = json!({
+        "part": name(part),
+        "direction": d.to_array(),
+        "outcome": room.outcome(),
+        "distance": distance.is_finite().then_some(distance),
+        "by": room.by().map(name),
+    });
+    if let PartRoom::Blocked { stop, .. } = room {
+        entry["nominal"] = json!(f.bodies.nominal(stop, d));
+        entry["point"] = json!(stop.point.to_array());
+        entry["normal"] = json!(stop.normal.to_array());
+    }
+    entry
+}
+
+fn steps(f: &Findings) -> Vec<Value> {
+    let step = |s: &crate::plan::Step| {
+        let mut step = json!({
+            "parts": f.bodies.assembly().names(&s.parts),
+            "direction": s.direction.to_array(),
+            "travel": s.travel,
+        });
+        if let Some(within) = s.within {
+            step["within"] = json!(within);
+        }
+        step
+    };
+    f.plan.steps.iter().map(step).collect()
+}
+
+fn stuck(f: &Findings) -> Vec<Value> {
+    let assembly = f.bodies.assembly();
+    let set = |(parts, d): &(Vec<usize>, DVec3)| json!({ "parts": assembly.names(parts), "direction": d.to_array() });
+    let stuck = |s: &crate::plan::Stuck| {
+        let holds: Vec<Value> = s
+            .holds
+            .iter()
+            .map(|h| {
+                let by: Vec<Value> = h.by.iter().map(set).collect();
+                json!({ "part": assembly.parts()[h.part].name(), "least": by })
+            })
+            .collect();
+        json!({
+            "parts": assembly.names(&s.parts),
+            "because": s.because(f.bodies),
+            "directions": s.directions,
+            "holds": holds,
+        })
+    };
+    f.plan.stuck.iter().map(stuck).collect()
+}

@@ -1,0 +1,210 @@
+//! The plan as an animated glTF binary that any viewer plays: one node for each part, the steps one
+//! after another; what has left stays out.
+//!
+//! glTF wants metres and `y` up: the root node turns and scales.
+
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use super::tint;
+use crate::part::{Assembly, Part};
+use crate::plan::Plan;
+
+/// Seconds of a step, and of the pause before it.
+const STEP: f64 = 1.6;
+const PAUSE: f64 = 0.4;
+
+/// A file's bytes.
+pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
+    let mut file = File::default();
+    let [low, high] = assembly.bounds();
+    let size = (high - low).length();
+    let per_unit = metres_per_unit(assembly.unit());
+    let mut nodes = Vec::new();
+    for (k, part) in assembly.parts().iter().enumerate() {
+        let mesh = file.mesh(part, tint(k));
+        nodes.push(json!({ "name": part.name(), "mesh": mesh }));
+    }
+    let (channels, samplers) = channels(&mut file, assembly, plan, size);
+    let root = nodes.len();
+    let children: Vec<usize> = (0..root).collect();
+    // Quarter turn about x: z becomes y.
+    let turn = [-std::f64::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2];
+    nodes.push(json!({
+        "name": "assembly",
+        "children": children,
+        "rotation": turn,
+        "scale": [per_unit, per_unit, per_unit],
+    }));
+    if root == 0 {
+        nodes[0].as_object_mut().map(|node| node.remove("children"));
+    }
+    let mut document = json!({
+        "asset": { "version": "2.0", "generator": "colltrans" },
+        "scene": 0,
+        "scenes": [{ "nodes": [root] }],
+        "nodes": nodes,
+    });
+    if !channels.is_empty() {
+        document["animations"] =
+            json!([{ "name": "disassembly", "channels": channels, "samplers": samplers }]);
+    }
+    file.finish(document)
+}
+
+fn metres_per_unit(unit: Option<&str>) -> f64 {
+    match unit {
+        Some("m" | "meter" | "metre") => 1.0,
+        Some("cm" | "centimeter") => 0.01,
+        Some("in" | "inch") => 0.0254,
+        Some("foot" | "ft") => 0.3048,
+        Some("micron") => 1e-6,
+        // What CAD programs write where nothing is said.
+        _ => 0.001,
+    }
+}
+
+/// Translations of every part that moves.
+fn channels(
+    file: &mut File,
+    assembly: &Assembly,
+    plan: &Plan,
+    size: f64,
+) -> (Vec<Value>, Vec<Value>) {
+    let (mut channels, mut samplers) = (Vec::new(), Vec::new());
+    for part in 0..assembly.parts().len() {
+        let (mut at, mut times, mut places) = (DVec3::ZERO, vec![0.0], vec![DVec3::ZERO]);
+        for (k, step) in plan.steps.iter().enumerate() {
+            // The last part stays where it is: there is nothing to take it out of.
+            if !step.parts.contains(&part) || k + 1 == plan.steps.len() && step.travel == 0.0 {
+                continue;
+            }
+            let start = k as f64 * (STEP + PAUSE) + PAUSE;
+            times.extend([start, start + STEP]);
+            places.push(at);
+            at += step.direction * (step.travel + 0.35 * size);
+            places.push(at);
+        }
+        if places.len() == 1 {
+            continue;
+        }
+        let times: Vec<[f32; 1]> = times.into_iter().map(|t| [t as f32]).collect();
+        let places: Vec<[f32; 3]> = places.into_iter().map(|p| p.as_vec3().to_array()).collect();
+        let input = file.accessor(&times, "SCALAR", None);
+        let output = file.accessor(&places, "VEC3", None);
+        channels.push(json!({
+            "sampler": samplers.len(),
+            "target": { "node": part, "path": "translation" },
+        }));
+        samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+    }
+    (channels, samplers)
+}
+
+#[derive(Default)]
+struct File {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    meshes: Vec<Value>,
+    materials: Vec<Value>,
+}
+
+/// The target of a buffer view for vertices.
+const VERTICES: u32 = 34_962;
+/// Single precision, as a component type.
+const FLOAT: u32 = 5_126;
+
+impl File {
+    /// Triangles with their own corners and normals: facets are flat.
+    fn mesh(&mut self, part: &Part, color: [f64; 3]) -> usize {
+        let solid = part.solid();
+        let (mut places, mut normals) = (Vec::new(), Vec::new());
+        for t in solid.triangles() {
+            let [a, b, c] = t.map(|v| solid.vertices()[v as usize]);
+            let normal = (b - a).cross(c - a).normalize_or(DVec3::Z).as_vec3().to_array();
+            for corner in [a, b, c] {
+                places.push(corner.as_vec3().to_array());
+                normals.push(normal);
+            }
+        }
+        let position = self.accessor(&places, "VEC3", Some(VERTICES));
+        let normal = self.accessor(&normals, "VEC3", Some(VERTICES));
+        let [r, g, b] = color;
+        self.materials.push(json!({
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.1, "roughnessFactor": 0.7,
+            },
+            "doubleSided": !solid.is_closed(),
+        }));
+        let material = self.materials.len() - 1;
+        self.meshes.push(json!({
+            "name": part.name(),
+            "primitives": [{
+                "attributes": { "POSITION": position, "NORMAL": normal }, "material": material,
+            }],
+        }));
+        self.meshes.len() - 1
+    }
+
+    fn accessor<const N: usize>(
+        &mut self,
+        values: &[[f32; N]],
+        kind: &str,
+        target: Option<u32>,
+    ) -> usize {
+        let offset = self.bytes.len();
+        let (mut low, mut high) = ([f32::INFINITY; N], [f32::NEG_INFINITY; N]);
+        for value in values {
+            for k in 0..N {
+                low[k] = low[k].min(value[k]);
+                high[k] = high[k].max(value[k]);
+                self.bytes.extend(value[k].to_le_bytes());
+            }
+        }
+        let mut view =
+            json!({ "buffer": 0, "byteOffset": offset, "byteLength": self.bytes.len() - offset });
+        if let Some(target) = target {
+            view["target"] = json!(target);
+        }
+        self.views.push(view);
+        self.accessors.push(json!({
+            "bufferView": self.views.len() - 1,
+            "componentType": FLOAT,
+            "count": values.len(),
+            "type": kind,
+            "min": low.as_slice(),
+            "max": high.as_slice(),
+        }));
+        self.accessors.len() - 1
+    }
+
+    /// Header, JSON chunk and binary chunk, each padded to four bytes.
+    fn finish(mut self, mut document: Value) -> Vec<u8> {
+        if !self.meshes.is_empty() {
+            document["meshes"] = json!(self.meshes);
+            document["materials"] = json!(self.materials);
+            document["accessors"] = json!(self.accessors);
+            document["bufferViews"] = json!(self.views);
+            document["buffers"] = json!([{ "byteLength": self.bytes.len() }]);
+        }
+        let mut text = document.to_string().into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let binary = if self.bytes.is_empty() { 0 } else { 8 + self.bytes.len() };
+        let length = 12 + 8 + text.len() + binary;
+        let mut out = Vec::with_capacity(length);
+        out.extend(b"glTF");
+        out.extend(2_u32.to_le_bytes());
+        out.extend((length as u32).to_le_bytes());
+        out.extend((text.len() as u32).to_le_bytes());
+        out.extend(b"JSON");
+        out.extend(text);
+        if binary > 0 {
+            out.extend((self.bytes.len() as u32).to_le_bytes());
+            out.extend(b"BIN\0");
+            out.extend(self.bytes);
+        }
+        out
+    }
+}

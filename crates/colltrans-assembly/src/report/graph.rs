@@ -1,0 +1,76 @@
+//! Directional blocking graphs as SVG: parts on a circle, an arrow from each to what it meets; groups
+//! of several parts that move as one are ringed in one colour.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+use glam::DVec2;
+
+use super::escaped;
+use crate::blocking::Blocking;
+use crate::bodies::Bodies;
+
+const RADIUS: f64 = 150.0;
+const MIDDLE: DVec2 = DVec2::new(280.0, 200.0);
+
+/// The graph of all parts along one direction.
+pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
+    let n = bodies.len();
+    let at = |k: usize| {
+        let (s, c) = (k as f64 / n.max(1) as f64 * TAU).sin_cos();
+        MIDDLE + DVec2::new(s, -c) * RADIUS
+    };
+    let mut text = String::from(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 560 400\" \
+         font-family=\"sans-serif\" font-size=\"10\">\n<rect width=\"560\" height=\"400\" \
+         fill=\"#fff\"/>\n",
+    );
+    let groups = graph.groups();
+    let mut group_of = vec![usize::MAX; n];
+    for (k, group) in groups.iter().enumerate().filter(|(_, g)| g.len() > 1) {
+        for &part in group {
+            group_of[part] = k;
+        }
+    }
+    let free: Vec<usize> = graph.removable().concat();
+    for a in 0..n {
+        for b in graph.blockers(a) {
+            let (p, q) = (at(a), at(b));
+            let along = (q - p).normalize_or_zero();
+            let (p, q) = (p + along * 6.0, q - along * 7.0);
+            let bend = (p + q) * 0.5 + (MIDDLE - (p + q) * 0.5) * 0.25;
+            let inside = group_of[a] != usize::MAX && group_of[a] == group_of[b];
+            let color = if inside { "#c02020" } else { "#999" };
+            let tip = (q - bend).normalize_or_zero();
+            let (l, r) = (q - tip * 6.0 + tip.perp() * 2.2, q - tip * 6.0 - tip.perp() * 2.2);
+            let _ = writeln!(
+                text,
+                "<path d=\"M{:.1} {:.1}Q{:.1} {:.1} {:.1} {:.1}\" fill=\"none\" stroke=\"{color}\" \
+                 stroke-width=\"0.7\" stroke-opacity=\"0.7\"/><path d=\"M{:.1} {:.1}L{:.1} \
+                 {:.1}L{:.1} {:.1}z\" fill=\"{color}\"/>",
+                p.x, p.y, bend.x, bend.y, q.x, q.y, q.x, q.y, l.x, l.y, r.x, r.y
+            );
+        }
+    }
+    for (k, &group) in group_of.iter().enumerate() {
+        node(&mut text, at(k), bodies.assembly().parts()[k].name(), free.contains(&k), group);
+    }
+    text.push_str("</svg>\n");
+    text
+}
+
+fn node(text: &mut String, at: DVec2, name: &str, free: bool, group: usize) {
+    let fill = if free { "#f6963a" } else { "#dde6f0" };
+    let stroke = if group == usize::MAX { "#333" } else { "#c02020" };
+    let right = at.x >= MIDDLE.x;
+    let (anchor, x) = if right { ("start", at.x + 9.0) } else { ("end", at.x - 9.0) };
+    let _ = writeln!(
+        text,
+        "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{fill}\" stroke=\"{stroke}\"/>\
+         <text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
+        at.x,
+        at.y,
+        at.y + 3.5,
+        escaped(name)
+    );
+}

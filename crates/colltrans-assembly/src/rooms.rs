@@ -1,0 +1,139 @@
+//! How far one part, or a rigid group, can move in one direction against all others, and what stops
+//! it.
+//!
+//! The others come in the order in which their boxes are met, from a tree; the best so far is handed
+//! on, and ends the walk once the next box lies beyond it.
+
+use colltrans::{StartOverlap, Workspace};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::bodies::{Bodies, Room, Stop};
+use crate::error::AssemblyError;
+use crate::watch::{Stage, Watch};
+
+/// The room of a part, or of a group, in one direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PartRoom {
+    /// Nothing is in the way.
+    Free,
+    /// Something is.
+    Blocked {
+        /// Which part of the group is stopped.
+        part: usize,
+        /// By which part.
+        by: usize,
+        /// How far, and where.
+        stop: Stop,
+    },
+    /// It overlaps something where it is.
+    Overlapping {
+        /// Which part of the group.
+        part: usize,
+        /// With which part.
+        by: usize,
+    },
+}
+
+impl PartRoom {
+    /// A word: free, blocked or overlapping.
+    pub const fn outcome(&self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Blocked { .. } => "blocked",
+            Self::Overlapping { .. } => "overlapping",
+        }
+    }
+
+    /// How far: infinite if free, 0 if overlapping.
+    pub const fn distance(&self) -> f64 {
+        match self {
+            Self::Free => f64::INFINITY,
+            Self::Blocked { stop, .. } => stop.distance,
+            Self::Overlapping { .. } => 0.0,
+        }
+    }
+
+    /// Whether nothing is in the way.
+    pub const fn is_free(&self) -> bool {
+        matches!(self, Self::Free)
+    }
+
+    /// The part that is in the way.
+    pub const fn by(&self) -> Option<usize> {
+        match self {
+            Self::Free => None,
+            Self::Blocked { by, .. } | Self::Overlapping { by, .. } => Some(*by),
+        }
+    }
+}
+
+/// The room of a group of parts that move as one, against `others` (all that are `true`).
+///
+/// Of several stops at one distance the first part of the group, and the lowest number of the
+/// others, is named.
+pub fn room_of(
+    bodies: &Bodies,
+    group: &[usize],
+    others: &[bool],
+    d: DVec3,
+    start: StartOverlap,
+    workspace: &mut Workspace,
+) -> PartRoom {
+    let mut best = PartRoom::Free;
+    for &part in group {
+        for (bound, by) in bodies.ahead(part, d) {
+            if bound > best.distance() {
+                break;
+            }
+            if !others[by] || group.contains(&by) {
+                continue;
+            }
+            // Equal distances are let through, so that the choice among them is ours.
+            let before = best.distance().next_up();
+            let before = before.is_finite().then_some(before);
+            match bodies.room([part, by], d, before, start, workspace) {
+                Room::Free => (),
+                Room::Overlapping => return PartRoom::Overlapping { part, by },
+                Room::Blocked(stop) => {
+                    let nearer = match best {
+                        PartRoom::Blocked { part: p, by: b, stop: s } => {
+                            (stop.distance, part, by) < (s.distance, p, b)
+                        }
+                        _ => true,
+                    };
+                    if nearer {
+                        best = PartRoom::Blocked { part, by, stop };
+                    }
+                }
+            }
+        }
+    }
+    best
+}
+
+/// The rooms of every part in every direction (rows: parts), against all others.
+///
+/// # Errors
+/// Cancelled.
+pub fn rooms(
+    bodies: &Bodies,
+    directions: &[DVec3],
+    start: StartOverlap,
+    watch: Watch,
+) -> Result<Vec<Vec<PartRoom>>, AssemblyError> {
+    let all = vec![true; bodies.len()];
+    let tally = watch.stage(Stage::Rooms, bodies.len() * directions.len().div_ceil(16));
+    let row = |part: usize| -> Result<Vec<PartRoom>, AssemblyError> {
+        let blocks: Result<Vec<Vec<PartRoom>>, AssemblyError> = directions
+            .par_chunks(16)
+            .map_init(Workspace::default, |workspace, chunk| {
+                let room = |d: &DVec3| room_of(bodies, &[part], &all, *d, start, workspace);
+                let rooms = chunk.iter().map(room).collect();
+                tally.step().map(|()| rooms)
+            })
+            .collect();
+        Ok(blocks?.concat())
+    };
+    (0..bodies.len()).into_par_iter().map(row).collect()
+}

@@ -1,0 +1,182 @@
+//! Directions spread over the sphere: an icosahedron, its triangles halved as often as wanted.
+//!
+//! Every vertex is the normalised middle of an edge, so the same edge gives the same bits whichever
+//! triangle asks.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+/// Triangles over the sphere, in a hierarchy.
+#[derive(Debug, Clone)]
+pub struct Sphere {
+    /// Directions of length 1.
+    pub directions: Vec<DVec3>,
+    /// Triangles, the 20 of the icosahedron first.
+    pub triangles: Vec<Triangle>,
+    middles: HashMap<[u32; 2], u32>,
+}
+
+/// A spherical triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Triangle {
+    /// Its corners, counter-clockwise from outside.
+    pub corners: [u32; 3],
+    /// The first of its four parts, which lie one after another; 0 if it is not cut.
+    pub parts: u32,
+}
+
+impl Sphere {
+    /// The icosahedron, each triangle cut into four `levels` times: `10 * 4^levels + 2` directions.
+    pub fn new(levels: u32) -> Self {
+        let (directions, corners) = icosahedron();
+        let triangles = corners.iter().map(|&corners| Triangle { corners, parts: 0 }).collect();
+        let mut sphere = Self { directions, triangles, middles: HashMap::new() };
+        for _ in 0..levels {
+            let leaves: Vec<usize> = sphere.leaves().collect();
+            for t in leaves {
+                sphere.cut(t);
+            }
+        }
+        sphere
+    }
+
+    /// At least `count` directions, as few as there are.
+    pub fn with_directions(count: usize) -> Self {
+        let mut levels = 0;
+        while 10 * 4_usize.pow(levels) + 2 < count && levels < 9 {
+            levels += 1;
+        }
+        Self::new(levels)
+    }
+
+    /// Triangles that are not cut.
+    pub fn leaves(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.triangles.len()).filter(|&t| self.triangles[t].parts == 0)
+    }
+
+    /// Cuts a triangle into four, if it is not cut.
+    pub fn cut(&mut self, triangle: usize) {
+        if self.triangles[triangle].parts != 0 {
+            return;
+        }
+        let [a, b, c] = self.triangles[triangle].corners;
+        let (ab, bc, ca) = (self.middle(a, b), self.middle(b, c), self.middle(c, a));
+        self.triangles[triangle].parts = self.triangles.len() as u32;
+        for corners in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            self.triangles.push(Triangle { corners, parts: 0 });
+        }
+    }
+
+    fn middle(&mut self, a: u32, b: u32) -> u32 {
+        let next = self.directions.len() as u32;
+        let index = *self.middles.entry([a.min(b), a.max(b)]).or_insert(next);
+        if index == next {
+            let sum = self.directions[a as usize] + self.directions[b as usize];
+            self.directions.push(sum.normalize());
+        }
+        index
+    }
+
+    /// The uncut triangle that a direction points through, and the weights of its corners.
+    pub fn locate(&self, d: DVec3) -> (usize, DVec3) {
+        let nearest = |range: std::ops::Range<usize>| {
+            range
+                .map(|t| (t, self.weights(t, d)))
+                .max_by(|x, y| x.1.min_element().total_cmp(&y.1.min_element()))
+                .unwrap_or((0, DVec3::X))
+        };
+        let mut best = nearest(0..20);
+        while self.triangles[best.0].parts != 0 {
+            let first = self.triangles[best.0].parts as usize;
+            best = nearest(first..first + 4);
+        }
+        best
+    }
+
+    fn weights(&self, triangle: usize, d: DVec3) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
+        let weights = DVec3::new(d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b)));
+        let sum = weights.element_sum();
+        // Behind the triangle's plane: nothing is farther away.
+        if sum > 0.0 { weights / sum } else { DVec3::splat(-1e9) }
+    }
+
+    /// The angle of a triangle's longest side, in radians.
+    pub fn widest(&self, triangle: usize) -> f64 {
+        let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
+        angle(a, b).max(angle(b, c)).max(angle(c, a))
+    }
+
+    /// The solid angle of a triangle.
+    pub fn area(&self, triangle: usize) -> f64 {
+        let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
+        let volume = a.dot(b.cross(c));
+        2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    }
+}
+
+/// The angle between two unit vectors, exact for small ones too.
+pub fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
+}
+
+fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mut directions = Vec::with_capacity(12);
+    for axis in 0..3 {
+        for (u, v) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+            let mut d = DVec3::ZERO;
+            (d[axis], d[(axis + 1) % 3]) = (u, golden * v);
+            directions.push(d.normalize());
+        }
+    }
+    // Faces: triples of neighbours, whose dot product is 1 / sqrt(5); turned outwards.
+    let close = |a: usize, b: usize| directions[a].dot(directions[b]) > 0.4;
+    let mut faces = Vec::with_capacity(20);
+    for a in 0..12 {
+        for b in a + 1..12 {
+            for c in b + 1..12 {
+                if close(a, b) && close(b, c) && close(c, a) {
+                    let out = directions[a].dot(directions[b].cross(directions[c])) > 0.0;
+                    let [b, c] = if out { [b, c] } else { [c, b] };
+                    faces.push([a as u32, b as u32, c as u32]);
+                }
+            }
+        }
+    }
+    (directions, faces)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn the_triangles_cover_the_sphere_once() {
+        for levels in 0..4 {
+            let sphere = Sphere::new(levels);
+            assert_eq!(sphere.directions.len(), 10 * 4_usize.pow(levels) + 2);
+            let area: f64 = sphere.leaves().map(|t| sphere.area(t)).sum();
+            assert!((area - 4.0 * PI).abs() < 1e-12, "{area}");
+        }
+    }
+
+    #[test]
+    fn a_direction_lies_in_the_triangle_that_is_found() {
+        let mut sphere = Sphere::new(2);
+        let t = sphere.locate(DVec3::new(0.3, 0.2, 0.9).normalize()).0;
+        sphere.cut(t);
+        let mut random = colltrans_kit::random::Random::new(3, &[]);
+        for _ in 0..1_000 {
+            let d = random.direction();
+            let (t, weights) = sphere.locate(d);
+            assert!(weights.min_element() > -1e-12);
+            let corners = sphere.triangles[t].corners.map(|k| sphere.directions[k as usize]);
+            let back = corners[0] * weights.x + corners[1] * weights.y + corners[2] * weights.z;
+            assert!(angle(back.normalize(), d) < 1e-12);
+        }
+    }
+}

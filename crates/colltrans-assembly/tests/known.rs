@@ -1,0 +1,280 @@
+//! Assemblies whose answers are known.
+
+#![expect(
+    clippy::default_trait_access,
+    clippy::needless_range_loop,
+    reason = "what is the default, and what is numbered, is said by the calls around"
+)]
+
+mod common;
+
+use std::sync::atomic::AtomicBool;
+
+use colltrans::StartOverlap;
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::map::{MapOptions, RemovalMap};
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, disassemble};
+use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
+use colltrans_assembly::sphere::angle;
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Room, Watch};
+use colltrans_kit::random::Random;
+use common::*;
+use glam::{DAffine3, DVec3};
+
+fn planned(assembly: &Assembly) -> Plan {
+    let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
+    let touching = liaisons(&bodies, Watch::default()).unwrap();
+    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
+    let all = vec![true; bodies.len()];
+    let start = StartOverlap::Refuse;
+    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
+    disassemble(&bodies, &matrix, &found.finer, Default::default(), Watch::default()).unwrap()
+}
+
+fn steps<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
+    plan.steps.iter().map(|s| assembly.names(&s.parts)).collect()
+}
+
+#[test]
+fn linked_rings_do_not_come_apart() {
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let plan = planned(&assembly);
+    assert!(plan.steps.is_empty());
+    assert_eq!(plan.left, [0, 1]);
+    assert_eq!(plan.stuck.len(), 1);
+    assert_eq!(plan.stuck[0].parts, [0, 1]);
+    assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
+}
+
+#[test]
+fn linked_rings_leave_a_well_as_one() {
+    let [a, b] = links();
+    let well = part("well", &well([-2.5, -2.5, -3.0], [4.5, 2.5, 5.0], 1.0)).with_fixed(true);
+    let assembly = Assembly::new(vec![a, b, well]).unwrap();
+    let plan = planned(&assembly);
+    assert_eq!(steps(&assembly, &plan), [["a", "b"]]);
+    assert_eq!(plan.steps[0].direction, DVec3::Z);
+    // The lowest point is at -2.5, the rim at 5.
+    assert!((plan.steps[0].travel - 7.5).abs() < 1e-9);
+    assert_eq!(plan.left, [2]);
+    assert_eq!(plan.stuck.len(), 1, "the rings themselves");
+}
+
+#[test]
+fn a_tight_peg_finds_its_only_direction_in_any_rotation() {
+    let mut random = Random::new(21, &[]);
+    for _ in 0..5 {
+        let turn = DAffine3::from_rotation_translation(random.rotation(), random.direction() * 3.0);
+        let peg = turned("peg", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 6.0])], turn);
+        let block = turned("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0), turn);
+        let assembly = Assembly::new(vec![peg, block]).unwrap();
+        let plan = planned(&assembly);
+        assert_eq!(steps(&assembly, &plan), [vec!["peg"], vec!["block"]]);
+        let axis = turn.transform_vector3(DVec3::Z);
+        assert!(angle(plan.steps[0].direction, axis) < 1e-6);
+        assert!((plan.steps[0].travel - 5.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_lid_goes_before_what_it_covers() {
+    let assembly = boxed();
+    let plan = planned(&assembly);
+    let order = steps(&assembly, &plan);
+    let at = |name| order.iter().position(|s| s == &[name]).unwrap();
+    assert!(at("lid") < at("core"), "{order:?}");
+    assert!(plan.left.is_empty() && plan.stuck.is_empty());
+}
+
+#[test]
+fn what_is_walled_in_by_what_is_fixed_stays() {
+    let core = part("core", &[cuboid([1.0; 3], [2.0; 3])]);
+    let mut walls = well([0.0; 3], [3.0; 3], 1.0);
+    walls.push(cuboid([-1.0, -1.0, 3.0], [4.0, 4.0, 4.0]));
+    let assembly = Assembly::new(vec![core, part("walls", &walls).with_fixed(true)]).unwrap();
+    let plan = planned(&assembly);
+    assert!(plan.steps.is_empty());
+    assert_eq!(plan.left, [0, 1]);
+    assert_eq!(plan.stuck[0].holds.len(), 1);
+    assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
+}
+
+#[test]
+fn no_parts_one_part_and_parts_far_apart() {
+    let none = Assembly::default();
+    assert_eq!(planned(&none), Plan::default());
+    let one = Assembly::new(vec![part("one", &[cuboid([0.0; 3], [1.0; 3])])]).unwrap();
+    let plan = planned(&one);
+    assert_eq!((plan.steps.len(), plan.steps[0].travel), (1, 0.0));
+    let at = |k: usize| {
+        let low = 1e4 * k as f64;
+        part(&format!("p{k}"), &[cuboid([low; 3], [low + 1.0; 3])])
+    };
+    let far = Assembly::new((0..5).map(at).collect()).unwrap();
+    let plan = planned(&far);
+    assert_eq!(plan.steps.len(), 5);
+    assert!(plan.steps.iter().all(|s| s.travel == 0.0));
+}
+
+#[test]
+fn a_thousand_cubes_come_out_one_by_one() {
+    let mut parts = Vec::new();
+    for (x, y, z) in (0..1_000).map(|k| (k % 10, k / 10 % 10, k / 100)) {
+        let low = [x, y, z].map(f64::from);
+        parts.push(part(&format!("{x}{y}{z}"), &[cuboid(low, low.map(|c| c + 1.0))]));
+    }
+    let assembly = Assembly::new(parts).unwrap();
+    let plan = planned(&assembly);
+    assert_eq!(plan.steps.len(), 1_000);
+    assert!(plan.steps.iter().all(|s| s.parts.len() == 1));
+    assert!(plan.left.is_empty() && plan.stuck.is_empty());
+}
+
+#[test]
+fn rooms_with_the_best_so_far_are_rooms_of_all_pairs() {
+    let mut random = Random::new(4, &[]);
+    for round in 0..20 {
+        let assembly = scattered(&mut random, 12, round % 2 == 0);
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let directions: Vec<DVec3> = DVec3::AXES
+            .into_iter()
+            .flat_map(|d| [d, -d])
+            .chain((0..6).map(|_| random.direction()))
+            .collect();
+        let start = StartOverlap::Ignore;
+        let table = rooms(&bodies, &directions, start, Watch::default()).unwrap();
+        let all = vec![true; bodies.len()];
+        let matrix = Matrix::new(&bodies, &directions, &all, start, Watch::default()).unwrap();
+        let mut workspace = Default::default();
+        for (k, &d) in directions.iter().enumerate() {
+            for a in 0..bodies.len() {
+                let mut least = f64::INFINITY;
+                for b in (0..bodies.len()).filter(|&b| b != a) {
+                    let room = bodies.room([a, b], d, None, start, &mut workspace);
+                    let met = matrix.of_part(k, a).iter().find(|m| m.fixed == b);
+                    match room {
+                        Room::Free => assert!(met.is_none()),
+                        Room::Overlapping => panic!("overlaps are ignored"),
+                        Room::Blocked(stop) => {
+                            let distance = met.expect("it meets").distance();
+                            assert!((distance - stop.distance).abs() < 1e-9);
+                            least = least.min(stop.distance);
+                        }
+                    }
+                }
+                let found = table[a][k].distance();
+                assert!(found == least || (found - least).abs() < 1e-9, "{found} {least}");
+                let room = matrix.room(k, a).distance();
+                assert!(room == least || (room - least).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_answer_does_not_depend_on_threads() {
+    let assembly = boxed();
+    let ask = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| planned(&assembly))
+    };
+    let once = ask(1);
+    assert_eq!(once, ask(2));
+    assert_eq!(once, ask(7));
+}
+
+#[test]
+fn a_cancelled_run_says_so() {
+    let assembly = boxed();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let flag = AtomicBool::new(true);
+    let watch = Watch::default().with_cancel(&flag);
+    let result = rooms(&bodies, &[DVec3::X], StartOverlap::Refuse, watch);
+    assert!(matches!(result, Err(AssemblyError::Cancelled)));
+}
+
+#[test]
+fn a_margin_is_kept_or_not() {
+    // 0.5 of air on every side.
+    let peg = part("peg", &[cuboid([-0.5, -0.5, 0.5], [0.5, 0.5, 6.0])]);
+    let block = part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0));
+    let assembly = Assembly::new(vec![peg, block]).unwrap();
+    let room = |margin: f64, d: DVec3| {
+        let bodies = Bodies::new(&assembly, Fit::Margin(margin)).unwrap();
+        let start = StartOverlap::Refuse;
+        room_of(&bodies, &[0], &[true; 2], d, start, &mut Default::default())
+    };
+    assert!(room(0.4, DVec3::Z).is_free());
+    assert!(matches!(room(0.6, DVec3::Z), PartRoom::Overlapping { .. }));
+    assert!((room(0.4, DVec3::X).distance() - 0.1).abs() < 1e-12);
+    let refused = Bodies::new(&assembly, Fit::Margin(f64::NAN));
+    assert!(matches!(refused, Err(AssemblyError::Length { .. })));
+}
+
+#[test]
+fn overlaps_at_the_start_are_measured_and_can_be_ignored() {
+    // A press fit of 0.05 on every side: half of a tolerance of 0.05 from the pin, half from the block.
+    let parts = vec![
+        part("pin", &[cuboid([-1.05, -1.05, 1.0], [1.05, 1.05, 6.0])]),
+        part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0)),
+    ];
+    let assembly = Assembly::new(parts).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(0.0)).unwrap();
+    let start = Start::new(&bodies, Watch::default()).unwrap();
+    assert_eq!(start.overlaps.len(), 1);
+    let depth = start.overlaps[0].depth.unwrap();
+    assert!((depth - 0.05).abs() < 1e-6, "{depth}");
+    let suggested = start.suggested.unwrap();
+    assert!(suggested > depth && suggested < 1.2 * depth);
+    let room = |fit: Fit, d: DVec3| {
+        let bodies = Bodies::new(&assembly, fit).unwrap();
+        room_of(&bodies, &[0], &[true; 2], d, StartOverlap::Refuse, &mut Default::default())
+    };
+    assert!(matches!(room(Fit::Tolerance(0.0), DVec3::Z), PartRoom::Overlapping { .. }));
+    assert!(room(Fit::Tolerance(suggested), DVec3::Z).is_free());
+    let stopped = room(Fit::Tolerance(suggested), DVec3::NEG_Z);
+    assert!((stopped.distance() - 1.0 - suggested).abs() < 1e-9, "{stopped:?}");
+    let listed = assembly.clone().with_ignored(&[["pin", "block"]]).unwrap();
+    let bodies = Bodies::new(&listed, Fit::Tolerance(0.0)).unwrap();
+    assert!(Start::new(&bodies, Watch::default()).unwrap().overlaps.is_empty());
+}
+
+#[test]
+fn maps_find_half_spheres_and_isolated_directions() {
+    let map = |parts: Vec<_>, directions: &[DVec3]| {
+        let assembly = Assembly::new(parts).unwrap();
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let options = MapOptions { samples: 642, border: 0.02, ..Default::default() };
+        RemovalMap::new(&bodies, &[0], directions, options, Watch::default()).unwrap()
+    };
+    let cube = part("cube", &[cuboid([-0.5, -0.5, 0.0], [0.5, 0.5, 1.0])]);
+    let floor = part("floor", &[cuboid([-1e4, -1e4, -1.0], [1e4, 1e4, 0.0])]);
+    let resting = map(vec![cube, floor], &[]);
+    assert_eq!(resting.regions.len(), 1);
+    assert!((resting.free_share() - 0.5).abs() < 0.01, "{}", resting.free_share());
+    assert!(angle(resting.regions[0].center, DVec3::Z) < 0.01);
+    assert!(resting.regions[0].border.iter().all(|d| d.z.abs() < 0.02));
+    let axis = DVec3::new(0.2, 0.3, 0.9).normalize();
+    let turn = DAffine3::from_quat(glam::DQuat::from_rotation_arc(DVec3::Z, axis));
+    let peg = turned("peg", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 6.0])], turn);
+    let block = turned("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0), turn);
+    let tight = map(vec![peg, block], &[axis, DVec3::X]);
+    assert_eq!(tight.isolated, [axis]);
+    assert!(tight.free_share() < 1e-3);
+}
+
+#[test]
+fn directions_and_names_that_are_wrong_are_refused() {
+    let assembly = boxed();
+    assert!(matches!(assembly.index("lod"), Err(AssemblyError::UnknownPart { near: Some(_), .. })));
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    for given in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::splat(f64::INFINITY)] {
+        let choice = Choice { given: vec![given], ..Choice::default() };
+        assert!(matches!(candidates(&bodies, &[], &choice), Err(AssemblyError::Direction { .. })));
+    }
+    let twice = vec![part("a", &[cuboid([0.0; 3], [1.0; 3])]); 2];
+    assert!(matches!(Assembly::new(twice), Err(AssemblyError::SameName { .. })));
+}

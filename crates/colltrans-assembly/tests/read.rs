@@ -1,0 +1,191 @@
+//! Every kind of source, in small files that the tests write.
+
+#![allow(clippy::format_push_string, reason = "small files, written for people to read")]
+
+mod common;
+
+use std::io::Write;
+use std::path::Path;
+
+use colltrans_assembly::plan::Plan;
+use colltrans_assembly::read::{Geometry, ReadOptions, read};
+use colltrans_assembly::report::glb::animation;
+use colltrans_assembly::{Assembly, ReadError};
+use common::*;
+use glam::DVec3;
+
+const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
+    4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+fn open(path: impl AsRef<Path>) -> Result<Assembly, ReadError> {
+    read(path, &ReadOptions::default())
+}
+
+fn bounds(assembly: &Assembly, name: &str) -> [DVec3; 2] {
+    assembly.parts()[assembly.index(name).unwrap()].solid().bounds()
+}
+
+fn near(found: [DVec3; 2], low: [f64; 3], high: [f64; 3]) {
+    let off = (found[0] - DVec3::from(low)).abs().max((found[1] - DVec3::from(high)).abs());
+    assert!(off.max_element() < 1e-6, "{found:?} is not {low:?} to {high:?}");
+}
+
+#[test]
+fn a_folder_is_read_in_natural_order() {
+    let folder = folder(&[("p10.off", CUBE), ("p9.off", CUBE), ("notes.txt", "no mesh")]);
+    let assembly = open(folder.path()).unwrap();
+    assert_eq!(assembly.names(&[0, 1]), ["p9", "p10"]);
+    assert_eq!(assembly.parts()[0].facets(), 6);
+    assert!((assembly.parts()[0].solid().volume() - 1.0).abs() < 1e-12);
+    assert_eq!(assembly.unit(), None);
+}
+
+#[test]
+fn manifests_place_parts_in_toml_and_json() {
+    let toml = "unit = 'mm'\nignore = [['a', 'b']]\n[[part]]\nfile = 'c.off'\nname = 'a'\n\
+        translation = [5, 0, 0]\nrotation = { rpy_degrees = [0, 0, 90] }\nscale = 2\nfixed = true\n\
+        [[part]]\nfile = ['c.off', 'c.off']\nname = 'b'\nrotation = [0, 0, 1, 0]\n\
+        scale = [1, 1, 3]\n[[part]]\nfile = 'c.off'\nrotation = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]\n";
+    let json = r#"{"unit": "mm", "ignore": [["a", "b"]], "parts": [
+        {"file": "c.off", "name": "a", "translation": [5, 0, 0],
+         "rotation": {"rpy_degrees": [0, 0, 90]}, "scale": 2, "fixed": true},
+        {"file": ["c.off", "c.off"], "name": "b", "rotation": {"quaternion": [0, 0, 1, 0]},
+         "scale": [1, 1, 3]},
+        {"file": "c.off", "rotation": {"matrix": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}}]}"#;
+    let folder = folder(&[("c.off", CUBE), ("m.toml", toml), ("m.json", json)]);
+    for file in ["m.toml", "m.json"] {
+        let assembly = open(folder.path().join(file)).unwrap();
+        assert_eq!(assembly.unit(), Some("mm"));
+        assert_eq!(assembly.ignored(), [[0, 1]]);
+        assert!(assembly.parts()[0].fixed());
+        near(bounds(&assembly, "a"), [3.0, 0.0, 0.0], [5.0, 2.0, 2.0]);
+        near(bounds(&assembly, "b"), [-1.0, -1.0, 0.0], [0.0, 0.0, 3.0]);
+        near(bounds(&assembly, "c"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
+        assert_eq!(assembly.parts()[1].facets(), 12);
+    }
+}
+
+#[test]
+fn faults_of_manifests_are_named_with_their_place() {
+    let cases = [
+        ("[[part]]\nfile = 'c.off'\nturned = 3\n", "line 3"),
+        ("[[part]]\nfile = 'c.off'\nscale = 0\n", "part 1 (c): scale"),
+        ("[[part]]\nfile = 'c.off'\nrotation = [0, 0, 0, 2]\n", "has length 2, not 1"),
+        ("[[part]]\nfile = 'c.off'\nrotation = [[2,0,0],[0,1,0],[0,0,1]]\n", "is no rotation"),
+        ("[[part]]\nfile = 'gone.off'\n", "gone.off"),
+        ("ignore = [['c', 'd']]\n[[part]]\nfile = 'c.off'\n", "no part is named d"),
+        ("[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n", "two parts are named c"),
+    ];
+    for (text, wanted) in cases {
+        let folder = folder(&[("c.off", CUBE), ("m.toml", text)]);
+        let message = open(folder.path().join("m.toml")).unwrap_err().to_string();
+        assert!(message.contains(wanted), "{message}");
+        assert!(message.contains("m.toml"), "{message}");
+    }
+    let message = open("/nowhere/at.all").unwrap_err().to_string();
+    assert!(message.contains("cannot be read"), "{message}");
+}
+
+const URDF: &str = r#"<robot name="r">
+  <link name="base"><collision><geometry><mesh filename="package://kit/meshes/c.off"/></geometry>
+    </collision></link>
+  <link name="arm"><collision><origin xyz="1 0 0" rpy="0 0 0"/><geometry>
+    <mesh filename="package://kit/meshes/c.off" scale="2 1 1"/></geometry></collision>
+    <visual><geometry><box size="2 2 2"/></geometry></visual></link>
+  <link name="lost"><collision><geometry><mesh filename="package://kit/gone.stl"/></geometry>
+    </collision></link>
+  <joint name="turn" type="revolute"><origin xyz="0 0 1" rpy="0 0 0"/><parent link="base"/>
+    <child link="arm"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>
+    </joint>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="lost"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="2" effort="1" velocity="1"/></joint>
+</robot>"#;
+
+#[test]
+fn links_of_a_robot_are_placed_by_its_joints() {
+    let folder = folder(&[("robot.urdf", URDF), ("kit/meshes/c.off", CUBE)]);
+    let file = folder.path().join("robot.urdf");
+    let mut options = ReadOptions { packages: vec![folder.path().into()], ..Default::default() };
+    options.joints.insert("turn".into(), std::f64::consts::FRAC_PI_2);
+    let message = read(&file, &options).unwrap_err().to_string();
+    assert!(message.contains("package://kit/gone.stl"), "{message}");
+    options.skip_missing = true;
+    let assembly = read(&file, &options).unwrap();
+    assert_eq!(assembly.names(&[0, 1]), ["base", "arm"]);
+    assert_eq!(assembly.notes().len(), 1);
+    // From 1 to 3 along x, turned to y, one up.
+    near(bounds(&assembly, "arm"), [-1.0, 1.0, 1.0], [0.0, 3.0, 2.0]);
+    options.geometry = Geometry::Visual;
+    near(bounds(&read(&file, &options).unwrap(), "arm"), [-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
+    options.joints.insert("elbow".into(), 1.0);
+    let message = read(&file, &options).unwrap_err().to_string();
+    assert!(message.contains("there is no joint elbow"), "{message}");
+}
+
+#[test]
+fn what_is_written_as_glb_is_read_back() {
+    let parts = vec![
+        part("well", &well([0.0; 3], [2.0; 3], 1.0)),
+        part("cube", &[cuboid([0.0; 3], [1.0, 2.0, 3.0])]),
+    ];
+    let assembly = Assembly::new(parts).unwrap().with_unit("m");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.glb");
+    std::fs::write(&file, animation(&assembly, &Plan::default())).unwrap();
+    let back = open(&file).unwrap();
+    assert_eq!(back.names(&[0, 1]), ["well", "cube"]);
+    assert_eq!(back.unit(), Some("m"));
+    // z has become y.
+    near(bounds(&back, "cube"), [0.0, 0.0, -2.0], [1.0, 3.0, 0.0]);
+    std::fs::write(&file, b"glTF but not really").unwrap();
+    assert!(open(&file).unwrap_err().to_string().contains("a.glb"));
+}
+
+#[test]
+fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
+    let mut model = String::from(
+        r#"<?xml version="1.0"?><model unit="inch" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
+        <resources><object id="1" name="cube" type="model"><mesh><vertices>"#,
+    );
+    for k in 0..8 {
+        model += &format!(r#"<vertex x="{}" y="{}" z="{}"/>"#, k & 1, k >> 1 & 1, k >> 2);
+    }
+    model += "</vertices><triangles>";
+    for f in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+        for [a, b, c] in [[f[0], f[1], f[2]], [f[0], f[2], f[3]]] {
+            model += &format!(r#"<triangle v1="{a}" v2="{b}" v3="{c}"/>"#);
+        }
+    }
+    model += r#"</triangles></mesh></object><object id="2"><components>
+        <component objectid="1" transform="0 1 0 -1 0 0 0 0 1 0 0 0"/></components></object></resources>
+        <build><item objectid="1" transform="2 0 0 0 2 0 0 0 2 10 0 0"/><item objectid="2"/></build></model>"#;
+    let package = |model: &str| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let mut zip = zip::ZipWriter::new(&mut bytes);
+        zip.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
+        zip.write_all(model.as_bytes()).unwrap();
+        zip.finish().unwrap();
+        bytes.into_inner()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.3mf");
+    std::fs::write(&file, package(&model)).unwrap();
+    let assembly = open(&file).unwrap();
+    assert_eq!(assembly.unit(), Some("inch"));
+    assert_eq!(assembly.names(&[0, 1]), ["cube", "cube_2"]);
+    near(bounds(&assembly, "cube"), [10.0, 0.0, 0.0], [12.0, 2.0, 2.0]);
+    near(bounds(&assembly, "cube_2"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
+    std::fs::write(&file, package(&model.replace("objectid=\"2\"", "objectid=\"7\""))).unwrap();
+    let message = open(&file).unwrap_err().to_string();
+    assert!(message.contains("build item 2: there is no object 7"), "{message}");
+}

@@ -1,0 +1,71 @@
+//! The command line of `assembly`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+use colltrans::glam::DVec3;
+
+use super::values::{direction, length, threads};
+
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+pub(crate) struct AssemblyArguments {
+    /// A folder of meshes, a manifest (.toml, .json), .urdf, .glb, .gltf or .3mf
+    pub(crate) source: PathBuf,
+    /// How deep parts may overlap and still pass: chord errors of curved fits, press fits
+    ///
+    /// Every part is shrunk by half of it. In the unit of the files. [default: 4.8e-7 of the
+    /// assembly's size, for files in single precision]
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// How far parts must stay apart when they pass; every part is grown by half of it
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, conflicts_with = "tolerance")]
+    pub(crate) margin: Option<f64>,
+    /// A direction to ask first: three numbers or an axis (x, -x, ...); may be given several times
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) direction: Vec<DVec3>,
+    /// Rooms in many directions: a file with one a line, `-` for standard input
+    #[arg(long, value_name = "FILE")]
+    pub(crate) directions: Option<PathBuf>,
+    /// Rooms in so many directions or more, spread over the sphere; the plan tries them too
+    #[arg(long, value_name = "N")]
+    pub(crate) samples: Option<usize>,
+    /// Ask only the directions that are given
+    #[arg(long)]
+    pub(crate) only: bool,
+    /// Map the room of a part over the whole sphere; several names with commas between them, or a
+    /// name that ends with `*`, are one group
+    #[arg(long, value_name = "PART")]
+    pub(crate) map: Vec<String>,
+    /// Parts that overlap at the start do not block each other until contacts that begin later
+    #[arg(long)]
+    pub(crate) ignore_overlaps: bool,
+    /// Two parts that may overlap and never block each other
+    #[arg(long, value_name = "A,B")]
+    pub(crate) ignore: Vec<String>,
+    /// A part that is never moved
+    #[arg(long, value_name = "PART")]
+    pub(crate) fixed: Vec<String>,
+    /// Where `package://` of a URDF file is looked for
+    #[arg(long, value_name = "DIR")]
+    pub(crate) package: Vec<PathBuf>,
+    /// Leave out meshes that cannot be found, with a note
+    #[arg(long)]
+    pub(crate) skip_missing: bool,
+    /// Read what URDF links show, not what they collide with
+    #[arg(long)]
+    pub(crate) visual: bool,
+    /// The position of a joint, in radians or metres
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(crate) joint: Vec<String>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// A folder for report.html, disassembly.glb, assembly.json, matrix.csv and maps
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Number of threads [default: all cores]; the answer is the same
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+}

@@ -1,0 +1,223 @@
+//! `assembly`: which parts come out.
+//!
+//! The data's way: source -> parts -> overlaps, contacts, directions, matrix, plan, maps (all of them
+//! `colltrans_assembly`'s) -> text, JSON or files ([`output`]).
+
+mod output;
+
+use std::path::Path;
+
+use colltrans::StartOverlap;
+use colltrans::glam::DVec3;
+use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidates, unit};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::map::{MapOptions, RemovalMap};
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::read::{self, Geometry, ReadOptions};
+use colltrans_assembly::report::Findings;
+use colltrans_assembly::rooms::{PartRoom, rooms};
+use colltrans_assembly::sphere::Sphere;
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Stage, Watch};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::args::{AssemblyArguments, direction};
+use crate::failure::{Code, Failure};
+
+pub(crate) fn run(arguments: &AssemblyArguments) -> Result<(), Failure> {
+    let Some(threads) = arguments.threads else { return inside(arguments) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build();
+    let pool = pool.map_err(|e| Failure::new(Code::Usage, format!("--threads: {e}")))?;
+    pool.install(|| inside(arguments))
+}
+
+fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
+    let given = given_directions(arguments)?;
+    let assembly = assembly(arguments)?;
+    let groups = groups(arguments, &assembly)?;
+    let fit = match (arguments.tolerance, arguments.margin) {
+        (Some(tolerance), _) => Fit::Tolerance(tolerance),
+        (None, Some(margin)) => Fit::Margin(margin),
+        (None, None) => Fit::default_for(&assembly),
+    };
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{msg:>9} {wide_bar} {pos}/{len}") {
+        bar.set_style(style);
+    }
+    let progress = |stage: Stage, done: usize, total: usize| {
+        if done.is_multiple_of(16) || done == total {
+            bar.set_message(stage.name());
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        }
+    };
+    let watch = Watch::default().with_progress(&progress);
+    let bodies = Bodies::new(&assembly, fit)?;
+    let start = Start::new(&bodies, watch)?;
+    let touching = liaisons(&bodies, watch)?;
+    let choice =
+        Choice { given: arguments.direction.clone(), search: !arguments.only, ..Choice::default() };
+    let mut found = candidates(&bodies, &touching, &choice)?;
+    let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
+    found.finer.splice(0..0, given.iter().map(finer));
+    let overlap = overlap(arguments);
+    let all = vec![true; bodies.len()];
+    let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
+    let more = more_rooms(&bodies, &given, overlap, watch)?;
+    let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
+    let options = PlanOptions { start: overlap, samples };
+    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
+    let maps = maps(&bodies, &groups, &found, overlap, watch)?;
+    bar.finish_and_clear();
+    let findings = Findings {
+        bodies: &bodies,
+        start: &start,
+        liaisons: &touching,
+        candidates: &found.main,
+        matrix: &matrix,
+        more: &more,
+        plan: &plan,
+        maps: &maps,
+    };
+    output::write(&findings, arguments)
+}
+
+fn overlap(arguments: &AssemblyArguments) -> StartOverlap {
+    if arguments.ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse }
+}
+
+fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
+    let usage = |text: String| Failure::new(Code::Usage, text);
+    let mut options = ReadOptions {
+        packages: arguments.package.clone(),
+        skip_missing: arguments.skip_missing,
+        ..ReadOptions::default()
+    };
+    if arguments.visual {
+        options.geometry = Geometry::Visual;
+    }
+    for joint in &arguments.joint {
+        let parts = joint.split_once('=').and_then(|(n, v)| Some((n, v.trim().parse().ok()?)));
+        let (name, value): (&str, f64) =
+            parts.ok_or_else(|| usage(format!("--joint {joint}: not NAME=VALUE")))?;
+        options.joints.insert(name.trim().to_owned(), value);
+    }
+    let assembly = read::read(&arguments.source, &options)
+        .map_err(|e| Failure::new(Code::Input, e.to_string()))?;
+    let mut pairs = Vec::new();
+    for pair in &arguments.ignore {
+        let (a, b) = pair
+            .split_once(',')
+            .ok_or_else(|| usage(format!("--ignore {pair}: not two names with a comma between")))?;
+        pairs.push([a.trim(), b.trim()]);
+    }
+    let assembly = assembly.with_ignored(&pairs)?;
+    Ok(assembly.with_fixed(&arguments.fixed)?)
+}
+
+/// The directions of the file and the samples, of length 1.
+fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure> {
+    let mut all = Vec::new();
+    if let Some(path) = &arguments.directions {
+        let text = if path == Path::new("-") {
+            std::io::read_to_string(std::io::stdin())
+        } else {
+            std::fs::read_to_string(path)
+        };
+        let text =
+            text.map_err(|e| Failure::new(Code::Input, format!("{}: {e}", path.display())))?;
+        for (k, line) in text.lines().enumerate() {
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if line.is_empty() {
+                continue;
+            }
+            let refused = |reason: String| {
+                Failure::new(Code::Input, format!("{}: line {}: {reason}", path.display(), k + 1))
+            };
+            let given = direction(line).map_err(refused)?;
+            all.push(unit(given).map_err(|e| refused(e.to_string()))?);
+        }
+    }
+    if let Some(samples) = arguments.samples.filter(|n| *n > 0) {
+        all.extend(Sphere::with_directions(samples.min(1 << 20)).directions);
+    }
+    Ok(all)
+}
+
+/// The groups to be mapped, with their names.
+fn groups(
+    arguments: &AssemblyArguments,
+    assembly: &Assembly,
+) -> Result<Vec<(String, Vec<usize>)>, Failure> {
+    let mut groups = Vec::new();
+    for map in &arguments.map {
+        let mut group = Vec::new();
+        for name in map.split(',').map(str::trim) {
+            match name.strip_suffix('*') {
+                Some(prefix) if assembly.index(name).is_err() => {
+                    let parts = assembly.parts().iter().enumerate();
+                    let like = parts.filter(|(_, p)| p.name().starts_with(prefix)).map(|(k, _)| k);
+                    let before = group.len();
+                    group.extend(like);
+                    if group.len() == before {
+                        return Err(Failure::new(Code::Usage, format!("no part is named {name}")));
+                    }
+                }
+                _ => group.push(assembly.index(name)?),
+            }
+        }
+        group.sort_unstable();
+        group.dedup();
+        groups.push((map.clone(), group));
+    }
+    Ok(groups)
+}
+
+fn more_rooms(
+    bodies: &Bodies,
+    directions: &[DVec3],
+    start: StartOverlap,
+    watch: Watch,
+) -> Result<Vec<(DVec3, Vec<PartRoom>)>, Failure> {
+    if directions.is_empty() {
+        return Ok(Vec::new());
+    }
+    let by_part = rooms(bodies, directions, start, watch)?;
+    let column = |k: usize| by_part.iter().map(|row| row[k]).collect();
+    Ok(directions.iter().enumerate().map(|(k, d)| (*d, column(k))).collect())
+}
+
+fn maps(
+    bodies: &Bodies,
+    groups: &[(String, Vec<usize>)],
+    found: &Candidates,
+    start: StartOverlap,
+    watch: Watch,
+) -> Result<Vec<(String, RemovalMap)>, Failure> {
+    let options = MapOptions { start, ..MapOptions::default() };
+    let mut maps = Vec::new();
+    for (name, group) in groups {
+        let mut mask = vec![false; bodies.len()];
+        for &k in group {
+            mask[k] = true;
+        }
+        let own = found.finer.iter().filter(|f| f.concerns(&mask)).map(|f| f.direction);
+        let directions: Vec<DVec3> = found.directions().into_iter().chain(own).collect();
+        maps.push((name.clone(), RemovalMap::new(bodies, group, &directions, options, watch)?));
+    }
+    Ok(maps)
+}
+
+impl From<AssemblyError> for Failure {
+    fn from(error: AssemblyError) -> Self {
+        let code = match error {
+            AssemblyError::Length { .. }
+            | AssemblyError::Direction { .. }
+            | AssemblyError::UnknownPart { .. } => Code::Usage,
+            AssemblyError::Replay { .. } | AssemblyError::Cancelled => Code::Query,
+            _ => Code::Input,
+        };
+        Self::new(code, error.to_string())
+    }
+}

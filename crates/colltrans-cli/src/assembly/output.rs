@@ -1,0 +1,119 @@
+//! What is printed, and the files of `-o`.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::path::Path;
+
+use colltrans_assembly::Fit;
+use colltrans_assembly::map;
+use colltrans_assembly::report::{Findings, facts, glb, html};
+
+use crate::args::AssemblyArguments;
+use crate::failure::{Failure, note};
+
+pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), Failure> {
+    for text in f.bodies.assembly().notes() {
+        note(text);
+    }
+    let mut json = facts::json(f);
+    if !f.maps.is_empty() {
+        json["maps"] = f.maps.iter().map(|(_, map)| map.to_json(f.bodies)).collect();
+    }
+    if let Some(folder) = &arguments.output {
+        files(f, arguments, folder, &json)?;
+    }
+    let text = if arguments.json { format!("{json}\n") } else { summary(f) };
+    io::stdout().write_all(text.as_bytes()).map_err(|e| Failure::output("standard output", &e))
+}
+
+fn files(
+    f: &Findings,
+    arguments: &AssemblyArguments,
+    folder: &Path,
+    json: &serde_json::Value,
+) -> Result<(), Failure> {
+    let failed = |path: &Path, e: &io::Error| Failure::output(path.display(), e);
+    std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).map_err(|e| failed(&path, &e))
+    };
+    let source = arguments.source.canonicalize().unwrap_or_else(|_| arguments.source.clone());
+    let title = source.file_stem().map_or("assembly".into(), |s| s.to_string_lossy().into_owned());
+    put("report.html", html::page(f, &title).as_bytes())?;
+    put("disassembly.glb", &glb::animation(f.bodies.assembly(), f.plan))?;
+    put("assembly.json", json.to_string().as_bytes())?;
+    put("matrix.csv", f.matrix.to_csv(f.bodies).as_bytes())?;
+    for (name, map) in f.maps {
+        let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+        let file: String = name.chars().map(safe).collect();
+        let title = format!("Room of {name} in all directions");
+        put(&format!("map-{file}.svg"), map::svg(map, &title).as_bytes())?;
+        put(&format!("map-{file}.png"), &map::png(map, 1_200))?;
+        put(&format!("map-{file}.json"), map.to_json(f.bodies).to_string().as_bytes())?;
+    }
+    Ok(())
+}
+
+/// A few lines for people.
+fn summary(f: &Findings) -> String {
+    let assembly = f.bodies.assembly();
+    let names = |parts: &[usize]| assembly.names(parts).join(", ");
+    let fit = match f.bodies.fit() {
+        Fit::Tolerance(length) => format!("tolerance {length}"),
+        Fit::Margin(length) => format!("margin {length}"),
+    };
+    let mut text = format!("{} parts, {fit}\n", assembly.parts().len());
+    for p in assembly.parts() {
+        for defect in p.defects() {
+            let _ = writeln!(text, "  {}: {defect}", p.name());
+        }
+    }
+    overlaps(&mut text, f);
+    if !f.plan.steps.is_empty() {
+        text.push_str("plan\n");
+    }
+    for (k, step) in f.plan.steps.iter().enumerate() {
+        let within =
+            step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
+        let [x, y, z] = step.direction.to_array();
+        let way = format!("{} along {x},{y},{z}", step.travel);
+        let _ = writeln!(text, "  {}. {}{within}: {way}", k + 1, names(&step.parts));
+    }
+    if !f.plan.left.is_empty() {
+        let _ = writeln!(text, "left\n  {}", names(&f.plan.left));
+    }
+    for stuck in &f.plan.stuck {
+        let _ = writeln!(text, "stuck\n  {}: {}", names(&stuck.parts), stuck.because(f.bodies));
+    }
+    for (name, map) in f.maps {
+        let share = 100.0 * map.free_share();
+        let _ = writeln!(
+            text,
+            "map of {name}\n  {share:.3} % of all directions are free, in {} regions; {} isolated \
+             free directions",
+            map.regions.len(),
+            map.isolated.len()
+        );
+    }
+    text
+}
+
+fn overlaps(text: &mut String, f: &Findings) {
+    let remaining: Vec<_> = f.start.remaining().collect();
+    if remaining.is_empty() {
+        return;
+    }
+    text.push_str("overlapping with this tolerance\n");
+    for o in remaining {
+        let [a, b] = o.parts.map(|k| f.bodies.assembly().parts()[k].name());
+        let depth = o.depth.map_or("by more than their size".into(), |d| format!("by {d}"));
+        let _ = writeln!(text, "  {a}, {b} {depth}");
+    }
+    if let Some(tolerance) = f.start.suggested {
+        let _ = writeln!(
+            text,
+            "  try --tolerance {tolerance} or, for curved fits, the chord errors of both parts together"
+        );
+    }
+}

@@ -1,0 +1,104 @@
+//! The answer in words.
+
+use colltrans::Feature;
+use colltrans::glam::DVec3;
+
+use crate::numbers::{known_vector, number, unit_vector};
+use crate::report::{along, line, times};
+use crate::solid::{Answer, Kind, Overlap, Stop, Touch};
+
+/// Below this many tolerances a body hardly moves: perhaps a fit is tighter than the tolerance.
+const HARDLY: f64 = 4.0;
+
+/// The readable answer of `colltrans clear`.
+pub(super) fn answer(answer: &Answer<'_>, direction: DVec3, is_default: bool) -> String {
+    let mut text = String::new();
+    match &answer.kind {
+        Kind::Free => text.push_str("free: nothing stops it along this direction\n"),
+        Kind::Blocked(stop) => {
+            text.push_str("blocked\n");
+            blocked(&mut text, answer, stop, direction);
+            if is_default && stop.distance * direction.length() <= HARDLY * answer.tolerance {
+                let fit =
+                    "if a fit is meant to slide here, give the chord errors of both as --tolerance";
+                line(&mut text, "", fit);
+            }
+        }
+        Kind::Overlapping => text.push_str("overlapping: the bodies overlap now\n"),
+    }
+    if let Some(exit) = answer.exit {
+        let exit = along(exit, answer.error / direction.length(), direction);
+        line(&mut text, "exit", &format!("{exit}; after it they never meet"));
+    }
+    overlaps(&mut text, answer);
+    let source = match (is_default, answer.tolerance == 0.0) {
+        (true, _) => "from the files' precision and the poses; --tolerance sets another",
+        (false, true) => "as asked: the bodies are taken as they are",
+        (false, false) => "as asked: both bodies are shrunk by half of it",
+    };
+    line(&mut text, "tolerance", &format!("{} ({source})", number(answer.tolerance)));
+    text
+}
+
+fn blocked(text: &mut String, answer: &Answer<'_>, stop: &Stop<'_>, direction: DVec3) {
+    let error = answer.error / direction.length();
+    let touch = stop.nominal.abs() <= error;
+    let remark = if touch { " (the parts touch)" } else { "" };
+    // Not the rounding error of a touch.
+    let nominal = if touch { 0.0 } else { stop.nominal };
+    line(text, "nominal", &format!("{}{remark}", along(nominal, error, direction)));
+    line(text, "distance", &format!("{}, of the shrunk bodies", times(stop.distance)));
+    line(text, "moving", &touched(&stop.moving));
+    line(text, "fixed", &touched(&stop.fixed));
+    line(text, "normal", &unit_vector(stop.normal));
+    line(text, "point", &known_vector(stop.point, answer.error));
+}
+
+fn touched(touch: &Touch<'_>) -> String {
+    let feature = match touch.feature {
+        Feature::Vertex(v) => format!("vertex {v}"),
+        Feature::Edge([a, b]) => format!("edge from vertex {a} to {b}"),
+        Feature::Face(f) => format!("face {f}"),
+    };
+    format!("{feature} of {}", touch.file.display())
+}
+
+fn overlaps(text: &mut String, answer: &Answer<'_>) {
+    let ignored = !matches!(answer.kind, Kind::Overlapping);
+    for Overlap { moving, fixed, depth } in &answer.overlaps {
+        let (moving, fixed) = (moving.display(), fixed.display());
+        let depth = match depth {
+            Some(depth) => format!("a tolerance of {} would part them", above(*depth)),
+            None => "no tolerance would part them".into(),
+        };
+        let name = if ignored { "ignored" } else { "overlap" };
+        line(text, name, &format!("{moving} in {fixed}: {depth}"));
+    }
+    if !ignored {
+        let hint = "--tolerance allows for it, --ignore-start-overlaps lets it pass";
+        line(text, "", hint);
+    }
+}
+
+/// A few digits, and no less than the value.
+fn above(value: f64) -> String {
+    let short: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    let step = 10.0_f64.powi(value.log10().floor() as i32 - 3);
+    let rounded = if short >= value { short } else { short + step };
+    let shown: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
+    number(if shown >= value { shown } else { value })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_suggested_tolerance_suffices() {
+        for value in [0.1, 0.12345, 0.999_96, 7.0, 1e-7 / 3.0, 2.0 / 3.0, 123_456.7] {
+            let shown: f64 = above(value).parse().unwrap();
+            assert!(shown >= value && shown <= value * 1.002, "{value} as {shown}");
+        }
+        assert_eq!(above(0.25), "0.25");
+    }
+}

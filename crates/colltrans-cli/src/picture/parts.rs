@@ -1,0 +1,237 @@
+//! A picture of parts that need not be convex.
+//!
+//! Which faces are seen, and which pieces of which edges, is decided by a buffer of depths
+//! ([`super::raster`]), to half a pixel: for any surfaces, in any position, in time that grows with
+//! faces and pixels. Drawn are outlines (edges between faces that look towards the viewer and away)
+//! and creases (edges that bend by more than [`SMOOTH`]), and what of them is hidden as dashes where
+//! there are few.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use colltrans::glam::{DVec2, DVec3};
+
+use super::layout::{Layout, working_size};
+use super::notes::Notes;
+use super::raster::Raster;
+use super::solid::{Paint, SHADES, SMOOTH, Solid, brightness};
+use super::story::{Story, components, quantity, short};
+use super::svg::{Page, Stroke};
+use super::view::View;
+use super::{Cast, FIXED, MOVING};
+use crate::solid::{Answer, Kind, Question, Stop};
+
+/// Hidden edges are drawn if no more edges than this are drawn at all.
+const FEW_EDGES: usize = 600;
+/// Depths may be off by this part of the size of what is shown.
+const SLACK: f64 = 1e-4;
+/// Shades of the moving part follow those of the fixed one.
+const MOVING_TONES: usize = SHADES + 1;
+
+/// The SVG file of an answer.
+pub(crate) fn draw_solids(question: &Question<'_>, answer: &Answer<'_>) -> String {
+    let direction = question.direction;
+    let story = story(question, answer);
+    let (vertices, triangles) = question.moving.surface(&question.moving_pose, story.origin);
+    let moving = Solid::of_triangles(vertices, &triangles);
+    let (vertices, fixed_triangles) = question.fixed.surface(&question.fixed_pose, story.origin);
+    let fixed = Solid::of_triangles(vertices, &fixed_triangles);
+    let cast = Cast::placed(&moving, fixed, direction, &story);
+    let unit = direction.normalize();
+    let view = View::choose([&cast.stop, &cast.fixed], unit, story.normal);
+    let layout = Layout::of(&cast, &story, &view);
+    let eye = Eye { view: &view, layout: &layout };
+    let mut page = Page::new(layout.window);
+    page.open_group(r#"clip-path="url(#window)""#);
+    eye.draw(&mut page, &cast, [&edges(&triangles), &edges(&fixed_triangles)]);
+    page.close_group();
+    Notes { cast: &cast, story: &story, layout: &layout, view: &view }.draw(&mut page, unit);
+    page.finish(layout.size, layout.window, &story.headline)
+}
+
+/// What the picture has to tell.
+fn story(question: &Question<'_>, answer: &Answer<'_>) -> Story {
+    let length = question.direction.length();
+    let mut details = Vec::new();
+    let mut touching = None;
+    let headline = match &answer.kind {
+        Kind::Free => "Free: nothing stops it along d".to_owned(),
+        Kind::Overlapping => {
+            details.extend(answer.overlaps.first().map(|overlap| {
+                let depth = overlap.depth.map_or("none".into(), short);
+                format!("tolerance that would part them: {depth}")
+            }));
+            "Overlapping: the parts overlap now".to_owned()
+        }
+        Kind::Blocked(stop) => {
+            touching = Some(stop);
+            let [moving, fixed] = [stop.moving.file, stop.fixed.file].map(name);
+            details
+                .push(format!("{moving} touches {fixed}; normal n = {}", components(stop.normal)));
+            format!("Blocked at {}", quantity(nominal(stop, answer), length))
+        }
+    };
+    let exit =
+        answer.exit.map_or(String::new(), |exit| format!("; exit at {}", quantity(exit, length)));
+    details.push(format!("tolerance {}{exit}", short(answer.tolerance)));
+    Story {
+        origin: touching.map_or(question.fixed_pose.translation(), |stop| stop.point),
+        stop: touching.map_or(0.0, |stop| nominal(stop, answer) * length),
+        normal: touching.map_or(DVec3::ZERO, |stop| stop.normal),
+        touches: touching.is_some(),
+        features: None,
+        margin: None,
+        way: touching.map_or("d".into(), |stop| quantity(nominal(stop, answer), length)),
+        headline,
+        details,
+    }
+}
+
+/// A file without its folder.
+fn name(file: &Path) -> String {
+    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Without the rounding error of a touch.
+fn nominal(stop: &Stop<'_>, answer: &Answer<'_>) -> f64 {
+    if stop.nominal.abs() <= answer.error { 0.0 } else { stop.nominal }
+}
+
+/// Two ends, and the faces at the edge.
+type Edge = ([u32; 2], Vec<u32>);
+
+/// All edges, in the order of their first appearance.
+fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
+    let mut place = HashMap::with_capacity(triangles.len() * 3 / 2);
+    let mut edges: Vec<Edge> = Vec::new();
+    for (face, &[a, b, c]) in triangles.iter().enumerate() {
+        for [p, q] in [[a, b], [b, c], [c, a]] {
+            let ends = [p.min(q), p.max(q)];
+            let index = *place.entry(ends).or_insert_with(|| {
+                edges.push((ends, Vec::with_capacity(2)));
+                edges.len() - 1
+            });
+            edges[index].1.push(face as u32);
+        }
+    }
+    edges
+}
+
+/// From the scene to the page.
+struct Eye<'a> {
+    view: &'a View,
+    layout: &'a Layout,
+}
+
+/// Edges that are drawn.
+#[derive(Default)]
+struct Drawn {
+    outline: Vec<[DVec3; 2]>,
+    creases: Vec<[DVec3; 2]>,
+}
+
+impl Eye<'_> {
+    /// A point on the page, and how near it is.
+    fn see(&self, p: DVec3) -> DVec3 {
+        self.layout.on_page(self.view.project(p)).extend(p.dot(self.view.toward))
+    }
+
+    fn draw(&self, page: &mut Page, cast: &Cast, [moving, fixed]: [&[Edge]; 2]) {
+        let mut raster = Raster::new(self.layout.window);
+        self.rasterise(&mut raster, &cast.fixed, 0);
+        self.rasterise(&mut raster, &cast.stop, MOVING_TONES);
+        for (tone, tiles) in raster.tiles().into_iter().enumerate() {
+            let paint = if tone < MOVING_TONES { &FIXED } else { &MOVING };
+            let colour = paint.shade(tone % MOVING_TONES);
+            // The thin rim closes the seams that anti-aliasing leaves.
+            let look = format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.7""#);
+            page.tiles(&look, &tiles);
+        }
+        let size = working_size(cast.stop.ball().1, cast.fixed.ball().1, cast.way.length());
+        let slack = SLACK * size;
+        self.lines(page, &raster, (&cast.fixed, fixed), &FIXED, slack);
+        self.lines(page, &raster, (&cast.stop, moving), &MOVING, slack);
+        if let Some(start) = &cast.start {
+            self.ghost(page, &raster, (start, moving), slack);
+        }
+    }
+
+    /// Faces that look towards the viewer, and those of surfaces that are seen from behind.
+    fn rasterise(&self, raster: &mut Raster, body: &Solid, first_tone: usize) {
+        let seen: Vec<DVec3> = body.vertices.iter().map(|&v| self.see(v)).collect();
+        for (face, &area) in body.faces.iter().zip(&body.areas) {
+            let normal = area.normalize_or_zero();
+            let facing = normal * normal.dot(self.view.toward).signum();
+            let lit = brightness(self.view, facing);
+            let tone = first_tone + (lit * SHADES as f64).round() as usize;
+            raster.draw([0, 1, 2].map(|k| seen[face[k] as usize]), tone as u8);
+        }
+    }
+
+    fn lines(
+        &self,
+        page: &mut Page,
+        raster: &Raster,
+        (body, edges): (&Solid, &[Edge]),
+        paint: &Paint,
+        slack: f64,
+    ) {
+        let drawn = self.drawn(body, edges);
+        let split = |edges: &[[DVec3; 2]]| -> [Vec<[DVec2; 2]>; 2] {
+            let mut parts = [Vec::new(), Vec::new()];
+            for &edge in edges {
+                for (all, some) in parts.iter_mut().zip(raster.split(edge, slack)) {
+                    all.extend(some);
+                }
+            }
+            parts
+        };
+        let [creases, hidden] = split(&drawn.creases);
+        let [outline, behind] = split(&drawn.outline);
+        if drawn.outline.len() + drawn.creases.len() <= FEW_EDGES {
+            let dashes = Stroke::dashed(paint.fine, 0.6, "2.5 3");
+            page.segments(dashes, hidden.into_iter().chain(behind));
+        }
+        page.segments(Stroke::solid(paint.line, 0.9), creases);
+        page.segments(Stroke::solid(paint.line, 1.5), outline);
+    }
+
+    /// Where the moving part starts: light, and hidden by what is before it.
+    fn ghost(
+        &self,
+        page: &mut Page,
+        scene: &Raster,
+        (start, edges): (&Solid, &[Edge]),
+        slack: f64,
+    ) {
+        let mut own = Raster::new(self.layout.window);
+        self.rasterise(&mut own, start, 0);
+        own.keep_before(scene);
+        let drawn = self.drawn(start, edges);
+        let mut lines = Vec::new();
+        for edge in drawn.outline.iter().chain(&drawn.creases) {
+            lines.extend(own.split(*edge, slack)[0].iter().copied());
+        }
+        page.open_group(r#"opacity="0.75""#);
+        let tiles: Vec<[usize; 4]> = own.tiles().concat();
+        page.tiles(r##"fill="#dce7f5" fill-opacity="0.55" stroke="none""##, &tiles);
+        page.segments(Stroke::solid(MOVING.fine, 0.7), lines);
+        page.close_group();
+    }
+
+    fn drawn(&self, body: &Solid, edges: &[Edge]) -> Drawn {
+        let mut drawn = Drawn::default();
+        let normal = |f: u32| body.areas[f as usize].normalize_or_zero();
+        let is_front = |f: u32| body.areas[f as usize].dot(self.view.toward) > 0.0;
+        for (ends, faces) in edges {
+            let is_outline = match faces[..] {
+                [f, g] if is_front(f) != is_front(g) => true,
+                [f, g] if normal(f).dot(normal(g)) >= SMOOTH => continue,
+                _ => false,
+            };
+            let line = ends.map(|v| self.see(body.vertices[v as usize]));
+            if is_outline { &mut drawn.outline } else { &mut drawn.creases }.push(line);
+        }
+        drawn
+    }
+}

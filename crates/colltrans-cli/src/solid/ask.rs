@@ -1,0 +1,237 @@
+//! The question between two placed bodies, and its answer.
+
+use std::path::Path;
+
+use colltrans::glam::DVec3;
+use colltrans::{
+    Cast, Feature, Pose, QueryError, Solid, SolidClearance, SolidContact, SolidOptions,
+    StartOverlap,
+};
+
+use super::{Body, Piece};
+use crate::numbers::counted;
+
+/// Default tolerance, in multiples of the precisions of both files together: both ends of a fit
+/// are off by less than one of them, and a slanting facet makes more of it.
+const PRECISIONS: f64 = 2.0;
+/// What rounding alone can do to a length, as a part of the scene's size.
+const ROUNDING: f64 = 1e-14;
+
+/// How far a body can move from where it is.
+#[derive(Clone, Copy)]
+pub(crate) struct Question<'a> {
+    pub(crate) moving: &'a Body,
+    pub(crate) moving_pose: Pose,
+    pub(crate) fixed: &'a Body,
+    pub(crate) fixed_pose: Pose,
+    pub(crate) direction: DVec3,
+    /// `None` for what the files' precision asks for.
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) ignore_start_overlaps: bool,
+}
+
+/// What can be said.
+pub(crate) struct Answer<'a> {
+    pub(crate) kind: Kind<'a>,
+    /// The tolerance that was used, a length.
+    pub(crate) tolerance: f64,
+    /// The translation after which the bodies never meet; `None` if they never do.
+    pub(crate) exit: Option<f64>,
+    /// What overlaps at the start, the deepest first; looked at where it matters.
+    pub(crate) overlaps: Vec<Overlap<'a>>,
+    /// What could not be shrunk as the tolerance asks for.
+    pub(crate) notes: Vec<String>,
+    /// How far lengths may be off by the precision of the files and by rounding.
+    pub(crate) error: f64,
+}
+
+/// How it ends.
+pub(crate) enum Kind<'a> {
+    Free,
+    Blocked(Stop<'a>),
+    Overlapping,
+}
+
+/// What stops the moving body.
+pub(crate) struct Stop<'a> {
+    /// Of the shrunk bodies, in multiples of the direction.
+    pub(crate) distance: f64,
+    /// Of the facets in their true place.
+    pub(crate) nominal: f64,
+    pub(crate) normal: DVec3,
+    /// On the fixed body.
+    pub(crate) point: DVec3,
+    pub(crate) moving: Touch<'a>,
+    pub(crate) fixed: Touch<'a>,
+}
+
+/// What of a file is touched: a feature by the numbers of the file.
+pub(crate) struct Touch<'a> {
+    pub(crate) file: &'a Path,
+    pub(crate) feature: Feature,
+}
+
+/// Two files that overlap where they are.
+pub(crate) struct Overlap<'a> {
+    pub(crate) moving: &'a Path,
+    pub(crate) fixed: &'a Path,
+    /// The least tolerance with which they would not; `None` if there is none.
+    pub(crate) depth: Option<f64>,
+}
+
+impl<'a> Question<'a> {
+    /// Pairs of files that may be looked at.
+    pub(crate) fn pairs(&self) -> usize {
+        self.moving.pieces.len() * self.fixed.pieces.len()
+    }
+
+    /// The answer; `done` is called after each pair of files that was looked at.
+    pub(crate) fn ask(&self, done: impl FnMut()) -> Result<Answer<'a>, QueryError> {
+        let tolerance = self.tolerance_used()?;
+        let cast = self.cast(self.moving.solid(), self.fixed.solid(), tolerance)?;
+        let kind = match cast.clearance() {
+            SolidClearance::Free => Kind::Free,
+            SolidClearance::Blocked { distance, nominal, contact } => {
+                Kind::Blocked(self.stop(distance, nominal, &contact))
+            }
+            SolidClearance::Overlapping { .. } => Kind::Overlapping,
+        };
+        let overlaps = if self.ignore_start_overlaps || matches!(kind, Kind::Overlapping) {
+            self.overlaps(tolerance, done)?
+        } else {
+            Vec::new()
+        };
+        Ok(Answer {
+            kind,
+            tolerance,
+            exit: cast.exit(),
+            overlaps,
+            notes: self.unshrunk(tolerance),
+            error: self.moving.precision() + self.fixed.precision() + ROUNDING * self.size(),
+        })
+    }
+
+    fn cast<'s>(
+        &self,
+        moving: &'s Solid,
+        fixed: &'s Solid,
+        tolerance: f64,
+    ) -> Result<Cast<'s, Solid>, QueryError> {
+        let start_overlap =
+            if self.ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+        let options =
+            SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() };
+        Cast::new(moving.at(self.moving_pose), fixed.at(self.fixed_pose), self.direction)?
+            .with_options(options)
+    }
+
+    /// What was asked for, or what the files and the poses ask for.
+    fn tolerance_used(&self) -> Result<f64, QueryError> {
+        if let Some(tolerance) = self.tolerance {
+            return Ok(tolerance);
+        }
+        let moving = self.moving.solid().at(self.moving_pose);
+        let fixed = self.fixed.solid().at(self.fixed_pose);
+        let of_poses = Cast::new(moving, fixed, self.direction)?.tolerance();
+        let of_files = PRECISIONS * (self.moving.precision() + self.fixed.precision());
+        Ok(of_files.max(of_poses))
+    }
+
+    fn stop(&self, distance: f64, nominal: f64, contact: &SolidContact) -> Stop<'a> {
+        let [moving, fixed] = contact.triangles;
+        Stop {
+            distance,
+            nominal,
+            normal: contact.normal,
+            point: contact.point_on_fixed,
+            moving: self.moving.touch(moving, contact.moving_feature),
+            fixed: self.fixed.touch(fixed, contact.fixed_feature),
+        }
+    }
+
+    /// All pairs of files, because bodies overlap exactly where pieces of them do.
+    fn overlaps(
+        &self,
+        tolerance: f64,
+        mut done: impl FnMut(),
+    ) -> Result<Vec<Overlap<'a>>, QueryError> {
+        let mut found = Vec::new();
+        for moving in &self.moving.pieces {
+            for fixed in &self.fixed.pieces {
+                let cast = self.cast(&moving.solid, &fixed.solid, tolerance)?;
+                if cast.overlaps() {
+                    let (moving, fixed) = (moving.file.as_path(), fixed.file.as_path());
+                    found.push(Overlap { moving, fixed, depth: cast.depth() });
+                }
+                done();
+            }
+        }
+        let depth = |overlap: &Overlap| overlap.depth.unwrap_or(f64::INFINITY);
+        found.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+        Ok(found)
+    }
+
+    /// What shrinking by half the tolerance cannot do as it should, file by file.
+    fn unshrunk(&self, tolerance: f64) -> Vec<String> {
+        if tolerance == 0.0 {
+            return Vec::new();
+        }
+        let pieces = self.moving.pieces.iter().chain(&self.fixed.pieces);
+        pieces.filter_map(|piece| piece.unshrunk(tolerance / 2.0)).collect()
+    }
+
+    /// The largest coordinate.
+    fn size(&self) -> f64 {
+        let reach = |body: &Body, pose: &Pose| {
+            let corners = body.solid().bounds().map(DVec3::length);
+            corners[0].max(corners[1]) + pose.translation().length()
+        };
+        reach(self.moving, &self.moving_pose).max(reach(self.fixed, &self.fixed_pose))
+    }
+}
+
+impl Body {
+    /// The file of a triangle, and a feature in its numbers.
+    fn touch(&self, triangle: u32, feature: Feature) -> Touch<'_> {
+        // Pieces are numbered through, each from one after the largest number of those before.
+        let corner = self.solid().triangles()[triangle as usize][0] as usize;
+        let (mut used, mut vertex, mut face) = (0, 0, 0);
+        let after = |indices: &[u32]| indices.iter().max().map_or(0, |last| last + 1);
+        let mut owner = &self.pieces[0];
+        for piece in &self.pieces {
+            owner = piece;
+            used += piece.solid.vertices().len();
+            if corner < used {
+                break;
+            }
+            vertex += after(piece.solid.vertex_indices());
+            face += after(piece.solid.facet_indices());
+        }
+        let feature = match feature {
+            Feature::Vertex(v) => Feature::Vertex(v - vertex),
+            Feature::Edge(ends) => Feature::Edge(ends.map(|v| v - vertex)),
+            Feature::Face(f) => Feature::Face(f - face),
+        };
+        Touch { file: &owner.file, feature }
+    }
+}
+
+impl Piece {
+    fn unshrunk(&self, amount: f64) -> Option<String> {
+        let report = self.solid.shrink_report(amount);
+        let mut text = Vec::new();
+        if let Some(first) = report.stuck.first() {
+            let vertices = counted(report.stuck.len(), "vertex stays", "vertices stay");
+            text.push(format!("{vertices} where it is, as in a saddle (vertex {first})"));
+        }
+        if let Some(first) = report.inverted.first() {
+            let faces = counted(report.inverted.len(), "face turns", "faces turn");
+            text.push(format!(
+                "{faces} inside out, because the part is thinner than the tolerance (face {first})"
+            ));
+        }
+        (!text.is_empty()).then(|| {
+            format!("{}: not all of it can be shrunk: {}", self.file.display(), text.join("; "))
+        })
+    }
+}

@@ -1,0 +1,451 @@
+//! `colltrans clear`, and solids in `batch` and `info`: small parts that the tests write.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::Output;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::{colltrans, data, json, stderr, stdout};
+
+type Point = [f64; 3];
+
+/// A surface of polygons.
+#[derive(Default)]
+struct Part {
+    vertices: Vec<Point>,
+    faces: Vec<Vec<usize>>,
+}
+
+impl Part {
+    /// What lies between two outlines, which run counter-clockwise, from below to above.
+    fn prism(outline: &[[f64; 2]], z: [f64; 2]) -> Self {
+        let n = outline.len();
+        let mut part = Self::default();
+        for z in z {
+            part.vertices.extend(outline.iter().map(|[x, y]| [*x, *y, z]));
+        }
+        part.faces = (0..n).map(|i| vec![i, (i + 1) % n, n + (i + 1) % n, n + i]).collect();
+        part.faces.extend([(0..n).rev().collect(), (n..2 * n).collect()]);
+        part
+    }
+
+    fn cuboid(low: Point, high: Point) -> Self {
+        let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
+        Self::prism(&corners, [low[2], high[2]])
+    }
+
+    fn pin(radius: f64, sides: usize, z: [f64; 2]) -> Self {
+        Self::prism(&circle(radius, sides), z)
+    }
+
+    /// A plate from -4 to 4 with a round hole, a multiple of four sides.
+    fn plate(radius: f64, sides: usize, z: [f64; 2]) -> Self {
+        let corners = [[4.0, 4.0], [-4.0, 4.0], [-4.0, -4.0], [4.0, -4.0]];
+        let outline: Vec<[f64; 2]> = corners.into_iter().chain(circle(radius, sides)).collect();
+        let n = outline.len();
+        let mut part = Self::default();
+        for z in z {
+            part.vertices.extend(outline.iter().map(|[x, y]| [*x, *y, z]));
+        }
+        let rim = |i: usize| 4 + i % sides;
+        for i in 0..4 {
+            part.faces.push(vec![i, (i + 1) % 4, n + (i + 1) % 4, n + i]);
+            let after = rim((i + 1) * sides / 4);
+            part.faces.push(vec![n + i, n + (i + 1) % 4, n + after]);
+            part.faces.push(vec![i, after, (i + 1) % 4]);
+        }
+        for i in 0..sides {
+            let (corner, a, b) = (i * 4 / sides, rim(i), rim(i + 1));
+            part.faces.push(vec![b, a, n + a, n + b]);
+            part.faces.push(vec![n + corner, n + b, n + a]);
+            part.faces.push(vec![corner, a, b]);
+        }
+        part
+    }
+
+    fn write(&self, folder: &Path, name: &str) {
+        let mut text = format!("OFF\n{} {} 0\n", self.vertices.len(), self.faces.len());
+        for [x, y, z] in &self.vertices {
+            let _ = writeln!(text, "{x} {y} {z}");
+        }
+        for face in &self.faces {
+            let corners: Vec<String> = face.iter().map(ToString::to_string).collect();
+            let _ = writeln!(text, "{} {}", face.len(), corners.join(" "));
+        }
+        std::fs::write(folder.join(name), text).unwrap();
+    }
+
+    /// Binary STL, in which each triangle has its corners to itself, off by up to one step of single
+    /// precision.
+    fn write_with_twins(&self, folder: &Path, name: &str) {
+        let fans = self.faces.iter().flat_map(|f| f[1..].windows(2).map(|e| [f[0], e[0], e[1]]));
+        let triangles: Vec<[usize; 3]> = fans.collect();
+        let mut bytes = vec![0; 80];
+        bytes.extend((triangles.len() as u32).to_le_bytes());
+        for (index, triangle) in triangles.iter().enumerate() {
+            bytes.extend([0; 12]);
+            for &corner in triangle {
+                for c in self.vertices[corner] {
+                    let c = c as f32;
+                    let twin = if index % 3 == 0 && c != 0.0 { c.next_up() } else { c };
+                    bytes.extend(twin.to_le_bytes());
+                }
+            }
+            bytes.extend([0; 2]);
+        }
+        std::fs::write(folder.join(name), bytes).unwrap();
+    }
+}
+
+fn circle(radius: f64, sides: usize) -> Vec<[f64; 2]> {
+    let corner = |i: usize| {
+        let (sin, cos) = (TAU * i as f64 / sides as f64).sin_cos();
+        [radius * cos, radius * sin]
+    };
+    (0..sides).map(corner).collect()
+}
+
+/// A pin of radius 1 above a plate whose hole has the same radius and other sides; a block; an open
+/// block; a file that is none.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    Part::pin(1.0, 32, [0.0, 6.0]).write(folder.path(), "pin.off");
+    Part::plate(1.0, 48, [-2.0, 0.0]).write(folder.path(), "plate.off");
+    let block = |low, high| Part::cuboid(low, high);
+    block([-1.0; 3], [1.0; 3]).write(folder.path(), "block.off");
+    block([-9.0, -9.0, -2.0], [9.0, 9.0, -1.0]).write(folder.path(), "table.off");
+    let mut open = block([-1.0; 3], [1.0; 3]);
+    open.faces.pop();
+    open.write(folder.path(), "open.off");
+    std::fs::write(folder.path().join("broken.off"), "OFF\n3 1 0\n0 0 zero\n").unwrap();
+    folder
+}
+
+fn run(folder: &Path, words: &str, more: &[&str]) -> Output {
+    colltrans(folder).arg("clear").args(words.split_whitespace()).args(more).output().unwrap()
+}
+
+/// The answer as JSON, and what is said beside it.
+fn ask(folder: &Path, words: &str) -> (Value, String) {
+    let output = run(folder, words, &["--json"]);
+    assert_eq!(output.status.code(), Some(0), "{words}: {}", stderr(&output));
+    (json(&stdout(&output)), stderr(&output))
+}
+
+fn refused(folder: &Path, words: &str, code: i32, parts: &[&str]) {
+    let output = run(folder, words, &[]);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{words}: {message}");
+    assert_eq!(stdout(&output), "");
+    for part in parts {
+        assert!(message.contains(part), "{part:?} is not in {message}");
+    }
+}
+
+fn number(value: &Value, field: &str) -> f64 {
+    value[field].as_f64().unwrap_or_else(|| panic!("{field} in {value}"))
+}
+
+fn fields(value: &Value) -> Vec<&str> {
+    let mut names: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn a_bolt_stops_where_its_head_does() {
+    let words = "bolt.stl --from plate.off --direction -z --moving-pose 0,0,7";
+    let (answer, notes) = ask(&data(), words);
+    assert_eq!(notes, "");
+    let expected = [
+        "distance",
+        "exit",
+        "fixed",
+        "moving",
+        "nominal",
+        "normal",
+        "outcome",
+        "point",
+        "tolerance",
+    ];
+    assert_eq!(fields(&answer), expected);
+    assert_eq!(answer["outcome"], "blocked");
+    assert!((number(&answer, "nominal") - 7.0).abs() < 1e-9, "{answer}");
+    let tolerance = number(&answer, "tolerance");
+    assert!(tolerance > 1e-7 && tolerance < 1e-5, "single precision: {answer}");
+    assert!((number(&answer, "distance") - 7.0 - tolerance).abs() < 1e-9, "{answer}");
+    assert_eq!(number(&answer, "exit"), 12.0, "the head's top leaves the plate's underside");
+    assert_eq!((&answer["moving"], &answer["fixed"]), (&"bolt.stl".into(), &"plate.off".into()));
+    assert_eq!(answer["normal"], serde_json::json!([0.0, 0.0, -1.0]));
+    let up = words.replace("-z", "z");
+    assert_eq!(ask(&data(), &up).0["outcome"], "free");
+    let text = stdout(&run(&data(), words, &[]));
+    assert!(text.starts_with("blocked\n  nominal      7 times the direction, a length of 7\n"));
+    for part in ["distance     7.0000", "of bolt.stl", "of plate.off", "from the files' precision"]
+    {
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+}
+
+#[test]
+fn the_page_shows_what_is_printed() {
+    let root = data().join("..");
+    let page = std::fs::read_to_string(root.join("docs/clear.md")).unwrap();
+    let (_, rest) = page.split_once("```sh\ncolltrans clear ").unwrap();
+    let (command, rest) = rest.split_once(" --picture bolt.svg\n```\n\n```text\n").unwrap();
+    let (shown, _) = rest.split_once("```").unwrap();
+    assert_eq!(stdout(&run(&root, command, &[])), shown);
+}
+
+#[test]
+fn a_pin_goes_through_a_hole_of_its_size_with_the_chord_errors_as_tolerance() {
+    let folder = folder();
+    let words = "pin.off --from plate.off --direction -z --moving-pose 0,0,3";
+    let (stopped, _) = ask(folder.path(), words);
+    assert_eq!(stopped["outcome"], "blocked", "by slivers of the sides");
+    assert!((number(&stopped, "nominal") - 3.0).abs() < 1e-9, "{stopped}");
+    let text = stdout(&run(folder.path(), &words.replace(",3", ",0"), &[]));
+    assert!(text.contains("(the parts touch)") && text.contains("chord errors"), "{text}");
+    let (free, _) = ask(folder.path(), &format!("{words} --tolerance 0.01"));
+    assert_eq!(fields(&free), ["exit", "outcome", "tolerance"], "{free}");
+    assert_eq!((&free["outcome"], number(&free, "tolerance")), (&"free".into(), 0.01));
+    // Beside the hole it stops, whatever is tolerated.
+    let beside = format!("{words} --tolerance 0.01").replace("0,0,3", "0.5,0,3");
+    assert_eq!(ask(folder.path(), &beside).0["outcome"], "blocked");
+}
+
+#[test]
+fn a_block_on_a_table() {
+    let folder = folder();
+    let (down, _) = ask(folder.path(), "block.off --from table.off --direction 0,0,-2");
+    assert_eq!(down["outcome"], "blocked");
+    assert!(number(&down, "nominal").abs() < 1e-12, "{down}");
+    for aside in ["z", "x", "1,1,0", "-y"] {
+        let words = format!("block.off --from table.off --direction {aside}");
+        assert_eq!(ask(folder.path(), &words).0["outcome"], "free", "{aside}");
+    }
+    let turned = "--moving-rpy 0,0,30 --fixed-rpy 90,0,0 --fixed-pose 0,0.0,0 --fixed-scale 2";
+    let (turned, _) =
+        ask(folder.path(), &format!("block.off --from table.off --direction y {turned}"));
+    // The table stands at y from 2 to 4; the block's corner is at cos 30 + sin 30.
+    let expected = 2.0 - (30.0_f64.to_radians().cos() + 0.5);
+    assert!((number(&turned, "nominal") - expected).abs() < 1e-9, "{turned}");
+}
+
+#[test]
+fn overlaps_are_told_file_by_file() {
+    let folder = folder();
+    Part::cuboid([-1.0, -1.0, 2.0], [1.0, 1.0, 3.0]).write(folder.path(), "lid.off");
+    let words =
+        "block.off lid.off --from plate.off table.off --direction z --moving-pose 0,0,-0.25";
+    let (answer, _) = ask(folder.path(), words);
+    assert_eq!(answer["outcome"], "overlapping");
+    let overlaps = answer["start_overlaps"].as_array().unwrap();
+    let pairs: Vec<_> = overlaps.iter().map(|o| (&o["moving"], &o["fixed"])).collect();
+    assert_eq!(pairs.len(), 2, "{answer}");
+    assert!(pairs.contains(&(&"block.off".into(), &"table.off".into())), "{answer}");
+    assert!(pairs.contains(&(&"block.off".into(), &"plate.off".into())), "{answer}");
+    assert_eq!(answer["moving"], "block.off");
+    let table = overlaps.iter().find(|o| o["fixed"] == "table.off").unwrap();
+    assert!((number(table, "depth") - 0.25).abs() < 1e-9, "{answer}");
+    assert!(answer.get("distance").is_none() && answer.get("point").is_none(), "{answer}");
+    let alone = "block.off --from table.off --direction z --moving-pose 0,0,-0.25";
+    // That tolerance parts them; then the block rests.
+    let (up, _) = ask(folder.path(), &format!("{alone} --tolerance 0.2501"));
+    assert_eq!(up["outcome"], "free");
+    let down = format!("{alone} --tolerance 0.2501").replace("direction z", "direction -z");
+    assert!(number(&ask(folder.path(), &down).0, "distance") < 1e-3);
+    let (ignored, _) = ask(folder.path(), &format!("{alone} --ignore-start-overlaps"));
+    assert_eq!(ignored["outcome"], "free");
+    assert_eq!(ignored["start_overlaps"][0]["fixed"], "table.off", "said all the same");
+    let text = stdout(&run(folder.path(), alone, &[]));
+    for part in ["overlapping: ", "block.off in table.off", "0.25", "--ignore-start-overlaps"] {
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+}
+
+#[test]
+fn the_files_that_touch_are_named() {
+    let folder = folder();
+    Part::cuboid([5.0, 5.0, 3.0], [6.0, 6.0, 4.0]).write(folder.path(), "near.off");
+    Part::cuboid([-6.0, -6.0, 5.0], [-5.0, -5.0, 6.0]).write(folder.path(), "high.off");
+    let words = "block.off high.off near.off --from table.off plate.off --direction -z \
+                 --moving-pose 0,0,9";
+    let (answer, _) = ask(folder.path(), words);
+    // The block is 8 above the plate, the near one 13 above the table.
+    assert!((number(&answer, "nominal") - 8.0).abs() < 1e-9, "{answer}");
+    assert_eq!((&answer["moving"], &answer["fixed"]), (&"block.off".into(), &"plate.off".into()));
+    let aside = words.replace("0,0,9", "-10.5,-10.5,9").replace("-z --", "-z --tolerance 0 --");
+    let (answer, _) = ask(folder.path(), &aside);
+    assert!((number(&answer, "nominal") - 13.0).abs() < 1e-9, "{answer}");
+    assert_eq!((&answer["moving"], &answer["fixed"]), (&"near.off".into(), &"table.off".into()));
+    // The numbers of features are those of the file.
+    let text = stdout(&run(folder.path(), &aside, &[]));
+    let line = text.lines().find(|line| line.contains("of near.off")).unwrap();
+    let last = line.split_whitespace().filter_map(|word| word.parse::<usize>().ok()).max().unwrap();
+    assert!(last < 8, "{line}");
+}
+
+#[test]
+fn twins_in_an_stl_file_are_merged_and_said() {
+    let folder = folder();
+    Part::plate(1.5, 24, [-2.0, 0.0]).write_with_twins(folder.path(), "plate.stl");
+    let words = "pin.off --from plate.stl --direction -z --moving-pose 0,0,3";
+    let (answer, notes) = ask(folder.path(), words);
+    assert_eq!(answer["outcome"], "free", "{answer}");
+    assert!(notes.contains("note: plate.stl: ") && notes.contains("merged"), "{notes}");
+    let tolerance = number(&answer, "tolerance");
+    assert!(tolerance > 1e-7 && tolerance < 1e-5, "of single precision: {answer}");
+    refused(
+        folder.path(),
+        &format!("{words} --merge-tolerance 0"),
+        3,
+        &["plate.stl", "not closed"],
+    );
+    let (exact, _) = ask(folder.path(), &words.replace("plate.stl", "plate.off"));
+    assert!(number(&exact, "tolerance") < 1e-12, "of double precision: {exact}");
+}
+
+#[test]
+fn open_surfaces_are_refused_unless_they_are_meant() {
+    let folder = folder();
+    let words = "open.off --from table.off --direction -z --moving-pose 0,0,4";
+    let parts = ["open.off", "not closed: 4 edges", "--merge-tolerance", "--open"];
+    refused(folder.path(), words, 3, &parts);
+    let (answer, notes) = ask(folder.path(), &format!("{words} --open"));
+    assert!((number(&answer, "nominal") - 4.0).abs() < 1e-9, "{answer}");
+    assert!(notes.contains("open.off: an open surface (4 open edges)"), "{notes}");
+    // Its floor looks downwards: it blocks from there only.
+    let inside = "block.off --from open.off --direction -z --moving-scale 0.5 --open";
+    assert_eq!(ask(folder.path(), inside).0["outcome"], "free", "nothing is inside it");
+    let below = format!("{inside} --moving-pose 0,0,-4").replace("-z", "z");
+    assert!((number(&ask(folder.path(), &below).0, "nominal") - 2.5).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let folder = folder();
+    let folder = folder.path();
+    refused(folder, "none.off --from table.off --direction z", 3, &["none.off", "cannot be read"]);
+    refused(folder, "block.off --from broken.off --direction z", 3, &["broken.off", "`zero`"]);
+    refused(folder, "block.off --from table.off", 2, &["--direction"]);
+    refused(folder, "block.off --direction z", 2, &["--from"]);
+    refused(folder, "--from table.off --direction z", 2, &["MOVING"]);
+    let words = "block.off --from table.off --direction z";
+    refused(folder, &format!("{words} --tolerance -1"), 2, &["negative"]);
+    refused(folder, &format!("{words} --graze-tolerance 1"), 2, &["--graze-tolerance"]);
+    refused(folder, &format!("{words} --moving-scale 0"), 2, &["positive"]);
+    refused(folder, &words.replace(" z", " 0,0,0"), 2, &["direction"]);
+    refused(folder, &format!("{words} --picture a.png"), 2, &["a.svg"]);
+    let help = stdout(&run(folder, "--help", &[]));
+    for part in ["Examples:", "Exit codes:", "in the unit", "start_overlaps", "nominal"] {
+        assert!(help.contains(part), "{part:?} is not in {help}");
+    }
+}
+
+#[test]
+fn cast_says_who_takes_parts_that_are_not_convex() {
+    let folder = folder();
+    let words = ["cast", "block.off", "plate.off", "--direction", "z"];
+    let output = colltrans(folder.path()).args(words).output().unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    let message = stderr(&output);
+    assert!(
+        message.contains("a hole through it") && message.contains("`colltrans clear`"),
+        "{message}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_picture_never_overwrites_a_part() {
+    let folder = folder();
+    std::fs::hard_link(folder.path().join("plate.off"), folder.path().join("hard.svg")).unwrap();
+    let before = std::fs::read(folder.path().join("plate.off")).unwrap();
+    let words = "block.off --from table.off plate.off --direction z --picture hard.svg";
+    refused(folder.path(), words, 3, &["hard.svg", "is the same file as plate.off"]);
+    assert!(std::fs::read(folder.path().join("plate.off")).unwrap() == before);
+}
+
+#[test]
+fn batches_take_solids() {
+    let folder = folder();
+    let solid = |name: &str| format!(r#"{{"solid":"{name}"}}"#);
+    let line = |id: u32, moving: &str, fixed: &str, more: &str| {
+        format!(
+            r#"{{"id":{id},"moving":{moving},"fixed":{fixed},"direction":[0,0,-1],
+            "moving_pose":{{"translation":[0,0,3]}}{more}}}"#
+        )
+        .replace('\n', " ")
+    };
+    let (pin, plate, mesh) = (solid("pin.off"), solid("plate.off"), r#"{"mesh":"block.off"}"#);
+    let clearance = r#","query":"clearance""#;
+    let lines = [
+        line(0, &pin, &plate, clearance),
+        line(1, &pin, &plate, r#","query":"clearance","tolerance":0.01"#),
+        line(2, mesh, &plate, ""),
+        line(3, mesh, mesh, clearance),
+        line(4, &pin, &plate, r#","query":"contact""#),
+        line(5, &pin, &plate, r#","graze_tolerance":0.1"#),
+        line(6, mesh, mesh, r#","tolerance":0.1"#),
+        line(7, r#"{"solid":"open.off"}"#, &plate, ""),
+        line(8, r#"{"solid":"pin.off","hull":true}"#, &plate, ""),
+        line(9, &plate, &plate, "").replace("[0,0,3]", "[1,0,2.5]"),
+    ];
+    std::fs::write(folder.path().join("queries.jsonl"), lines.join("\n")).unwrap();
+    let output = colltrans(folder.path()).args(["batch", "queries.jsonl"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let results: Vec<Value> = stdout(&output).lines().map(json).collect();
+    let outcomes: Vec<&str> = results.iter().map(|r| r["outcome"].as_str().unwrap()).collect();
+    assert_eq!(outcomes[..4], ["blocked", "free", "blocked", "blocked"], "{results:?}");
+    assert_eq!(outcomes[4..9], ["error"; 5], "{results:?}");
+    let names = ["distance", "exit", "id", "nominal", "normal", "outcome", "point", "tolerance"];
+    assert_eq!(fields(&results[0]), names);
+    assert!((number(&results[0], "nominal") - 3.0).abs() < 1e-9);
+    assert!((number(&results[2], "nominal") - 2.0).abs() < 1e-9, "block on plate");
+    assert!((number(&results[3], "distance") - 1.0).abs() < 1e-9, "as convex bodies");
+    for (result, word) in results[4..9].iter().zip([
+        "asked for their clearance",
+        "solids have `tolerance`",
+        "are for solids",
+        "not closed",
+        "`hull` is for a `mesh`",
+    ]) {
+        assert!(result["message"].as_str().unwrap().contains(word), "{result}");
+    }
+    assert_eq!(outcomes[9], "blocked");
+    let overlapping = lines[9].replace("2.5]", "0.5]");
+    std::fs::write(folder.path().join("queries.jsonl"), overlapping).unwrap();
+    let output = colltrans(folder.path()).args(["batch", "queries.jsonl"]).output().unwrap();
+    let result = json(&stdout(&output));
+    assert_eq!(result["outcome"], "overlapping");
+    assert_eq!(fields(&result["start_overlaps"][0]), ["depth"], "{result}");
+}
+
+#[test]
+fn info_speaks_of_holes_and_defects() {
+    let folder = folder();
+    let mut twice = Part::plate(1.0, 12, [0.0, 1.0]);
+    let count = twice.vertices.len();
+    let other = Part::cuboid([20.0; 3], [21.0; 3]);
+    twice.vertices.extend(other.vertices);
+    // The second shell is inside out.
+    twice.faces.extend(
+        other.faces.iter().map(|face| face.iter().rev().map(|v| v + count).collect::<Vec<_>>()),
+    );
+    twice.write(folder.path(), "two.off");
+    let info =
+        |name: &str| stdout(&colltrans(folder.path()).args(["info", name]).output().unwrap());
+    for (name, part) in [
+        ("plate.off", "solid        yes: 1 shell, 1 hole through"),
+        ("two.off", "solid        yes: 2 shells, 1 hole through"),
+        ("two.off", "mended       1 shell turned, inside out in the file"),
+        ("open.off", "solid        no: the surface is not closed: 4 edges"),
+    ] {
+        let text = info(name);
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+}

@@ -1,0 +1,197 @@
+//! Meshes of bodies that are not convex: turned parts, plates, bumpy balls. Vertices, and polygons
+//! that run counter-clockwise as seen from outside.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use crate::shapes::Mesh;
+
+impl Mesh {
+    /// The same, moved.
+    #[must_use]
+    pub fn translated(mut self, by: DVec3) -> Self {
+        self.vertices.iter_mut().for_each(|v| *v += by);
+        self
+    }
+
+    /// Both, side by side.
+    #[must_use]
+    pub fn joined(mut self, other: &Self) -> Self {
+        let base = self.vertices.len() as u32;
+        self.vertices.extend_from_slice(&other.vertices);
+        self.faces.extend(other.faces.iter().map(|f| f.iter().map(|v| v + base).collect()));
+        self
+    }
+
+    /// The same, inside out.
+    #[must_use]
+    pub fn reversed(mut self) -> Self {
+        self.faces.iter_mut().for_each(|f| f.reverse());
+        self
+    }
+}
+
+/// A solid of revolution about `z`, with so many sides, from a closed profile of `[radius, height]`
+/// that runs counter-clockwise with radii to the right and heights upwards. Points at radius 0 are on
+/// the axis.
+///
+/// Side `k` has its corner at the angle `TAU k / sides`; corners lie on the circle.
+pub fn turned(profile: &[[f64; 2]], sides: usize) -> Mesh {
+    let mut surface = Mesh::default();
+    let mut rings: Vec<Vec<u32>> = Vec::new();
+    for &[radius, height] in profile {
+        let first = surface.vertices.len() as u32;
+        if radius == 0.0 {
+            surface.vertices.push(DVec3::new(0.0, 0.0, height));
+            rings.push(vec![first; sides]);
+            continue;
+        }
+        for k in 0..sides {
+            let angle_rad = TAU * k as f64 / sides as f64;
+            let (sine, cosine) = angle_rad.sin_cos();
+            surface.vertices.push(DVec3::new(radius * cosine, radius * sine, height));
+        }
+        rings.push((first..first + sides as u32).collect());
+    }
+    for i in 0..rings.len() {
+        let (low, high) = (&rings[i], &rings[(i + 1) % rings.len()]);
+        for k in 0..sides {
+            let l = (k + 1) % sides;
+            let mut corners = vec![low[k], low[l], high[l], high[k]];
+            corners.dedup();
+            if corners.first() == corners.last() {
+                corners.pop();
+            }
+            if corners.len() >= 3 {
+                surface.faces.push(corners);
+            }
+        }
+    }
+    surface
+}
+
+/// A cylinder of a radius between two heights.
+pub fn pin(radius: f64, [low, high]: [f64; 2], sides: usize) -> Mesh {
+    turned(&[[0.0, low], [radius, low], [radius, high], [0.0, high]], sides)
+}
+
+/// A round plate with a round hole along its axis.
+pub fn washer([hole, outside]: [f64; 2], [low, high]: [f64; 2], sides: usize) -> Mesh {
+    turned(&[[hole, low], [outside, low], [outside, high], [hole, high]], sides)
+}
+
+/// A bolt: a shaft from `low` to `seat` and a head from there to `top`.
+pub fn bolt([shaft, head]: [f64; 2], [low, seat, top]: [f64; 3], sides: usize) -> Mesh {
+    let profile = [[0.0, low], [shaft, low], [shaft, seat], [head, seat], [head, top], [0.0, top]];
+    turned(&profile, sides)
+}
+
+/// A box whose six sides are grids of squares.
+pub fn slab(low: DVec3, high: DVec3, counts: [usize; 3]) -> Mesh {
+    let mut surface = Mesh::default();
+    let mut index: HashMap<[usize; 3], u32> = HashMap::new();
+    let size = high - low;
+    for (axis, up) in [(0, false), (0, true), (1, false), (1, true), (2, false), (2, true)] {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        for a in 0..counts[i] {
+            for b in 0..counts[j] {
+                let mut square: Vec<u32> = [(0, 0), (1, 0), (1, 1), (0, 1)]
+                    .map(|(x, y)| {
+                        let mut step = [0; 3];
+                        (step[axis], step[i], step[j]) =
+                            (if up { counts[axis] } else { 0 }, a + x, b + y);
+                        *index.entry(step).or_insert_with(|| {
+                            let share = |k: usize| step[k] as f64 / counts[k] as f64;
+                            let at = DVec3::new(share(0), share(1), share(2));
+                            surface.vertices.push(low + at * size);
+                            surface.vertices.len() as u32 - 1
+                        })
+                    })
+                    .to_vec();
+                if !up {
+                    square.reverse();
+                }
+                surface.faces.push(square);
+            }
+        }
+    }
+    surface
+}
+
+/// A ball of radius 1 with bumps, of about so many triangles: two for each square of six grids.
+pub fn bumpy_ball(triangles: usize) -> Mesh {
+    let n = ((triangles as f64 / 12.0).sqrt().round() as usize).max(1);
+    let cube = slab(DVec3::NEG_ONE, DVec3::ONE, [n; 3]);
+    let bump = |v: DVec3| {
+        let p = v.normalize();
+        let waves = (7.0 * p.x + 1.0).sin() * (6.0 * p.y + 2.0).sin() * (5.0 * p.z).cos();
+        p * (1.0 + 0.2 * waves + 0.02 * (31.0 * p.x).sin() * (29.0 * p.z).cos())
+    };
+    let ball = cube.mapped(bump);
+    let halves = |f: &Vec<u32>| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]];
+    Mesh { faces: ball.faces.iter().flat_map(halves).collect(), vertices: ball.vertices }
+}
+
+/// A plate in `x, y` with a row of round holes, in long thin faces as CAD programs make them: every
+/// hole is joined to the nearest corners of its square only.
+pub fn perforated_plate(holes: [usize; 2], thickness: f64, sides: usize) -> Mesh {
+    let quarter = (sides / 4).max(1);
+    let sides = 4 * quarter;
+    let mut surface = Mesh::default();
+    let mut index: HashMap<[u64; 3], u32> = HashMap::new();
+    let mut vertex = |surface: &mut Mesh, p: DVec3| {
+        *index.entry(p.to_array().map(|c| (c + 0.0).to_bits())).or_insert_with(|| {
+            surface.vertices.push(p);
+            surface.vertices.len() as u32 - 1
+        })
+    };
+    for cell in 0..holes[0] * holes[1] {
+        let (i, j) = (cell % holes[0], cell / holes[0]);
+        let center = DVec3::new(i as f64 + 0.5, j as f64 + 0.5, 0.0);
+        let corner = |k: usize| {
+            let (x, y) = [(1, 1), (0, 1), (0, 0), (1, 0)][k % 4];
+            DVec3::new((i + x) as f64, (j + y) as f64, 0.0)
+        };
+        let rim = |k: usize| {
+            let (sine, cosine) = (TAU * (k % sides) as f64 / sides as f64).sin_cos();
+            center + DVec3::new(0.35 * cosine, 0.35 * sine, 0.0)
+        };
+        let mut flat: Vec<[DVec3; 3]> = Vec::new();
+        for side in 0..4 {
+            // The corner between this quarter of the rim and the next side of the square.
+            for k in side * quarter..(side + 1) * quarter {
+                flat.push([rim(k), corner(side), rim(k + 1)]);
+            }
+            flat.push([rim((side + 1) * quarter), corner(side), corner(side + 1)]);
+        }
+        for triangle in flat {
+            let top = triangle.map(|p| vertex(&mut surface, p + DVec3::Z * thickness));
+            let bottom = triangle.map(|p| vertex(&mut surface, p));
+            surface.faces.push(top.to_vec());
+            surface.faces.push(vec![bottom[0], bottom[2], bottom[1]]);
+        }
+        for k in 0..sides {
+            let wall = [rim(k), rim(k), rim(k + 1), rim(k + 1)];
+            let wall = [0, 1, 2, 3].map(|m| {
+                let lift = if m == 1 || m == 2 { thickness } else { 0.0 };
+                vertex(&mut surface, wall[m] + DVec3::Z * lift)
+            });
+            surface.faces.push(vec![wall[0], wall[1], wall[2], wall[3]]);
+        }
+        for side in 0..4 {
+            let (dx, dy) = [(0, 1), (-1, 0), (0, -1), (1, 0)][side];
+            let beyond = |at: usize, d: i32, count: usize| {
+                d != 0 && (at as i32 + d < 0 || at as i32 + d >= count as i32)
+            };
+            if beyond(i, dx, holes[0]) || beyond(j, dy, holes[1]) {
+                let (a, b) = (corner(side), corner(side + 1));
+                let up = DVec3::Z * thickness;
+                let wall = [a, b, b + up, a + up].map(|p| vertex(&mut surface, p));
+                surface.faces.push(wall.to_vec());
+            }
+        }
+    }
+    surface
+}

@@ -1,0 +1,102 @@
+//! Convex bodies as solids, against the convex core and against the rule over all pairs of facets.
+
+use colltrans::{Cast, ConvexPolyhedron, Outcome, Solid, SolidClearance, SolidOptions};
+
+use super::facets::{rule, triangles};
+use super::settings::Seen;
+use crate::exact::Ratio;
+use crate::settings::Setting;
+
+/// More pairs of facets than this are not judged by the rule.
+const MOST_PAIRS: usize = 4_000;
+/// Agreement, in multiples of the rounding error of a coordinate.
+const AGREEMENT: f64 = 512.0;
+
+/// Asks both, and compares; `None` for bodies without a volume, or so thin that they lose it.
+///
+/// # Errors
+/// What disagrees.
+pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
+    let hull = |points| ConvexPolyhedron::from_points(points).map_err(|e| e.to_string());
+    let (p, q) = (hull(&setting.moving)?, hull(&setting.fixed)?);
+    if p.dimension() < 3 || q.dimension() < 3 {
+        return Ok(None);
+    }
+    let (Ok(a), Ok(b)) = (Solid::from_convex(&p), Solid::from_convex(&q)) else { return Ok(None) };
+    let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
+    let (s, t) = (&setting.moving_pose, &setting.fixed_pose);
+    let cast = Cast::new(a.at(*s), b.at(*t), setting.direction)
+        .and_then(|cast| cast.with_options(options))
+        .map_err(|e| e.to_string())?;
+    let overlaps = cast.overlaps();
+    let found = if overlaps { None } else { Some(cast.clearance()) };
+    if let Some(found) = &found {
+        against_rule(setting, &a, &b, found)?;
+    }
+    let core = Cast::new(p.at(*s), q.at(*t), setting.direction).and_then(|c| c.first_contact());
+    against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), noise(setting, &a, &b))
+}
+
+/// The rounding error of a coordinate, in multiples of the direction.
+fn noise(setting: &Setting, a: &Solid, b: &Solid) -> f64 {
+    let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let offset = setting.fixed_pose.translation() - setting.moving_pose.translation();
+    let size = reach(a) + reach(b) + offset.length();
+    16.0 * f64::EPSILON * size / setting.direction.length()
+}
+
+fn against_rule(
+    setting: &Setting,
+    a: &Solid,
+    b: &Solid,
+    found: &SolidClearance,
+) -> Result<(), String> {
+    if a.triangles().len() * b.triangles().len() > MOST_PAIRS {
+        return Ok(());
+    }
+    let placed = |s: &Solid, pose: &colltrans::Pose| {
+        triangles(s.vertices(), s.triangles(), (pose.matrix(), pose.translation()))
+    };
+    let (f, g) = (placed(a, &setting.moving_pose), placed(b, &setting.fixed_pose));
+    let right = rule(&f, &g, setting.direction).stop;
+    let tolerance = AGREEMENT * noise(setting, a, b);
+    let agree = match (found, &right) {
+        (SolidClearance::Free, None) => true,
+        (SolidClearance::Blocked { distance, .. }, Some(right)) => {
+            right.minus(&Ratio::from_f64(*distance)).is_within(tolerance)
+        }
+        _ => false,
+    };
+    let right = right.map(|r| r.to_f64());
+    if agree { Ok(()) } else { Err(format!("{found:?}, by the rule {right:?}")) }
+}
+
+/// Where the core is certain, the solid says the same.
+fn against_core(
+    core: Outcome,
+    overlaps: bool,
+    found: Option<&SolidClearance>,
+    noise: f64,
+) -> Result<Option<Seen>, String> {
+    let distance = match found {
+        Some(SolidClearance::Blocked { distance, .. }) => Some(*distance),
+        _ => None,
+    };
+    let seen = match (overlaps, distance) {
+        (true, _) => Seen::Overlapping,
+        (false, None) => Seen::Free,
+        (false, Some(0.0)) => Seen::BlockedNow,
+        (false, Some(_)) => Seen::Blocked,
+    };
+    let wrong = || Err(format!("{seen:?} at {distance:?}, but the core says {core:?}"));
+    match core {
+        Outcome::Separated(_) if overlaps || distance.is_some() => wrong(),
+        Outcome::Contact(contact) => {
+            let tolerance = contact.certificate.tolerance + AGREEMENT * noise;
+            let ahead = contact.translation > tolerance;
+            let near = distance.is_some_and(|d| (d - contact.translation).abs() <= tolerance);
+            if ahead && !near { wrong() } else { Ok(Some(seen)) }
+        }
+        _ => Ok(Some(seen)),
+    }
+}

@@ -1,0 +1,322 @@
+//! From a list of polygons to a checked surface.
+//!
+//! The data's way: equal vertices become one; polygons become triangles; triangles without an area
+//! are taken out; slits that they, or vertices on an edge, leave are closed by exact subdivision;
+//! facets are joined across their edges; shells are found, and turned where inside out.
+//!
+//! Invariant of a [`Surface`]: no triangle is without area. A closed one has a neighbour across every
+//! edge, and neighbours run along their edge in opposite directions.
+
+use glam::DVec3;
+
+use super::edges::{self, Edges};
+use super::error::SolidError;
+use super::exact::{between, collinear};
+use super::polygon::triangulate;
+use super::report::SolidReport;
+use super::weld::first_equals;
+use crate::number::range::in_exact_range;
+
+/// Rounds of subdivision: each joins at least one pair of edges in every slit that can be closed.
+const MOST_ROUNDS: usize = 64;
+
+/// A triangle mesh, checked.
+pub(crate) struct Surface {
+    /// The vertices in use.
+    pub(crate) vertices: Vec<DVec3>,
+    /// Their indices in the input.
+    pub(crate) vertex_index: Vec<u32>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// The input facet of each triangle.
+    pub(crate) facet_index: Vec<u32>,
+    pub(crate) neighbours: Vec<[u32; 3]>,
+}
+
+/// Checks and joins; a surface that is `open` on purpose may have edges without a neighbour.
+pub(super) fn surface<F: AsRef<[u32]>>(
+    vertices: &[DVec3],
+    facets: &[F],
+    open: bool,
+    report: &mut SolidReport,
+) -> Result<Surface, SolidError> {
+    check_input(vertices, facets)?;
+    let first = first_equals(vertices);
+    let mut soup = Soup { triangles: Vec::new(), facet_index: Vec::new() };
+    for (facet, corners) in facets.iter().enumerate() {
+        soup.push_facet(vertices, &first, facet, corners.as_ref(), report)?;
+    }
+    let mut edges = Edges::new(vertices, &soup.triangles);
+    for _ in 0..MOST_ROUNDS {
+        if open || !soup.close_slits(vertices, &edges.open, report) {
+            break;
+        }
+        edges = Edges::new(vertices, &soup.triangles);
+    }
+    if soup.triangles.is_empty() {
+        return Err(SolidError::Empty);
+    }
+    report.crowded_edges += edges.crowded;
+    report.open_edges += edges.open.len();
+    soup.check_edges(&edges, open)?;
+    Ok(soup.compact(vertices, &first, edges.neighbours, report))
+}
+
+fn check_input<F: AsRef<[u32]>>(vertices: &[DVec3], facets: &[F]) -> Result<(), SolidError> {
+    for (vertex, &point) in vertices.iter().enumerate() {
+        if !in_exact_range(point) {
+            return Err(SolidError::Coordinate { vertex, point });
+        }
+    }
+    let count = facets.iter().map(|f| f.as_ref().len()).sum::<usize>().max(vertices.len());
+    let limit = u32::MAX as usize / 4;
+    if count > limit {
+        return Err(SolidError::TooMany { count, limit });
+    }
+    for (facet, corners) in facets.iter().enumerate() {
+        if let Some(&v) = corners.as_ref().iter().find(|&&v| v as usize >= vertices.len()) {
+            let vertex = v as usize;
+            return Err(SolidError::UnknownVertex { facet, vertex, vertices: vertices.len() });
+        }
+    }
+    Ok(())
+}
+
+/// Triangles with areas, over the input's vertices.
+struct Soup {
+    triangles: Vec<[u32; 3]>,
+    facet_index: Vec<u32>,
+}
+
+impl Soup {
+    fn push_facet(
+        &mut self,
+        vertices: &[DVec3],
+        first: &[u32],
+        facet: usize,
+        corners: &[u32],
+        report: &mut SolidReport,
+    ) -> Result<(), SolidError> {
+        let mut ring: Vec<u32> = corners.iter().map(|&v| first[v as usize]).collect();
+        ring.dedup();
+        while ring.len() > 1 && ring.first() == ring.last() {
+            ring.pop();
+        }
+        if !has_area(vertices, &ring) {
+            report.facets_without_area += 1;
+            return Ok(());
+        }
+        self.push_ring(vertices, facet as u32, &ring)
+    }
+
+    fn push_ring(
+        &mut self,
+        vertices: &[DVec3],
+        facet: u32,
+        ring: &[u32],
+    ) -> Result<(), SolidError> {
+        if let &[a, b, c] = ring {
+            self.triangles.push([a, b, c]);
+            self.facet_index.push(facet);
+            return Ok(());
+        }
+        let points: Vec<DVec3> = ring.iter().map(|&v| vertices[v as usize]).collect();
+        let cut = triangulate(&points).ok_or(SolidError::Polygon { facet: facet as usize })?;
+        for corners in cut {
+            self.triangles.push(corners.map(|k| ring[k]));
+            self.facet_index.push(facet);
+        }
+        Ok(())
+    }
+
+    /// Subdivides triangles at open edges' ends that lie exactly on their own open edges; whether
+    /// anything was done.
+    fn close_slits(&mut self, vertices: &[DVec3], open: &[u32], report: &mut SolidReport) -> bool {
+        let mut leaving: Vec<(u32, u32)> = Vec::with_capacity(open.len());
+        let mut arriving = leaving.clone();
+        for &h in open {
+            let [from, to] = edges::ends(&self.triangles, h);
+            leaving.push((from, to));
+            arriving.push((to, from));
+        }
+        leaving.sort_unstable();
+        arriving.sort_unstable();
+        let mut cuts: Vec<(u32, Vec<u32>)> = Vec::new();
+        for &h in open {
+            let [p, q] = edges::ends(&self.triangles, h);
+            let mut points = walk(vertices, &leaving, q, [p, q]);
+            points.extend(walk(vertices, &arriving, p, [p, q]));
+            let along = |v: &u32| (vertices[*v as usize] - vertices[p as usize]).length_squared();
+            points.sort_by(|a, b| along(a).total_cmp(&along(b)));
+            points.dedup();
+            if !points.is_empty() {
+                cuts.push((h, points));
+            }
+        }
+        report.slits_closed += cuts.len();
+        self.subdivide(vertices, &cuts);
+        !cuts.is_empty()
+    }
+
+    /// Puts points into the sides of triangles; `cuts` are in the order of half-edges.
+    fn subdivide(&mut self, vertices: &[DVec3], cuts: &[(u32, Vec<u32>)]) {
+        let mut cuts = cuts.to_vec();
+        cuts.sort_by_key(|c| c.0);
+        for group in cuts.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
+            let t = group[0].0 as usize / 3;
+            let mut ring = Vec::new();
+            for k in 0..3 {
+                ring.push(self.triangles[t][k]);
+                let cut = group.iter().find(|c| c.0 as usize % 3 == k);
+                ring.extend(cut.map_or(&[][..], |c| &c.1));
+            }
+            let points: Vec<DVec3> = ring.iter().map(|&v| vertices[v as usize]).collect();
+            // Points on the sides of a triangle always have a triangulation.
+            let Some(pieces) = triangulate(&points) else { continue };
+            let facet = self.facet_index[t];
+            for (n, corners) in pieces.into_iter().enumerate() {
+                let corners = corners.map(|k| ring[k]);
+                if n == 0 {
+                    self.triangles[t] = corners;
+                } else {
+                    self.triangles.push(corners);
+                    self.facet_index.push(facet);
+                }
+            }
+        }
+    }
+
+    fn check_edges(&self, edges: &Edges, open: bool) -> Result<(), SolidError> {
+        let name = |h: u32| {
+            let [from, to] = edges::ends(&self.triangles, h).map(|v| v as usize);
+            (from, to, self.facet_index[h as usize / 3] as usize)
+        };
+        if let Some(&h) = edges.inconsistent.first() {
+            let (from, to, facet) = name(h);
+            return Err(SolidError::Inconsistent {
+                count: edges.inconsistent.len().div_ceil(2),
+                from,
+                to,
+                facet,
+            });
+        }
+        if let (Some(&h), false) = (edges.open.first(), open) {
+            let (from, to, facet) = name(h);
+            return Err(SolidError::Open { count: edges.open.len(), from, to, facet });
+        }
+        Ok(())
+    }
+
+    fn compact(
+        self,
+        vertices: &[DVec3],
+        first: &[u32],
+        neighbours: Vec<[u32; 3]>,
+        report: &mut SolidReport,
+    ) -> Surface {
+        let mut used = vec![false; vertices.len()];
+        for v in self.triangles.iter().flatten() {
+            used[*v as usize] = true;
+        }
+        let repeated = first.iter().enumerate().filter(|&(v, &f)| v as u32 != f).count();
+        report.vertices_merged += repeated;
+        let vertex_index: Vec<u32> =
+            (0..vertices.len() as u32).filter(|&v| used[v as usize]).collect();
+        let mut position = vec![0; vertices.len()];
+        for (k, &v) in vertex_index.iter().enumerate() {
+            position[v as usize] = k as u32;
+        }
+        Surface {
+            // Adding 0 turns -0 into 0 and changes nothing else.
+            vertices: vertex_index.iter().map(|&v| vertices[v as usize] + 0.0).collect(),
+            triangles: self.triangles.iter().map(|t| t.map(|v| position[v as usize])).collect(),
+            vertex_index,
+            facet_index: self.facet_index,
+            neighbours,
+        }
+    }
+}
+
+/// Whether the corners do not all lie on one line.
+fn has_area(vertices: &[DVec3], ring: &[u32]) -> bool {
+    let at = |k: usize| vertices[ring[k] as usize];
+    ring.len() >= 3 && (2..ring.len()).any(|k| !collinear(at(0), at(1), at(k)))
+}
+
+/// Ends of open edges, one after the other from `start`, while they lie strictly inside the edge.
+fn walk(vertices: &[DVec3], next: &[(u32, u32)], start: u32, [p, q]: [u32; 2]) -> Vec<u32> {
+    let [a, b] = [p, q].map(|v| vertices[v as usize]);
+    let inside = |v: u32| {
+        let m = vertices[v as usize];
+        between(a, b, m) && collinear(a, b, m)
+    };
+    let mut found = Vec::new();
+    let mut at = start;
+    while let Some(m) = {
+        let from = next.partition_point(|e| e.0 < at);
+        next[from..].iter().take_while(|e| e.0 == at).map(|e| e.1).find(|&m| inside(m))
+    } {
+        if found.contains(&m) {
+            break;
+        }
+        found.push(m);
+        at = m;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube whose top edge from (0, 0, 1) to (1, 0, 1) has a vertex on one side only.
+    fn cube_with_a_slit(degenerate: bool) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+        let mut vertices: Vec<DVec3> = (0..8)
+            .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+            .collect();
+        vertices.push(DVec3::new(0.25, 0.0, 1.0));
+        vertices.push(DVec3::new(0.75, 0.0, 1.0));
+        let mut facets = vec![
+            vec![0, 2, 3, 1],
+            vec![4, 8, 9, 5, 7, 6],
+            vec![0, 1, 5, 4],
+            vec![2, 6, 7, 3],
+            vec![0, 4, 6, 2],
+            vec![1, 3, 7, 5],
+        ];
+        if degenerate {
+            facets.extend([vec![4, 5, 9], vec![4, 9, 8]]);
+        }
+        (vertices, facets)
+    }
+
+    #[test]
+    fn slits_are_closed_with_and_without_facets_in_them() {
+        for degenerate in [false, true] {
+            let (vertices, facets) = cube_with_a_slit(degenerate);
+            let mut report = SolidReport::default();
+            let surface = surface(&vertices, &facets, false, &mut report).unwrap();
+            assert_eq!(report.slits_closed, 1);
+            assert_eq!(report.facets_without_area, if degenerate { 2 } else { 0 });
+            assert!(surface.neighbours.iter().flatten().all(|&n| n != edges::NONE));
+            assert_eq!(surface.triangles.len(), 16, "10 vertices of a sphere");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_counted_and_named() {
+        let (vertices, mut facets) = cube_with_a_slit(false);
+        facets.pop();
+        let refused = |facets: &[Vec<u32>]| {
+            surface(&vertices, facets, false, &mut SolidReport::default()).err().unwrap()
+        };
+        assert!(matches!(refused(&facets), SolidError::Open { count: 4, .. }));
+        facets.push(vec![5, 7, 3, 1]);
+        let error = refused(&facets);
+        assert!(matches!(error, SolidError::Inconsistent { count: 4, .. }), "{error}");
+        facets.pop();
+        facets.push(vec![1, 3, 70, 5]);
+        let named = SolidError::UnknownVertex { facet: 5, vertex: 70, vertices: 10 };
+        assert_eq!(refused(&facets), named);
+        assert_eq!(refused(&[]), SolidError::Empty);
+    }
+}

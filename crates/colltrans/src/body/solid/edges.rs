@@ -1,0 +1,145 @@
+//! Which facet lies across each edge.
+//!
+//! Half-edges `3 t + k`, from corner `k` of triangle `t` to the next one, are put into a bucket by
+//! the smaller of their two vertices: linear in the size of the mesh. Where more than two facets meet
+//! at an edge, they are paired so that every pair bounds a wedge of material with no facet in it.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::exact;
+use super::wedge::{Axis, Ray, Wedge};
+
+/// No facet lies across this edge.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// What the half-edges of a mesh make of each other.
+pub(super) struct Edges {
+    /// The triangle across each half-edge, or [`NONE`].
+    pub(super) neighbours: Vec<[u32; 3]>,
+    /// Half-edges that nothing lies across, at edges used an odd number of times.
+    pub(super) open: Vec<u32>,
+    /// Half-edges without a partner in the opposite direction, at edges used an even number of times.
+    pub(super) inconsistent: Vec<u32>,
+    /// Edges at which more than two facets meet.
+    pub(super) crowded: usize,
+}
+
+/// The two ends of a half-edge.
+pub(super) fn ends(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
+    let (t, k) = (half_edge as usize / 3, half_edge as usize % 3);
+    [triangles[t][k], triangles[t][(k + 1) % 3]]
+}
+
+fn apex(triangles: &[[u32; 3]], half_edge: u32) -> u32 {
+    triangles[half_edge as usize / 3][(half_edge as usize + 2) % 3]
+}
+
+impl Edges {
+    pub(super) fn new(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+        let mut edges = Self {
+            neighbours: vec![[NONE; 3]; triangles.len()],
+            open: Vec::new(),
+            inconsistent: Vec::new(),
+            crowded: 0,
+        };
+        let (starts, mut entries) = buckets(vertices.len(), triangles);
+        for v in 0..vertices.len() {
+            let bucket = &mut entries[starts[v] as usize..starts[v + 1] as usize];
+            bucket.sort_unstable();
+            for edge in bucket.chunk_by(|a, b| a.0 == b.0) {
+                edges.match_up(vertices, triangles, edge);
+            }
+        }
+        edges
+    }
+
+    /// Pairs the half-edges of one edge; `1` in an entry's middle marks the backward ones.
+    fn match_up(&mut self, vertices: &[DVec3], triangles: &[[u32; 3]], edge: &[(u32, u8, u32)]) {
+        let (forward, backward) = edge.split_at(edge.partition_point(|e| e.1 == 0));
+        if let ([f], [b]) = (forward, backward) {
+            self.join(f.2, b.2);
+            return;
+        }
+        if forward.len() == backward.len() {
+            self.crowded += 1;
+            let fan = Fan::new(vertices, triangles, edge);
+            for f in 0..forward.len() {
+                let b = fan.nearest_clockwise(f, forward.len());
+                self.join(edge[f].2, edge[b].2);
+            }
+            return;
+        }
+        let shared = forward.len().min(backward.len());
+        for (f, b) in forward.iter().zip(backward) {
+            self.join(f.2, b.2);
+        }
+        let rest = forward[shared..].iter().chain(&backward[shared..]).map(|e| e.2);
+        if edge.len() % 2 == 1 { self.open.extend(rest) } else { self.inconsistent.extend(rest) }
+    }
+
+    fn join(&mut self, f: u32, b: u32) {
+        self.neighbours[f as usize / 3][f as usize % 3] = b / 3;
+        self.neighbours[b as usize / 3][b as usize % 3] = f / 3;
+    }
+}
+
+/// Half-edges by their smaller vertex: the larger one, whether it runs backwards, and its number.
+fn buckets(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u8, u32)>) {
+    let half_edges = || (0..3 * triangles.len() as u32).map(|h| (h, ends(triangles, h)));
+    let mut starts = vec![0_u32; vertices + 1];
+    for (_, [from, to]) in half_edges() {
+        starts[from.min(to) as usize + 1] += 1;
+    }
+    for v in 0..vertices {
+        starts[v + 1] += starts[v];
+    }
+    let mut next = starts.clone();
+    let mut entries = vec![(0, 0, 0); 3 * triangles.len()];
+    for (h, [from, to]) in half_edges() {
+        let slot = &mut next[from.min(to) as usize];
+        entries[*slot as usize] = (from.max(to), u8::from(from > to), h);
+        *slot += 1;
+    }
+    (starts, entries)
+}
+
+/// The facets around one edge, by the points opposite to it.
+struct Fan {
+    p: DVec3,
+    q: DVec3,
+    apexes: Vec<DVec3>,
+}
+
+impl Fan {
+    fn new(vertices: &[DVec3], triangles: &[[u32; 3]], edge: &[(u32, u8, u32)]) -> Self {
+        let [p, q] = ends(triangles, edge[0].2).map(|v| vertices[v as usize]);
+        let apex = |e: &(u32, u8, u32)| vertices[apex(triangles, e.2) as usize];
+        Self { p, q, apexes: edge.iter().map(apex).collect() }
+    }
+
+    /// Of the backward facets the one that bounds the material of forward facet `f`.
+    fn nearest_clockwise(&self, f: usize, forward: usize) -> usize {
+        let mut best = forward;
+        for b in forward + 1..self.apexes.len() {
+            let wedge = Wedge { start: Ray::to(best), end: Ray::to(f) };
+            if wedge.contains(Ray::to(b), self) {
+                best = b;
+            }
+        }
+        best
+    }
+}
+
+impl Axis for Fan {
+    fn det(&self, x: usize, y: usize) -> Ordering {
+        exact::side(self.p, self.q, self.apexes[x], self.apexes[y])
+    }
+
+    fn same_half(&self, x: usize, y: usize) -> bool {
+        let turn = |k: usize, axis| exact::turn(self.p, self.q, self.apexes[k], axis);
+        let axis = (0..3).find(|&axis| turn(x, axis) != Ordering::Equal).unwrap_or(0);
+        turn(x, axis) == turn(y, axis)
+    }
+}

@@ -1,0 +1,46 @@
+//! Exact signs in a body's own frame, from coordinates as given.
+
+use std::cmp::Ordering;
+
+use glam::{DVec2, DVec3, Vec3Swizzles};
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+/// The point along one of the axes, counter-clockwise order kept.
+pub(super) fn drop_axis(p: DVec3, axis: usize) -> DVec2 {
+    match axis {
+        0 => p.yz(),
+        1 => p.zx(),
+        _ => p.xy(),
+    }
+}
+
+/// Sign of `det[b - a, c - a, e]` with `e` the unit vector of an axis.
+pub(crate) fn turn(a: DVec3, b: DVec3, c: DVec3, axis: usize) -> Ordering {
+    let coord = |p: DVec3| {
+        let p = drop_axis(p, axis);
+        Coord { x: p.x, y: p.y }
+    };
+    sign(orient2d(coord(a), coord(b), coord(c)))
+}
+
+/// Sign of `det[b - a, c - a, e - a]`.
+pub(crate) fn side(a: DVec3, b: DVec3, c: DVec3, e: DVec3) -> Ordering {
+    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    sign(-orient3d(coord(a), coord(b), coord(c), coord(e)))
+}
+
+pub(crate) fn sign(x: f64) -> Ordering {
+    x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+}
+
+/// Whether three points lie on one line.
+pub(super) fn collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
+    (0..3).all(|axis| turn(a, b, c, axis) == Ordering::Equal)
+}
+
+/// Whether `m`, on the line of `p` and `q`, lies strictly between them.
+pub(super) fn between(p: DVec3, q: DVec3, m: DVec3) -> bool {
+    let axis = (q - p).abs().max_position();
+    let (p, q, m) = (p[axis], q[axis], m[axis]);
+    (p < m && m < q) || (q < m && m < p)
+}

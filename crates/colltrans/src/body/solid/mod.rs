@@ -1,0 +1,290 @@
+//! Solids that need not be convex, checked once at the door.
+//!
+//! The data's way: facets -> [`door`] (one checked surface of triangles) -> [`shells`] (which parts
+//! there are, which are inside out) -> [`tree`] (what a search goes down). [`shrink`] is made when it
+//! is first asked for.
+
+mod door;
+pub(crate) mod edges;
+mod error;
+pub(crate) mod exact;
+mod polygon;
+mod report;
+mod shells;
+mod shrink;
+pub(crate) mod tree;
+pub(crate) mod wedge;
+mod weld;
+
+use std::sync::OnceLock;
+
+use glam::DVec3;
+
+use crate::body::ConvexPolyhedron;
+pub(crate) use door::Surface;
+pub use error::SolidError;
+pub use report::{Shell, SolidReport};
+pub use shrink::ShrinkReport;
+pub(crate) use shrink::{Shrinking, displace};
+use tree::Node;
+
+/// A solid in its own frame, bounded by triangles; it may have holes, cavities and several parts.
+///
+/// Closed and consistently oriented, or an open surface that has a front and a back but no inside
+/// ([`Self::from_open_mesh`]). Several closed surfaces may overlap: the solid is what any of them
+/// encloses. Immutable, `Send` and `Sync`. Vertices and facets keep the numbers of the input.
+///
+/// ```
+/// use colltrans::Solid;
+/// use colltrans::glam::DVec3;
+///
+/// // A square frame: 4 x 4 outside, 2 x 2 inside, 1 high.
+/// let corner = |r: f64, k: usize, z: f64| {
+///     DVec3::new([-r, r, r, -r][k % 4], [-r, -r, r, r][k % 4], z)
+/// };
+/// let vertices: Vec<DVec3> = [(2.0, 0.0), (2.0, 1.0), (1.0, 0.0), (1.0, 1.0)]
+///     .iter()
+///     .flat_map(|&(r, z)| (0..4).map(move |k| corner(r, k, z)))
+///     .collect();
+/// let facets: Vec<[u32; 4]> = (0..4)
+///     .flat_map(|k| {
+///         let l = (k + 1) % 4;
+///         [
+///             [k, l, 4 + l, 4 + k],
+///             [4 + k, 4 + l, 12 + l, 12 + k],
+///             [12 + k, 12 + l, 8 + l, 8 + k],
+///             [8 + k, 8 + l, l, k],
+///         ]
+///     })
+///     .collect();
+/// let frame = Solid::from_mesh(&vertices, &facets)?;
+/// assert_eq!(frame.report().holes_through(), 1);
+/// assert_eq!(frame.volume(), 12.0);
+/// # Ok::<(), colltrans::SolidError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Solid {
+    vertices: Vec<DVec3>,
+    vertex_index: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    facet_index: Vec<u32>,
+    neighbours: Vec<[u32; 3]>,
+    nodes: Vec<Node>,
+    spans: Vec<Span>,
+    closed: bool,
+    reach: f64,
+    report: SolidReport,
+    shrinking: OnceLock<Shrinking>,
+}
+
+/// Where a shell is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span {
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+    /// One of its triangles.
+    pub(crate) triangle: u32,
+}
+
+impl Solid {
+    /// A solid from the polygons of a closed surface (body frame, any unit).
+    ///
+    /// Polygons run counter-clockwise as seen from outside and are cut into triangles. Vertices with
+    /// equal coordinates are one; facets without an area are left out; vertices that lie exactly on
+    /// an edge are joined to it. Shells that are inside out as a whole are turned.
+    /// [`Self::report`] says what was done.
+    ///
+    /// # Errors
+    /// A surface that is open, or whose facets are oriented against each other; a coordinate that is
+    /// not finite or out of range; a polygon that crosses itself; no facets.
+    pub fn from_mesh<F: AsRef<[u32]>>(
+        vertices: &[DVec3],
+        facets: &[F],
+    ) -> Result<Self, SolidError> {
+        let mut report = SolidReport::default();
+        let surface = door::surface(vertices, facets, false, &mut report)?;
+        Ok(Self::assemble(surface, report, true))
+    }
+
+    /// A surface that is open on purpose, as a scan is: it blocks and is blocked, but nothing is ever
+    /// inside it, so it never overlaps.
+    ///
+    /// # Errors
+    /// As [`Self::from_mesh`], except that edges may have a facet on one side only.
+    pub fn from_open_mesh<F: AsRef<[u32]>>(
+        vertices: &[DVec3],
+        facets: &[F],
+    ) -> Result<Self, SolidError> {
+        let mut report = SolidReport::default();
+        let surface = door::surface(vertices, facets, true, &mut report)?;
+        Ok(Self::assemble(surface, report, false))
+    }
+
+    /// The union of several solids, which may overlap. Vertices and facets are numbered through.
+    ///
+    /// # Errors
+    /// No pieces, or more facets than 32-bit indices can number.
+    pub fn from_pieces<'a>(pieces: impl IntoIterator<Item = &'a Self>) -> Result<Self, SolidError> {
+        let mut all = Surface {
+            vertices: Vec::new(),
+            vertex_index: Vec::new(),
+            triangles: Vec::new(),
+            facet_index: Vec::new(),
+            neighbours: Vec::new(),
+        };
+        let mut report = SolidReport::default();
+        let mut closed = true;
+        let (mut vertex_base, mut facet_base) = (0, 0);
+        for piece in pieces {
+            let (v, t) = (all.vertices.len() as u32, all.triangles.len() as u32);
+            all.vertices.extend_from_slice(&piece.vertices);
+            all.vertex_index.extend(piece.vertex_index.iter().map(|i| i + vertex_base));
+            all.triangles.extend(piece.triangles.iter().map(|c| c.map(|k| k + v)));
+            all.facet_index.extend(piece.facet_index.iter().map(|f| f + facet_base));
+            let shift = |n: u32| if n == edges::NONE { n } else { n + t };
+            all.neighbours.extend(piece.neighbours.iter().map(|n| n.map(shift)));
+            vertex_base += piece.vertex_index.iter().max().map_or(0, |i| i + 1);
+            facet_base += piece.facet_index.iter().max().map_or(0, |f| f + 1);
+            report.absorb(&piece.report);
+            closed &= piece.closed;
+            let (count, limit) = (all.triangles.len(), u32::MAX as usize / 8);
+            if count > limit {
+                return Err(SolidError::TooMany { count, limit });
+            }
+        }
+        if all.triangles.is_empty() {
+            return Err(SolidError::Empty);
+        }
+        Ok(Self::from_surface(all, report, closed))
+    }
+
+    /// A convex polyhedron, its faces cut into triangles. Vertices and faces keep their numbers.
+    ///
+    /// # Errors
+    /// A polyhedron without a volume.
+    pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
+        let facets: Vec<Vec<u32>> =
+            (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
+        Self::from_mesh(body.vertices(), &facets)
+    }
+
+    fn assemble(mut surface: Surface, mut report: SolidReport, closed: bool) -> Self {
+        shells::orient(&mut surface, &mut report);
+        Self::from_surface(surface, report, closed)
+    }
+
+    fn from_surface(surface: Surface, report: SolidReport, closed: bool) -> Self {
+        let (nodes, order) = tree::build(&surface.vertices, &surface.triangles);
+        let mut place = vec![0; order.len()];
+        for (k, &t) in order.iter().enumerate() {
+            place[t as usize] = k as u32;
+        }
+        let shift = |n: u32| if n == edges::NONE { n } else { place[n as usize] };
+        let old = |k: &u32| *k as usize;
+        let reach = surface.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let mut solid = Self {
+            triangles: order.iter().map(|k| surface.triangles[old(k)]).collect(),
+            facet_index: order.iter().map(|k| surface.facet_index[old(k)]).collect(),
+            neighbours: order.iter().map(|k| surface.neighbours[old(k)].map(shift)).collect(),
+            vertices: surface.vertices,
+            vertex_index: surface.vertex_index,
+            nodes,
+            spans: Vec::new(),
+            closed,
+            reach,
+            report,
+            shrinking: OnceLock::new(),
+        };
+        solid.spans = solid.find_spans();
+        solid
+    }
+
+    /// Boxes of the shells, by their connected triangles.
+    fn find_spans(&self) -> Vec<Span> {
+        let shell_of = shells::components(&self.neighbours);
+        let mut spans: Vec<Span> = Vec::new();
+        for (t, &shell) in shell_of.iter().enumerate() {
+            if shell as usize == spans.len() {
+                let (low, high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+                spans.push(Span { low, high, triangle: t as u32 });
+            }
+            let span = &mut spans[shell as usize];
+            for corner in self.triangles[t].map(|v| self.vertices[v as usize]) {
+                span.low = span.low.min(corner);
+                span.high = span.high.max(corner);
+            }
+        }
+        spans
+    }
+
+    /// The vertices in use, in the body frame.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// For each of [`Self::vertices`], its index in the input.
+    pub fn vertex_indices(&self) -> &[u32] {
+        &self.vertex_index
+    }
+
+    /// The triangles, as indices into [`Self::vertices`].
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// For each of [`Self::triangles`], the facet of the input that it is a part of.
+    pub fn facet_indices(&self) -> &[u32] {
+        &self.facet_index
+    }
+
+    /// Whether the surface is closed, so that it has an inside.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// What was noticed when it was built.
+    pub fn report(&self) -> &SolidReport {
+        &self.report
+    }
+
+    /// The volume of all shells together, in cubic units; overlaps of pieces count twice.
+    pub fn volume(&self) -> f64 {
+        self.report.shells.iter().map(|s| s.volume).sum()
+    }
+
+    /// Smallest and largest coordinates of all vertices.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        [self.nodes[0].low, self.nodes[0].high]
+    }
+
+    /// Bytes of memory that the solid occupies, on the heap and in itself.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.vertices.capacity() * size_of::<DVec3>()
+            + self.vertex_index.capacity() * size_of::<u32>()
+            + self.triangles.capacity() * size_of::<[u32; 3]>()
+            + self.facet_index.capacity() * size_of::<u32>()
+            + self.neighbours.capacity() * size_of::<[u32; 3]>()
+            + self.nodes.capacity() * size_of::<Node>()
+            + self.spans.capacity() * size_of::<Span>()
+            + self.report.shells.capacity() * size_of::<Shell>()
+            + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
+    }
+
+    /// The largest distance of a vertex from the origin of the body frame.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    pub(crate) fn neighbours(&self) -> &[[u32; 3]] {
+        &self.neighbours
+    }
+
+    pub(crate) fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+}

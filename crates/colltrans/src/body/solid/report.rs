@@ -1,0 +1,56 @@
+//! What the door noticed.
+
+/// A connected part of a surface: facets that are joined across edges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shell {
+    /// Number of triangles.
+    pub triangles: usize,
+    /// The volume it encloses, in cubic units; negative for the wall of a cavity, meaningless for
+    /// an open shell.
+    pub volume: f64,
+    /// Holes through it (its genus); `None` for an open shell, or one that touches itself in
+    /// vertices.
+    pub holes_through: Option<u32>,
+    /// Whether it was inside out, and turned.
+    pub turned: bool,
+    /// Whether every edge has a facet on either side.
+    pub closed: bool,
+}
+
+/// What was noticed, and mended, when a solid was built.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SolidReport {
+    /// The connected parts.
+    pub shells: Vec<Shell>,
+    /// Vertices that had the same coordinates as another one.
+    pub vertices_merged: usize,
+    /// Facets left out because they have no area, exactly.
+    pub facets_without_area: usize,
+    /// Edges subdivided because vertices of their other side lie on them, exactly.
+    pub slits_closed: usize,
+    /// Edges at which more than two facets meet.
+    pub crowded_edges: usize,
+    /// Edges with a facet on one side only; none for a closed solid.
+    pub open_edges: usize,
+}
+
+impl SolidReport {
+    /// How many shells were inside out.
+    pub fn turned(&self) -> usize {
+        self.shells.iter().filter(|s| s.turned).count()
+    }
+
+    /// Holes through all shells together, where they are known.
+    pub fn holes_through(&self) -> u32 {
+        self.shells.iter().filter_map(|s| s.holes_through).sum()
+    }
+
+    pub(super) fn absorb(&mut self, other: &Self) {
+        self.shells.extend_from_slice(&other.shells);
+        self.vertices_merged += other.vertices_merged;
+        self.facets_without_area += other.facets_without_area;
+        self.slits_closed += other.slits_closed;
+        self.crowded_edges += other.crowded_edges;
+        self.open_edges += other.open_edges;
+    }
+}

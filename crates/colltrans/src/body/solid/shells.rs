@@ -1,0 +1,179 @@
+//! Shells: which there are, how they are nested, which are inside out.
+//!
+//! A shell with a negative volume is the wall of a cavity if another shell contains it; if none does,
+//! it is inside out. If every outermost shell is, all shells are turned. Containment is decided by a
+//! vertex and a line through it along `z`, shifted by an infinitesimal amount, in exact arithmetic.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::door::Surface;
+use super::edges::NONE;
+use super::exact;
+use super::report::{Shell, SolidReport};
+
+/// Finds the shells, turns those that are inside out, and reports; returns the shell of each
+/// triangle.
+pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) -> Vec<u32> {
+    let shell_of = components(&surface.neighbours);
+    let count = shell_of.iter().max().map_or(0, |&s| s as usize + 1);
+    let mut shells = describe(surface, &shell_of, count);
+    if shells.iter().any(|s| s.closed && s.volume < 0.0) {
+        let nesting = Nesting::new(surface, &shell_of, count);
+        let closed = |s: &usize| shells[*s].closed;
+        let outermost: Vec<usize> =
+            (0..count).filter(closed).filter(|&s| nesting.is_outermost(s)).collect();
+        let inverted = |s: usize| shells[s].volume < 0.0;
+        let all = outermost.iter().all(|&s| inverted(s));
+        let turn: Vec<usize> = if all {
+            (0..count).filter(closed).collect()
+        } else {
+            outermost.into_iter().filter(|&s| inverted(s)).collect()
+        };
+        for s in turn {
+            shells[s].turned = true;
+            shells[s].volume = -shells[s].volume;
+        }
+        turn_over(surface, &shell_of, &shells);
+    }
+    report.shells.extend(shells);
+    shell_of
+}
+
+/// Numbers the connected parts in the order of their first triangles.
+pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
+    let mut shell_of = vec![NONE; neighbours.len()];
+    let mut stack = Vec::new();
+    let mut count = 0;
+    for seed in 0..neighbours.len() {
+        if shell_of[seed] != NONE {
+            continue;
+        }
+        shell_of[seed] = count;
+        stack.push(seed as u32);
+        while let Some(t) = stack.pop() {
+            for &n in &neighbours[t as usize] {
+                if n != NONE && shell_of[n as usize] == NONE {
+                    shell_of[n as usize] = count;
+                    stack.push(n);
+                }
+            }
+        }
+        count += 1;
+    }
+    shell_of
+}
+
+fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
+    let empty =
+        Shell { triangles: 0, volume: 0.0, holes_through: None, turned: false, closed: true };
+    let mut shells = vec![empty; count];
+    let mut origins = vec![None; count];
+    // Vertices of shells that share a vertex are counted for each.
+    let mut vertices = vec![0_i64; count];
+    let mut seen = vec![NONE; surface.vertices.len()];
+    let mut shared = vec![false; count];
+    for (t, corners) in surface.triangles.iter().enumerate() {
+        let s = shell_of[t] as usize;
+        let [a, b, c] = corners.map(|v| surface.vertices[v as usize]);
+        let origin = *origins[s].get_or_insert(a);
+        shells[s].volume += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
+        shells[s].triangles += 1;
+        shells[s].closed &= surface.neighbours[t].iter().all(|&n| n != NONE);
+        for &v in corners {
+            let last = std::mem::replace(&mut seen[v as usize], s as u32);
+            if last != s as u32 {
+                vertices[s] += 1;
+                if last != NONE {
+                    shared[s] = true;
+                    shared[last as usize] = true;
+                }
+            }
+        }
+    }
+    for (s, shell) in shells.iter_mut().enumerate() {
+        // V - E + F with three half-edges a facet; odd where the shell touches itself in vertices.
+        let doubled = 2 * vertices[s] - shell.triangles as i64;
+        let euler = doubled / 2;
+        if shell.closed && !shared[s] && doubled % 2 == 0 && euler % 2 == 0 && euler <= 2 {
+            shell.holes_through = Some((1 - euler / 2) as u32);
+        }
+    }
+    shells
+}
+
+/// Reverses the triangles of turned shells: corners `a c b`, and their edges in that order.
+fn turn_over(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
+    for (t, &s) in shell_of.iter().enumerate() {
+        if shells[s as usize].turned {
+            surface.triangles[t].swap(1, 2);
+            surface.neighbours[t].swap(0, 2);
+        }
+    }
+}
+
+/// What decides which shell contains which.
+struct Nesting<'a> {
+    surface: &'a Surface,
+    shell_of: &'a [u32],
+    /// A point of each shell.
+    points: Vec<DVec3>,
+    boxes: Vec<[DVec3; 2]>,
+}
+
+impl<'a> Nesting<'a> {
+    fn new(surface: &'a Surface, shell_of: &'a [u32], count: usize) -> Self {
+        let mut points = vec![DVec3::ZERO; count];
+        let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; count];
+        for (t, corners) in surface.triangles.iter().enumerate() {
+            let s = shell_of[t] as usize;
+            for &v in corners {
+                let p = surface.vertices[v as usize];
+                points[s] = p;
+                boxes[s] = [boxes[s][0].min(p), boxes[s][1].max(p)];
+            }
+        }
+        Self { surface, shell_of, points, boxes }
+    }
+
+    /// Whether no other shell contains this one.
+    fn is_outermost(&self, shell: usize) -> bool {
+        let p = self.points[shell];
+        let boxed = |s: usize| p.cmpge(self.boxes[s][0]).all() && p.cmple(self.boxes[s][1]).all();
+        let candidates: Vec<bool> = (0..self.boxes.len()).map(|s| s != shell && boxed(s)).collect();
+        if !candidates.contains(&true) {
+            return true;
+        }
+        let mut windings = vec![0_i32; self.boxes.len()];
+        for (t, corners) in self.surface.triangles.iter().enumerate() {
+            let s = self.shell_of[t] as usize;
+            if candidates[s] {
+                windings[s] += crossing(p, corners.map(|v| self.surface.vertices[v as usize]));
+            }
+        }
+        windings.iter().all(|&w| w == 0)
+    }
+}
+
+/// How the triangle is crossed by the ray from `p` along `z`: 1 outwards, -1 inwards, 0 not at all.
+fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
+    let facing = exact::turn(a, b, c, 2);
+    if facing == Ordering::Equal {
+        return 0;
+    }
+    let edges = [[a, b], [b, c], [c, a]];
+    let inside = edges.into_iter().all(|[u, v]| turn_beside(u, v, p) == facing);
+    if !inside || exact::side(a, b, c, p) != facing.reverse() {
+        return 0;
+    }
+    if facing == Ordering::Greater { 1 } else { -1 }
+}
+
+/// On which side of the line from `u` to `v`, looked at along `z`, the point `p + (e, e^2)` lies, for
+/// an infinitesimal `e`.
+fn turn_beside(u: DVec3, v: DVec3, p: DVec3) -> Ordering {
+    let sign = |x: f64| exact::sign(x);
+    // det[v - u, p - u + (e, e^2)] = det[v - u, p - u] + e^2 (v - u).x - e (v - u).y.
+    exact::turn(u, v, p, 2).then(sign(u.y - v.y)).then(sign(v.x - u.x))
+}

@@ -1,0 +1,400 @@
+//! Solids made smaller: every facet plane moves inwards.
+//!
+//! Shrunk by `e`, vertex `v` goes to `v + e x`, with `x` the shortest vector for which `n.x <= -1` for
+//! the unit normals `n` of all facets around it. If `w` is the point nearest to the origin in the
+//! convex hull of the normals, `x = -w / |w|^2`; if the origin is in the hull (a saddle) there is no
+//! solution, and the vertex stays. `x` does not depend on `e`, so one field of displacements serves
+//! all amounts, and growing is shrinking by a negative one. The sum `v + e x` is rounded once; the
+//! rounded vertices *are* the shrunk body.
+//!
+//! Facets less high than a millionth of the body's size have no say if their vertex has others: in
+//! single precision their normals are noise.
+//!
+//! A [`NodeMotion`] bounds what shrinking does to the facets of a node. The least coordinate
+//! `min (v + e x)` is a concave function of `e`, so up to a fixed amount `E` it is not below its chord:
+//! the rates of the chords say how sides of boxes and slabs move, inwards where the facets do. Normals
+//! turn by an angle whose sine is at most `e turn + rough`: with edges `u, v` of a facet,
+//! displacements that differ by at most `f`, and area vector `N = u x v`, `N` changes by at most
+//! `e f (|u| + |v|) + e^2 f^2 <= 2 e f (|u| + |v|)` (or by more than itself).
+
+use std::thread;
+
+use glam::DVec3;
+
+use super::edges::NONE;
+use super::error::SolidError;
+use super::report::SolidReport;
+use super::tree::{self, Node};
+use super::{Solid, Surface};
+use crate::number::range::in_exact_range;
+
+/// Facets less high than this share of the body's size are noise.
+const NOISE: f64 = 1e-6;
+/// Rates hold up to this share of the body's size.
+const MOST: f64 = 1.0 / 1024.0;
+/// Displacements longer than this many times the amount count as no solution.
+const FARTHEST: f64 = 64.0;
+/// Rounds of the search for the nearest point; each adds a normal that was violated.
+const MOST_ROUNDS: usize = 64;
+
+/// How the vertices of a solid move when it is shrunk by 1.
+#[derive(Debug, Clone)]
+pub(crate) struct Shrinking {
+    /// Displacement of each vertex.
+    pub(crate) field: Vec<DVec3>,
+    /// For each node of the tree what its facets do, at most.
+    pub(crate) nodes: Vec<NodeMotion>,
+    /// The amount up to which the rates of the nodes hold.
+    pub(crate) most: f64,
+    /// The longest displacement.
+    pub(crate) farthest: f64,
+    /// Vertices that stay, because they have no solution.
+    pub(crate) stuck: Vec<u32>,
+}
+
+/// What shrinking does to the facets of a node; see the module's head.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NodeMotion {
+    /// Rates of the sides of the box, and of the slab.
+    pub(crate) low: [f32; 3],
+    pub(crate) high: [f32; 3],
+    pub(crate) slab: [f32; 2],
+    pub(crate) turn: f32,
+    pub(crate) rough: f32,
+}
+
+/// What could not be shrunk, or grown, as it should.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ShrinkReport {
+    /// The largest displacement of a vertex, in the units of the body.
+    pub farthest: f64,
+    /// Vertices that stay, because no displacement is inwards for all facets around them; indices of
+    /// the input.
+    pub stuck: Vec<u32>,
+    /// Facets that turned inside out, because the body is thinner than twice the amount there;
+    /// indices of the input, in increasing order.
+    pub inverted: Vec<u32>,
+}
+
+impl Solid {
+    /// The solid with every facet plane moved inwards by `amount`, in the units of the body, and what
+    /// could not be moved so. The vertices keep their numbers.
+    ///
+    /// # Errors
+    /// An amount that is negative, not finite, or so large that coordinates leave the exact range.
+    ///
+    /// ```
+    /// use colltrans::{ConvexPolyhedron, Solid};
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let corners: Vec<DVec3> = (0..8)
+    ///     .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64))
+    ///     .collect();
+    /// let cube = Solid::from_convex(&ConvexPolyhedron::from_points(&corners)?)?;
+    /// let (smaller, report) = cube.shrunk(0.25)?;
+    /// assert_eq!(smaller.bounds(), [DVec3::splat(0.25), DVec3::splat(0.75)]);
+    /// assert!((report.farthest - 0.25 * 3.0_f64.sqrt()).abs() < 1e-15);
+    /// assert!(report.stuck.is_empty() && report.inverted.is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn shrunk(&self, amount: f64) -> Result<(Self, ShrinkReport), SolidError> {
+        self.displaced(amount, amount)
+    }
+
+    /// The solid with every facet plane moved outwards by `amount`: for a margin to be kept.
+    ///
+    /// # Errors
+    /// As [`Self::shrunk`].
+    pub fn grown(&self, amount: f64) -> Result<(Self, ShrinkReport), SolidError> {
+        self.displaced(amount, -amount)
+    }
+
+    fn displaced(&self, amount: f64, signed: f64) -> Result<(Self, ShrinkReport), SolidError> {
+        if !(amount.is_finite() && amount >= 0.0) {
+            return Err(SolidError::Amount { amount });
+        }
+        let report = self.shrink_report(signed);
+        let vertices: Vec<DVec3> = self
+            .vertices
+            .iter()
+            .zip(&self.shrinking().field)
+            .map(|(v, x)| displace(*v, *x, signed))
+            .collect();
+        if !vertices.iter().all(|v| in_exact_range(*v)) {
+            return Err(SolidError::Amount { amount });
+        }
+        let surface = Surface {
+            vertices,
+            vertex_index: self.vertex_index.clone(),
+            triangles: self.triangles.clone(),
+            facet_index: self.facet_index.clone(),
+            neighbours: self.neighbours.clone(),
+        };
+        let noticed = SolidReport { ..self.report.clone() };
+        Ok((Self::from_surface(surface, noticed, self.closed), report))
+    }
+
+    /// What shrinking by `amount` (or growing, if negative) cannot do as it should.
+    pub fn shrink_report(&self, amount: f64) -> ShrinkReport {
+        let shrinking = self.shrinking();
+        let inverted = |t: &usize| {
+            let corners = self.triangles[*t].map(|v| v as usize);
+            let before = tree::normal(corners.map(|v| self.vertices[v])).0;
+            let moved = corners.map(|v| displace(self.vertices[v], shrinking.field[v], amount));
+            tree::normal(moved).0.dot(before) <= 0.0
+        };
+        let mut facets: Vec<u32> =
+            (0..self.triangles.len()).filter(inverted).map(|t| self.facet_index[t]).collect();
+        facets.sort_unstable();
+        facets.dedup();
+        ShrinkReport {
+            farthest: shrinking.farthest * amount.abs(),
+            stuck: shrinking.stuck.iter().map(|&v| self.vertex_index[v as usize]).collect(),
+            inverted: facets,
+        }
+    }
+
+    /// The displacements, computed when they are first needed.
+    pub(crate) fn shrinking(&self) -> &Shrinking {
+        self.shrinking.get_or_init(|| Shrinking::new(self))
+    }
+}
+
+/// A vertex of the shrunk body. Coordinates too small for the exact range are zero.
+pub(crate) fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
+    let moved = vertex + field * amount;
+    let kept = |c: f64| if c.abs() < crate::number::range::MIN_MAGNITUDE { 0.0 } else { c };
+    DVec3::from_array(moved.to_array().map(kept))
+}
+
+impl Shrinking {
+    fn new(solid: &Solid) -> Self {
+        let planes = Planes::new(solid);
+        let mut field = vec![DVec3::ZERO; solid.vertices.len()];
+        let threads = thread::available_parallelism().map_or(1, usize::from);
+        let chunk = field.len().div_ceil(threads).max(4_096);
+        thread::scope(|scope| {
+            for (n, part) in field.chunks_mut(chunk).enumerate() {
+                let planes = &planes;
+                scope.spawn(move || {
+                    let mut normals = Vec::new();
+                    for (k, x) in part.iter_mut().enumerate() {
+                        planes.around(n * chunk + k, &mut normals);
+                        *x = shortest(&normals).unwrap_or(DVec3::ZERO);
+                    }
+                });
+            }
+        });
+        let stuck = (0..field.len() as u32).filter(|&v| field[v as usize] == DVec3::ZERO).collect();
+        let most = MOST * solid.reach;
+        let nodes = (0..solid.nodes.len()).map(|k| bound_node(solid, &field, most, k)).collect();
+        let farthest = field.iter().map(|x| x.length()).fold(0.0, f64::max);
+        Self { field, nodes, most, farthest, stuck }
+    }
+
+    pub(crate) fn heap_bytes(&self) -> usize {
+        self.field.capacity() * size_of::<DVec3>()
+            + self.nodes.capacity() * size_of::<NodeMotion>()
+            + self.stuck.capacity() * size_of::<u32>()
+    }
+}
+
+/// The planes of all facets, by vertex.
+struct Planes<'a> {
+    solid: &'a Solid,
+    starts: Vec<u32>,
+    facets: Vec<u32>,
+}
+
+impl<'a> Planes<'a> {
+    fn new(solid: &'a Solid) -> Self {
+        let mut starts = vec![0_u32; solid.vertices.len() + 1];
+        for v in solid.triangles.iter().flatten() {
+            starts[*v as usize + 1] += 1;
+        }
+        for v in 0..solid.vertices.len() {
+            starts[v + 1] += starts[v];
+        }
+        let mut next = starts.clone();
+        let mut facets = vec![NONE; 3 * solid.triangles.len()];
+        for (t, corners) in solid.triangles.iter().enumerate() {
+            for &v in corners {
+                facets[next[v as usize] as usize] = t as u32;
+                next[v as usize] += 1;
+            }
+        }
+        Self { solid, starts, facets }
+    }
+
+    /// Unit normals of the facets around a vertex, without those that are noise.
+    fn around(&self, v: usize, normals: &mut Vec<DVec3>) {
+        let facets = &self.facets[self.starts[v] as usize..self.starts[v + 1] as usize];
+        for least in [NOISE * self.solid.reach, 0.0] {
+            normals.clear();
+            for &t in facets {
+                let corners = self.solid.triangles[t as usize].map(|v| v as usize);
+                let [a, b, c] = corners.map(|v| self.solid.vertices[v]);
+                let area = tree::normal([a, b, c]).0;
+                let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+                let length = area.length();
+                if length > least * longest {
+                    let normal = area / length;
+                    if normals.last() != Some(&normal) {
+                        normals.push(normal);
+                    }
+                }
+            }
+            if !normals.is_empty() {
+                return;
+            }
+        }
+    }
+}
+
+/// The shortest `x` with `n.x <= -1` for all normals, if there is one that is not too long.
+fn shortest(normals: &[DVec3]) -> Option<DVec3> {
+    let mut simplex = vec![*normals.first()?];
+    for _ in 0..MOST_ROUNDS {
+        let w = nearest(&mut simplex);
+        let size = w.length_squared();
+        if size * FARTHEST * FARTHEST < 1.0 {
+            return None;
+        }
+        let lowest = normals.iter().min_by(|a, b| a.dot(w).total_cmp(&b.dot(w)))?;
+        let depth = lowest.dot(w);
+        if depth >= size * (1.0 - 1e-12) || simplex.contains(lowest) {
+            // By the lowest normal itself, so that rounding leaves none above -1.
+            return (depth * FARTHEST > w.length()).then(|| w / -depth);
+        }
+        simplex.push(*lowest);
+    }
+    let w = nearest(&mut simplex);
+    let depth = normals.iter().map(|n| n.dot(w)).fold(f64::INFINITY, f64::min);
+    (depth > 0.0 && depth * FARTHEST > w.length()).then(|| w / -depth)
+}
+
+/// The point nearest to the origin in the convex hull of up to four points, which are reduced to
+/// those that span it.
+fn nearest(points: &mut Vec<DVec3>) -> DVec3 {
+    let mut best: Option<(f64, DVec3, u32)> = None;
+    for mask in 1..1_u32 << points.len() {
+        let chosen: Vec<DVec3> =
+            (0..points.len()).filter(|k| mask >> k & 1 == 1).map(|k| points[k]).collect();
+        let Some(w) = affine_nearest(&chosen) else { continue };
+        if best.is_none_or(|b| w.length_squared() < b.0) {
+            best = Some((w.length_squared(), w, mask));
+        }
+    }
+    let Some((_, w, mask)) = best else { return points[0] };
+    let mut k = 0;
+    points.retain(|_| {
+        k += 1;
+        mask >> (k - 1) & 1 == 1
+    });
+    w
+}
+
+/// The point nearest to the origin in the affine hull, if it lies in the convex hull.
+fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
+    match *points {
+        [a] => Some(a),
+        [a, b] => {
+            let u = b - a;
+            let s = -a.dot(u) / u.length_squared();
+            (0.0..=1.0).contains(&s).then(|| a + u * s)
+        }
+        [a, b, c] => {
+            let normal = (b - a).cross(c - a);
+            let foot = normal * (a.dot(normal) / normal.length_squared());
+            let inside = |p: DVec3, q: DVec3| (q - p).cross(foot - p).dot(normal) >= 0.0;
+            (inside(a, b) && inside(b, c) && inside(c, a)).then_some(foot)
+        }
+        [a, b, c, d] => {
+            let side = |p: DVec3, q: DVec3, r: DVec3, s: DVec3| {
+                let normal = (q - p).cross(r - p);
+                normal.dot(s - p) * normal.dot(-p) >= 0.0
+            };
+            let inside =
+                side(a, b, c, d) && side(b, c, d, a) && side(c, d, a, b) && side(d, a, b, c);
+            inside.then_some(DVec3::ZERO)
+        }
+        _ => None,
+    }
+}
+
+fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotion {
+    let node: &Node = &solid.nodes[at];
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut slab = [f64::INFINITY, f64::NEG_INFINITY];
+    let [mut turn, mut rough] = [0.0_f64; 2];
+    for t in node.facets() {
+        for v in solid.triangles[t].map(|v| v as usize) {
+            let moved = displace(solid.vertices[v], field[v], most);
+            (low, high) = (low.min(moved), high.max(moved));
+            let level = node.axis.dot(moved);
+            slab = [slab[0].min(level), slab[1].max(level)];
+        }
+        // What looks to all sides has no normals to be turned.
+        if node.slab[1] < f64::INFINITY {
+            let [x, y] = bound_facet(solid, field, t);
+            (turn, rough) = (turn.max(x), rough.max(y));
+        }
+    }
+    // Rounded outwards, by more than the rounding of the chords' ends.
+    let slack = 16.0 * f64::EPSILON * solid.reach / most;
+    let down = |end: f64, start: f64| ((end - start) / most - slack) as f32;
+    let up = |end: f64, start: f64| ((end - start) / most + slack) as f32;
+    let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
+    NodeMotion {
+        low: [0, 1, 2].map(|k| down(low[k], node.low[k]).next_down()),
+        high: [0, 1, 2].map(|k| up(high[k], node.high[k]).next_up()),
+        slab: [
+            finite(down(slab[0], node.slab[0]).next_down()),
+            finite(up(slab[1], node.slab[1]).next_up()),
+        ],
+        turn: (turn * 1.000_001) as f32,
+        rough: (rough * 1.000_001) as f32,
+    }
+}
+
+/// How fast a facet's normal turns, and what rounding adds.
+fn bound_facet(solid: &Solid, field: &[DVec3], t: usize) -> [f64; 2] {
+    let corners = solid.triangles[t].map(|v| v as usize);
+    let [a, b, c] = corners.map(|v| solid.vertices[v]);
+    let [x, y, z] = corners.map(|v| field[v]);
+    let apart = (y - x).length().max((z - x).length());
+    let ratio = ((b - a).length() + (c - a).length()) / tree::normal([a, b, c]).0.length();
+    [2.0 * apart * ratio, 8.0 * f64::EPSILON * solid.reach * ratio]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn displacements_of_corners_edges_and_saddles() {
+        let x = shortest(&[DVec3::X]).unwrap();
+        assert_eq!(x, DVec3::NEG_X);
+        let x = shortest(&[DVec3::X, DVec3::Y, DVec3::X]).unwrap();
+        assert!((x - DVec3::new(-1.0, -1.0, 0.0)).length() < 1e-15);
+        let x = shortest(&[DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
+        assert!((x + DVec3::ONE).length() < 1e-15);
+        assert!(shortest(&[DVec3::X, DVec3::NEG_X]).is_none());
+        let saddle =
+            [DVec3::X, DVec3::Y, DVec3::new(-1.0, -1.0, 1.0), DVec3::new(-1.0, -1.0, -1.0)];
+        assert!(shortest(&saddle.map(DVec3::normalize)).is_none());
+    }
+
+    #[test]
+    fn cones_of_many_normals() {
+        for n in [3, 7, 40, 1_000] {
+            let normals: Vec<DVec3> = (0..n)
+                .map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(n))
+                .map(|a| DVec3::new(a.cos(), a.sin(), 0.75).normalize())
+                .collect();
+            let x = shortest(&normals).unwrap();
+            assert!((x - DVec3::new(0.0, 0.0, -1.25 / 0.75)).length() < 1e-6, "{n}: {x}");
+            assert!(normals.iter().all(|m| m.dot(x) <= -1.0 + 1e-15));
+        }
+    }
+}

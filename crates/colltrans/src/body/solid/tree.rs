@@ -1,0 +1,331 @@
+//! A binary tree over the facets of a solid.
+//!
+//! A node covers consecutive facets and holds what bounds them, in the body frame: a box; an axis
+//! `n` (the mean unit normal) with the sine of the largest angle between it and a facet's normal;
+//! and the slab `low <= n . x <= high` of all their vertices. Boxes are exact. The sine is an upper
+//! bound, and exactly 0 for facets whose computed normals are exact and equal; slabs are rounded to
+//! nearest, and whoever reads them allows for that.
+//!
+//! Built from the top: 16 bins along each axis and the surface-area heuristic; halves by count where
+//! that finds nothing. Node `i` is followed by its first child's subtree; its second child is at
+//! `i + skip`. So subtrees are built apart, on several threads, and joined end to end: the tree is
+//! the same on any number of threads.
+
+use std::thread;
+
+use glam::{DVec3, Vec3Swizzles};
+
+/// Facets of a leaf, at most.
+pub(crate) const LEAF: usize = 3;
+const BINS: usize = 16;
+/// Subtrees with fewer facets are not worth a thread.
+const FORK: usize = 1 << 14;
+/// A sine that stands for "any angle".
+pub(crate) const ANY: f64 = 2.0;
+
+/// What bounds consecutive facets.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Node {
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+    pub(crate) axis: DVec3,
+    pub(crate) slab: [f64; 2],
+    /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on.
+    pub(crate) spread: f32,
+    /// The second child is so far behind; 0 for a leaf.
+    pub(crate) skip: u32,
+    /// The first of its facets.
+    pub(crate) first: u32,
+    /// How many.
+    pub(crate) count: u32,
+}
+
+impl Node {
+    pub(crate) fn is_leaf(&self) -> bool {
+        self.skip == 0
+    }
+
+    pub(crate) fn facets(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// What the builder needs of one facet.
+#[derive(Clone, Copy)]
+struct Item {
+    facet: u32,
+    low: DVec3,
+    high: DVec3,
+    /// Twice the area times the unit normal.
+    area: DVec3,
+    /// How far rounding may have turned that normal, a sine.
+    doubt: f64,
+}
+
+impl Item {
+    fn new(facet: u32, corners: [DVec3; 3]) -> Self {
+        let [a, b, c] = corners;
+        let (area, doubt) = normal(corners);
+        Self { facet, low: a.min(b).min(c), high: a.max(b).max(c), area, doubt }
+    }
+
+    fn center(&self) -> DVec3 {
+        self.low + self.high
+    }
+}
+
+/// Twice the area times the unit normal, and how far rounding may have turned it, as a sine.
+///
+/// The error of each component is at most 8 roundings of the terms it is made of; what of it lies
+/// along the normal turns nothing. Facets in planes of the axes have terms that vanish, and no error.
+pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let (u, v) = (b - a, c - a);
+    let area = u.cross(v);
+    let (x, y) = (u.abs(), v.abs());
+    let terms = DVec3::new(x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x);
+    let error = terms * (4.0 * f64::EPSILON);
+    let length = area.length_squared();
+    if length == 0.0 {
+        return (area, ANY);
+    }
+    let size = area.abs();
+    // |error x area|, the worst signs.
+    let across = DVec3::new(
+        error.y * size.z + error.z * size.y,
+        error.z * size.x + error.x * size.z,
+        error.x * size.y + error.y * size.x,
+    );
+    (area, (across.length() / length).min(ANY))
+}
+
+/// The tree's nodes, and the order in which it lists the facets.
+pub(super) fn build(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
+    let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
+    let mut items: Vec<Item> = triangles
+        .iter()
+        .enumerate()
+        .map(|(facet, t)| Item::new(facet as u32, corners(t)))
+        .collect();
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let builder = Builder { vertices, triangles };
+    let mut nodes = Vec::with_capacity(items.len());
+    builder.grow(&mut items, 0, threads, &mut nodes);
+    nodes.shrink_to_fit();
+    (nodes, items.iter().map(|i| i.facet).collect())
+}
+
+struct Builder<'a> {
+    vertices: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
+}
+
+impl Builder<'_> {
+    /// Appends the subtree over `items`, the first of which is at `first`.
+    fn grow(&self, items: &mut [Item], first: u32, threads: usize, nodes: &mut Vec<Node>) {
+        let at = nodes.len();
+        nodes.push(self.node(items, first));
+        if items.len() <= LEAF {
+            return;
+        }
+        let middle = split(items);
+        let (left, right) = items.split_at_mut(middle);
+        let second = first + middle as u32;
+        if threads > 1 && left.len().min(right.len()) >= FORK {
+            let mut behind = Vec::with_capacity(right.len());
+            thread::scope(|scope| {
+                scope.spawn(|| self.grow(right, second, threads / 2, &mut behind));
+                self.grow(left, first, threads - threads / 2, nodes);
+            });
+            nodes[at].skip = (nodes.len() - at) as u32;
+            nodes.append(&mut behind);
+        } else {
+            self.grow(left, first, 1, nodes);
+            nodes[at].skip = (nodes.len() - at) as u32;
+            self.grow(right, second, 1, nodes);
+        }
+    }
+
+    fn node(&self, items: &[Item], first: u32) -> Node {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+        for item in items {
+            low = low.min(item.low);
+            high = high.max(item.high);
+            sum += item.area;
+            total += item.area.length();
+        }
+        let mut node = Node {
+            low,
+            high,
+            axis: DVec3::ZERO,
+            slab: [f64::NEG_INFINITY, f64::INFINITY],
+            spread: ANY as f32,
+            skip: 0,
+            first,
+            count: items.len() as u32,
+        };
+        // A surface that looks to all sides has no axis to speak of.
+        if sum.length() > 0.25 * total {
+            node.axis = sum.normalize_or_zero();
+            self.add_cone(items, &mut node);
+        }
+        node
+    }
+
+    fn add_cone(&self, items: &[Item], node: &mut Node) {
+        let mut spread = 0.0_f64;
+        for item in items {
+            spread = spread.max(deviation(node.axis, item.area, item.doubt));
+            if spread >= 1.0 {
+                // No facing can be told from it, and its slab is hardly thinner than the box.
+                node.axis = DVec3::ZERO;
+                return;
+            }
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for item in items {
+            for v in self.triangles[item.facet as usize] {
+                let height = node.axis.dot(self.vertices[v as usize]);
+                (low, high) = (low.min(height), high.max(height));
+            }
+        }
+        node.slab = [low, high];
+        node.spread = round_up(spread);
+    }
+}
+
+/// The sine of the angle between a unit axis and a normal of any length, rounded up; [`ANY`] from a
+/// right angle on.
+fn deviation(axis: DVec3, area: DVec3, doubt: f64) -> f64 {
+    let length = area.length();
+    if doubt >= 1.0 || axis.dot(area) <= 0.0 {
+        return ANY;
+    }
+    let cross = axis.cross(area) / length;
+    let (x, y) = (axis.abs(), area.abs() / length);
+    let terms = x.yzx() * y.zxy() + x.zxy() * y.yzx();
+    let sine = cross.length() + 4.0 * f64::EPSILON * terms.length() + doubt;
+    // Sines that add up to less than 1 belong to angles that add up to less than a right one.
+    sine
+}
+
+/// The next single-precision number that is not smaller.
+fn round_up(x: f64) -> f32 {
+    let near = x as f32;
+    if f64::from(near) < x { near.next_up() } else { near }
+}
+
+/// Puts the items of the first child in front; how many they are.
+fn split(items: &mut [Item]) -> usize {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for item in items.iter() {
+        let center = item.center();
+        low = low.min(center);
+        high = high.max(center);
+    }
+    if let Some((axis, bin)) = cheapest(items, low, high) {
+        let key = Binning::new(low, high, axis);
+        let middle = partition(items, |item| key.bin(item) <= bin);
+        if middle > 0 && middle < items.len() {
+            return middle;
+        }
+    }
+    let axis = (high - low).max_position();
+    let middle = items.len() / 2;
+    items.select_nth_unstable_by(middle, |a, b| {
+        let (x, y) = (a.center()[axis], b.center()[axis]);
+        x.total_cmp(&y).then(a.facet.cmp(&b.facet))
+    });
+    middle
+}
+
+/// Moves the items that `belongs` to the front; how many they are.
+fn partition(items: &mut [Item], belongs: impl Fn(&Item) -> bool) -> usize {
+    let mut middle = 0;
+    for k in 0..items.len() {
+        if belongs(&items[k]) {
+            items.swap(middle, k);
+            middle += 1;
+        }
+    }
+    middle
+}
+
+/// Sixteen intervals of the centres along an axis.
+struct Binning {
+    axis: usize,
+    low: f64,
+    scale: f64,
+}
+
+impl Binning {
+    fn new(low: DVec3, high: DVec3, axis: usize) -> Self {
+        let scale = BINS as f64 / (high[axis] - low[axis]);
+        Self { axis, low: low[axis], scale }
+    }
+
+    fn bin(&self, item: &Item) -> usize {
+        // Out of range, or no number where all centres are one, ends at either end.
+        (((item.center()[self.axis] - self.low) * self.scale) as usize).min(BINS - 1)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    low: DVec3,
+    high: DVec3,
+    count: usize,
+}
+
+impl Bin {
+    const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, count: 0 };
+
+    fn join(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            count: self.count + other.count,
+        }
+    }
+
+    /// Half the surface of the box times the count.
+    fn cost(&self) -> f64 {
+        if self.count == 0 {
+            return 0.0;
+        }
+        let s = self.high - self.low;
+        (s.x * s.y + s.y * s.z + s.z * s.x) * self.count as f64
+    }
+}
+
+/// The axis and the last bin of the first child for which the surface-area heuristic is least.
+fn cheapest(items: &[Item], low: DVec3, high: DVec3) -> Option<(usize, usize)> {
+    let mut best: Option<(f64, usize, usize)> = None;
+    for axis in 0..3 {
+        if high[axis] <= low[axis] {
+            continue;
+        }
+        let binning = Binning::new(low, high, axis);
+        let mut bins = [Bin::EMPTY; BINS];
+        for item in items {
+            let bin = &mut bins[binning.bin(item)];
+            *bin = bin.join(Bin { low: item.low, high: item.high, count: 1 });
+        }
+        let mut behind = [0.0; BINS];
+        let mut all = Bin::EMPTY;
+        for k in (1..BINS).rev() {
+            all = all.join(bins[k]);
+            behind[k] = all.cost();
+        }
+        let mut front = Bin::EMPTY;
+        for k in 0..BINS - 1 {
+            front = front.join(bins[k]);
+            let cost = front.cost() + behind[k + 1];
+            let both = front.count > 0 && front.count < items.len();
+            if both && best.is_none_or(|b| cost < b.0) {
+                best = Some((cost, axis, k));
+            }
+        }
+    }
+    best.map(|(_, axis, bin)| (axis, bin))
+}

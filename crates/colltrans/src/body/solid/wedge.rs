@@ -1,0 +1,114 @@
+//! Wedges of material around an edge, compared by signs alone.
+//!
+//! Around an axis `u` directions are ordered counter-clockwise, as seen with `u` pointing at the
+//! eye. A facet that runs along `u` has its material clockwise of itself, one that runs against it
+//! counter-clockwise: the wedge of an edge is the open arc from its backward to its forward facet.
+//! Directions are those of points; a flat surface has a second direction opposite to a point's.
+
+use std::cmp::Ordering;
+
+/// Signs of points around an axis; points are named by numbers.
+pub(crate) trait Axis {
+    /// Sign of `det[u, x, y]`.
+    fn det(&self, x: usize, y: usize) -> Ordering;
+    /// Whether `x` and `y`, in one plane with the axis, lie on the same side of it.
+    fn same_half(&self, x: usize, y: usize) -> bool;
+}
+
+/// The direction of a point, or its opposite.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ray {
+    pub(crate) point: usize,
+    pub(crate) opposite: bool,
+}
+
+impl Ray {
+    pub(crate) fn to(point: usize) -> Self {
+        Self { point, opposite: false }
+    }
+}
+
+/// An open arc of material, counter-clockwise.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wedge {
+    pub(crate) start: Ray,
+    pub(crate) end: Ray,
+}
+
+impl Wedge {
+    /// Whether two wedges have an interior point in common. A wedge whose facets fold onto each
+    /// other has no interior.
+    pub(crate) fn meets(&self, other: &Self, axis: &impl Axis) -> bool {
+        !self.is_empty(axis)
+            && !other.is_empty(axis)
+            && (self.contains(other.start, axis) || other.contains(self.start, axis))
+    }
+
+    fn is_empty(&self, axis: &impl Axis) -> bool {
+        sector(self.start, self.end, axis) == 0
+    }
+
+    /// Whether a ray lies in the arc, its start included.
+    pub(crate) fn contains(&self, ray: Ray, axis: &impl Axis) -> bool {
+        match (sector(self.start, ray, axis), sector(self.start, self.end, axis)) {
+            (0, _) => true,
+            (a, b) if a != b => a < b,
+            (2, _) => false,
+            _ => det(ray, self.end, axis) == Ordering::Greater,
+        }
+    }
+}
+
+fn det(x: Ray, y: Ray, axis: &impl Axis) -> Ordering {
+    let sign = axis.det(x.point, y.point);
+    if x.opposite == y.opposite { sign } else { sign.reverse() }
+}
+
+/// The angle from `x` to `y`: 0, below a half turn, a half turn, above.
+fn sector(x: Ray, y: Ray, axis: &impl Axis) -> u8 {
+    match det(x, y, axis) {
+        Ordering::Greater => 1,
+        Ordering::Less => 3,
+        Ordering::Equal => {
+            let same = axis.same_half(x.point, y.point) == (x.opposite == y.opposite);
+            if same { 0 } else { 2 }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Directions at multiples of 45 degrees.
+    struct Rose;
+
+    impl Axis for Rose {
+        fn det(&self, x: usize, y: usize) -> Ordering {
+            match (y + 8 - x) % 8 {
+                0 | 4 => Ordering::Equal,
+                1..=3 => Ordering::Greater,
+                _ => Ordering::Less,
+            }
+        }
+        fn same_half(&self, x: usize, y: usize) -> bool {
+            x % 8 == y % 8
+        }
+    }
+
+    #[test]
+    fn wedges_meet_where_their_arcs_do() {
+        for (a, b, c, d) in (0..4096).map(|i| (i & 7, i >> 3 & 7, i >> 6 & 7, i >> 9 & 7)) {
+            let wedge = |s, e| Wedge { start: Ray::to(s), end: Ray::to(e) };
+            // Eighths of the circle that the arcs cover.
+            let cover = |s: usize, e: usize| {
+                (0..(e + 8 - s) % 8).fold(0_u8, |mask, k| mask | 1 << ((s + k) % 8))
+            };
+            let expected = cover(a, b) & cover(c, d) != 0;
+            assert_eq!(wedge(a, b).meets(&wedge(c, d), &Rose), expected, "{a} {b} {c} {d}");
+            let opposite =
+                Wedge { start: Ray { point: (a + 4) % 8, opposite: true }, end: Ray::to(b) };
+            assert_eq!(opposite.meets(&wedge(c, d), &Rose), expected);
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! Vertices with equal coordinates become one, without sorting.
+
+use glam::DVec3;
+
+const FREE: u32 = u32::MAX;
+
+/// For each vertex the first one with the same coordinates (`-0` equals `0`).
+pub(super) fn first_equals(vertices: &[DVec3]) -> Vec<u32> {
+    let slots = (2 * vertices.len()).next_power_of_two().max(2);
+    let mut table = vec![FREE; slots];
+    let mut first = Vec::with_capacity(vertices.len());
+    for (v, point) in vertices.iter().enumerate() {
+        let mut slot = hash(*point) as usize & (slots - 1);
+        while table[slot] != FREE && vertices[table[slot] as usize] != *point {
+            slot = (slot + 1) & (slots - 1);
+        }
+        if table[slot] == FREE {
+            table[slot] = v as u32;
+        }
+        first.push(table[slot]);
+    }
+    first
+}
+
+/// Equal for equal coordinates; the upper bits of a product depend on all bits of its factors.
+fn hash(point: DVec3) -> u64 {
+    let mix = |h: u64, c: f64| {
+        let wide = u128::from(h ^ (c + 0.0).to_bits()) * 0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835;
+        (wide >> 64) as u64 ^ wide as u64
+    };
+    point.to_array().into_iter().fold(0x243f_6a88_85a3_08d3, mix)
+}

@@ -1,0 +1,246 @@
+//! How far a solid can move from where it is.
+//!
+//! With a tolerance `L` both bodies are shrunk by `L / 2`. If their interiors then share a point, they
+//! overlap, and the depth is the least tolerance with which they do not, from above: doubled until
+//! there is one, then halved between the two.
+
+use super::contact::{SolidContact, contact};
+use super::overlap;
+use super::scene::Scene;
+use super::search::{Aim, Cut, Found, Search, Workspace};
+use crate::body::placed::sealed;
+use crate::body::solid::Solid;
+use crate::body::{Body, Placed, Pose};
+use crate::cast::Cast;
+use crate::error::QueryError;
+
+/// Default tolerance, in multiples of the rounding error of a coordinate.
+const NOISES: f64 = 8.0;
+/// The depth is found to this share of itself.
+const DEPTH_ACCURACY: f64 = 1e-12;
+/// Doublings and halvings of a tolerance.
+const MOST_HALVINGS: usize = 128;
+
+/// What an overlap at the start means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum StartOverlap {
+    /// It is the answer.
+    #[default]
+    Refuse,
+    /// Facets that cross now do not block; contacts that begin later do.
+    Ignore,
+    /// There is none: the caller has asked before, for the same bodies, poses and tolerance. Whoever
+    /// asks one pair along many directions asks once whether it overlaps.
+    Apart,
+    /// There is one, and it is ignored: the caller has asked before, as for [`Self::Apart`].
+    KnownIgnore,
+}
+
+/// Choices of a query between solids.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SolidOptions {
+    /// What an overlap at the start means.
+    pub start_overlap: StartOverlap,
+    /// Both bodies are shrunk by half of this length. `None` stands for 0 where both poses turn by
+    /// quarter turns, and else for what rounding can do to a fit, `256 u S`.
+    pub tolerance: Option<f64>,
+    /// Contacts at this translation or beyond are of no interest: the best answer so far, where one
+    /// body is asked against many.
+    pub before: Option<f64>,
+}
+
+/// How far a solid can move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SolidClearance {
+    /// As far as it likes, or as far as was asked.
+    Free,
+    /// Until it touches.
+    Blocked {
+        /// How far the bodies, shrunk by half the tolerance, can move, in multiples of the direction;
+        /// never negative.
+        distance: f64,
+        /// Where the facets that stop the shrunk bodies meet in their true place.
+        nominal: f64,
+        /// What stops it.
+        contact: SolidContact,
+    },
+    /// The bodies overlap where they are.
+    Overlapping {
+        /// The least tolerance with which they would not; `None` if there is none.
+        depth: Option<f64>,
+    },
+}
+
+impl sealed::Sealed for Solid {}
+
+impl Body for Solid {
+    type Options = SolidOptions;
+}
+
+impl Solid {
+    /// This body in a pose, for a [`Cast`].
+    pub fn at(&self, pose: Pose) -> Placed<'_, Self> {
+        Placed { body: self, pose }
+    }
+}
+
+/// Queries between solids.
+impl<'a> Cast<'a, Solid> {
+    /// The same with other choices.
+    ///
+    /// # Errors
+    /// A tolerance that is negative or not finite.
+    pub fn with_options(self, options: SolidOptions) -> Result<Self, QueryError> {
+        if let Some(tolerance) = options.tolerance
+            && !(tolerance.is_finite() && tolerance >= 0.0)
+        {
+            return Err(QueryError::Tolerance { tolerance });
+        }
+        Ok(Self { options, ..self })
+    }
+
+    /// The same with both bodies shrunk by half of this length.
+    ///
+    /// # Errors
+    /// A tolerance that is negative or not finite.
+    pub fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
+        self.with_options(SolidOptions { tolerance: Some(tolerance), ..self.options })
+    }
+
+    /// The same with another meaning of an overlap at the start.
+    #[must_use]
+    pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
+        Self { options: SolidOptions { start_overlap, ..self.options }, ..self }
+    }
+
+    /// Always an error: on a solid a graze tolerance would depend on how finely it is meshed.
+    ///
+    /// # Errors
+    /// [`QueryError::GrazeOnSolid`], which names [`Self::with_tolerance`].
+    pub fn with_graze_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
+        Err(QueryError::GrazeOnSolid { tolerance })
+    }
+
+    /// The tolerance that is used, as a length.
+    pub fn tolerance(&self) -> f64 {
+        self.options.tolerance.unwrap_or_else(|| {
+            let scene = self.scene(0.0);
+            let squared = scene.moving.permutes && scene.fixed.permutes;
+            if squared { 0.0 } else { NOISES * scene.blur }
+        })
+    }
+
+    pub(super) fn scene(&self, tolerance: f64) -> Scene<'a> {
+        let half = tolerance / 2.0;
+        let (moving, fixed) = (self.moving_pose(), self.fixed_pose());
+        Scene::new((self.moving(), &moving, half), (self.fixed(), &fixed, half), self.direction())
+    }
+
+    pub(super) fn asked(&self) -> Scene<'a> {
+        self.scene(self.tolerance())
+    }
+
+    /// How far the moving body can move from where it is.
+    pub fn clearance(&self) -> SolidClearance {
+        self.clearance_in(&mut Workspace::default())
+    }
+
+    /// The same with a queue that is kept.
+    pub fn clearance_in(&self, workspace: &mut Workspace) -> SolidClearance {
+        let scene = self.asked();
+        let overlapping = || overlap::find(&scene).is_some();
+        let aim = match self.options.start_overlap {
+            StartOverlap::Refuse if overlapping() => {
+                return SolidClearance::Overlapping { depth: self.depth() };
+            }
+            StartOverlap::KnownIgnore => Aim::LaterStop,
+            StartOverlap::Ignore if overlapping() => Aim::LaterStop,
+            StartOverlap::Refuse | StartOverlap::Ignore | StartOverlap::Apart => Aim::Stop,
+        };
+        let limit = self.options.before.map_or(f64::INFINITY, |t| t * scene.length);
+        match first(&scene, aim, limit, workspace, |_| ()) {
+            None => SolidClearance::Free,
+            Some(found) => {
+                let distance = found.gap / scene.length;
+                let origin = self.moving_pose().translation();
+                let (contact, nominal) = contact(&scene, &found, distance, origin);
+                SolidClearance::Blocked { distance, nominal, contact }
+            }
+        }
+    }
+
+    /// Whether the interiors of the bodies, shrunk by half the tolerance, have a point in common.
+    pub fn overlaps(&self) -> bool {
+        overlap::find(&self.asked()).is_some()
+    }
+
+    /// Whether the bodies as they are, as closed sets, have a point in common.
+    pub fn intersects(&self) -> bool {
+        overlap::touches(&self.scene(0.0))
+    }
+
+    /// The least tolerance with which the bodies do not overlap, from above: 0 if they do not, `None`
+    /// if there is none up to their size.
+    pub fn depth(&self) -> Option<f64> {
+        let bare = self.scene(0.0);
+        overlap::find(&bare)?;
+        let free = |tolerance: f64| {
+            let half = tolerance / 2.0;
+            overlap::find(&bare.shrunk(half, half)).is_none()
+        };
+        let (mut low, mut high) = (0.0, bare.blur);
+        while !free(high) {
+            (low, high) = (high, 2.0 * high);
+            if high > bare.size() {
+                return None;
+            }
+        }
+        for _ in 0..MOST_HALVINGS {
+            let middle = low + 0.5 * (high - low);
+            if high - low <= DEPTH_ACCURACY * high || middle <= low || middle >= high {
+                break;
+            }
+            if free(middle) { high = middle } else { low = middle }
+        }
+        Some(high)
+    }
+
+    /// The translation after which the bodies, as they are, never meet again: the largest gap between
+    /// a back facet of the moving and a front facet of the fixed body; `None` if none face each other.
+    pub fn exit(&self) -> Option<f64> {
+        self.exit_in(&mut Workspace::default())
+    }
+
+    /// The same with a queue that is kept.
+    pub fn exit_in(&self, workspace: &mut Workspace) -> Option<f64> {
+        let scene = self.scene(0.0).reversed();
+        let found = first(&scene, Aim::Least, f64::INFINITY, workspace, |_| ())?;
+        Some((-found.gap / scene.length).max(0.0))
+    }
+
+    /// Pairs of nodes and of leaves that a search for the clearance looks at.
+    pub fn steps(&self) -> [u32; 2] {
+        let scene = self.asked();
+        let mut search = Search {
+            scene: &scene,
+            aim: Aim::Stop,
+            limit: f64::INFINITY,
+            found: None,
+            cut: |_| (),
+            steps: [0; 2],
+        };
+        search.run(&mut Workspace::default());
+        search.steps
+    }
+}
+
+/// The least gap below a limit.
+pub(super) fn first(
+    scene: &Scene,
+    aim: Aim,
+    limit: f64,
+    workspace: &mut Workspace,
+    cut: impl FnMut(Cut),
+) -> Option<Found> {
+    Search { scene, aim, limit, found: None, cut, steps: [0; 2] }.run(workspace)
+}

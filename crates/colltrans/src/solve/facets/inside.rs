@@ -1,0 +1,164 @@
+//! Whether a shell of one solid lies inside the other.
+//!
+//! A general point of the shell decides: a corner or, where those lie on the other surface, a mean of
+//! corners with weights that are powers of two. From it a line along the direction is followed, moved
+//! sideways by an infinitesimal amount, first along one axis of the world and then along another, so
+//! that it passes no edge. Facets above it count once outwards and once inwards; what is left is how
+//! many pieces the point lies in.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::bound::Shade;
+use super::overlap::{Plate, lies_on};
+use super::scene::{Corner, Scene, Side, Spot, place_exactly};
+use super::search::children;
+use super::wide::Wide;
+use crate::body::solid::edges::NONE;
+
+/// Triangles of a shell that are tried for a point off the other surface. A shell inside touches it
+/// in isolated points only, so the first or second one does, unless it touches along facets.
+const MOST_TRIANGLES: usize = 16;
+/// Weights of points within a facet.
+const WEIGHTS: [[f64; 3]; 4] =
+    [[0.5, 0.25, 0.25], [0.25, 0.5, 0.25], [0.25, 0.25, 0.5], [0.0, 0.5, 0.5]];
+
+/// A triangle of a shell of one body that lies inside the other.
+pub(super) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
+    let (own, other) = (scene.side(moving), scene.side(!moving));
+    let room = Shade::new(scene, other, 0);
+    for span in own.solid.spans() {
+        let (middle, half) = ((span.low + span.high) * 0.5, (span.high - span.low) * 0.5);
+        let at = own.view * middle + own.view_offset;
+        let rows = own.view.transpose();
+        let swell = own.shrinking.map_or(0.0, |s| s.farthest * own.amount);
+        let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
+        let extent = DVec3::from_array(extent) + DVec3::splat(swell + 4.0 * scene.blur);
+        // A shell that reaches out of the other's box is not inside it.
+        let within = (at + extent).cmple(room.high + 16.0 * scene.blur).all()
+            && (at - extent).cmpge(room.low - 16.0 * scene.blur).all();
+        // The other's box is loose where it is not aligned; then all that overlap are asked.
+        let meets = (at + extent).cmpge(room.low).all() && (at - extent).cmple(room.high).all();
+        let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
+        if meets && (within || !aligned) && decide(scene, own, other, span.triangle) {
+            return Some(span.triangle);
+        }
+    }
+    None
+}
+
+/// Whether the shell with this triangle is inside.
+fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
+    let mut seen = vec![triangle];
+    let mut next = 0;
+    while let Some(&t) = seen.get(next) {
+        next += 1;
+        let corners = own.corners(t as usize);
+        for corner in &corners {
+            if let Some(winding) = winding(scene, other, corner) {
+                return winding > 0;
+            }
+        }
+        for weights in WEIGHTS {
+            let mean = Mean::new(scene, corners, weights);
+            if let Some(winding) = winding(scene, other, &mean) {
+                return winding > 0;
+            }
+        }
+        for &n in &own.solid.neighbours()[t as usize] {
+            if n != NONE && seen.len() < MOST_TRIANGLES && !seen.contains(&n) {
+                seen.push(n);
+            }
+        }
+    }
+    false
+}
+
+/// A mean of the corners of a facet.
+struct Mean {
+    at: DVec3,
+    moving: bool,
+    terms: [(f64, DVec3); 3],
+}
+
+impl Mean {
+    fn new(scene: &Scene, corners: [Corner; 3], weights: [f64; 3]) -> Self {
+        let terms = [0, 1, 2].map(|k| (weights[k], corners[k].local));
+        let local: DVec3 = terms.iter().map(|(w, p)| *p * *w).sum();
+        let side = scene.side(corners[0].moving);
+        Self { at: side.view * local + side.view_offset, moving: corners[0].moving, terms }
+    }
+}
+
+impl Spot for Mean {
+    fn at(&self) -> DVec3 {
+        self.at
+    }
+
+    fn is_exact(&self) -> bool {
+        false
+    }
+
+    fn world(&self, _: &Scene) -> Option<DVec3> {
+        None
+    }
+
+    fn wide(&self, scene: &Scene) -> [Wide; 3] {
+        place_exactly(scene.side(self.moving), &self.terms)
+    }
+}
+
+/// How many pieces of a solid a point lies in; `None` if it lies on its surface.
+fn winding(scene: &Scene, side: &Side, spot: &impl Spot) -> Option<i32> {
+    let axes = sideways(scene);
+    let blur = 4.0 * scene.blur;
+    let p = spot.at();
+    let mut stack = vec![0_u32];
+    let mut winding = 0;
+    while let Some(at) = stack.pop() {
+        let node = &side.solid.nodes()[at as usize];
+        let shade = Shade::new(scene, side, at as usize);
+        let beside = (0..2).any(|k| p[k] < shade.low[k] - blur || p[k] > shade.high[k] + blur);
+        if beside || p.z > shade.high.z + blur {
+            continue;
+        }
+        if !node.is_leaf() {
+            stack.extend(children(node, at));
+            continue;
+        }
+        for t in node.facets() {
+            let plate = Plate::new(side, t);
+            if lies_on(scene, spot, &plate) {
+                return None;
+            }
+            winding += crossing(scene, side.corners(t), spot, axes);
+        }
+    }
+    Some(winding)
+}
+
+/// The two axes of the world along which the direction is smaller.
+fn sideways(scene: &Scene) -> [usize; 2] {
+    let main = scene.direction.abs().max_position();
+    [(main + 1) % 3, (main + 2) % 3]
+}
+
+/// 1 if the line from the spot leaves through the triangle, -1 if it enters, 0 if it passes it.
+fn crossing(scene: &Scene, [a, b, c]: [Corner; 3], spot: &impl Spot, axes: [usize; 2]) -> i32 {
+    let facing = scene.turn(&a, &b, &c);
+    if facing == Ordering::Equal {
+        return 0;
+    }
+    let beside = |u: &Corner, v: &Corner| {
+        scene
+            .turn(u, v, spot)
+            .then_with(|| scene.drift(axes[0], u, v))
+            .then_with(|| scene.drift(axes[1], u, v))
+    };
+    let passes = beside(&a, &b) == facing && beside(&b, &c) == facing && beside(&c, &a) == facing;
+    if !passes || scene.outside(&a, &b, &c, spot) != facing.reverse() {
+        return 0;
+    }
+    if facing == Ordering::Greater { 1 } else { -1 }
+}

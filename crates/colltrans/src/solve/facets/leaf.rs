@@ -1,0 +1,402 @@
+//! Two facets: whether their pair counts, and for how much.
+//!
+//! `f` is a front facet of the moving body (its shadow runs counter-clockwise), `g` a back facet of
+//! the fixed one, its corners listed backwards so that its shadow runs counter-clockwise too. The
+//! interiors of the shadows overlap unless a side of one separates them. Over the common shadow the
+//! gap `h_g - h_f` is linear; its corners are corners of `f` under `g`, corners of `g` over `f`, and
+//! crossings of sides. The pair *counts* if the largest gap is positive, or zero all over.
+//!
+//! All that is decided is decided exactly: rounded values are used where their error bounds allow,
+//! and else the signs are those of
+//! `outside(g, f_i)` (corner of `f` under `g`), `outside(f, g_j)` (corner of `g` over `f`) and
+//! `-outside(p, q, r, s) turn(p, q, s)` (side `p q` of `f` under side `r s` of `g`).
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::scene::{Corner, Scene};
+use super::sign::rough_turn;
+
+/// Rounded gaps are used while their error is below so many times the blur of coordinates, `2e-10 S`;
+/// the one that decides is taken again exactly if its error is not below [`FINE`] times the blur.
+const SHARP: f64 = 65_536.0;
+pub(super) const FINE: f64 = 256.0;
+
+/// A facet, its shadow running counter-clockwise.
+#[derive(Clone, Copy)]
+pub(super) struct Facet {
+    pub(super) triangle: u32,
+    pub(super) corners: [Corner; 3],
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
+}
+
+impl Facet {
+    /// The facet if it is a front (`Greater`) or back (`Less`) facet of its body.
+    pub(super) fn facing(
+        scene: &Scene,
+        moving: bool,
+        triangle: usize,
+        wanted: Ordering,
+    ) -> Option<Self> {
+        let mut corners = scene.side(moving).corners(triangle);
+        if scene.turn(&corners[0], &corners[1], &corners[2]) != wanted {
+            return None;
+        }
+        if wanted == Ordering::Less {
+            corners.swap(1, 2);
+        }
+        let [a, b, c] = corners.map(|c| c.at);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        Some(Self { triangle: triangle as u32, corners, low, high })
+    }
+
+    fn side(&self, k: usize) -> [&Corner; 2] {
+        [&self.corners[k], &self.corners[(k + 1) % 3]]
+    }
+}
+
+/// What meets what at a corner of the common shadow; numbers are positions in [`Facet::corners`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// A corner of the moving facet and the fixed facet.
+    Corner(u8),
+    /// The moving facet and a corner of the fixed one.
+    Under(u8),
+    /// Two sides, each named by its first corner.
+    Sides(u8, u8),
+}
+
+/// The range of the gap over the common shadow.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gap {
+    /// The least gap, as a length.
+    pub(super) least: f64,
+    pub(super) largest: f64,
+    /// Their signs, exactly.
+    pub(super) signs: [Ordering; 2],
+    /// Where the gap is least.
+    pub(super) at: Meeting,
+    /// Bound of the error of its values.
+    pub(super) error: f64,
+}
+
+impl Gap {
+    /// Whether the largest gap is positive, or the gap zero all over.
+    pub(super) fn counts(&self) -> bool {
+        matches!(self.signs, [_, Ordering::Greater] | [Ordering::Equal, Ordering::Equal])
+    }
+}
+
+/// On which side of a side a corner lies: rounded, the error of that, and exactly once resolved.
+#[derive(Clone, Copy)]
+struct Turn {
+    value: f64,
+    error: f64,
+    sign: Ordering,
+}
+
+/// The turns of each side of one facet with each corner of the other.
+struct Turns([[Turn; 3]; 3]);
+
+impl Turns {
+    fn new(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
+        let mut turns = [[Turn { value: 0.0, error: 0.0, sign: Ordering::Equal }; 3]; 3];
+        for (k, row) in turns.iter_mut().enumerate() {
+            let (a, b) = (sides.corners[k].at, sides.corners[(k + 1) % 3].at);
+            for (turn, corner) in row.iter_mut().zip(&corners.corners) {
+                let (value, error) = rough_turn(scene, a, b, corner.at);
+                let sign = if value > 0.0 { Ordering::Greater } else { Ordering::Less };
+                *turn = Turn { value, error, sign };
+            }
+        }
+        Self(turns)
+    }
+
+    /// Makes all signs exact.
+    fn resolve(&mut self, scene: &Scene, sides: &Facet, corners: &Facet) {
+        for k in 0..3 {
+            let [a, b] = sides.side(k);
+            for j in 0..3 {
+                let turn = &mut self.0[k][j];
+                if turn.value.abs() <= turn.error {
+                    turn.sign = scene.turn(a, b, &corners.corners[j]);
+                }
+            }
+        }
+    }
+
+    /// Whether side `k` certainly has all corners on its outer side.
+    fn separates(&self, k: usize) -> bool {
+        self.0[k].iter().all(|t| t.value < -t.error)
+    }
+
+    /// Whether side `k` certainly has a corner on its inner side.
+    fn admits(&self, k: usize) -> bool {
+        self.0[k].iter().any(|t| t.value > t.error)
+    }
+
+    /// Whether corner `j` lies in the shadow of the facet of the sides, or on its rim.
+    fn contain(&self, j: usize) -> bool {
+        self.0.iter().all(|side| side[j].sign != Ordering::Less)
+    }
+}
+
+/// Whether the interiors of the shadows overlap, and if so the gap over them; `limit` is what a pair
+/// has to stay below to be of interest. The sign of the least gap is only right if it is `needed`.
+pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, needed: bool) -> Option<Gap> {
+    let blur = 4.0 * scene.blur;
+    let apart = |k: usize| g.low[k] - f.high[k] > blur || f.low[k] - g.high[k] > blur;
+    if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {
+        return None;
+    }
+    let mut of_f = Turns::new(scene, f, g);
+    if (0..3).any(|k| of_f.separates(k)) {
+        return None;
+    }
+    let mut of_g = Turns::new(scene, g, f);
+    if (0..3).any(|k| of_g.separates(k)) {
+        return None;
+    }
+    let separated = (0..3).any(|k| !of_f.admits(k) && separates(scene, f, k, g))
+        || (0..3).any(|k| !of_g.admits(k) && separates(scene, g, k, f));
+    if separated {
+        return None;
+    }
+    of_f.resolve(scene, f, g);
+    of_g.resolve(scene, g, f);
+    match rounded(scene, f, g, &of_f, &of_g).judge(SHARP * scene.blur, needed) {
+        Rounded::Known(gap) => Some(gap),
+        Rounded::Beyond(least) if least >= limit => None,
+        Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g)),
+    }
+}
+
+/// The gap of two facets whose shadows overlap, exact but for its last roundings.
+pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
+    let (mut of_f, mut of_g) = (Turns::new(scene, f, g), Turns::new(scene, g, f));
+    of_f.resolve(scene, f, g);
+    of_g.resolve(scene, g, f);
+    exact(scene, f, g, &of_f, &of_g)
+}
+
+/// Whether side `k` of a facet has no corner of the other on its inner side, exactly.
+fn separates(scene: &Scene, facet: &Facet, k: usize, other: &Facet) -> bool {
+    let [a, b] = facet.side(k);
+    other.corners.iter().all(|c| scene.turn(a, b, c) != Ordering::Greater)
+}
+
+/// The gap from rounded coordinates.
+enum Rounded {
+    /// Errors are small and the signs are certain.
+    Known(Gap),
+    /// The least gap is certainly not smaller than this.
+    Beyond(f64),
+}
+
+/// Gathers gaps at the corners of the common shadow.
+struct Range {
+    least: f64,
+    largest: f64,
+    at: Meeting,
+    negative: bool,
+    positive: bool,
+    /// Bounds of all gaps, and the largest error of one.
+    bound: [f64; 2],
+    worst: f64,
+}
+
+impl Range {
+    fn add(&mut self, (value, error): (f64, f64), at: Meeting) {
+        if value < self.least {
+            (self.least, self.at) = (value, at);
+        }
+        self.largest = self.largest.max(value);
+        self.worst = self.worst.max(error);
+        self.bound = [self.bound[0].min(value - error), self.bound[1].max(value + error)];
+        self.negative |= value < -error;
+        self.positive |= value > error;
+    }
+
+    fn judge(self, sharp: f64, needed: bool) -> Rounded {
+        let [low, high] = self.bound;
+        let least = if low > 0.0 {
+            Some(Ordering::Greater)
+        } else {
+            (self.negative || !needed).then_some(Ordering::Less)
+        };
+        let largest = if self.positive {
+            Some(Ordering::Greater)
+        } else {
+            (high < 0.0).then_some(Ordering::Less)
+        };
+        match (least, largest) {
+            (Some(a), Some(b)) if self.worst <= sharp => {
+                let Self { least, largest, at, worst, .. } = self;
+                Rounded::Known(Gap { least, largest, signs: [a, b], at, error: worst })
+            }
+            _ => Rounded::Beyond(low),
+        }
+    }
+}
+
+fn rounded(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> Range {
+    let mut range = Range {
+        least: f64::INFINITY,
+        largest: f64::NEG_INFINITY,
+        at: Meeting::Corner(0),
+        negative: false,
+        positive: false,
+        bound: [f64::INFINITY, f64::NEG_INFINITY],
+        worst: 0.0,
+    };
+    let (under, over) = (Slope::new(scene, g), Slope::new(scene, f));
+    for k in 0..3 {
+        if of_g.contain(k) {
+            range.add(under.height_above(f.corners[k].at), Meeting::Corner(k as u8));
+        }
+        if of_f.contain(k) {
+            let (height, error) = over.height_above(g.corners[k].at);
+            range.add((-height, error), Meeting::Under(k as u8));
+        }
+    }
+    for k in 0..3 {
+        for j in 0..3 {
+            if cross(of_f, of_g, [k, j]) {
+                let gap = crossing(scene, [f, g], [k, j], of_f, of_g);
+                range.add(gap, Meeting::Sides(k as u8, j as u8));
+            }
+        }
+    }
+    range
+}
+
+/// Whether side `k` of `f` and side `j` of `g` cross in points that are no ends of them.
+fn cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> bool {
+    let next = |k: usize| (k + 1) % 3;
+    let strictly = |x: Turn, y: Turn| x.sign != Ordering::Equal && x.sign == y.sign.reverse();
+    strictly(of_f.0[k][j], of_f.0[k][next(j)]) && strictly(of_g.0[j][k], of_g.0[j][next(k)])
+}
+
+/// The gap where side `k` of `f` crosses side `j` of `g`, and a bound of its error.
+fn crossing(
+    scene: &Scene,
+    [f, g]: [&Facet; 2],
+    [k, j]: [usize; 2],
+    of_f: &Turns,
+    of_g: &Turns,
+) -> (f64, f64) {
+    let next = |k: usize| (k + 1) % 3;
+    let (r, s) = (of_f.0[k][j], of_f.0[k][next(j)]);
+    let (p, q) = (of_g.0[j][k], of_g.0[j][next(k)]);
+    let ([a, b], [c, e]) = (f.side(k).map(|c| c.at), g.side(j).map(|c| c.at));
+    let (across, back) = (p.value - q.value, r.value - s.value);
+    let gap = c.z + (e.z - c.z) * (r.value / back) - a.z - (b.z - a.z) * (p.value / across);
+    // Where on its side the crossing is, and what that makes of the height.
+    let slide = |width: f64, x: Turn, y: Turn, rise: f64| {
+        let share = (x.error + y.error) / width.abs();
+        if share < 0.25 { 2.0 * share * rise.abs() } else { f64::INFINITY }
+    };
+    let error = 8.0 * scene.blur + slide(across, p, q, b.z - a.z) + slide(back, r, s, e.z - c.z);
+    if gap.is_finite() && error.is_finite() { (gap, error) } else { (0.0, f64::INFINITY) }
+}
+
+/// The plane of a facet as heights over the shadow.
+struct Slope {
+    origin: DVec3,
+    normal: DVec3,
+    /// Error of a height over a point at distance 1, and at the origin.
+    tilt: f64,
+    noise: f64,
+}
+
+impl Slope {
+    fn new(scene: &Scene, facet: &Facet) -> Self {
+        let [a, b, c] = facet.corners.map(|c| c.at);
+        // From the two shorter sides, which determine the plane best.
+        let sides = [b - a, c - b, a - c];
+        let lengths = sides.map(DVec3::length_squared);
+        let longest = if lengths[0] >= lengths[1].max(lengths[2]) {
+            0
+        } else if lengths[1] >= lengths[2] {
+            1
+        } else {
+            2
+        };
+        let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
+        let normal = sides[i].cross(sides[j]);
+        let size = sides[i].abs().max_element() + sides[j].abs().max_element();
+        let blur = 8.0 * scene.blur * (size + scene.blur) + 4.0 * f64::EPSILON * size * size;
+        let steep = normal.length() / normal.z;
+        let upright = normal.z > 8.0 * blur;
+        Self {
+            origin: [a, b, c][j],
+            normal,
+            // A turned normal: its error over its upward part, and what that makes of the rest.
+            tilt: if upright { 6.0 * blur / normal.z * steep } else { f64::INFINITY },
+            noise: if upright { 8.0 * scene.blur * steep } else { f64::INFINITY },
+        }
+    }
+
+    /// How far the plane lies above a point.
+    fn height_above(&self, p: DVec3) -> (f64, f64) {
+        let to = self.origin - p;
+        let error = self.noise + self.tilt * to.abs().max_element();
+        let height = self.normal.dot(to) / self.normal.z;
+        // A facet on edge has no heights to speak of.
+        if height.is_finite() && !error.is_nan() { (height, error) } else { (0.0, f64::INFINITY) }
+    }
+}
+
+/// The gap from exact signs at all corners of the common shadow, its values exact but for their last
+/// roundings.
+fn exact(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> Gap {
+    let [p, q, r] = &f.corners;
+    let [b, c, e] = &g.corners;
+    let mut gap = Gap {
+        least: f64::INFINITY,
+        largest: f64::NEG_INFINITY,
+        signs: [Ordering::Greater, Ordering::Less],
+        at: Meeting::Corner(0),
+        error: 0.0,
+    };
+    let length = scene.length;
+    let mut add = |sign: Ordering, ratio: f64, at: Meeting| {
+        let value = if sign == Ordering::Equal { 0.0 } else { ratio * length };
+        if value < gap.least {
+            (gap.least, gap.at) = (value, at);
+        }
+        gap.largest = gap.largest.max(value);
+        gap.signs = [gap.signs[0].min(sign), gap.signs[1].max(sign)];
+    };
+    for k in 0..3 {
+        if of_g.contain(k) {
+            // `g` runs backwards here: its normal points along the direction.
+            let volume = scene.outside_wide(b, e, c, &f.corners[k]);
+            let ratio = volume.ratio(&scene.turn_wide(b, c, e));
+            add(volume.sign(), ratio, Meeting::Corner(k as u8));
+        }
+        if of_f.contain(k) {
+            let volume = scene.outside_wide(p, q, r, &g.corners[k]);
+            let ratio = volume.ratio(&scene.turn_wide(p, q, r));
+            add(volume.sign(), ratio, Meeting::Under(k as u8));
+        }
+    }
+    for k in 0..3 {
+        for j in 0..3 {
+            if cross(of_f, of_g, [k, j]) {
+                let ([a, b], [c, e]) = (f.side(k), g.side(j));
+                let volume = scene.outside_wide(a, b, c, e).negate();
+                let plane = scene.turn_wide(a, b, e).subtract(&scene.turn_wide(a, b, c));
+                let ratio = volume.ratio(&plane);
+                let sign = match plane.sign() {
+                    Ordering::Less => volume.sign().reverse(),
+                    _ => volume.sign(),
+                };
+                add(sign, ratio, Meeting::Sides(k as u8, j as u8));
+            }
+        }
+    }
+    gap
+}

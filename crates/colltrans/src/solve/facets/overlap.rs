@@ -1,0 +1,405 @@
+//! Whether two solids overlap where they are: exactly.
+//!
+//! Their interiors have a point in common if and only if
+//!
+//! 1. two facets cross: their planes differ, and their interiors share a segment; or
+//! 2. two facets of one orientation share a part of a plane; or
+//! 3. an edge of one runs through a facet, or along an edge, of the other, and the wedges of material
+//!    around it share interior points; or
+//! 4. a shell of one lies inside the other, touching its surface in isolated points at most.
+//!
+//! For, let `C` be a component of the common interior. If its boundary has no part that belongs to
+//! both surfaces with one orientation (2), some point of, say, the first one's surface is inside the
+//! second. Take the component of that surface inside the second: if it ends along a curve, a general
+//! point of the curve lies in facets that cross (1) or on edges as in (3); if not, it is a whole shell
+//! but for isolated points (4). Vertices that touch need no test of their own.
+//!
+//! Nodes whose boxes or slabs are apart are cut; what touches is looked at in exact arithmetic.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::bound::{Shade, apart, beyond};
+use super::inside;
+use super::scene::{Corner, Scene, Side, Spot};
+use super::search::{children, splits_moving};
+use crate::body::solid::edges::NONE;
+use crate::body::solid::tree::Node;
+use crate::body::solid::wedge::{Axis, Ray, Wedge};
+
+/// Where the solids overlap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Overlap {
+    /// Around these two triangles.
+    Facets(u32, u32),
+    /// The shell of the moving body with this triangle lies inside the fixed one.
+    MovingInside(u32),
+    /// The shell of the fixed body with this triangle lies inside the moving one.
+    FixedInside(u32),
+}
+
+/// Whether the interiors have a point in common, and where; never for an open surface.
+pub(super) fn find(scene: &Scene) -> Option<Overlap> {
+    if !scene.moving.solid.is_closed() || !scene.fixed.solid.is_closed() {
+        return None;
+    }
+    let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
+    let (p, q) = (&scene.moving, &scene.fixed);
+    let disjoint = beyond(scene, (p, &a), (q, &b)) || beyond(scene, (q, &b), (p, &a));
+    if disjoint || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k]) {
+        return None;
+    }
+    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, Judge::OVERLAP) {
+        return Some(Overlap::Facets(f, g));
+    }
+    let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
+    moving.or_else(|| inside::shell_inside(scene, false).map(Overlap::FixedInside))
+}
+
+/// Whether the solids, as closed sets, have a point in common.
+pub(super) fn touches(scene: &Scene) -> bool {
+    let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
+    if apart(scene, &a, &b) {
+        return false;
+    }
+    if descend(scene, [0, 0], &a, &b, Judge::TOUCH).is_some() {
+        return true;
+    }
+    let closed = |side: &Side| side.solid.is_closed();
+    closed(&scene.fixed) && inside::shell_inside(scene, true).is_some()
+        || closed(&scene.moving) && inside::shell_inside(scene, false).is_some()
+}
+
+/// What is asked of two triangles, and whether nodes that lie face to face are of interest.
+#[derive(Clone, Copy)]
+struct Judge {
+    holds: fn(&Scene, &Plate, &Plate) -> bool,
+    faces: bool,
+}
+
+impl Judge {
+    const OVERLAP: Self = Self { holds: meet, faces: false };
+    const TOUCH: Self = Self { holds: share_a_point, faces: true };
+
+    /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show
+    /// no overlap: at their edges one half-space of material touches another, or else the wedge's
+    /// other facet is in a node of its own, and shows it.
+    fn dismisses(self, scene: &Scene, a: &Shade, b: &Shade) -> bool {
+        apart(scene, a, b) || !self.faces && a.is_face_to_face(b)
+    }
+}
+
+/// A pair of triangles for which `judge` holds, of all that are not certainly apart.
+fn descend(
+    scene: &Scene,
+    nodes: [usize; 2],
+    a: &Shade,
+    b: &Shade,
+    judge: Judge,
+) -> Option<(u32, u32)> {
+    let (m, n) = (&scene.moving.solid.nodes()[nodes[0]], &scene.fixed.solid.nodes()[nodes[1]]);
+    if m.is_leaf() && n.is_leaf() {
+        return leaves(scene, m, n, judge);
+    }
+    if splits_moving(m, n) {
+        for part in children(m, nodes[0] as u32).map(|c| c as usize) {
+            let shade = Shade::new(scene, &scene.moving, part);
+            if !judge.dismisses(scene, &shade, b) {
+                let found = descend(scene, [part, nodes[1]], &shade, b, judge);
+                if found.is_some() {
+                    return found;
+                }
+            }
+        }
+    } else {
+        for part in children(n, nodes[1] as u32).map(|c| c as usize) {
+            let shade = Shade::new(scene, &scene.fixed, part);
+            if !judge.dismisses(scene, a, &shade) {
+                let found = descend(scene, [nodes[0], part], a, &shade, judge);
+                if found.is_some() {
+                    return found;
+                }
+            }
+        }
+    }
+    None
+}
+
+fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)> {
+    for t in b.facets() {
+        let g = Plate::new(&scene.fixed, t);
+        for s in a.facets() {
+            let f = Plate::new(&scene.moving, s);
+            if (judge.holds)(scene, &f, &g) {
+                return Some((s as u32, t as u32));
+            }
+        }
+    }
+    None
+}
+
+/// A triangle of one body.
+pub(super) struct Plate<'s, 'a> {
+    side: &'s Side<'a>,
+    triangle: usize,
+    corners: [Corner; 3],
+    low: DVec3,
+    high: DVec3,
+}
+
+impl<'s, 'a> Plate<'s, 'a> {
+    pub(super) fn new(side: &'s Side<'a>, triangle: usize) -> Self {
+        let corners = side.corners(triangle);
+        let [a, b, c] = corners.map(|c| c.at);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        Self { side, triangle, corners, low, high }
+    }
+
+    /// On which side of the plane the corners of another triangle are.
+    fn sides(&self, scene: &Scene, other: &Self) -> [Ordering; 3] {
+        let [a, b, c] = &self.corners;
+        std::array::from_fn(|k| scene.outside(a, b, c, &other.corners[k]))
+    }
+
+    /// An axis of the world along which the triangle has an area.
+    fn open_axis(&self, scene: &Scene) -> (usize, Ordering) {
+        let [a, b, c] = &self.corners;
+        let normal = (b.at - a.at).cross(c.at - a.at);
+        let normal = scene.frame.transpose() * normal;
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&i, &j| normal[j].abs().total_cmp(&normal[i].abs()));
+        let about = |k| (k, scene.turn_about(k, a, b, c));
+        axes.into_iter().map(about).find(|x| x.1 != Ordering::Equal).unwrap_or((0, Ordering::Equal))
+    }
+
+    /// The corner of the neighbour across edge `k` that is not on the edge.
+    fn across(&self, k: usize) -> Option<Corner> {
+        let solid = self.side.solid;
+        let n = solid.neighbours()[self.triangle][k];
+        if n == NONE {
+            return None;
+        }
+        let own = solid.triangles()[self.triangle];
+        let ends = [own[k], own[(k + 1) % 3]];
+        let apex = solid.triangles()[n as usize].into_iter().find(|v| !ends.contains(v))?;
+        Some(self.side.corner(apex))
+    }
+}
+
+/// Whether two triangles show that the solids overlap: cases 1 to 3.
+fn meet(scene: &Scene, f: &Plate, g: &Plate) -> bool {
+    let blur = 4.0 * scene.blur;
+    if (0..3).any(|k| f.high[k] + blur < g.low[k] || g.high[k] + blur < f.low[k]) {
+        return false;
+    }
+    let of_g = f.sides(scene, g);
+    if one_sided(of_g) {
+        return false;
+    }
+    let of_f = g.sides(scene, f);
+    if one_sided(of_f) {
+        return false;
+    }
+    let flat = |signs: [Ordering; 3]| signs.iter().all(|s| *s == Ordering::Equal);
+    if flat(of_g) || flat(of_f) {
+        if share_a_side(scene, f, g) {
+            return true;
+        }
+    } else if straddles(of_g) && straddles(of_f) && cross(scene, f, of_f, g, of_g) {
+        return true;
+    }
+    (0..3).any(|k| edge_meets(scene, f, k, of_f, g, of_g))
+        || (0..3).any(|k| edge_meets(scene, g, k, of_g, f, of_f))
+}
+
+/// Whether two triangles, as closed sets, have a point in common: if so, an edge of one meets the
+/// other.
+fn share_a_point(scene: &Scene, f: &Plate, g: &Plate) -> bool {
+    let pierces = |f: &Plate, g: &Plate| (0..3).any(|k| edge_reaches(scene, f, k, g));
+    pierces(f, g) || pierces(g, f)
+}
+
+/// Whether edge `k` of `f` has a point in common with `g`, ends and rim included.
+fn edge_reaches(scene: &Scene, f: &Plate, k: usize, g: &Plate) -> bool {
+    let (p, q) = (&f.corners[k], &f.corners[(k + 1) % 3]);
+    let [a, b, c] = &g.corners;
+    let ends = (scene.outside(a, b, c, p), scene.outside(a, b, c, q));
+    match ends {
+        (Ordering::Equal, Ordering::Equal) => {
+            let (axis, facing) = g.open_axis(scene);
+            let turn = |u: &Corner, v: &Corner, w: &Corner| scene.turn_about(axis, u, v, w);
+            let of_corners = g.corners.map(|c| turn(p, q, &c));
+            let beside = one_sided(of_corners);
+            let beyond = (0..3).any(|k| {
+                let (a, b) = (&g.corners[k], &g.corners[(k + 1) % 3]);
+                turn(a, b, p) == facing.reverse() && turn(a, b, q) == facing.reverse()
+            });
+            !beside && !beyond
+        }
+        (x, y) if x == y => false,
+        _ => {
+            // All turns of the line around the sides, not of opposite signs.
+            let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| scene.outside(p, q, u, v));
+            !(turns.contains(&Ordering::Greater) && turns.contains(&Ordering::Less))
+        }
+    }
+}
+
+fn one_sided(signs: [Ordering; 3]) -> bool {
+    signs[0] != Ordering::Equal && signs[1] == signs[0] && signs[2] == signs[0]
+}
+
+fn straddles(signs: [Ordering; 3]) -> bool {
+    signs.contains(&Ordering::Greater) && signs.contains(&Ordering::Less)
+}
+
+/// Case 1, for triangles with corners on both sides of each other's planes: the segments in which
+/// they meet the common line overlap. With `a` alone on the upper side of `g`, and `b` alone on the
+/// upper side of `f`, that is told by two sides' order along the line.
+fn cross(scene: &Scene, f: &Plate, of_f: [Ordering; 3], g: &Plate, of_g: [Ordering; 3]) -> bool {
+    let (mut p, p_up) = alone_first(f, of_f);
+    let (mut q, q_up) = alone_first(g, of_g);
+    // Turning one triangle over turns the sides of its plane.
+    if !p_up {
+        q.swap(1, 2);
+    }
+    if !q_up {
+        p.swap(1, 2);
+    }
+    scene.outside(p[1], q[0], p[0], q[1]) == Ordering::Less
+        && scene.outside(p[0], q[0], p[2], q[2]) == Ordering::Less
+}
+
+/// The corners in their order, beginning with the one that is alone on its side of the other plane,
+/// and whether that is the upper side.
+fn alone_first<'c>(plate: &'c Plate, signs: [Ordering; 3]) -> ([&'c Corner; 3], bool) {
+    let alone = |k: usize| {
+        signs[k] != Ordering::Equal
+            && signs[(k + 1) % 3] != signs[k]
+            && signs[(k + 2) % 3] != signs[k]
+    };
+    let first = (0..3).find(|&k| alone(k)).unwrap_or(0);
+    let corners = [0, 1, 2].map(|k| &plate.corners[(first + k) % 3]);
+    (corners, signs[first] == Ordering::Greater)
+}
+
+/// Case 2, for triangles in one plane.
+fn share_a_side(scene: &Scene, f: &Plate, g: &Plate) -> bool {
+    let (axis, facing) = f.open_axis(scene);
+    let [a, b, c] = &g.corners;
+    if scene.turn_about(axis, a, b, c) != facing {
+        return false;
+    }
+    let separates = |f: &Plate, g: &Plate| {
+        (0..3).any(|k| {
+            let (a, b) = (&f.corners[k], &f.corners[(k + 1) % 3]);
+            g.corners.iter().all(|c| scene.turn_about(axis, a, b, c) != facing)
+        })
+    };
+    !separates(f, g) && !separates(g, f)
+}
+
+/// Case 3 for edge `k` of `f`.
+fn edge_meets(
+    scene: &Scene,
+    f: &Plate,
+    k: usize,
+    of_f: [Ordering; 3],
+    g: &Plate,
+    of_g: [Ordering; 3],
+) -> bool {
+    let next = (k + 1) % 3;
+    if of_f[k] != Ordering::Equal || of_f[next] != Ordering::Equal {
+        return false;
+    }
+    let (p, q) = (&f.corners[k], &f.corners[next]);
+    let Some(across) = f.across(k) else { return false };
+    let own = Wedge { start: Ray::to(0), end: Ray::to(1) };
+    if runs_through(scene, [p, q], g) {
+        let (axis, facing) = g.open_axis(scene);
+        let away = |c: &&Corner| scene.turn_about(axis, p, q, *c) != Ordering::Equal;
+        let Some(w) = g.corners.iter().find(away) else { return false };
+        let outwards = scene.turn_about(axis, p, q, w) == facing;
+        let back = Ray { point: 2, opposite: true };
+        let (start, end) = if outwards { (back, Ray::to(2)) } else { (Ray::to(2), back) };
+        let around = Around { scene, p, q, points: [&across, &f.corners[(k + 2) % 3], w, w] };
+        return own.meets(&Wedge { start, end }, &around);
+    }
+    (0..3).any(|j| {
+        let on_plane = of_g[j] == Ordering::Equal && of_g[(j + 1) % 3] == Ordering::Equal;
+        let (r, s) = (&g.corners[j], &g.corners[(j + 1) % 3]);
+        let Some(along) = on_plane.then(|| runs_along(scene, [p, q], [r, s])).flatten() else {
+            return false;
+        };
+        let Some(beyond) = g.across(j) else { return false };
+        let (start, end) = if along { (2, 3) } else { (3, 2) };
+        let other = Wedge { start: Ray::to(start), end: Ray::to(end) };
+        let points = [&across, &f.corners[(k + 2) % 3], &beyond, &g.corners[(j + 2) % 3]];
+        own.meets(&other, &Around { scene, p, q, points })
+    })
+}
+
+/// Whether a segment in the plane of a triangle has points inside it.
+fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Plate) -> bool {
+    let (axis, facing) = g.open_axis(scene);
+    let of_corners = g.corners.map(|c| scene.turn_about(axis, p, q, &c));
+    if !straddles(of_corners) {
+        return false;
+    }
+    !(0..3).any(|k| {
+        let (a, b) = (&g.corners[k], &g.corners[(k + 1) % 3]);
+        scene.turn_about(axis, a, b, p) != facing && scene.turn_about(axis, a, b, q) != facing
+    })
+}
+
+/// Whether two segments on one line share more than a point, and if so whether they run the same
+/// way.
+fn runs_along(scene: &Scene, [p, q]: [&Corner; 2], [r, s]: [&Corner; 2]) -> Option<bool> {
+    let on_line =
+        |c: &Corner| (0..3).all(|axis| scene.turn_about(axis, p, q, c) == Ordering::Equal);
+    if !on_line(r) || !on_line(s) {
+        return None;
+    }
+    let axis = (0..3).find(|&axis| scene.order(axis, p, q) != Ordering::Equal)?;
+    let way = scene.order(axis, p, q);
+    let along = scene.order(axis, r, s) == way;
+    let (first, last) = if along { (r, s) } else { (s, r) };
+    let shared = scene.order(axis, first, q) == way && scene.order(axis, p, last) == way;
+    shared.then_some(along)
+}
+
+/// The points around an edge.
+struct Around<'c, 's, 'a> {
+    scene: &'s Scene<'a>,
+    p: &'c Corner,
+    q: &'c Corner,
+    points: [&'c Corner; 4],
+}
+
+impl Axis for Around<'_, '_, '_> {
+    fn det(&self, x: usize, y: usize) -> Ordering {
+        self.scene.outside(self.p, self.q, self.points[x], self.points[y])
+    }
+
+    fn same_half(&self, x: usize, y: usize) -> bool {
+        let turn = |k: usize, axis| self.scene.turn_about(axis, self.p, self.q, self.points[k]);
+        let axis = (0..3).find(|&axis| turn(x, axis) != Ordering::Equal).unwrap_or(0);
+        turn(x, axis) == turn(y, axis)
+    }
+}
+
+/// Whether a spot lies on a triangle, its rim included.
+pub(super) fn lies_on(scene: &Scene, spot: &impl Spot, plate: &Plate) -> bool {
+    let [a, b, c] = &plate.corners;
+    let (at, blur) = (spot.at(), 4.0 * scene.blur);
+    let boxed = (0..3).all(|k| at[k] >= plate.low[k] - blur && at[k] <= plate.high[k] + blur);
+    if !boxed || scene.outside(a, b, c, spot) != Ordering::Equal {
+        return false;
+    }
+    let (axis, facing) = plate.open_axis(scene);
+    (0..3).all(|k| {
+        let (a, b) = (&plate.corners[k], &plate.corners[(k + 1) % 3]);
+        scene.turn_about(axis, a, b, spot) != facing.reverse()
+    })
+}

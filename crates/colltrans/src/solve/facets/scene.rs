@@ -1,0 +1,278 @@
+//! Two placed solids and a direction, in frames that all of this folder shares.
+//!
+//! The *setting frame* has the axes of the world and its origin at the moving body's translation. The
+//! *query frame* has the direction as its third axis: `x, y` of a point are its shadow, `h` its
+//! height; it is used rounded. Exact signs are taken of the setting frame's coordinates, sums of
+//! products of the matrices' entries, vertices and translations as they are.
+//!
+//! Rounding. A coordinate of the query frame is off by at most [`Scene::blur`], `32 u S`: with `|v|`
+//! the reach of a body, `17 u |v|` for two matrices (their entries and their application), `12 u` for
+//! the offset, and what the shadow axes lack of being orthogonal to the direction, `4 u` of both. Where
+//! the matrices only permute axes and change signs there is no rounding but that of the offset,
+//! which is looked at: such coordinates are *exact*.
+
+use glam::{DMat3, DVec3};
+
+use super::wide::Wide;
+use crate::body::Pose;
+use crate::body::solid::{Shrinking, Solid, displace};
+
+/// One of the two bodies.
+#[derive(Clone, Copy)]
+pub(crate) struct Side<'a> {
+    pub(super) solid: &'a Solid,
+    pub(super) moving: bool,
+    /// How much it is shrunk.
+    pub(super) amount: f64,
+    pub(super) shrinking: Option<&'a Shrinking>,
+    /// From the body frame to the setting frame, without the offset.
+    pub(super) matrix: DMat3,
+    /// The offset in the setting frame and what rounding took from it.
+    pub(super) offset: [DVec3; 2],
+    /// From the body frame to the query frame, and the offset there.
+    pub(super) view: DMat3,
+    pub(super) view_offset: DVec3,
+    /// Whether `matrix` permutes axes and changes signs.
+    pub(super) permutes: bool,
+    /// For each axis of the query frame, whether it is an axis of the body.
+    pub(super) aligned: [bool; 3],
+    /// The direction in the body frame, at length 1.
+    pub(super) along: DVec3,
+}
+
+/// Two placed solids and a direction.
+pub(crate) struct Scene<'a> {
+    pub(super) moving: Side<'a>,
+    pub(super) fixed: Side<'a>,
+    /// As given.
+    pub(super) direction: DVec3,
+    /// Its length.
+    pub(super) length: f64,
+    /// From the setting frame to the query frame.
+    pub(super) frame: DMat3,
+    /// Bound of the rounding error of a coordinate in the query frame.
+    pub(super) blur: f64,
+}
+
+impl<'a> Scene<'a> {
+    /// The bodies shrunk by `amounts`; the direction has been checked.
+    pub(crate) fn new(
+        (moving, moving_pose, moving_amount): (&'a Solid, &Pose, f64),
+        (fixed, fixed_pose, fixed_amount): (&'a Solid, &Pose, f64),
+        direction: DVec3,
+    ) -> Self {
+        let frame = frame_along(direction / direction.length());
+        let (s, t) = (moving_pose.translation(), fixed_pose.translation());
+        let offset = t - s;
+        let lost = DVec3::from_array([0, 1, 2].map(|k| difference_error(t[k], s[k])));
+        let place = |solid, moving, amount, matrix, offset: [DVec3; 2]| {
+            Side::new(solid, moving, amount, matrix, offset, frame)
+        };
+        let moving =
+            place(moving, true, moving_amount, moving_pose.matrix(), [DVec3::ZERO, DVec3::ZERO]);
+        let fixed = place(fixed, false, fixed_amount, fixed_pose.matrix(), [offset, lost]);
+        let size = moving.reach() + fixed.reach() + offset.length();
+        Self {
+            moving,
+            fixed,
+            direction,
+            length: direction.length(),
+            frame,
+            blur: 16.0 * f64::EPSILON * size.max(crate::number::range::MIN_MAGNITUDE),
+        }
+    }
+
+    /// The same bodies, the other way.
+    pub(super) fn reversed(&self) -> Self {
+        let frame = frame_along(-self.direction / self.length);
+        let turn = |side: &Side<'a>| {
+            let Side { solid, moving, amount, matrix, offset, .. } = *side;
+            Side::new(solid, moving, amount, matrix, offset, frame)
+        };
+        Self {
+            moving: turn(&self.moving),
+            fixed: turn(&self.fixed),
+            direction: -self.direction,
+            length: self.length,
+            frame,
+            blur: self.blur,
+        }
+    }
+
+    /// The same with other amounts to shrink by.
+    pub(super) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
+        let resized = |side: &Side<'a>, amount| {
+            let shrinking = (amount != 0.0).then(|| side.solid.shrinking());
+            Side { amount, shrinking, ..*side }
+        };
+        Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
+    }
+
+    pub(super) fn side(&self, moving: bool) -> &Side<'a> {
+        if moving { &self.moving } else { &self.fixed }
+    }
+
+    /// Size `S` of the configuration.
+    pub(super) fn size(&self) -> f64 {
+        self.blur / (16.0 * f64::EPSILON)
+    }
+}
+
+impl<'a> Side<'a> {
+    fn new(
+        solid: &'a Solid,
+        moving: bool,
+        amount: f64,
+        matrix: DMat3,
+        offset: [DVec3; 2],
+        frame: DMat3,
+    ) -> Self {
+        let view = frame * matrix;
+        let rows = view.transpose();
+        let permuting = permutes(matrix);
+        let unit = |row: DVec3| permuting && is_axis(row);
+        Self {
+            solid,
+            moving,
+            amount,
+            shrinking: (amount != 0.0).then(|| solid.shrinking()),
+            matrix,
+            offset,
+            view,
+            view_offset: frame * offset[0],
+            permutes: permuting,
+            aligned: [unit(rows.x_axis), unit(rows.y_axis), unit(rows.z_axis)],
+            along: rows.z_axis,
+        }
+    }
+
+    /// The largest distance of a point of the body from its origin.
+    fn reach(&self) -> f64 {
+        let farthest = self.shrinking.map_or(0.0, |s| s.farthest);
+        self.solid.reach() + farthest * self.amount.abs()
+    }
+
+    pub(super) fn vertex(&self, v: u32) -> DVec3 {
+        let at = self.solid.vertices()[v as usize];
+        match self.shrinking {
+            None => at,
+            Some(shrinking) => displace(at, shrinking.field[v as usize], self.amount),
+        }
+    }
+
+    pub(super) fn corner(&self, v: u32) -> Corner {
+        let local = self.vertex(v);
+        let turned = self.view * local;
+        let at = turned + self.view_offset;
+        let mut exact = self.aligned == [true; 3];
+        if exact && !self.moving {
+            // What the addition lost, exactly; an offset that lost bits itself is never exact.
+            let lost = |k: usize| sum_error(turned[k], self.view_offset[k]) != 0.0;
+            exact = self.offset[1] == DVec3::ZERO && !(lost(0) || lost(1) || lost(2));
+        }
+        Corner { local, at, exact, moving: self.moving }
+    }
+
+    pub(super) fn corners(&self, triangle: usize) -> [Corner; 3] {
+        self.solid.triangles()[triangle].map(|v| self.corner(v))
+    }
+}
+
+/// A vertex of one of the bodies.
+#[derive(Clone, Copy)]
+pub(super) struct Corner {
+    /// In the body frame, after shrinking.
+    pub(super) local: DVec3,
+    /// In the query frame.
+    pub(super) at: DVec3,
+    /// Whether `at` is exact.
+    pub(super) exact: bool,
+    pub(super) moving: bool,
+}
+
+/// Something that has a place: a vertex, or a point within a facet.
+pub(super) trait Spot {
+    /// In the query frame, rounded.
+    fn at(&self) -> DVec3;
+    /// Whether that is exact.
+    fn is_exact(&self) -> bool;
+    /// In the setting frame, if that has an exact value in `f64`.
+    fn world(&self, scene: &Scene) -> Option<DVec3>;
+    /// In the setting frame.
+    fn wide(&self, scene: &Scene) -> [Wide; 3];
+}
+
+impl Spot for Corner {
+    fn at(&self) -> DVec3 {
+        self.at
+    }
+
+    fn is_exact(&self) -> bool {
+        self.exact
+    }
+
+    fn world(&self, scene: &Scene) -> Option<DVec3> {
+        let side = scene.side(self.moving);
+        if !side.permutes {
+            return None;
+        }
+        let turned = side.matrix * self.local;
+        let [offset, lost] = side.offset;
+        let exact = (0..3).all(|k| sum_error(turned[k], offset[k]) == 0.0);
+        (exact && lost == DVec3::ZERO).then(|| turned + offset)
+    }
+
+    fn wide(&self, scene: &Scene) -> [Wide; 3] {
+        place_exactly(scene.side(self.moving), &[(1.0, self.local)])
+    }
+}
+
+/// A weighted mean of vertices of one body in the setting frame; the weights are powers of two, from
+/// `1/64`, and add up to 1.
+pub(super) fn place_exactly(side: &Side, terms: &[(f64, DVec3)]) -> [Wide; 3] {
+    let [offset, lost] = side.offset;
+    std::array::from_fn(|row| {
+        let mut sum = Wide::number(offset[row]).add(&Wide::number(lost[row]));
+        for (weight, point) in terms {
+            for column in 0..3 {
+                let entry = side.matrix.col(column)[row] * weight;
+                sum = sum.add(&Wide::product(entry, point[column]));
+            }
+        }
+        sum
+    })
+}
+
+/// Rows `x, y, d` of a right-handed frame. Its axes are the world's where that is possible.
+fn frame_along(unit: DVec3) -> DMat3 {
+    let zeros = unit.to_array().map(|c| c == 0.0);
+    let x = match zeros {
+        [_, false, true] => DVec3::Z,
+        [true, ..] => DVec3::X,
+        [_, true, _] => DVec3::Y,
+        _ => unit.any_orthonormal_vector(),
+    };
+    DMat3::from_cols(x, unit.cross(x), unit).transpose()
+}
+
+fn is_axis(v: DVec3) -> bool {
+    let a = v.abs().to_array();
+    a.iter().filter(|&&c| c == 1.0).count() == 1 && a.iter().filter(|&&c| c == 0.0).count() == 2
+}
+
+fn permutes(m: DMat3) -> bool {
+    let rows = m.transpose();
+    [m.x_axis, m.y_axis, m.z_axis, rows.x_axis, rows.y_axis, rows.z_axis].into_iter().all(is_axis)
+}
+
+/// `a + b = fl(a + b) + error`, exactly.
+pub(super) fn sum_error(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    let b_virtual = sum - a;
+    let a_virtual = sum - b_virtual;
+    (a - a_virtual) + (b - b_virtual)
+}
+
+fn difference_error(a: f64, b: f64) -> f64 {
+    sum_error(a, -b)
+}

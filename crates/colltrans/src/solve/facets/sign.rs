@@ -1,0 +1,143 @@
+//! Signs of determinants of points: exact, by a filter first.
+//!
+//! With `x, y, z` differences of two points, each of whose coordinates is off by at most
+//! `e = 2 blur`, and sizes in the sum norm (plane) or the maximum norm (space), the rounded
+//! determinant is off by at most
+//! `2 e (|x| + |y| + e) + 8 u |x| |y|` in the plane and
+//! `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z|) + e^2) + 48 u |x||y||z|` in space.
+//! Where that cannot tell, coordinates that are exact in `f64` go to the adaptive predicates of the
+//! `robust` crate, others to whole numbers.
+
+use std::cmp::Ordering;
+
+use glam::{DVec2, DVec3, Vec3Swizzles};
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use super::scene::{Scene, Spot};
+use super::wide::{Wide, determinant, difference};
+
+const U: f64 = f64::EPSILON / 2.0;
+
+fn sign(x: f64) -> Ordering {
+    x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+}
+
+fn plane_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
+    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
+    sign(orient2d(coord(a), coord(b), coord(c)))
+}
+
+fn space_sign([a, b, c, e]: [DVec3; 4]) -> Ordering {
+    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    sign(-orient3d(coord(a), coord(b), coord(c), coord(e)))
+}
+
+/// `det[b - a, c - a, d]` in shadow coordinates, and a bound of its error.
+#[inline]
+pub(super) fn rough_turn(scene: &Scene, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
+    let e = 2.0 * scene.blur;
+    let (x, y) = ((b - a).xy(), (c - a).xy());
+    let (m, n) = (x.x.abs() + x.y.abs(), y.x.abs() + y.y.abs());
+    (x.perp_dot(y), 2.0 * e * (m + n + e) + 8.0 * U * m * n)
+}
+
+impl Scene<'_> {
+    /// Sign of `det[b - a, c - a, d]`: which way the shadows turn.
+    pub(super) fn turn(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Ordering {
+        let (value, error) = rough_turn(self, a.at(), b.at(), c.at());
+        if value.abs() > error {
+            return sign(value);
+        }
+        if a.is_exact() && b.is_exact() && c.is_exact() {
+            return plane_sign(a.at().xy(), b.at().xy(), c.at().xy());
+        }
+        let (p, d) = (a.wide(self), self.direction.to_array().map(Wide::number));
+        let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
+        determinant(&x, &y, &d).sign()
+    }
+
+    /// Sign of `det[b - a, c - a, e - a]`: whether `e` is on the outer side of the facet `a b c`.
+    pub(super) fn outside(
+        &self,
+        a: &impl Spot,
+        b: &impl Spot,
+        c: &impl Spot,
+        e: &impl Spot,
+    ) -> Ordering {
+        let blur = 2.0 * self.blur;
+        let p = a.at();
+        let [x, y, z] = [b.at() - p, c.at() - p, e.at() - p];
+        let [l, m, n] = [x, y, z].map(|v| v.abs().max_element());
+        let value = x.cross(y).dot(z);
+        let pairs = l * m + m * n + n * l;
+        let error = 8.0 * blur * (pairs + blur * (l + m + n + blur)) + 48.0 * U * l * m * n;
+        if value.abs() > error {
+            return sign(value);
+        }
+        if a.is_exact() && b.is_exact() && c.is_exact() && e.is_exact() {
+            return space_sign([p, b.at(), c.at(), e.at()]);
+        }
+        if let (Some(a), Some(b), Some(c), Some(e)) =
+            (a.world(self), b.world(self), c.world(self), e.world(self))
+        {
+            return space_sign([a, b, c, e]);
+        }
+        self.outside_wide(a, b, c, e).sign()
+    }
+
+    /// `det[b - a, c - a, e - a]` itself.
+    pub(super) fn outside_wide(
+        &self,
+        a: &impl Spot,
+        b: &impl Spot,
+        c: &impl Spot,
+        e: &impl Spot,
+    ) -> Wide {
+        let p = a.wide(self);
+        let [x, y, z] = [b.wide(self), c.wide(self), e.wide(self)].map(|q| difference(&q, &p));
+        determinant(&x, &y, &z)
+    }
+
+    /// `det[b - a, c - a, d]` itself.
+    pub(super) fn turn_wide(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Wide {
+        let (p, d) = (a.wide(self), self.direction.to_array().map(Wide::number));
+        let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
+        determinant(&x, &y, &d)
+    }
+
+    /// Sign of `det[b - a, c - a, e]` with `e` the unit vector of an axis of the world.
+    pub(super) fn turn_about(
+        &self,
+        axis: usize,
+        a: &impl Spot,
+        b: &impl Spot,
+        c: &impl Spot,
+    ) -> Ordering {
+        if let (Some(a), Some(b), Some(c)) = (a.world(self), b.world(self), c.world(self)) {
+            let drop = |p: DVec3| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+            return plane_sign(drop(a), drop(b), drop(c));
+        }
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let p = a.wide(self);
+        let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
+        x[i].multiply(&y[j]).subtract(&x[j].multiply(&y[i])).sign()
+    }
+
+    /// Sign of `(b - a).(e x d)` with `e` the unit vector of an axis of the world: how
+    /// `det[b - a, c - a, d]` changes when `c` moves along that axis.
+    pub(super) fn drift(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let x = difference(&b.wide(self), &a.wide(self));
+        let d = self.direction.to_array().map(Wide::number);
+        // det[x, e, d] with e along `axis`: x_j d_i - x_i d_j, up to the order of axes.
+        x[j].multiply(&d[i]).subtract(&x[i].multiply(&d[j])).sign()
+    }
+
+    /// How `a` and `b` are ordered along an axis of the world.
+    pub(super) fn order(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
+        if let (Some(a), Some(b)) = (a.world(self), b.world(self)) {
+            return sign(a[axis] - b[axis]);
+        }
+        a.wide(self)[axis].subtract(&b.wide(self)[axis]).sign()
+    }
+}

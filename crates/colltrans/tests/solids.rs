@@ -1,0 +1,287 @@
+//! Solids in the situations that people have names for.
+
+use colltrans::{Cast, Pose, Solid, SolidClearance, SolidError, SolidOptions, StartOverlap};
+use colltrans_kit::shapes::Mesh;
+use colltrans_kit::solids::{bolt, pin, slab, turned, washer};
+use glam::{DQuat, DVec3};
+
+fn solid(mesh: &Mesh) -> Solid {
+    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a closed mesh")
+}
+
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
+    solid(&slab(DVec3::from_array(low), DVec3::from_array(high), [1; 3]))
+}
+
+/// In place, along a direction.
+fn cast<'a>(a: &'a Solid, b: &'a Solid, direction: DVec3) -> Cast<'a, Solid> {
+    Cast::new(a.at(Pose::IDENTITY), b.at(Pose::IDENTITY), direction).expect("a direction")
+}
+
+#[expect(clippy::large_types_passed_by_value, reason = "it is turned into another one")]
+fn with_tolerance(cast: Cast<'_, Solid>, tolerance: f64) -> Cast<'_, Solid> {
+    cast.with_tolerance(tolerance).expect("a tolerance")
+}
+
+fn distance(cast: &Cast<Solid>) -> f64 {
+    match cast.clearance() {
+        SolidClearance::Blocked { distance, .. } => distance,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// How far the chords of a circle are inside it.
+fn chord_error(radius: f64, sides: usize) -> f64 {
+    radius * (1.0 - (std::f64::consts::PI / sides as f64).cos())
+}
+
+#[test]
+fn pins_in_holes_of_one_radius() {
+    for (pin_sides, hole_sides) in [(32, 32), (32, 48), (64, 24), (128, 127)] {
+        let pin = solid(&pin(1.0, [-2.0, 3.0], pin_sides));
+        let plate = solid(&washer([1.0, 4.0], [0.0, 1.0], hole_sides));
+        // Both tessellations together, on either body half of it.
+        let fit = chord_error(1.0, pin_sides) + chord_error(1.0, hole_sides);
+        for direction in [DVec3::Z, DVec3::NEG_Z] {
+            let out = with_tolerance(cast(&pin, &plate, direction), 2.0 * fit);
+            assert_eq!(out.clearance(), SolidClearance::Free, "{pin_sides} in {hole_sides}");
+            // Prisms of the same sides have no shadows in common; others are out after 3.
+            match out.exit() {
+                None => assert_eq!(pin_sides, hole_sides),
+                Some(exit) => assert!((exit - 3.0).abs() < 1e-12, "{exit}"),
+            }
+        }
+        let aside = with_tolerance(cast(&pin, &plate, DVec3::X), 2.0 * fit);
+        assert!(distance(&aside) < 4.0 * fit);
+    }
+    // The same tessellation slides without any tolerance.
+    let (pin, plate) =
+        (solid(&pin(1.0, [-2.0, 3.0], 32)), solid(&washer([1.0, 4.0], [0.0, 1.0], 32)));
+    assert_eq!(cast(&pin, &plate, DVec3::Z).clearance(), SolidClearance::Free);
+    assert_eq!(distance(&cast(&pin, &plate, DVec3::X)), 0.0);
+}
+
+#[test]
+fn a_bolt_whose_head_stops_at_seven() {
+    let bolt = solid(&bolt([1.0, 2.0], [-5.0, 8.0, 9.0], 48));
+    let plate = solid(&washer([1.0, 4.0], [0.0, 1.0], 32));
+    let fit = 2.0 * (chord_error(1.0, 48) + chord_error(1.0, 32));
+    let in_hole = with_tolerance(cast(&bolt, &plate, DVec3::NEG_Z), fit);
+    let SolidClearance::Blocked { distance, nominal, contact } = in_hole.clearance() else {
+        panic!("{:?}", in_hole.clearance())
+    };
+    assert!((nominal - 7.0).abs() < 1e-9, "{nominal}");
+    assert!((distance - 7.0 - fit).abs() < 1e-9, "the shrunk bodies meet later: {distance}");
+    assert_eq!(contact.normal, DVec3::NEG_Z);
+    assert!((in_hole.depth().expect("slivers overlap") - fit).abs() < fit);
+}
+
+#[test]
+fn a_plate_that_rests_on_a_table() {
+    let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
+    let plate = solid(&slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.5), [5, 7, 2]));
+    assert_eq!(distance(&cast(&plate, &table, DVec3::NEG_Z)), 0.0);
+    for free in [DVec3::Z, DVec3::X, DVec3::NEG_Y, DVec3::new(0.3, -0.7, 0.0)] {
+        assert_eq!(cast(&plate, &table, free).clearance(), SolidClearance::Free, "{free}");
+    }
+    assert!(cast(&plate, &table, DVec3::Z).intersects());
+    assert!(!cast(&plate, &table, DVec3::Z).overlaps());
+    assert_eq!(distance(&cast(&plate, &table, DVec3::new(1.0, 0.0, -1e-9))), 0.0);
+}
+
+#[test]
+fn a_plate_pressed_into_a_table() {
+    let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
+    let plate = cuboid([-1.0, -1.0, -0.125], [1.0, 1.0, 0.5]);
+    let down = cast(&plate, &table, DVec3::NEG_Z);
+    let SolidClearance::Overlapping { depth: Some(depth) } = down.clearance() else {
+        panic!("{:?}", down.clearance())
+    };
+    assert!((depth - 0.125).abs() < 1e-9, "{depth}");
+    let tolerated = |direction| with_tolerance(cast(&plate, &table, direction), depth);
+    assert!(distance(&tolerated(DVec3::NEG_Z)) < 1e-9);
+    assert_eq!(tolerated(DVec3::Z).clearance(), SolidClearance::Free);
+    assert_eq!(tolerated(DVec3::X).clearance(), SolidClearance::Free);
+}
+
+#[test]
+fn a_blind_press_fit() {
+    // A cup with walls at radius 1, its bottom at 0; a pin 0.01 too thick, 1 above the bottom.
+    let cup = solid(&turned(
+        &[[0.0, -1.0], [3.0, -1.0], [3.0, 4.0], [1.0, 4.0], [1.0, 0.0], [0.0, 0.0]],
+        24,
+    ));
+    let pin = solid(&pin(1.01, [1.0, 6.0], 24));
+    let press = |direction| cast(&pin, &cup, direction);
+    assert!(matches!(press(DVec3::Z).clearance(), SolidClearance::Overlapping { .. }));
+    // The interference of the flat sides, and of the bodies' edges, which are 0.01 too far out.
+    let interference = 0.02;
+    let tolerated = |direction| with_tolerance(press(direction), interference);
+    assert_eq!(tolerated(DVec3::Z).clearance(), SolidClearance::Free);
+    let SolidClearance::Blocked { nominal, .. } = tolerated(DVec3::NEG_Z).clearance() else {
+        panic!("the bottom")
+    };
+    assert!((nominal - 1.0).abs() < 1e-9, "{nominal}");
+    // Ignored, the overlap does not hide the bottom either.
+    let ignore = SolidOptions { start_overlap: StartOverlap::Ignore, ..SolidOptions::default() };
+    let ignoring = press(DVec3::NEG_Z).with_options(ignore).expect("choices");
+    assert!((distance(&ignoring) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_part_sealed_in_a_cavity() {
+    let hollow = slab(DVec3::splat(-3.0), DVec3::splat(3.0), [2; 3])
+        .joined(&slab(DVec3::splat(-2.0), DVec3::splat(2.0), [3; 3]).reversed());
+    let hollow = solid(&hollow);
+    assert_eq!(hollow.report().shells.len(), 2);
+    assert!((hollow.volume() - 152.0).abs() < 1e-12);
+    let part = cuboid([-0.5; 3], [0.5; 3]);
+    assert_eq!(distance(&cast(&part, &hollow, DVec3::X)), 1.5);
+    assert!(!cast(&part, &hollow, DVec3::X).overlaps());
+    assert_eq!(cast(&part, &hollow, DVec3::X).exit(), Some(3.5));
+}
+
+#[test]
+fn a_part_inside_solid_material() {
+    let block = cuboid([-3.0; 3], [3.0; 3]);
+    let part = cuboid([-0.5; 3], [0.5; 3]);
+    assert!(cast(&part, &block, DVec3::X).overlaps());
+    assert!(cast(&block, &part, DVec3::X).overlaps());
+    assert!(cast(&part, &block, DVec3::X).intersects());
+    // Its corners touch the walls from inside: still inside.
+    let octahedron = turned(&[[0.0, -3.0], [3.0, 0.0], [0.0, 3.0]], 4);
+    assert!(cast(&solid(&octahedron), &block, DVec3::X).overlaps());
+    // An open surface has no inside.
+    let mesh = slab(DVec3::splat(-3.0), DVec3::splat(3.0), [1; 3]);
+    let shell = Solid::from_open_mesh(&mesh.vertices, &mesh.faces[1..]).expect("a surface");
+    assert!(!cast(&part, &shell, DVec3::X).overlaps());
+    assert!(Solid::from_mesh(&mesh.vertices, &mesh.faces[1..]).is_err());
+}
+
+#[test]
+fn a_solid_in_its_own_place_overlaps_itself() {
+    let plate = solid(&washer([1.0, 4.0], [0.0, 1.0], 16));
+    assert!(cast(&plate, &plate, DVec3::Z).overlaps());
+    let beside = cuboid([0.0; 3], [1.0; 3]);
+    let next = cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]);
+    assert!(!cast(&beside, &next, DVec3::X).overlaps());
+}
+
+fn wedge(apex: DVec3, base: [DVec3; 4]) -> Solid {
+    // A ridge from `apex` along y, and a base of four corners counter-clockwise from outside.
+    let vertices = [apex, apex + DVec3::Y, base[0], base[1], base[2], base[3]];
+    let faces: [&[u32]; 5] = [&[0, 1, 3, 2], &[1, 0, 5, 4], &[0, 2, 5], &[1, 4, 3], &[2, 3, 4, 5]];
+    Solid::from_mesh(&vertices, &faces).expect("a wedge")
+}
+
+#[test]
+fn wedges_that_share_an_edge_and_part() {
+    let upper = wedge(
+        DVec3::ZERO,
+        [
+            DVec3::new(-1.0, 0.0, 1.0),
+            DVec3::new(-1.0, 1.0, 1.0),
+            DVec3::new(1.0, 1.0, 1.0),
+            DVec3::new(1.0, 0.0, 1.0),
+        ],
+    );
+    let lower = upper.clone();
+    let half_turn = Pose::new(DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0), DVec3::Y).expect("a rotation");
+    let ask = |direction| {
+        Cast::new(upper.at(Pose::IDENTITY), lower.at(half_turn), direction).expect("a direction")
+    };
+    assert_eq!(ask(DVec3::Z).clearance(), SolidClearance::Free);
+    assert_eq!(ask(DVec3::X).clearance(), SolidClearance::Free);
+    assert_eq!(distance(&ask(DVec3::NEG_Z)), 0.0);
+}
+
+#[test]
+fn vertex_on_vertex() {
+    let spike = solid(&turned(&[[0.0, 0.0], [1.0, 2.0], [0.0, 2.0]], 5));
+    let under = solid(&turned(&[[0.0, -2.0], [1.0, -2.0], [0.0, 0.0]], 7));
+    assert_eq!(cast(&spike, &under, DVec3::Z).clearance(), SolidClearance::Free);
+    assert_eq!(cast(&spike, &under, DVec3::X).clearance(), SolidClearance::Free);
+    assert_eq!(distance(&cast(&spike, &under, DVec3::NEG_Z)), 0.0);
+}
+
+#[test]
+fn a_zero_clearance_slide_of_100_000_facets() {
+    // A bar in a groove of its own width, both in many facets of different sizes.
+    let bar = solid(&slab(DVec3::new(-4.0, -1.0, 0.0), DVec3::new(4.0, 1.0, 1.0), [160, 60, 40]));
+    let groove = [
+        slab(DVec3::new(-4.0, 1.0, -1.0), DVec3::new(4.0, 2.0, 1.0), [150, 20, 50]),
+        slab(DVec3::new(-4.0, -2.0, -1.0), DVec3::new(4.0, -1.0, 1.0), [140, 20, 50]),
+        slab(DVec3::new(-4.0, -1.0, -1.0), DVec3::new(4.0, 1.0, 0.0), [150, 50, 20]),
+    ]
+    .map(|mesh| solid(&mesh));
+    let groove = Solid::from_pieces(&groove).expect("three pieces");
+    assert!(bar.triangles().len() + groove.triangles().len() > 100_000);
+    let quarter = DQuat::from_xyzw(0.5, 0.5, 0.5, 0.5);
+    let general = DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize();
+    for rotation in [DQuat::IDENTITY, quarter, general] {
+        let pose = Pose::new(rotation, DVec3::ZERO).expect("a rotation");
+        let ask = |direction: DVec3| {
+            Cast::new(bar.at(pose), groove.at(pose), pose.transform_vector(direction))
+                .expect("a direction")
+                .clearance()
+        };
+        assert_eq!(ask(DVec3::X), SolidClearance::Free, "{rotation}");
+        assert_eq!(ask(DVec3::Z), SolidClearance::Free, "{rotation}");
+        let SolidClearance::Blocked { distance, .. } = ask(DVec3::Y) else { panic!("{rotation}") };
+        assert!(distance < 1e-12, "{distance}");
+    }
+}
+
+#[test]
+fn shells_that_are_inside_out_are_turned() {
+    let inverted = slab(DVec3::ZERO, DVec3::ONE, [2; 3]).reversed();
+    let body = solid(&inverted);
+    assert_eq!(body.report().turned(), 1);
+    assert!((body.volume() - 1.0).abs() < 1e-14);
+    assert_eq!(solid(&washer([1.0, 2.0], [0.0, 1.0], 12)).report().holes_through(), 1);
+    let nan = Solid::from_mesh(&[DVec3::NAN, DVec3::X, DVec3::Y], &[[0, 1, 2]]);
+    assert!(matches!(nan, Err(SolidError::Coordinate { vertex: 0, .. })));
+}
+
+#[test]
+fn answers_do_not_depend_on_order_subdivision_or_displacement() {
+    let a = slab(DVec3::new(0.0, 0.0, 0.0), DVec3::new(2.0, 1.0, 1.0), [1; 3]).joined(&slab(
+        DVec3::new(0.0, 0.0, 1.0),
+        DVec3::new(1.0, 1.0, 2.0),
+        [1; 3],
+    ));
+    let b = washer([1.0, 3.0], [4.0, 5.0], 8);
+    let finer = slab(DVec3::new(0.0, 0.0, 0.0), DVec3::new(2.0, 1.0, 1.0), [8, 2, 4])
+        .joined(&slab(DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 1.0, 2.0), [4, 4, 2]));
+    let mut turned_round = finer.clone();
+    turned_round.faces.reverse();
+    let far = DVec3::new(1_048_576.0, -512.0, 0.5);
+    let answer = |mesh: &Mesh, by: DVec3, direction: DVec3| {
+        let (a, b) = (solid(mesh), solid(&b));
+        let pose = Pose::from_translation(by).expect("in range");
+        let cast = Cast::new(a.at(pose), b.at(pose), direction).expect("a direction");
+        match cast.clearance() {
+            SolidClearance::Blocked { distance, .. } => Some(distance),
+            SolidClearance::Free => None,
+            SolidClearance::Overlapping { .. } => panic!("apart"),
+        }
+    };
+    for direction in [DVec3::Z, DVec3::new(1.0, 0.0, 2.0), DVec3::new(0.25, -0.5, 1.0)] {
+        let first = answer(&a, DVec3::ZERO, direction);
+        for mesh in [&a, &finer, &turned_round] {
+            for by in [DVec3::ZERO, far] {
+                let other = answer(mesh, by, direction);
+                assert_eq!(first.is_some(), other.is_some());
+                assert!((first.unwrap_or(0.0) - other.unwrap_or(0.0)).abs() < 1e-13);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_graze_tolerance_on_a_solid_names_the_other_way() {
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let refused = cast(&cube, &cube, DVec3::X).with_graze_tolerance(0.5).expect_err("a solid");
+    assert!(refused.to_string().contains("with_tolerance"), "{refused}");
+    assert!(cast(&cube, &cube, DVec3::X).with_tolerance(-1.0).is_err());
+}

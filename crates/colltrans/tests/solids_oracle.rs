@@ -1,0 +1,29 @@
+//! Solids against what is known exactly.
+
+use std::collections::HashMap;
+
+use colltrans_oracle::solids::settings::{FAMILIES, Seen, Setting};
+
+/// Settings of all families together.
+const SETTINGS: u64 = 10_000;
+
+#[test]
+fn bodies_of_cubes_agree_with_exact_arithmetic() {
+    let mut seen: HashMap<Seen, usize> = HashMap::new();
+    for family in FAMILIES {
+        // Coordinates without exact values in `f64` take whole numbers for every tie.
+        let slow = matches!(family, "rotated" | "mould");
+        for seed in 0..if slow { SETTINGS / 20 } else { SETTINGS * 9 / 40 } {
+            let setting = Setting::draw(family, seed).expect("a family");
+            match setting.examine() {
+                Ok(outcome) => *seen.entry(outcome.unwrap_or(Seen::Free)).or_default() += 1,
+                Err(error) => panic!("{family}:{seed}: {error}"),
+            }
+        }
+    }
+    let least = [Seen::Overlapping, Seen::Free, Seen::BlockedNow, Seen::Blocked];
+    for outcome in least {
+        let count = seen.get(&outcome).copied().unwrap_or(0);
+        assert!(count as u64 > SETTINGS / 40, "{outcome:?} only {count} times");
+    }
+}

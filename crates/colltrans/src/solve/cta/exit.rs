@@ -198,9 +198,9 @@ impl ExitTest<'_, '_> {
         }
         let noise = self.setting.noise().point();
         let mut normals = Region::rectangle(DVec2::splat(-STEEPEST), DVec2::splat(STEEPEST));
-        for body in 0..2 {
+        for (body, feature) in features.into_iter().enumerate() {
             let sign = if body == 0 { 1.0 } else { -1.0 };
-            self.for_ways(body, features[body], |way| {
+            self.for_ways(body, feature, |way| {
                 let way = way * sign;
                 normals.cut(DVec2::new(e1.dot(way), e2.dot(way)), noise - unit.dot(way));
             });

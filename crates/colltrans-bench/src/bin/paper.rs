@@ -294,7 +294,9 @@ fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
 }
 
 fn sorted(mut measured: Vec<Measured>, mut parry: Times) -> (Vec<Measured>, Times) {
-    measured.iter_mut().for_each(|m| m.times.sort());
+    for m in &mut measured {
+        m.times.sort();
+    }
     parry.sort();
     (measured, parry)
 }

@@ -126,7 +126,7 @@ fn base(bodies: &Bodies) -> Vec<bool> {
 const MOST_FINER: usize = 64;
 /// Of the parts that are stuck, a sphere is refined for at most so many.
 const MOST_LOOSE: usize = 64;
-/// Loose is what can go this share of its own size.
+/// Worth a look is what can go this share of its own size along a main direction.
 const LOOSE: f64 = 0.125;
 
 struct Planner<'a> {

@@ -12,6 +12,8 @@ use crate::error::AssemblyError;
 use crate::rooms::PartRoom;
 use crate::watch::Watch;
 
+/// What goes less far than this share of its own size along all samples is held, not loose.
+const FAR: f64 = 0.5;
 /// Distances that differ by less than this share are no change.
 const CHANGE: f64 = 0.1;
 /// Triangles that are cut in one round, and rounds.
@@ -21,7 +23,7 @@ const ROUNDS: usize = 8;
 const NARROWEST: f64 = 0.01;
 
 /// A direction in which a group is free of `others`; `None` if there is none among those looked at,
-/// some 2,000 at most.
+/// some 2,000 at most, or if the group is held too closely for a look.
 pub(crate) fn way_out(
     bodies: &Bodies,
     group: &[usize],
@@ -31,6 +33,11 @@ pub(crate) fn way_out(
 ) -> Result<Option<DVec3>, AssemblyError> {
     let mut mapper = Mapper::new(bodies, group, others.to_vec(), options, watch);
     mapper.ask()?;
+    let farthest = mapper.rooms.iter().map(PartRoom::distance).fold(0.0, f64::max);
+    let bounds = group.iter().map(|&k| bodies.bounds(k)).reduce(|a, b| a.join(&b));
+    if farthest < FAR * bounds.map_or(0.0, |b| (b.high - b.low).max_element()) {
+        return Ok(None);
+    }
     for _ in 0..ROUNDS {
         if let Some(k) = mapper.rooms.iter().position(PartRoom::is_free) {
             return Ok(Some(mapper.sphere.directions[k]));

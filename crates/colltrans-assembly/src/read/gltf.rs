@@ -49,16 +49,15 @@ fn buffers(
             Source::Bin => {
                 blob.take().ok_or_else(|| contents(path, &place, "the binary chunk is missing"))?
             }
-            Source::Uri(uri) => match uri.strip_prefix("data:") {
-                Some(data) => {
+            Source::Uri(uri) => {
+                if let Some(data) = uri.strip_prefix("data:") {
                     let text = data.split_once(";base64,").map_or(data, |(_, text)| text);
                     STANDARD.decode(text).map_err(|e| contents(path, &place, e))?
-                }
-                None => {
+                } else {
                     let file = file_of(path, &buffer).unwrap_or_default();
                     std::fs::read(&file).map_err(io(&file))?
                 }
-            },
+            }
         };
         if bytes.len() < buffer.length() {
             let reason = format!("has {} bytes of {}", bytes.len(), buffer.length());

@@ -10,6 +10,7 @@
 //! supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
+mod edge;
 mod enclose;
 mod flat;
 mod follow;

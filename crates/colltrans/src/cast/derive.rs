@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::Cast;
 use crate::answer::{
     Clearance, Contact, ContactRange, DirectionalDepth, Grazing, Intersection, Outcome,
+    OverlapAhead, WhyFree,
 };
 use crate::error::QueryError;
 use crate::number::range::MIN_MAGNITUDE;
@@ -55,8 +56,8 @@ pub(crate) fn clearance_of<'a>(
 ) -> Result<Clearance, QueryError> {
     let contact = match run(cast)? {
         Outcome::Contact(contact) => contact,
-        Outcome::Grazing(grazing) => return Ok(Clearance::Slides(grazing)),
-        Outcome::Separated(separated) => return Ok(Clearance::Separated(separated)),
+        Outcome::Grazing(grazing) => return Ok(Clearance::Free(WhyFree::Slides(grazing))),
+        Outcome::Separated(separated) => return Ok(Clearance::Free(WhyFree::Separated(separated))),
     };
     if contact.translation >= -contact.certificate.tolerance {
         let distance = contact.certificate.lower.max(0.0);
@@ -64,12 +65,12 @@ pub(crate) fn clearance_of<'a>(
     }
     Ok(match run(&cast.reversed())? {
         Outcome::Contact(last) if last.translation < -last.certificate.tolerance => {
-            Clearance::Overlapping { first: contact, last }
+            Clearance::Overlapping(OverlapAhead { first: contact, last })
         }
-        Outcome::Contact(last) => Clearance::Behind(last),
+        Outcome::Contact(last) => Clearance::Free(WhyFree::Behind(last)),
         // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
-        Outcome::Grazing(grazing) => Clearance::Slides(grazing),
-        Outcome::Separated(separated) => Clearance::Separated(separated),
+        Outcome::Grazing(grazing) => Clearance::Free(WhyFree::Slides(grazing)),
+        Outcome::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
     })
 }
 
@@ -81,7 +82,7 @@ pub(crate) fn depth_of<'a>(
     let clearance = clearance_of(cast, run)?;
     let depth = match &clearance {
         // Safe is what is not less than the true depth.
-        Clearance::Overlapping { first, .. } => -first.certificate.lower,
+        Clearance::Overlapping(OverlapAhead { first, .. }) => -first.certificate.lower,
         _ => 0.0,
     };
     Ok(DirectionalDepth { depth, clearance })

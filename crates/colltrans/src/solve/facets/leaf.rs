@@ -20,7 +20,7 @@ use super::sign::rough_turn;
 
 /// Rounded gaps are used while their error is below so many times the blur of coordinates, `2e-10 S`;
 /// the one that decides is taken again exactly if its error is not below [`FINE`] times the blur.
-const SHARP: f64 = 65_536.0;
+pub(super) const SHARP: f64 = 65_536.0;
 pub(super) const FINE: f64 = 256.0;
 
 /// A facet, its shadow running counter-clockwise.

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::SHOWN;
 
 /// One proof in so many is judged in fractions, if the bodies are small.
-const FRACTIONS_EVERY: u64 = 16;
+const FRACTIONS_EVERY: u64 = 64;
 
 /// Examines so many settings of cubes and a tenth as many convex pairs; `true` if nothing disagrees.
 pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 
 use super::bound::{Reason, Shade, holds};
 use super::clearance::StartOverlap;
-use super::leaf::{self, Facet};
+use super::leaf::{self, Facet, Gap};
 use super::overlap::{self, Overlap};
 use super::scene::Scene;
 use super::search::{Aim, SLACK, Search, Workspace, children, splits_moving};
@@ -269,7 +269,12 @@ pub(super) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
             // A gap is wanted whatever its size, so that its own error can be taken off.
             let wanted = limit + leaf::SHARP * scene.blur;
             let gap = leaf::gap(scene, &f, &g, wanted, aim == Aim::LaterStop);
-            let value = gap.and_then(|gap| Some(aim.value(&gap)? - gap.error - scene.blur));
+            let sharp = |gap: Gap| {
+                let blunt = gap.error > leaf::FINE * scene.blur;
+                if blunt { leaf::sharpened(scene, &f, &g) } else { gap }
+            };
+            let value = gap.map(sharp);
+            let value = value.and_then(|gap| Some(aim.value(&gap)? - gap.error - scene.blur));
             least = least.min(value.unwrap_or(f64::INFINITY));
         }
     }

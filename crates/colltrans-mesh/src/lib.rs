@@ -24,6 +24,7 @@ mod write;
 use std::fmt;
 use std::path::Path;
 
+use error::Fault;
 use merge::{Places, Precision};
 use sniff::{Content, sniff};
 
@@ -159,6 +160,9 @@ pub fn parse_with(
 ) -> Result<Mesh, Error> {
     if let Some(tolerance) = options.merge_tolerance.filter(|t| !t.is_finite() || *t < 0.0) {
         return Err(Error::MergeTolerance { path: path.to_owned(), tolerance });
+    }
+    if bytes.is_empty() {
+        return Err(Fault::new(Place::End, "the file is empty").in_file(path));
     }
     if let Some(content) = sniff(&bytes).filter(|content| *content != Content::Mesh(format)) {
         let found = content.name(&bytes);

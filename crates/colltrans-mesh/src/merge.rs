@@ -37,11 +37,11 @@ pub(crate) enum Precision {
 impl Precision {
     /// The default tolerance for vertices of this precision.
     fn tolerance(self, vertices: &[DVec3]) -> f64 {
-        let exponent = match self {
-            Self::Single => -22,
-            Self::Double => -48,
+        let share = match self {
+            Self::Single => 1.0 / (1_u64 << 22) as f64,
+            Self::Double => 1.0 / (1_u64 << 48) as f64,
         };
-        largest_magnitude(vertices) * 2.0_f64.powi(exponent)
+        largest_magnitude(vertices) * share
     }
 }
 

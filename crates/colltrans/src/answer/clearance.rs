@@ -51,6 +51,26 @@ pub struct OverlapAhead {
     pub last: Contact,
 }
 
+impl Clearance {
+    /// That of a first contact which is ahead, or here to within rounding.
+    #[inline]
+    pub(crate) fn blocked(first: &Contact) -> Option<Self> {
+        let is_ahead = first.translation >= -first.certificate.tolerance;
+        let distance = first.certificate.lower.max(0.0);
+        is_ahead.then_some(Self::Blocked { distance, contact: *first })
+    }
+
+    /// That of a first contact which is not.
+    #[inline]
+    pub(crate) fn past(first: Contact, last: Contact) -> Self {
+        if last.translation < -last.certificate.tolerance {
+            Self::Overlapping(OverlapAhead { first, last })
+        } else {
+            Self::Free(WhyFree::Behind(last))
+        }
+    }
+}
+
 impl<B: Body> Clearance<B> {
     /// How far the moving body may safely move, in multiples of the direction: infinite where
     /// nothing stops it, `None` if the bodies overlap now.

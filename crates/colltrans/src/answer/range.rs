@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::clearance::Clearance;
+use super::clearance::{Clearance, WhyFree};
 use super::outcome::{Contact, Grazing, Outcome, Separated};
 
 /// The answer of [`Cast::contact_range`](crate::Cast::contact_range): all translations at which the
@@ -40,6 +40,18 @@ impl ContactRange {
             Self::Separated(_) => return None,
         };
         Some([first.translation, -last.translation])
+    }
+
+    /// How far the moving body can move from where it is, as [`Cast::clearance`](crate::Cast::clearance)
+    /// says.
+    pub fn clearance(&self) -> Clearance {
+        match *self {
+            Self::Contact { first, last } => {
+                Clearance::blocked(&first).unwrap_or_else(|| Clearance::past(first, last))
+            }
+            Self::Grazing { first, .. } => Clearance::Free(WhyFree::Slides(first)),
+            Self::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
+        }
     }
 }
 

@@ -111,6 +111,12 @@ impl Setting<'_> {
         Noise::of(self.scale())
     }
 
+    /// `t_Q - t_P`, and what rounding took from it.
+    #[inline]
+    pub(crate) fn exact_offset(&self) -> [DVec3; 2] {
+        [self.offset, self.offset_error]
+    }
+
     /// A pair's vertices, in the frames of the moving and the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {

@@ -75,7 +75,7 @@ impl Cast<'_, Solid> {
             let tolerance = node_rounding(&scene) / scene.length + 4.0 * f64::EPSILON * end;
             let reached = *lower >= end || *lower >= end - 2.0 * tolerance;
             let (proven, claimed) = (*lower, end);
-            let unproven = CertificateError::Bound { proven, claimed, tolerance };
+            let unproven = CertificateError::Bound { proven, claimed };
             return if reached { Ok(0.0) } else { Err(unproven) };
         };
         verify_stop(&scene, aim, stop)?;
@@ -84,7 +84,7 @@ impl Cast<'_, Solid> {
         if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
             Ok(gap.max(0.0))
         } else {
-            Err(CertificateError::Bound { proven: *lower, claimed: stop.distance, tolerance })
+            Err(CertificateError::Bound { proven: *lower, claimed: stop.distance })
         }
     }
 
@@ -167,6 +167,6 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), Certific
     if (stop.distance - proven).abs() <= tolerance {
         Ok(())
     } else {
-        Err(CertificateError::Bound { proven, claimed: stop.distance, tolerance })
+        Err(CertificateError::Bound { proven, claimed: stop.distance })
     }
 }

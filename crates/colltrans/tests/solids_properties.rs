@@ -168,7 +168,10 @@ proptest! {
         let here = ask_from(0.0);
         if let Said::At(t) = said(&here.clearance()) && t > 1e-9 {
             prop_assert!(!slightly_shrunk(ask_from(0.999 * t)).overlaps());
-            prop_assert!(ask_from(t + 1e-6 * (1.0 + t)).overlaps());
+            // A sliver that only just blocks may be gone where the translation is rounded.
+            let shrunk = said(&slightly_shrunk(here).clearance());
+            let is_sliver = !matches!(shrunk, Said::At(s) if s < t + 1e-7 * (1.0 + t));
+            prop_assert!(is_sliver || ask_from(t + 1e-6 * (1.0 + t)).overlaps());
         }
         let exit = here.exit().map_or(0.0, |t| t + 1e-6 * (1.0 + t));
         let beyond = slightly_shrunk(ask_from(exit)).clearance();

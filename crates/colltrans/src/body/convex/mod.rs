@@ -45,7 +45,7 @@ pub struct ConvexPolyhedron {
     support: SupportIndex,
     sections: SectionIndex,
     /// The same body as a solid, made when it is first asked for.
-    pub(crate) solid: OnceLock<Result<Box<Solid>, SolidError>>,
+    pub(crate) solid: OnceLock<Box<Result<Solid, SolidError>>>,
 }
 
 impl ConvexPolyhedron {

@@ -96,8 +96,8 @@ impl AsSolid for Solid {
 
 impl AsSolid for ConvexPolyhedron {
     fn as_solid(&self) -> Result<&Solid, SolidError> {
-        let made = self.solid.get_or_init(|| Solid::from_convex(self).map(Box::new));
-        made.as_deref().map_err(Clone::clone)
+        let made = self.solid.get_or_init(|| Box::new(Solid::from_convex(self)));
+        made.as_ref().as_ref().map_err(Clone::clone)
     }
 }
 

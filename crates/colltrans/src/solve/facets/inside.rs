@@ -110,7 +110,7 @@ impl Spot for Mean {
         None
     }
 
-    fn wide(&self, scene: &Scene) -> [Wide; 3] {
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3] {
         place_exactly(scene.side(self.moving), &self.terms)
     }
 }

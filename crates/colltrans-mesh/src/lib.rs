@@ -29,8 +29,7 @@ use merge::{Places, Precision};
 use sniff::{Content, sniff};
 
 pub use error::{Error, Place};
-pub use merge::Merged;
-pub use mesh::Mesh;
+pub use mesh::{Merged, Mesh};
 pub use write::{to_obj, to_off, to_stl, write};
 
 /// A format of mesh files, told by the file's extension.

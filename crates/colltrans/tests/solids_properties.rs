@@ -203,7 +203,10 @@ proptest! {
         let cast = Cast::new(a.at(setting.poses[0]), b.at(setting.poses[1]), setting.direction)
             .and_then(|c| c.with_options(bare()))
             .expect("a direction");
-        if let Said::At(t) = said(&cast.clearance()) {
+        // A distance that is rounding noise may be 0 for one way of computing it.
+        if let Said::At(t) = said(&cast.clearance())
+            && (t == 0.0 || t > 1e-9)
+        {
             let before = SolidOptions { before: Some(t * part), ..bare() };
             let cut = said(&cast.with_options(before).expect("choices").clearance());
             if part < 0.999 || t == 0.0 {

@@ -407,6 +407,7 @@ fn exact_in<const N: usize>(
 }
 
 /// A quotient of two numbers: its sign, and its value to within a few roundings.
+#[derive(Clone, Copy)]
 struct Above {
     sign: Ordering,
     value: f64,

@@ -4,7 +4,7 @@
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
 use colltrans::{
-    Cast, Pose, Solid, SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace,
+    Cast, Clearance, Pose, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
 };
 use glam::DVec3;
 use rayon::prelude::*;
@@ -180,7 +180,7 @@ impl<'a> Bodies<'a> {
         // Directions and tolerances are checked at the door, so nothing is refused here.
         let cast = Cast::new(at(a), at(b), d).and_then(|c| c.with_options(options));
         match cast.map(|cast| cast.clearance_in(workspace)) {
-            Ok(SolidClearance::Blocked { distance, contact, .. }) => Room::Blocked(Stop {
+            Ok(Clearance::Blocked { distance, contact }) => Room::Blocked(Stop {
                 distance,
                 nominal: self.nominal([a, b], d, distance, &contact),
                 normal: contact.normal,

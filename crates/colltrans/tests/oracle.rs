@@ -61,6 +61,8 @@ fn found_by_the_campaign() {
         ("nearly", 30_064_775_285),
         ("size-ratio", 38_654_725_214),
         ("size-ratio", 38_654_732_680),
+        // A first guess out of range.
+        ("magnitude", 433_791_703_393),
     ];
     let wrong: Vec<String> =
         cases.iter().flat_map(|(family, seed)| check_setting(family, *seed, true)).collect();

@@ -149,10 +149,13 @@ fn tempered(normal: DVec3) -> DVec3 {
     }
     let lateral = normal.truncate();
     let steepest = LEAST_INCLINATION * LEAST_INCLINATION * normal.length_squared();
-    if normal.z > 0.0 && normal.z * normal.z >= steepest {
-        return (lateral * (1.0 / normal.z)).extend(1.0);
-    }
-    if steepest > 0.0 { (lateral / steepest.sqrt()).extend(1.0) } else { DVec3::Z }
+    let slope = if normal.z > 0.0 && normal.z * normal.z >= steepest {
+        lateral * (1.0 / normal.z)
+    } else {
+        lateral / steepest.sqrt()
+    };
+    // Out of range, any normal will do.
+    if slope.is_finite() { slope.extend(1.0) } else { DVec3::Z }
 }
 
 /// The steepest slope that is guessed, along a lateral direction.

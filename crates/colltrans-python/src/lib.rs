@@ -1,0 +1,38 @@
+//! The extension module of the Python package `colltrans`: thin conversions, nothing is computed here.
+//!
+//! The way: `arrays` (numbers in and out) and `errors` (the library's errors as exceptions) ->
+//! `body`, `pose` -> `query` (two placed bodies and a direction; the functions of the package) ->
+//! `answer`, `certificate` (what comes back) -> `tracker` and `many` (queries in sequence and in
+//! bulk). The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
+
+mod answer;
+mod arrays;
+mod body;
+mod certificate;
+mod errors;
+mod many;
+mod pose;
+mod query;
+mod tracker;
+
+/// The module.
+#[pyo3::pymodule(gil_used = false)]
+mod _colltrans {
+    #[pymodule_export]
+    use crate::answer::{
+        Behind, Blocked, Contact, ContactRange, DirectionalDepth, Feature, Features, Grazing,
+        Intersection, Overlapping, Separated, Slides, Steps,
+    };
+    #[pymodule_export]
+    use crate::body::{ConvexPolyhedron, read};
+    #[pymodule_export]
+    use crate::certificate::{Certificate, Separation};
+    #[pymodule_export]
+    use crate::many::ask_many;
+    #[pymodule_export]
+    use crate::pose::Pose;
+    #[pymodule_export]
+    use crate::query::{Cast, cast, clearance, contact_range, directional_depth, intersects};
+    #[pymodule_export]
+    use crate::tracker::Tracker;
+}

@@ -71,7 +71,9 @@ def report(folder, vertices, count):
     placed = Pose(pose)
     calls = {
         "one, numpy arrays": lambda: colltrans.cast(*bodies, direction, moving_pose=pose),
-        "one, a tuple and a Pose": lambda: colltrans.cast(*bodies, (0.0, 0.0, -1.0), moving_pose=placed),
+        "one, a tuple and a Pose": lambda: colltrans.cast(
+            *bodies, (0.0, 0.0, -1.0), moving_pose=placed
+        ),
         "one, a Cast": query.first_contact,
     }
     least = {}

@@ -34,7 +34,7 @@ def batch(cli: Path) -> Batch:
 
     def ask(queries: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         lines = "".join(json.dumps(query) + "\n" for query in queries)
-        command = [cli, "batch", "-"]
+        command: list[str | Path] = [cli, "batch", "-"]
         told = subprocess.run(command, input=lines, capture_output=True, text=True, cwd=ROOT)
         return [json.loads(line) for line in told.stdout.splitlines()]
 

@@ -4,6 +4,7 @@ import pickle
 import subprocess
 import threading
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -191,13 +192,13 @@ def test_what_a_query_was_can_be_asked() -> None:
         ({"solver": "newton"}, 'no solver "newton": auto, cta or portal'),
     ],
 )
-def test_queries_that_are_refused(arguments: dict[str, object], match: str) -> None:
-    all_arguments = {"direction": [1, 0, 0], **arguments}
+def test_queries_that_are_refused(arguments: dict[str, Any], match: str) -> None:
+    all_arguments: dict[str, Any] = {"direction": [1, 0, 0], **arguments}
     for question in (cast, contact_range, clearance, directional_depth, intersects, Cast):
         with pytest.raises(QueryError, match=match):
-            question(CUBE, CUBE, **all_arguments)  # type: ignore[operator]
+            question(CUBE, CUBE, **all_arguments)
     with pytest.raises(QueryError, match=match):
-        Tracker().clearance(CUBE, CUBE, **all_arguments)  # type: ignore[arg-type]
+        Tracker().clearance(CUBE, CUBE, **all_arguments)
 
 
 def test_bodies_that_are_none_are_refused() -> None:
@@ -230,9 +231,10 @@ def test_a_tracker_follows_its_bodies_beyond_their_names() -> None:
     tracker = Tracker()
     for seed in range(50):
         random = np.random.default_rng(seed)
-        pair = [ConvexPolyhedron(random.normal(size=(20, 3))) for _ in range(2)]
-        found = tracker.cast(*pair, [0, 0, -1], moving_pose=[0, 0, 9])
-        del pair
+        cloud = random.normal(size=(20, 3))
+        bodies = ConvexPolyhedron(cloud), ConvexPolyhedron(-cloud)
+        found = tracker.cast(*bodies, [0, 0, -1], moving_pose=[0, 0, 9])
+        del bodies
         assert isinstance(found, Contact) and found.certificate.verify() >= 0
 
 

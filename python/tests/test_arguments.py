@@ -209,7 +209,7 @@ def test_nothing_but_an_answer_or_an_error_of_ours(
     direction, pose = accept(direction, ways), accept(pose, ways)
     for question in (colltrans.cast, colltrans.cast_many, colltrans.clearance_many):
         try:
-            answer = question(CUBE, CUBE, direction, moving_pose=pose)  # type: ignore[operator]
+            answer = question(CUBE, CUBE, direction, moving_pose=pose)
         except ColltransError as error:
             assert str(error)
         else:

@@ -34,7 +34,7 @@ def test_faces_in_every_form(faces: object) -> None:
 
 
 def test_polygons_of_different_lengths() -> None:
-    pyramid = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]]
+    pyramid = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]])
     faces = [[3, 2, 1, 0], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
     assert len(ConvexPolyhedron.from_mesh(pyramid, faces).faces) == 5
 

@@ -127,7 +127,7 @@ def test_arrays_that_change_are_noticed() -> None:
 
 
 def test_columns_are_names_masks_and_counts() -> None:
-    starts = [[-3, 0.5, 0], [-3, 2, 0], [-3, 1, 0]]
+    starts = np.array([[-3, 0.5, 0], [-3, 2, 0], [-3, 1, 0]])
     columns = contact_range_many(CUBE, CUBE, AHEAD, moving_pose=starts)
     assert columns.counts() == {"contact": 1, "grazing": 1, "separated": 1}
     assert columns.where("contact", "grazing").tolist() == [True, False, True]

@@ -38,6 +38,7 @@ Floats: TypeAlias = NDArray[np.float64]
 Bodies: TypeAlias = "ConvexPolyhedron | Sequence[ConvexPolyhedron | ColltransError]"
 Poses: TypeAlias = "ArrayLike | Pose | HasMatrix | None"
 Solver: TypeAlias = Literal["auto", "cta", "portal"]
+Question: TypeAlias = Literal["contact", "range", "clearance"]
 Answer_co = TypeVar("Answer_co", covariant=True)
 
 
@@ -66,7 +67,7 @@ class _Queries:
     solver: Solver
     count: int
 
-    def ask_all(self, question: str, threads: int | None) -> dict[str, Any]:
+    def ask_all(self, question: Question, threads: int | None) -> dict[str, Any]:
         (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
         columns, outcomes, errors = _colltrans.ask_many(
             self.count,
@@ -255,7 +256,7 @@ class Columns(Generic[Answer_co]):
                 name, translation = "overlapping", first.translation
             case Grazing(contact=contact) | ContactRange(first=Grazing(contact=contact)):
                 name, translation = "grazing", contact.translation
-            case (Contact() as contact) | ContactRange(first=contact):
+            case (Contact() as contact) | ContactRange(first=Contact() as contact):
                 name, translation = "contact", contact.translation
         same = np.array_equal(self.translation[i], translation, equal_nan=True)
         return same and self.outcomes[self.outcome[i]] == name
@@ -496,10 +497,8 @@ def _queries(
     solver: Solver,
 ) -> _Queries:
     """All arguments as tables, and how many rows they have together."""
-    bodies, indices_found = zip(
-        _body_list(moving, indices[0], "moving"), _body_list(fixed, indices[1], "fixed"),
-        strict=True,
-    )
+    moving_bodies, moving_index = _body_list(moving, indices[0], "moving")
+    fixed_bodies, fixed_index = _body_list(fixed, indices[1], "fixed")
     tables = {
         "direction": _table(direction, "direction", 3),
         "moving_pose": _pose_table(poses[0], "moving_pose"),
@@ -507,15 +506,15 @@ def _queries(
         "graze_tolerance": _column(graze_tolerance, "graze_tolerance"),
     }
     rows = {name: len(table) for name, table in tables.items() if len(table) != 1}
-    for name, index in zip(("moving_index", "fixed_index"), indices_found, strict=True):
+    for name, index in (("moving_index", moving_index), ("fixed_index", fixed_index)):
         if index is not None:
             rows[name] = len(index)
     if len(set(rows.values())) > 1:
         found = ", ".join(f"{name} has {n} rows" for name, n in rows.items())
         raise InputError(f"arguments of different lengths: {found}")
     return _Queries(
-        bodies=bodies,
-        indices=indices_found,
+        bodies=(moving_bodies, fixed_bodies),
+        indices=(moving_index, fixed_index),
         direction=tables["direction"],
         poses=(tables["moving_pose"], tables["fixed_pose"]),
         graze_tolerance=tables["graze_tolerance"],

@@ -1,14 +1,18 @@
 """What Python costs over the bare library: one call, and many.
 
-``python python/benchmarks/overhead.py [ROWS]`` with the package installed and Rust at hand. The bare
-library runs the same casts in the same minutes (``crates/colltrans-python/examples/bare.rs``), in
-turns; each figure is the least of its turns.
+``python python/benchmarks/overhead.py [ROWS]`` with the package installed and Rust at hand. The
+bare library runs the same casts (``crates/colltrans-python/examples/bare.rs``), in turns with
+Python. CPU time, the least of the turns; ``wall`` is the wall time of two threads.
 """
 
+import json
+import resource
 import subprocess
 import sys
 import tempfile
+import time
 import timeit
+from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +21,7 @@ import colltrans
 from colltrans import Cast, ConvexPolyhedron, Pose
 
 CRATE = Path(__file__).parents[2] / "crates" / "colltrans-python"
-TURNS = 7
+TURNS = 5
 
 
 def settings(vertices, rows):
@@ -31,27 +35,46 @@ def settings(vertices, rows):
     return clouds, np.hstack([starts, turns, np.tile([0.0, 0.0, -1.0], (rows, 1))])
 
 
-def bare(folder, clouds, rows, threads):
-    """Nanoseconds a cast of the library alone."""
-    files = [folder / name for name in ("a", "b", "rows")]
-    for file, numbers in zip(files, [*clouds, rows], strict=True):
-        file.write_bytes(np.ascontiguousarray(numbers).tobytes())
-    program = ["cargo", "run", "--release", "--quiet", "--example", "bare", "--"]
-    told = subprocess.run(
-        [*program, *files, str(threads), "3"], cwd=CRATE, check=True, capture_output=True, text=True
-    )
-    return float(told.stdout)
+def program():
+    """The bare library's, built."""
+    build = ["cargo", "build", "--release", "--example", "bare", "--message-format=json"]
+    told = subprocess.run(build, cwd=CRATE, check=True, capture_output=True, text=True).stdout
+    messages = map(json.loads, told.splitlines())
+    return next(m["executable"] for m in messages if m.get("executable"))
+
+
+def bare(files, threads, count):
+    """Nanoseconds of CPU and of wall time a cast of the library alone, without its start."""
+
+    def cpu(repeats):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        command = [*files, str(threads), str(repeats)]
+        told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+        return used, float(told)
+
+    (once, _), (often, wall) = cpu(1), cpu(5)
+    return (often - once) / 4 / count * 1e9, wall
 
 
 def many(bodies, rows, threads):
-    def ask():
-        colltrans.cast_many(*bodies, rows[:, 7:], moving_pose=rows[:, :7], threads=threads)
+    """The same of Python's."""
 
-    return min(timeit.repeat(ask, number=1, repeat=3)) / len(rows) * 1e9
+    poses, directions = map(np.ascontiguousarray, (rows[:, :7], rows[:, 7:]))
+
+    def ask():
+        colltrans.cast_many(*bodies, directions, moving_pose=poses, threads=threads)
+
+    ask()
+    began = time.process_time()
+    wall = min(timeit.repeat(ask, number=1, repeat=4))
+    return (time.process_time() - began) / 4 / len(rows) * 1e9, wall / len(rows) * 1e9
 
 
 def one(ask):
-    return min(timeit.repeat(ask, number=20_000, repeat=3)) / 20_000 * 1e9
+    spent = timeit.repeat(ask, timer=time.process_time, number=20_000, repeat=3)
+    return min(spent) / 20_000 * 1e9
 
 
 def main():
@@ -70,30 +93,40 @@ def report(folder, vertices, count):
     query = Cast(*bodies, direction, moving_pose=pose)
     placed = Pose(pose)
     calls = {
-        "one, numpy arrays": lambda: colltrans.cast(*bodies, direction, moving_pose=pose),
-        "one, a tuple and a Pose": lambda: colltrans.cast(
+        "one call, arrays": lambda: colltrans.cast(*bodies, direction, moving_pose=pose),
+        "one call, tuple and Pose": lambda: colltrans.cast(
             *bodies, (0.0, 0.0, -1.0), moving_pose=placed
         ),
-        "one, a Cast": query.first_contact,
+        "one call, Cast": query.first_contact,
     }
-    least = {}
+    numbers = {"a": clouds[0], "b": clouds[1], "rows": rows, "same": np.tile(rows[0], (count, 1))}
+    for name, values in numbers.items():
+        (folder / name).write_bytes(np.ascontiguousarray(values).tobytes())
+    files = [program(), folder / "a", folder / "b"]
+    least = defaultdict(lambda: np.inf)
 
     def note(name, nanoseconds):
-        least[name] = min(nanoseconds, least.get(name, np.inf))
+        least[name] = min(nanoseconds, least[name])
 
-    repeated = np.tile(rows[0], (count // 4, 1))
     for _ in range(TURNS):
-        note("bare one", bare(folder, clouds, repeated, 1))
+        note("bare one", bare([*files, folder / "same"], 1, count)[0])
         for name, ask in calls.items():
             note(name, one(ask))
         for threads in (1, 2):
-            note(f"bare {threads}", bare(folder, clouds, rows, threads))
-            note(f"many {threads}", many(bodies, rows, threads))
-    pairs = [(name, "bare one") for name in calls]
-    pairs += [(f"many {threads}", f"bare {threads}") for threads in (1, 2)]
-    for name, yardstick in pairs:
+            for who, (cpu, wall) in {
+                "bare": bare([*files, folder / "rows"], threads, count),
+                "many": many(bodies, rows, threads),
+            }.items():
+                note(f"{who} {threads}", cpu)
+                note(f"{who} {threads} wall", wall)
+    pairs = [(name, "bare one", name) for name in calls]
+    pairs += [
+        ("many 1", "bare 1", "many, 1 thread"),
+        ("many 2", "bare 2", "many, 2 threads"),
+        ("many 2 wall", "bare 2 wall", "many, 2 threads, wall"),
+    ]
+    for name, yardstick, words in pairs:
         own, theirs = least[name], least[yardstick]
-        words = name.replace("many 1", "many, 1 thread").replace("many 2", "many, 2 threads")
         print(
             f"| {vertices} vertices: {words} | {theirs:.0f} | {own:.0f} "
             f"| {own / theirs:.2f} | {own - theirs:.0f} |",

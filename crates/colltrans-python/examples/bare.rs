@@ -2,7 +2,7 @@
 //!
 //! `bare POINTS_A POINTS_B ROWS THREADS REPEATS`: files of raw doubles, three for a point and ten for
 //! a row (a translation and a quaternion of the moving body, a direction). Prints nanoseconds of wall
-//! time for a cast, the least of the repeats.
+//! time for a cast, the least of the repeats. Its CPU time is the caller's to measure.
 
 use std::error::Error;
 use std::time::Instant;
@@ -10,14 +10,14 @@ use std::time::Instant;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 
-type Anything = Result<(), Box<dyn Error + Send + Sync>>;
+type Anything<T = ()> = Result<T, Box<dyn Error + Send + Sync>>;
 
 fn doubles(path: &str) -> std::io::Result<Vec<f64>> {
-    let (chunks, _) = (std::fs::read(path)?, ());
-    Ok(chunks.as_chunks::<8>().0.iter().copied().map(f64::from_ne_bytes).collect())
+    let bytes = std::fs::read(path)?;
+    Ok(bytes.as_chunks::<8>().0.iter().copied().map(f64::from_ne_bytes).collect())
 }
 
-fn body(path: &str) -> Result<ConvexPolyhedron, Box<dyn Error + Send + Sync>> {
+fn body(path: &str) -> Anything<ConvexPolyhedron> {
     let points: Vec<DVec3> =
         doubles(path)?.as_chunks::<3>().0.iter().copied().map(DVec3::from_array).collect();
     Ok(ConvexPolyhedron::from_points(&points)?)
@@ -30,15 +30,21 @@ fn casts(
     answers: &mut [[f64; 11]],
 ) -> Anything {
     for (row, answer) in rows.iter().zip(answers) {
-        let [a, b, c, x, y, z, w, d, e, f] = *row;
-        let pose = Pose::new(DQuat::from_xyzw(x, y, z, w), DVec3::new(a, b, c))?;
+        let [at, turn, to] = [&row[..3], &row[3..7], &row[7..]];
+        let pose = Pose::new(DQuat::from_slice(turn), DVec3::from_slice(at))?;
         let moving = bodies[0].at(pose);
-        let cast = Cast::new(moving, bodies[1].at(Pose::IDENTITY), DVec3::new(d, e, f))?;
+        let cast = Cast::new(moving, bodies[1].at(Pose::IDENTITY), DVec3::from_slice(to))?;
         if let Outcome::Contact(contact) = cast.first_contact()? {
-            let (n, p, proof) =
-                (contact.normal, contact.points(&cast).on_fixed, contact.certificate);
-            let t = contact.translation;
-            *answer = [t, n.x, n.y, n.z, p.x, p.y, p.z, proof.lower, proof.upper, proof.gap(), 0.0];
+            let proof = contact.certificate;
+            answer[..3].copy_from_slice(&contact.normal.to_array());
+            answer[3..6].copy_from_slice(&contact.points(&cast).on_fixed.to_array());
+            answer[6..].copy_from_slice(&[
+                contact.translation,
+                proof.lower,
+                proof.upper,
+                proof.tolerance,
+                0.0,
+            ]);
         }
     }
     Ok(())

@@ -2,8 +2,7 @@
 
 Arguments have one row for all queries or one for each; bodies are one for all, or a list with an
 index for each. Rows are answered on all cores, without the interpreter's lock; each has the bits of
-the query asked alone. A row that has no answer has the outcome ``"error"`` and a message; the others
-have theirs.
+the query asked alone. A row without an answer has the outcome ``"error"`` and a message.
 """
 
 from collections.abc import Iterator, Sequence

@@ -3,7 +3,7 @@
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
-use colltrans::{Cast, Pose, Solid, SolidClearance, SolidOptions, StartOverlap, Workspace};
+use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions, StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -171,7 +171,7 @@ impl<'a> Bodies<'a> {
         // Directions and tolerances are checked at the door, so nothing is refused here.
         let cast = Cast::new(at(a), at(b), d).and_then(|c| c.with_options(options));
         match cast.map(|cast| cast.clearance_in(workspace)) {
-            Ok(SolidClearance::Blocked { distance, contact, .. }) => Room::Blocked(Stop {
+            Ok(Clearance::Blocked { distance, contact }) => Room::Blocked(Stop {
                 distance,
                 normal: contact.normal,
                 point: contact.point_on_fixed,

@@ -1,6 +1,6 @@
 //! Choices of a query.
 
-use crate::answer::Solver;
+use crate::answer::{Contact, OverlapAhead, Solver, WhyFree};
 use crate::body::{Body, ConvexPolyhedron};
 use crate::error::QueryError;
 
@@ -19,6 +19,9 @@ pub struct Options {
 
 impl Body for ConvexPolyhedron {
     type Options = Options;
+    type Contact = Contact;
+    type Free = WhyFree;
+    type Overlap = OverlapAhead;
 }
 
 impl Options {

@@ -15,19 +15,25 @@ const STEEP: f64 = 1e-3;
 /// Slabs less steep than this say little about shadows.
 const LEVEL: f64 = 0.1;
 
-/// Why a pair of nodes needs no further look.
+/// Why no two facets of a pair of nodes need a further look: what a proof says of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Reason {
-    /// The moving node has no facet that looks along the direction.
+pub enum Reason {
+    /// No facet of the moving body looks along the direction.
     MovingFacesAway,
-    /// The fixed node has no facet that looks against the direction.
+    /// No facet of the fixed body looks against the direction.
     FixedFacesAway,
-    /// The interiors of the shadows are disjoint.
+    /// The interiors of their shadows are disjoint.
     ShadowsApart,
-    /// The largest gap is negative.
+    /// The largest gap is negative: they part.
     Parting,
     /// The least gap is not smaller than the answer.
     NotBefore,
+    /// Two leaves: each pair of facets was looked at by itself.
+    Examined,
+    /// They have no point in common where they are.
+    Disjoint,
+    /// They lie in one plane and look at each other, so they show no overlap.
+    FaceToFace,
 }
 
 /// A node in the query frame.
@@ -219,6 +225,31 @@ pub(super) fn least_gap(
         }
     }
     Ok(least)
+}
+
+/// Whether a reason to cut a pair of nodes holds, checked by itself; `limit` as for [`least_gap`].
+pub(super) fn holds(scene: &Scene, a: &Shade, b: &Shade, reason: Reason, limit: f64) -> bool {
+    let (low, high) = (a.low.max(b.low), a.high.min(b.high));
+    let gaps = || {
+        let region = Region { middle: (low + high).xy() * 0.5, half: (high - low).xy() * 0.5 };
+        let (p, q) = (Heights::new(scene, a), Heights::new(scene, b));
+        gaps(&region, (a, p.as_ref()), (b, q.as_ref()))
+    };
+    match reason {
+        Reason::MovingFacesAway => a.looks_back(),
+        Reason::FixedFacesAway => b.looks_ahead(),
+        Reason::ShadowsApart => {
+            low.x >= high.x
+                || low.y >= high.y
+                || sides_apart(scene, (&scene.moving, a), (&scene.fixed, b))
+                || sides_apart(scene, (&scene.fixed, b), (&scene.moving, a))
+        }
+        Reason::Parting => gaps()[1] < 0.0,
+        Reason::NotBefore => gaps()[0] >= limit,
+        Reason::Disjoint => apart(scene, a, b),
+        Reason::FaceToFace => a.is_face_to_face(b),
+        Reason::Examined => false,
+    }
 }
 
 /// A rectangle of the shadow plane.

@@ -199,7 +199,7 @@ pub(super) trait Spot {
     /// In the setting frame, if that has an exact value in `f64`.
     fn world(&self, scene: &Scene) -> Option<DVec3>;
     /// In the setting frame.
-    fn wide(&self, scene: &Scene) -> [Wide; 3];
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3];
 }
 
 impl Spot for Corner {
@@ -222,14 +222,14 @@ impl Spot for Corner {
         (exact && lost == DVec3::ZERO).then(|| turned + offset)
     }
 
-    fn wide(&self, scene: &Scene) -> [Wide; 3] {
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3] {
         place_exactly(scene.side(self.moving), &[(1.0, self.local)])
     }
 }
 
 /// A weighted mean of vertices of one body in the setting frame; the weights are powers of two, from
 /// `1/64`, and add up to 1.
-pub(super) fn place_exactly(side: &Side, terms: &[(f64, DVec3)]) -> [Wide; 3] {
+pub(super) fn place_exactly<const N: usize>(side: &Side, terms: &[(f64, DVec3)]) -> [Wide<N>; 3] {
     let [offset, lost] = side.offset;
     std::array::from_fn(|row| {
         let mut sum = Wide::number(offset[row]).add(&Wide::number(lost[row]));

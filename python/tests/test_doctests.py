@@ -23,7 +23,8 @@ def docstrings() -> Iterator[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(("name", "text"), list(docstrings()))
-def test_docstrings(name: str, text: str) -> None:
+def test_docstrings(name: str, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
     run(name, text)
     assert text, f"{name} has no docstring"
 

@@ -3,7 +3,7 @@
 //! A *last* contact is the first one of the query turned round, and keeps that query, as in the
 //! library.
 
-use colltrans::{Clearance, ContactRange as Range, Outcome};
+use colltrans::{Clearance, ContactRange as Range, Outcome, OverlapAhead, WhyFree};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -79,6 +79,12 @@ impl Feature {
 
     fn __repr__(&self) -> String {
         format!("Feature('{}', {:?})", self.kind, self.vertices)
+    }
+}
+
+impl Feature {
+    pub(crate) fn new(kind: &'static str, vertices: Vec<u32>) -> Self {
+        Self { kind, vertices }
     }
 }
 
@@ -582,12 +588,16 @@ pub(crate) fn clearance(py: Python<'_>, query: Query, of: Clearance) -> PyResult
         Clearance::Blocked { distance, contact: of } => {
             object(py, Blocked { distance, contact: contact(py, query, of)? })
         }
-        Clearance::Slides(of) => object(py, Slides { grazing: grazing(py, query, of)? }),
-        Clearance::Behind(of) => {
+        Clearance::Free(WhyFree::Slides(of)) => {
+            object(py, Slides { grazing: grazing(py, query, of)? })
+        }
+        Clearance::Free(WhyFree::Behind(of)) => {
             object(py, Behind { contact: contact(py, query.reversed(py), of)? })
         }
-        Clearance::Separated(separated) => object(py, Separated { separated, query }),
-        Clearance::Overlapping { first, last } => {
+        Clearance::Free(WhyFree::Separated(separated)) => {
+            object(py, Separated { separated, query })
+        }
+        Clearance::Overlapping(OverlapAhead { first, last }) => {
             let back = query.reversed(py);
             let (first, last) = (contact(py, query, first)?, contact(py, back, last)?);
             object(py, Overlapping { first, last })

@@ -5,7 +5,7 @@
 
 use std::fmt::Display;
 
-use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError};
+use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError, SolidError};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -45,6 +45,10 @@ pub(crate) trait Raised: Display {
 }
 
 impl Raised for BuildError {
+    const CLASS: &'static str = "BuildError";
+}
+
+impl Raised for SolidError {
     const CLASS: &'static str = "BuildError";
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The way: `arrays` (numbers in and out) and `errors` (the library's errors as exceptions) ->
 //! `body`, `pose` -> `query` (two placed bodies and a direction; the functions of the package) ->
-//! `answer`, `certificate` (what comes back) -> `tracker` and `many` (queries in sequence and in
+//! `answer`, `certificate` (what comes back) -> `solid` (the same for parts that are not convex) -> `tracker` and `many` (queries in sequence and in
 //! bulk). The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
 mod answer;
@@ -13,6 +13,7 @@ mod errors;
 mod many;
 mod pose;
 mod query;
+mod solid;
 mod tracker;
 
 /// The module.
@@ -33,6 +34,10 @@ mod _colltrans {
     use crate::pose::Pose;
     #[pymodule_export]
     use crate::query::{Cast, cast, clearance, contact_range, directional_depth, intersects};
+    #[pymodule_export]
+    use crate::solid::{
+        Solid, SolidBlocked, SolidCast, SolidCertificate, SolidContact, SolidFree, SolidOverlapping,
+    };
     #[pymodule_export]
     use crate::tracker::Tracker;
 }

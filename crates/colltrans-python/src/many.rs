@@ -14,7 +14,10 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::{Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Outcome, Pose};
+use colltrans::{
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Outcome, OverlapAhead, Pose,
+    WhyFree,
+};
 use numpy::{
     IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
@@ -153,17 +156,17 @@ impl Row {
     fn clearance(answer: &Clearance, cast: &Cast<'_>) -> Self {
         let row = match answer {
             Clearance::Blocked { contact, .. } => Self::of(0, contact, cast),
-            Clearance::Slides(grazing) => {
+            Clearance::Free(WhyFree::Slides(grazing)) => {
                 Self::of(1, &grazing.contact, cast).with(MARGIN, 0.0 - grazing.overlap)
             }
             // The last contact is the first one of the way back, whose bounds are not this way's.
-            Clearance::Behind(last) => Self {
+            Clearance::Free(WhyFree::Behind(last)) => Self {
                 numbers: Self::NONE.with(TOLERANCE, last.certificate.tolerance).numbers,
                 ..Self::of(2, last, &cast.reversed())
             }
             .with(EXIT, 0.0 - last.translation),
-            Clearance::Separated(separated) => Self::separated(3, separated),
-            Clearance::Overlapping { first, last } => Self::of(4, first, cast)
+            Clearance::Free(WhyFree::Separated(separated)) => Self::separated(3, separated),
+            Clearance::Overlapping(OverlapAhead { first, last }) => Self::of(4, first, cast)
                 .with(EXIT, 0.0 - last.translation)
                 .with(BACK, -first.certificate.lower)
                 .with(ON, -last.certificate.lower),

@@ -1,7 +1,8 @@
 """Collision translations: how far can one body move before it touches another?
 
 A body is a :class:`ConvexPolyhedron`; a question is a function (:func:`cast`, :func:`clearance`,
-...), one about many rows ends in ``_many``; an answer is a frozen object with its proof.
+...), one about many rows ends in ``_many``; an answer is a frozen object with its proof. Parts that
+are not convex are :class:`Solid`, asked by a :class:`SolidCast`.
 
 Vertices are in the body frame; poses place bodies in the world. Directions, normals and points are
 in the world. Translations count in multiples of the direction, so they are lengths if it has length
@@ -26,6 +27,13 @@ from colltrans._colltrans import (
     Separated,
     Separation,
     Slides,
+    Solid,
+    SolidBlocked,
+    SolidCast,
+    SolidCertificate,
+    SolidContact,
+    SolidFree,
+    SolidOverlapping,
     Steps,
     Tracker,
     cast,
@@ -89,6 +97,13 @@ __all__ = [
     "Separated",
     "Separation",
     "Slides",
+    "Solid",
+    "SolidBlocked",
+    "SolidCast",
+    "SolidCertificate",
+    "SolidContact",
+    "SolidFree",
+    "SolidOverlapping",
     "Steps",
     "Tracker",
     "cast",

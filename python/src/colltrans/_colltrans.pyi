@@ -15,7 +15,42 @@ _Faces: TypeAlias = NDArray[np.integer[Any]] | Sequence[Sequence[int] | NDArray[
 _Outcome: TypeAlias = Contact | Grazing | Separated
 _Clearance: TypeAlias = Blocked | Slides | Behind | Separated | Overlapping
 
-__all__: list[str]
+__all__ = [
+    "Behind",
+    "Blocked",
+    "Cast",
+    "Certificate",
+    "Contact",
+    "ContactRange",
+    "ConvexPolyhedron",
+    "DirectionalDepth",
+    "Feature",
+    "Features",
+    "Grazing",
+    "Intersection",
+    "Overlapping",
+    "Pose",
+    "Separated",
+    "Separation",
+    "Slides",
+    "Solid",
+    "SolidBlocked",
+    "SolidCast",
+    "SolidCertificate",
+    "SolidContact",
+    "SolidFree",
+    "SolidOverlapping",
+    "Steps",
+    "Tracker",
+    "ask_many",
+    "cast",
+    "clearance",
+    "contact_range",
+    "directional_depth",
+    "intersects",
+    "read",
+]
+_SolidClearance: TypeAlias = SolidBlocked | SolidFree | SolidOverlapping
 
 @type_check_only
 class HasMatrix(Protocol):
@@ -282,6 +317,129 @@ class Intersection:
     @property
     def outcome(self) -> _Outcome: ...
     def __bool__(self) -> bool: ...
+
+@final
+class Solid:
+    def __new__(cls, vertices: ArrayLike, faces: _Faces, *, open: bool = False) -> Solid: ...
+    @staticmethod
+    def from_pieces(pieces: Sequence[Solid | ConvexPolyhedron]) -> Solid: ...
+    @staticmethod
+    def from_trimesh(mesh: Any) -> Solid: ...
+    @staticmethod
+    def read(
+        path: str | PathLike[str],
+        *,
+        open: bool = False,
+        scale: float = 1.0,
+        merge_tolerance: float | None = None,
+    ) -> Solid: ...
+    @property
+    def vertices(self) -> _Floats: ...
+    @property
+    def triangles(self) -> _Indices: ...
+    @property
+    def input_indices(self) -> _Indices: ...
+    @property
+    def face_indices(self) -> _Indices: ...
+    @property
+    def is_closed(self) -> bool: ...
+    @property
+    def volume(self) -> float: ...
+    @property
+    def bounds(self) -> _Floats: ...
+    @property
+    def nbytes(self) -> int: ...
+    @staticmethod
+    def _closed(v: _Floats, f: list[_Indices]) -> Solid: ...
+    @staticmethod
+    def _open(v: _Floats, f: list[_Indices]) -> Solid: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
+    def __copy__(self) -> Solid: ...
+    def __deepcopy__(self, _memo: Any) -> Solid: ...
+
+@final
+class SolidCast:
+    def __new__(
+        cls,
+        moving: Solid | ConvexPolyhedron,
+        fixed: Solid | ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        tolerance: float | None = None,
+        ignore_start_overlaps: bool = False,
+    ) -> SolidCast: ...
+    def clearance(self) -> _SolidClearance: ...
+    def certified_clearance(self) -> tuple[_SolidClearance, SolidCertificate]: ...
+    def verify(self, proof: SolidCertificate) -> float: ...
+    def intersects(self) -> bool: ...
+    def depth(self) -> float | None: ...
+    def exit(self) -> float | None: ...
+    def reversed(self) -> SolidCast: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def moving(self) -> Solid | ConvexPolyhedron: ...
+    @property
+    def fixed(self) -> Solid | ConvexPolyhedron: ...
+    @property
+    def moving_pose(self) -> Pose: ...
+    @property
+    def fixed_pose(self) -> Pose: ...
+    @property
+    def direction(self) -> _Floats: ...
+
+@final
+class SolidContact:
+    __match_args__: Final = ("nominal", "normal", "point")
+    @property
+    def nominal(self) -> float: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def point(self) -> _Floats: ...
+    @property
+    def point_at_start(self) -> _Floats: ...
+    @property
+    def moving_feature(self) -> Feature: ...
+    @property
+    def fixed_feature(self) -> Feature: ...
+
+@final
+class SolidBlocked:
+    __match_args__: Final = ("distance", "contact")
+    @property
+    def distance(self) -> float: ...
+    @property
+    def contact(self) -> SolidContact: ...
+
+@final
+class SolidFree:
+    @property
+    def distance(self) -> float: ...
+    @property
+    def margin(self) -> float | None: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+
+@final
+class SolidOverlapping:
+    __match_args__: Final = ("depth",)
+    @property
+    def distance(self) -> None: ...
+    @property
+    def depth(self) -> float | None: ...
+
+@final
+class SolidCertificate:
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def lower(self) -> float: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> SolidCertificate: ...
 
 @final
 class Tracker:

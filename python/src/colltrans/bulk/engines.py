@@ -55,10 +55,11 @@ def ray(
         ray.init(address=address, log_to_driver=False, **({} if address else here))
     store = ray.put(bodies)
 
-    @ray.remote(max_retries=5)
-    def task(job: Job, boxed: list[Any]) -> Report:
+    def answer_with(job: Job, boxed: list[Any]) -> Report:
         return answer(job, _kept(boxed[0]))
 
+    remote: Any = ray.remote(max_retries=5)
+    task = remote(answer_with)
     waiting = [
         task.remote(replace(job, options=replace(job.options, threads=1)), [store]) for job in jobs
     ]

@@ -1,9 +1,9 @@
 """What queries in files cost: CPU a row, and memory, over many rows.
 
-``python python/benchmarks/shards.py ROWS [FOLDER]`` writes shards of 500,000 rows of random settings
-of two polytopes of 128 vertices, answers them by ``local`` and by ``ray`` (where it is installed) on
-two threads, and prints CPU time a row against the bare ``contact_range_many``, rows a second of wall
-time, and the largest resident memory of any process.
+``python python/benchmarks/shards.py ROWS [FOLDER]`` writes shards of 500,000 rows of random
+settings of two polytopes of 128 vertices, answers them by ``local`` and by ``ray`` (where it is
+installed) on two threads, and prints CPU time a row against the bare ``contact_range_many``, rows a
+second of wall time, and the largest resident memory of any process.
 """
 
 import os
@@ -111,9 +111,9 @@ def main():
         contact_range_many(*bodies, directions, moving_pose=poses, threads=1)
         bare = (time.process_time() - began) / SHARD
         size = sum(f.stat().st_size for f in (folder / "in").iterdir()) / count / SHARD
-        print(f"{count * SHARD:,} rows of {size:.0f} bytes; bare: {bare * 1e6:.2f} us of CPU a row")
+        print(f"{count * SHARD:,} rows of {size:.0f} bytes; bare: {bare * 1e6:.2f} us of CPU")
         print(
-            "| engine | CPU a row, us | of the bare | rows a second | resident, first third | most |"
+            "| engine | CPU a row, us | of the bare | rows a second | resident, at first | most |"
         )
         print("|---|---:|---:|---:|---:|---:|")
         for engine in ["local", *(["ray"] if find_spec("ray") else [])]:

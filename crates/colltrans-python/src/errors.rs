@@ -64,6 +64,14 @@ impl Raised for CaseError {
     const CLASS: &'static str = "CaseError";
 }
 
+impl Raised for colltrans_assembly::AssemblyError {
+    const CLASS: &'static str = "AssemblyError";
+}
+
+impl Raised for colltrans_assembly::ReadError {
+    const CLASS: &'static str = "AssemblyError";
+}
+
 impl Raised for colltrans_mesh::Error {
     const CLASS: &'static str = "MeshError";
 }

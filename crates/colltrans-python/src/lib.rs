@@ -2,11 +2,13 @@
 //!
 //! The way: `arrays` (numbers in and out) and `errors` (the library's errors as exceptions) ->
 //! `body`, `pose` -> `query` (two placed bodies and a direction; the functions of the package) ->
-//! `answer`, `certificate` (what comes back) -> `solid` (the same for parts that are not convex) -> `tracker` and `many` (queries in sequence and in
-//! bulk). The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
+//! `answer`, `certificate` (what comes back) -> `solid` (the same for parts that are not convex),
+//! `tracker` and `many` (queries in sequence and in bulk), `assembly` (many parts). The package itself
+//! is in `python/`; its stub `_colltrans.pyi` has the types.
 
 mod answer;
 mod arrays;
+mod assembly;
 mod body;
 mod certificate;
 mod errors;
@@ -24,6 +26,8 @@ mod _colltrans {
         Behind, Blocked, Contact, ContactRange, DirectionalDepth, Feature, Features, Grazing,
         Intersection, Overlapping, Separated, Slides, Steps,
     };
+    #[pymodule_export]
+    use crate::assembly::Assembly;
     #[pymodule_export]
     use crate::body::{ConvexPolyhedron, read};
     #[pymodule_export]

@@ -192,7 +192,7 @@ proptest! {
             Clearance::Free(WhyFree::Behind(_)) => {
                 prop_assert!(last <= tolerance, "{setting}: range {first}..{last}");
             }
-            free => prop_assert!(false, "{setting}: {free:?}, range {first}..{last}"),
+            free @ Clearance::Free(_) => prop_assert!(false, "{setting}: {free:?}, range {first}..{last}"),
         }
     }
 

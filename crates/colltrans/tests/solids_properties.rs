@@ -84,7 +84,7 @@ fn subdivided((vertices, facets): &Mesh, by: usize) -> Mesh {
             finer.push(facet.clone());
             continue;
         };
-        if (k + by) % 3 == 0 {
+        if (k + by).is_multiple_of(3) {
             finer.push(facet.clone());
             continue;
         }

@@ -81,7 +81,7 @@ fn clearances_agree(setting: &Setting, bodies: &Bodies, a: &Clearance, b: &Clear
         Clearance::Overlapping(OverlapAhead { first, last }) => {
             Some([first.translation, -last.translation])
         }
-        _ => None,
+        Clearance::Free(_) => None,
     };
     match (range(a), range(b)) {
         (None, None) => true,

@@ -2,7 +2,8 @@
 
 A body is a :class:`ConvexPolyhedron`; a question is a function (:func:`cast`, :func:`clearance`,
 ...), one about many rows ends in ``_many``; an answer is a frozen object with its proof. Parts that
-are not convex are :class:`Solid`, asked by a :class:`SolidCast`.
+are not convex are :class:`Solid`, asked by a :class:`SolidCast`; many parts are an
+:class:`Assembly`.
 
 Vertices are in the body frame; poses place bodies in the world. Directions, normals and points are
 in the world. Translations count in multiples of the direction, so they are lengths if it has length
@@ -43,7 +44,9 @@ from colltrans._colltrans import (
     intersects,
     read,
 )
+from colltrans.assembly import Assembly, Blocking, Plan, RemovalMap, Rooms, Step, Stuck
 from colltrans.errors import (
+    AssemblyError,
     BuildError,
     CaseError,
     CertificateError,
@@ -66,8 +69,11 @@ from colltrans.many import (
 )
 
 __all__ = [
+    "Assembly",
+    "AssemblyError",
     "Behind",
     "Blocked",
+    "Blocking",
     "BuildError",
     "CaseError",
     "Cast",
@@ -90,10 +96,13 @@ __all__ = [
     "MeshError",
     "NotConvergedError",
     "Overlapping",
+    "Plan",
     "Pose",
     "PoseError",
     "QueryError",
     "RangeColumns",
+    "RemovalMap",
+    "Rooms",
     "Separated",
     "Separation",
     "Slides",
@@ -104,7 +113,9 @@ __all__ = [
     "SolidContact",
     "SolidFree",
     "SolidOverlapping",
+    "Step",
     "Steps",
+    "Stuck",
     "Tracker",
     "cast",
     "cast_many",

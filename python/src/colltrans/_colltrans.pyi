@@ -16,6 +16,7 @@ _Outcome: TypeAlias = Contact | Grazing | Separated
 _Clearance: TypeAlias = Blocked | Slides | Behind | Separated | Overlapping
 
 __all__ = [
+    "Assembly",
     "Behind",
     "Blocked",
     "Cast",
@@ -106,6 +107,57 @@ class ConvexPolyhedron:
     def __reduce__(self) -> tuple[Any, Any]: ...
     def __copy__(self) -> ConvexPolyhedron: ...
     def __deepcopy__(self, _memo: Any) -> ConvexPolyhedron: ...
+
+@final
+class Assembly:
+    def __new__(cls, parts: list[tuple[str, ArrayLike, Any]]) -> Assembly: ...
+    @staticmethod
+    def read(
+        path: str | PathLike[str],
+        packages: Sequence[str | PathLike[str]],
+        skip_missing: bool,
+        visual: bool,
+        joints: dict[str, float],
+    ) -> Assembly: ...
+    def with_fixed(self, names: list[str]) -> Assembly: ...
+    def with_ignored(self, pairs: list[tuple[str, str]]) -> Assembly: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def unit(self) -> str | None: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def index(self, name: str) -> int: ...
+    def rooms(
+        self, directions: ArrayLike, tolerance: float | None, ignore_overlaps: bool
+    ) -> list[tuple[list[float], list[int]]]: ...
+    def blocking(
+        self, direction: ArrayLike, tolerance: float | None, ignore_overlaps: bool
+    ) -> tuple[list[list[int]], list[list[int]]]: ...
+    def plan(
+        self,
+        directions: ArrayLike,
+        samples: int,
+        tolerance: float | None,
+        ignore_overlaps: bool,
+    ) -> tuple[
+        list[tuple[list[int], list[float], float, int | None]],
+        list[int],
+        list[tuple[list[int], list[tuple[int, list[list[int]]]]]],
+    ]: ...
+    def removal_map(
+        self,
+        group: list[int],
+        samples: int,
+        border: float,
+        tolerance: float | None,
+        ignore_overlaps: bool,
+    ) -> tuple[
+        list[list[float]],
+        tuple[list[float], list[int]],
+        list[tuple[float, list[float]]],
+        list[list[float]],
+    ]: ...
 
 @final
 class Cast:

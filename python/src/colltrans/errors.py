@@ -43,3 +43,7 @@ class CaseError(ColltransError, ValueError):
 
 class MeshError(ColltransError, ValueError):
     """A mesh file that cannot be read, or holds something else than its name says."""
+
+
+class AssemblyError(ColltransError, ValueError):
+    """An assembly that cannot be read, a part that is none, or a name that no part has."""

@@ -33,11 +33,6 @@ pub enum StartOverlap {
     Refuse,
     /// Facets that cross now do not block; contacts that begin later do.
     Ignore,
-    /// There is none: the caller has asked before, for the same bodies, poses and tolerance. Whoever
-    /// asks one pair along many directions asks once whether it overlaps.
-    Apart,
-    /// There is one, and it is ignored: the caller has asked before, as for [`Self::Apart`].
-    KnownIgnore,
 }
 
 /// Choices of a query between solids.
@@ -51,6 +46,10 @@ pub struct SolidOptions {
     /// Contacts at this translation or beyond are of no interest: the best answer so far, where one
     /// body is asked against many.
     pub before: Option<f64>,
+    /// Whether the bodies overlap where they are: what [`Cast::overlaps`] has said of the same
+    /// bodies, poses and tolerance. Whoever asks one pair along many directions asks once. `None`:
+    /// it is looked at.
+    pub overlapping: Option<bool>,
 }
 
 /// The overlap of two solids.
@@ -171,14 +170,11 @@ impl<'a> Cast<'a, Solid> {
     /// The same with a queue that is kept.
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Clearance<Solid> {
         let scene = self.asked();
-        let overlapping = || overlap::find(&scene).is_some();
-        let aim = match self.options.start_overlap {
-            StartOverlap::Refuse if overlapping() => {
-                return Clearance::Overlapping(SolidOverlap { depth: self.depth() });
-            }
-            StartOverlap::KnownIgnore => Aim::LaterStop,
-            StartOverlap::Ignore if overlapping() => Aim::LaterStop,
-            StartOverlap::Refuse | StartOverlap::Ignore | StartOverlap::Apart => Aim::Stop,
+        let known = self.options.overlapping;
+        let aim = match known.unwrap_or_else(|| overlap::find(&scene).is_some()) {
+            false => Aim::Stop,
+            true if self.options.start_overlap == StartOverlap::Ignore => Aim::LaterStop,
+            true => return Clearance::Overlapping(SolidOverlap { depth: self.depth() }),
         };
         let found = first(&scene, aim, self.limit(&scene), workspace);
         self.answer(&scene, found.as_ref())

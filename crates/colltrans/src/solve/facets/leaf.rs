@@ -144,9 +144,19 @@ impl Turns {
     }
 }
 
-/// Whether the interiors of the shadows overlap, and if so the gap over them; `limit` is what a pair
-/// has to stay below to be of interest. The sign of the least gap is only right if it is `needed`.
-pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, needed: bool) -> Option<Gap> {
+/// Which pairs are of interest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wanted {
+    All,
+    /// The largest gap is not negative; the sign of the least one is not needed.
+    NotParting,
+    /// Nor is the least.
+    NotCrossing,
+}
+
+/// The gap where the interiors of the shadows overlap and the pair is of interest; `limit` is what it
+/// has to stay below.
+pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
     let blur = 4.0 * scene.blur;
     let apart = |k: usize| g.low[k] - f.high[k] > blur || f.low[k] - g.high[k] > blur;
     if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {
@@ -167,7 +177,13 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, needed: bool)
     }
     of_f.resolve(scene, f, g);
     of_g.resolve(scene, g, f);
-    match rounded(scene, f, g, &of_f, &of_g).judge(SHARP * scene.blur, needed) {
+    let range = rounded(scene, f, g, &of_f, &of_g);
+    // Certain whatever the other corners are: nothing more needs to be known of slivers that cross.
+    let parting = wanted != Wanted::All && range.bound[1] < 0.0;
+    if parting || wanted == Wanted::NotCrossing && range.negative {
+        return None;
+    }
+    match range.judge(SHARP * scene.blur, wanted == Wanted::NotCrossing) {
         Rounded::Known(gap) => Some(gap),
         Rounded::Beyond(least) if least >= limit => None,
         Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g)),
@@ -407,6 +423,7 @@ fn exact_in<const N: usize>(
 }
 
 /// A quotient of two numbers: its sign, and its value to within a few roundings.
+#[derive(Clone, Copy)]
 struct Above {
     sign: Ordering,
     value: f64,

@@ -18,6 +18,7 @@ mod scene;
 mod search;
 mod separate;
 mod sign;
+mod sweep;
 mod verify;
 mod wide;
 

@@ -12,7 +12,7 @@
 use std::collections::HashMap;
 
 use super::bound::{Reason, Shade, holds};
-use super::clearance::StartOverlap;
+use super::clearance::{SolidOptions, StartOverlap};
 use super::leaf::{self, Facet, Gap};
 use super::overlap::{self, Overlap};
 use super::scene::Scene;
@@ -43,7 +43,7 @@ pub struct SolidCertificate {
 /// The proof of what the bodies do where they are.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StartProof {
-    /// The caller has said it: [`StartOverlap::Apart`] or [`StartOverlap::KnownIgnore`].
+    /// The caller has said it: [`SolidOptions::overlapping`].
     Assumed,
     /// Their surfaces do not cross; that no shell is inside the other body is checked anew.
     Apart(Cover),
@@ -180,7 +180,7 @@ impl Cast<'_, Solid> {
             stop: None,
             cover: Cover::default(),
         };
-        let Some(aim) = certificate.aim(self.options().start_overlap) else {
+        let Some(aim) = certificate.aim(self.options()) else {
             let depth = self.depth();
             return (Clearance::Overlapping(SolidOverlap { depth }), certificate);
         };
@@ -207,8 +207,7 @@ impl Cast<'_, Solid> {
     }
 
     fn prove_start(&self, scene: &Scene) -> StartProof {
-        let asked = self.options().start_overlap;
-        if matches!(asked, StartOverlap::Apart | StartOverlap::KnownIgnore) {
+        if self.options().overlapping.is_some() {
             return StartProof::Assumed;
         }
         let mut entries = Vec::new();
@@ -222,13 +221,16 @@ impl Cast<'_, Solid> {
 
 impl SolidCertificate {
     /// What the search was for; `None` if an overlap is the answer.
-    pub(super) fn aim(&self, asked: StartOverlap) -> Option<Aim> {
-        match (asked, &self.start) {
-            (StartOverlap::Refuse, StartProof::Overlapping(_)) => None,
-            (StartOverlap::Ignore, StartProof::Overlapping(_)) | (StartOverlap::KnownIgnore, _) => {
-                Some(Aim::LaterStop)
-            }
-            _ => Some(Aim::Stop),
+    pub(super) fn aim(&self, asked: SolidOptions) -> Option<Aim> {
+        let overlapping = match self.start {
+            StartProof::Assumed => asked.overlapping == Some(true),
+            StartProof::Overlapping(_) => true,
+            StartProof::Apart(_) => false,
+        };
+        match (overlapping, asked.start_overlap) {
+            (false, _) => Some(Aim::Stop),
+            (true, StartOverlap::Ignore) => Some(Aim::LaterStop),
+            (true, StartOverlap::Refuse) => None,
         }
     }
 }
@@ -267,8 +269,8 @@ pub(super) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
         for t in of(false, nodes[1]) {
             let Some(g) = Facet::facing(scene, false, t, Less) else { continue };
             // A gap is wanted whatever its size, so that its own error can be taken off.
-            let wanted = limit + leaf::SHARP * scene.blur;
-            let gap = leaf::gap(scene, &f, &g, wanted, aim == Aim::LaterStop);
+            let end = limit + leaf::SHARP * scene.blur;
+            let gap = leaf::gap(scene, &f, &g, end, aim.wanted());
             let sharp = |gap: Gap| {
                 let blunt = gap.error > leaf::FINE * scene.blur;
                 if blunt { leaf::sharpened(scene, &f, &g) } else { gap }

@@ -13,6 +13,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::sweep::Sweep;
 use super::wide::Wide;
 use crate::body::Pose;
 use crate::body::solid::{Shrinking, Solid, displace};
@@ -52,6 +53,8 @@ pub(crate) struct Scene<'a> {
     pub(super) frame: DMat3,
     /// Bound of the rounding error of a coordinate in the query frame.
     pub(super) blur: f64,
+    /// The axes that both bodies have, if they do.
+    pub(super) sweep: Option<Sweep>,
 }
 
 impl<'a> Scene<'a> {
@@ -73,6 +76,7 @@ impl<'a> Scene<'a> {
         let fixed = place(fixed, false, fixed_amount, fixed_pose.matrix(), [offset, lost]);
         let size = moving.reach() + fixed.reach() + offset.length();
         Self {
+            sweep: Sweep::new(&moving, &fixed),
             moving,
             fixed,
             direction,
@@ -89,9 +93,11 @@ impl<'a> Scene<'a> {
             let Side { solid, moving, amount, matrix, offset, .. } = *side;
             Side::new(solid, moving, amount, matrix, offset, frame)
         };
+        let (moving, fixed) = (turn(&self.moving), turn(&self.fixed));
         Self {
-            moving: turn(&self.moving),
-            fixed: turn(&self.fixed),
+            sweep: Sweep::new(&moving, &fixed),
+            moving,
+            fixed,
             direction: -self.direction,
             length: self.length,
             frame,

@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::bound::{Reason, Shade, least_gap};
-use super::leaf::{self, Facet, Gap, Meeting};
+use super::leaf::{self, Facet, Gap, Meeting, Wanted};
 use super::scene::Scene;
 use crate::body::solid::tree::{LEAF, Node};
 
@@ -32,6 +32,14 @@ pub(super) enum Aim {
 impl Aim {
     pub(super) fn clamp(self, gap: f64) -> f64 {
         if self == Self::Least { gap } else { gap.max(0.0) }
+    }
+
+    pub(super) fn wanted(self) -> Wanted {
+        match self {
+            Self::Least => Wanted::All,
+            Self::Stop => Wanted::NotParting,
+            Self::LaterStop => Wanted::NotCrossing,
+        }
     }
 
     /// What a pair contributes, if it counts.
@@ -220,8 +228,8 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
         for triangle in a.facets() {
             let Some(f) = Facet::facing(scene, true, triangle, Ordering::Greater) else { continue };
             for g in back.iter().flatten() {
-                let needed = self.aim == Aim::LaterStop;
-                let Some(gap) = leaf::gap(scene, &f, g, self.limit, needed) else { continue };
+                let wanted = self.aim.wanted();
+                let Some(gap) = leaf::gap(scene, &f, g, self.limit, wanted) else { continue };
                 let Some(value) = self.aim.value(&gap) else { continue };
                 if value < self.limit {
                     // What could be better by less is not worth a look: rounding is as much.

@@ -16,7 +16,8 @@ use crate::number::noise::UNIT_VECTOR;
 
 /// Each round ends or comes closer; rounding alone could make it last.
 const MOST_ROUNDS: usize = 32;
-/// Rounding of a support value, in multiples of the blur of coordinates.
+/// Rounding of a gap, in multiples of the blur of coordinates: half of it for each of two points that
+/// are taken for the farthest, and what computing them takes.
 const ROUNDING: f64 = 4.0;
 
 /// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one.
@@ -122,8 +123,10 @@ fn search(side: &Side, local: DVec3, swell: f64, at: u32, best: &mut (f64, u32))
     if parts[1].0 > parts[0].0 {
         parts.swap(0, 1);
     }
+    // Of a flat face that the normal looks along all vertices are farthest: one of them will do.
+    let tie = 8.0 * f64::EPSILON * side.solid.reach();
     for (bound, k) in parts {
-        if bound > best.0 {
+        if bound > best.0 + tie {
             search(side, local, swell, k, best);
         }
     }

@@ -2,7 +2,6 @@
 
 use std::cmp::Ordering;
 
-use super::StartOverlap;
 use super::bound::{Reason, Shade, holds};
 use super::leaf::{self, Facet};
 use super::overlap::{is_overlap, leaves_apart, nested, never_overlap};
@@ -64,7 +63,7 @@ impl Cast<'_, Solid> {
         let scene = self.asked();
         let options = self.options();
         self.verify_start(&scene, start)?;
-        let Some(aim) = certificate.aim(options.start_overlap) else {
+        let Some(aim) = certificate.aim(options) else {
             let plain = *lower == 0.0 && stop.is_none() && cover.is_empty();
             return if plain { Ok(0.0) } else { Err(CertificateError::Cover { entry: 0 }) };
         };
@@ -89,8 +88,7 @@ impl Cast<'_, Solid> {
     }
 
     fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
-        let asked = self.options().start_overlap;
-        let assumed = matches!(asked, StartOverlap::Apart | StartOverlap::KnownIgnore);
+        let assumed = self.options().overlapping.is_some();
         let holds = match start {
             StartProof::Assumed => assumed,
             StartProof::Overlapping(overlap) => !assumed && is_overlap(scene, *overlap),
@@ -157,7 +155,7 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), Certific
     let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
     let g = Facet::facing(scene, false, t as usize, Ordering::Less);
     let (Some(f), Some(g)) = (f, g) else { return Err(refused) };
-    let facing = leaf::gap(scene, &f, &g, f64::INFINITY, true);
+    let facing = leaf::gap(scene, &f, &g, f64::INFINITY, aim.wanted());
     if facing.and_then(|gap| aim.value(&gap)).is_none() {
         return Err(refused);
     }

@@ -87,7 +87,8 @@ fn interruptible<T: Send>(
                 work(watch)
             });
             let mut raised = Ok(());
-            while let Err(RecvTimeoutError::Timeout) = wait.recv_timeout(PATIENCE) as Result<(), _> {
+            let waiting = || wait.recv_timeout(PATIENCE) == Err::<(), _>(RecvTimeoutError::Timeout);
+            while waiting() {
                 if raised.is_ok() {
                     raised = Python::attach(|py| py.check_signals());
                     cancel.store(raised.is_err(), Ordering::Relaxed);

@@ -93,7 +93,7 @@ def main(words: Sequence[str] | None = None) -> int:
     asked = arguments(words)
     try:
         return run(asked)
-    except (ColltransError, OSError) as error:
+    except (ColltransError, ModuleNotFoundError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
 

@@ -201,7 +201,7 @@ impl Assembly {
         direction: &Bound<'_, PyAny>,
         tolerance: Option<f64>,
         ignore_overlaps: bool,
-    ) -> PyResult<(Vec<Vec<usize>>, Vec<Vec<usize>>)> {
+    ) -> PyResult<[Vec<Vec<usize>>; 2]> {
         let direction = crate::arrays::vector(direction, "direction")?;
         let choices = Choices::new(tolerance, ignore_overlaps);
         self.ask(py, choices, |bodies, watch| {
@@ -209,7 +209,7 @@ impl Assembly {
             let matrix = Matrix::new(bodies, &[unit(direction)?], &all, choices.start, watch)?;
             let graph = Blocking::new(&matrix, 0, &all);
             let blockers = (0..bodies.len()).map(|part| graph.blockers(part)).collect();
-            Ok((blockers, graph.removable()))
+            Ok([blockers, graph.removable()])
         })
     }
 

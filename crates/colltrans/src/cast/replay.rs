@@ -30,7 +30,7 @@ pub enum CaseError {
     /// A body is none.
     #[error("{which} body: {error}")]
     Body {
-        /// `"moving"` or `"fixed"`.
+        /// `"moving"` or `"fixed"`; `"the"` of a body alone.
         which: &'static str,
         /// What is wrong with it.
         error: BuildError,
@@ -129,6 +129,35 @@ impl Cast<'_> {
             options: OptionsRecord::of(&self.options()),
         };
         serde_json::to_string(&file).expect("numbers and names")
+    }
+}
+
+impl ConvexPolyhedron {
+    /// The body as a file: its vertices and faces in their order, exact in bits.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let again = ConvexPolyhedron::from_json(&cube.to_json())?;
+    /// assert_eq!(again.vertices(), cube.vertices());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(&BodyRecord::of(self)).expect("numbers")
+    }
+
+    /// From what [`Self::to_json`] has written: answers about it have the same bits.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        let record: BodyRecord = serde_json::from_str(text)?;
+        record.body().map_err(|error| CaseError::Body { which: "the", error })
     }
 }
 

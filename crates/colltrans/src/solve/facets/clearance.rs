@@ -212,7 +212,9 @@ impl<'a> Cast<'a, Solid> {
     /// if there is none up to their size.
     pub fn depth(&self) -> Option<f64> {
         let bare = self.scene(0.0);
-        overlap::find(&bare)?;
+        if overlap::find(&bare).is_none() {
+            return Some(0.0);
+        }
         let free = |tolerance: f64| {
             let half = tolerance / 2.0;
             overlap::find(&bare.shrunk(half, half)).is_none()

@@ -1,0 +1,626 @@
+//! Answers: frozen, with what they were asked. Arrays, points and features are made on access.
+//!
+//! A *last* contact is the first one of the query turned round, and keeps that query, as in the
+//! library.
+
+use colltrans::{Clearance, ContactRange as Range, Outcome, OverlapAhead, WhyFree};
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+
+use crate::arrays::{coordinates, row};
+use crate::certificate::{Certificate, Separation};
+use crate::errors::OrRaise;
+use crate::pose::Pose;
+use crate::query::{Cast, Query, solver_name};
+
+/// Work done for one answer.
+#[pyclass(frozen, get_all, module = "colltrans")]
+pub(crate) struct Steps {
+    /// int: Planar problems solved.
+    planar_problems: u32,
+    /// int: Supporting planes computed.
+    supports: u32,
+    /// int: Portals visited.
+    pivots: u32,
+    /// int: Iterations of inner loops.
+    iterations: u32,
+    /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
+    started_from: &'static str,
+}
+
+impl Steps {
+    pub(crate) fn of(steps: colltrans::Steps) -> Self {
+        let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
+            steps;
+        let started_from = match started_from {
+            colltrans::StartedFrom::Features => "features",
+            colltrans::StartedFrom::Region => "region",
+            colltrans::StartedFrom::Scratch => "scratch",
+        };
+        Self { planar_problems, supports, pivots, iterations, started_from }
+    }
+}
+
+#[pymethods]
+impl Steps {
+    fn __repr__(&self) -> String {
+        let Self { planar_problems, supports, pivots, iterations, started_from } = self;
+        format!(
+            "Steps(planar_problems={planar_problems}, supports={supports}, pivots={pivots}, \
+             iterations={iterations}, started_from='{started_from}')"
+        )
+    }
+}
+
+/// A vertex, an edge or a face.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Feature {
+    kind: &'static str,
+    vertices: Vec<u32>,
+}
+
+#[pymethods]
+impl Feature {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("kind", "vertices");
+
+    /// str: ``"vertex"``, ``"edge"`` or ``"face"``.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.kind
+    }
+
+    /// ndarray: Its vertices, by the numbers of the points or the mesh that the body was made from.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.vertices)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Feature('{}', {:?})", self.kind, self.vertices)
+    }
+}
+
+impl Feature {
+    pub(crate) fn new(kind: &'static str, vertices: Vec<u32>) -> Self {
+        Self { kind, vertices }
+    }
+}
+
+fn feature(feature: colltrans::Feature, body: &colltrans::ConvexPolyhedron) -> Feature {
+    let input = body.input_indices();
+    let vertices = feature.vertices(body).into_iter().map(|v| input[v as usize]).collect();
+    Feature { kind: feature.kind(), vertices }
+}
+
+/// The parts of both bodies that touch.
+#[pyclass(frozen, get_all, module = "colltrans")]
+pub(crate) struct Features {
+    /// Feature: Of the moving body.
+    moving: Py<Feature>,
+    /// Feature: Of the fixed body.
+    fixed: Py<Feature>,
+}
+
+#[pymethods]
+impl Features {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("moving", "fixed");
+
+    fn __repr__(&self) -> String {
+        let [moving, fixed] = [&self.moving, &self.fixed].map(|f| f.get().__repr__());
+        format!("Features(moving={moving}, fixed={fixed})")
+    }
+}
+
+/// Where the bodies first meet along the direction.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Contact {
+    contact: colltrans::Contact,
+    query: Query,
+}
+
+impl Contact {
+    /// The library's cast; its query has been answered, so it is one.
+    fn with_cast<T>(&self, then: impl FnOnce(&colltrans::Cast<'_>) -> T) -> PyResult<T> {
+        self.query.ask(|cast| Ok(then(cast)))
+    }
+}
+
+#[pymethods]
+impl Contact {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str, &'static str) =
+        ("translation", "normal", "point");
+
+    /// float: The collision translation, in multiples of the direction. Negative: a contact that
+    /// lies behind, or an overlap now.
+    #[getter]
+    fn translation(&self) -> f64 {
+        self.contact.translation
+    }
+
+    /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.contact.normal)
+    }
+
+    /// ndarray of shape (3,): The contact point, in the world.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let points = self.with_cast(|cast| self.contact.points(cast))?;
+        Ok(row(py, points.on_fixed))
+    }
+
+    /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
+    #[getter]
+    fn point_at_start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let points = self.with_cast(|cast| self.contact.points(cast))?;
+        Ok(row(py, points.on_moving))
+    }
+
+    /// Features: The vertex, edge or face of each body in the contact plane.
+    #[getter]
+    fn features(&self, py: Python<'_>) -> PyResult<Features> {
+        let (moving, fixed) = self.with_cast(|cast| {
+            let found = self.contact.features(cast);
+            (feature(found.moving, cast.moving()), feature(found.fixed, cast.fixed()))
+        })?;
+        Ok(Features { moving: Py::new(py, moving)?, fixed: Py::new(py, fixed)? })
+    }
+
+    /// Certificate: Both bounds with their proofs.
+    #[getter]
+    fn certificate(&self, py: Python<'_>) -> Certificate {
+        Certificate { proof: self.contact.certificate, query: self.query.copy(py) }
+    }
+
+    /// Pose: The moving body's pose after the motion up to this contact and not beyond, whatever
+    /// rounding does.
+    #[getter]
+    fn pose_before(&self) -> PyResult<Pose> {
+        self.with_cast(|cast| self.contact.pose_before(cast))?.or_raise().map(Pose)
+    }
+
+    /// str: The solver that found it.
+    #[getter]
+    fn solver(&self) -> &'static str {
+        solver_name(self.contact.solver)
+    }
+
+    /// Steps: Work done.
+    #[getter]
+    fn steps(&self) -> Steps {
+        Steps::of(self.contact.steps)
+    }
+
+    /// Cast: The query; of a last contact the one turned round.
+    #[getter]
+    fn query(&self, py: Python<'_>) -> Cast {
+        Cast(self.query.copy(py))
+    }
+
+    fn __repr__(&self) -> String {
+        let (t, n) = (self.contact.translation, coordinates(self.contact.normal));
+        format!("Contact(translation={t:?}, normal={n:?})")
+    }
+}
+
+/// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Grazing {
+    grazing: colltrans::Grazing,
+    contact: Py<Contact>,
+}
+
+#[pymethods]
+impl Grazing {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("overlap", "contact");
+
+    /// float: How far the shadows overlap, a length; negative if they miss by less than rounding
+    /// can tell.
+    #[getter]
+    fn overlap(&self) -> f64 {
+        self.grazing.overlap
+    }
+
+    /// ndarray of shape (3,): Unit vector of the world, across the direction, from the moving body's
+    /// shadow to the fixed one's.
+    #[getter]
+    fn separating_direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.grazing.separating_direction)
+    }
+
+    /// Contact: The contact if the overlap is taken for real.
+    #[getter]
+    fn contact(&self, py: Python<'_>) -> Py<Contact> {
+        self.contact.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let contact = self.contact.get().__repr__();
+        format!("Grazing(overlap={:?}, contact={contact})", self.grazing.overlap)
+    }
+}
+
+/// The bodies never meet along the direction.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Separated {
+    separated: colltrans::Separated,
+    query: Query,
+}
+
+#[pymethods]
+impl Separated {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("margin", "normal");
+
+    /// float: A lower bound of the distance of the shadows, a length.
+    #[getter]
+    fn margin(&self) -> f64 {
+        self.separated.certificate.margin
+    }
+
+    /// ndarray of shape (3,): Unit normal of a plane between them, parallel to the direction.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.separated.certificate.normal)
+    }
+
+    /// Separation: The proof.
+    #[getter]
+    fn certificate(&self, py: Python<'_>) -> Separation {
+        Separation { proof: self.separated.certificate, query: self.query.copy(py) }
+    }
+
+    /// float: How far the moving body can move: infinitely.
+    #[getter]
+    fn distance(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// str: The solver that found it.
+    #[getter]
+    fn solver(&self) -> &'static str {
+        solver_name(self.separated.solver)
+    }
+
+    /// Steps: Work done.
+    #[getter]
+    fn steps(&self) -> Steps {
+        Steps::of(self.separated.steps)
+    }
+
+    /// Cast: The query.
+    #[getter]
+    fn query(&self, py: Python<'_>) -> Cast {
+        Cast(self.query.copy(py))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Separated(margin={:?})", self.separated.certificate.margin)
+    }
+}
+
+/// All translations at which the bodies meet, with what touches at either end.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct ContactRange {
+    interval: (f64, f64),
+    first: Py<PyAny>,
+    last: Py<PyAny>,
+}
+
+#[pymethods]
+impl ContactRange {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str,) = ("interval",);
+
+    /// tuple of float: First and last translation, in multiples of the direction.
+    #[getter]
+    fn interval(&self) -> (f64, f64) {
+        self.interval
+    }
+
+    /// Contact or Grazing: The first contact along the direction.
+    #[getter]
+    fn first(&self, py: Python<'_>) -> Py<PyAny> {
+        self.first.clone_ref(py)
+    }
+
+    /// Contact or Grazing: The last contact: the first one of the query turned round.
+    #[getter]
+    fn last(&self, py: Python<'_>) -> Py<PyAny> {
+        self.last.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("ContactRange(interval={:?})", self.interval)
+    }
+}
+
+/// The moving body can move until it touches.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Blocked {
+    distance: f64,
+    contact: Py<Contact>,
+}
+
+#[pymethods]
+impl Blocked {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("distance", "contact");
+
+    /// float: How far it may safely move, in multiples of the direction: never more than it can.
+    #[getter]
+    fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// Contact: What stops it.
+    #[getter]
+    fn contact(&self, py: Python<'_>) -> Py<Contact> {
+        self.contact.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Blocked(distance={:?})", self.distance)
+    }
+}
+
+/// The moving body slides along the other one, as far as it likes.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Slides {
+    grazing: Py<Grazing>,
+}
+
+#[pymethods]
+impl Slides {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str,) = ("grazing",);
+
+    /// float: Infinite.
+    #[getter]
+    fn distance(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Grazing: Along what it slides.
+    #[getter]
+    fn grazing(&self, py: Python<'_>) -> Py<Grazing> {
+        self.grazing.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Slides(grazing={})", self.grazing.get().__repr__())
+    }
+}
+
+/// The last contact lies behind, or is here and the moving body leaves it.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Behind {
+    contact: Py<Contact>,
+}
+
+#[pymethods]
+impl Behind {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str,) = ("contact",);
+
+    /// float: Infinite.
+    #[getter]
+    fn distance(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Contact: The last one: the first one of the query turned round.
+    #[getter]
+    fn contact(&self, py: Python<'_>) -> Py<Contact> {
+        self.contact.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Behind(contact={})", self.contact.get().__repr__())
+    }
+}
+
+/// The bodies overlap where they are, by more than rounding error.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Overlapping {
+    first: Py<Contact>,
+    last: Py<Contact>,
+}
+
+#[pymethods]
+impl Overlapping {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("first", "last");
+
+    /// None: There is none.
+    #[getter]
+    fn distance(&self) -> Option<f64> {
+        None
+    }
+
+    /// Contact: The first contact, behind.
+    #[getter]
+    fn first(&self, py: Python<'_>) -> Py<Contact> {
+        self.first.clone_ref(py)
+    }
+
+    /// Contact: The last contact, ahead: the first one of the query turned round.
+    #[getter]
+    fn last(&self, py: Python<'_>) -> Py<Contact> {
+        self.last.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let [first, last] = [&self.first, &self.last].map(|c| c.get().__repr__());
+        format!("Overlapping(first={first}, last={last})")
+    }
+}
+
+/// How far the moving body has to go back until the overlap has ended.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct DirectionalDepth {
+    depth: f64,
+    clearance: Py<PyAny>,
+}
+
+#[pymethods]
+impl DirectionalDepth {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str,) = ("depth",);
+
+    /// float: In multiples of the direction, never less than the true depth; 0 without overlap.
+    #[getter]
+    fn depth(&self) -> f64 {
+        self.depth
+    }
+
+    /// Blocked or Slides or Behind or Separated or Overlapping: What it follows from.
+    #[getter]
+    fn clearance(&self, py: Python<'_>) -> Py<PyAny> {
+        self.clearance.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("DirectionalDepth(depth={:?})", self.depth)
+    }
+}
+
+/// Whether the bodies meet where they are: true or false in a condition.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Intersection {
+    meets: bool,
+    direction: [f64; 3],
+    outcome: Py<PyAny>,
+}
+
+#[pymethods]
+impl Intersection {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str,) = ("meets",);
+
+    /// bool: Whether they have a point in common, to within rounding error.
+    #[getter]
+    fn meets(&self) -> bool {
+        self.meets
+    }
+
+    /// ndarray of shape (3,): The direction between the centres, of the cast that found out.
+    #[getter]
+    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.direction.to_vec().into_pyarray(py)
+    }
+
+    /// Contact or Grazing or Separated: What that cast found.
+    #[getter]
+    fn outcome(&self, py: Python<'_>) -> Py<PyAny> {
+        self.outcome.clone_ref(py)
+    }
+
+    fn __bool__(&self) -> bool {
+        self.meets
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Intersection(meets={})", if self.meets { "True" } else { "False" })
+    }
+}
+
+fn contact(py: Python<'_>, query: Query, contact: colltrans::Contact) -> PyResult<Py<Contact>> {
+    Py::new(py, Contact { contact, query })
+}
+
+fn grazing(py: Python<'_>, query: Query, grazing: colltrans::Grazing) -> PyResult<Py<Grazing>> {
+    let contact = contact(py, query, grazing.contact)?;
+    Py::new(py, Grazing { grazing, contact })
+}
+
+/// An answer of a class of its own.
+fn object<T>(py: Python<'_>, of: T) -> PyResult<Bound<'_, PyAny>>
+where
+    T: pyo3::PyClass + Into<PyClassInitializer<T>>,
+{
+    Ok(Bound::new(py, of)?.into_any())
+}
+
+pub(crate) fn outcome(py: Python<'_>, query: Query, of: Outcome) -> PyResult<Bound<'_, PyAny>> {
+    match of {
+        Outcome::Contact(contact) => object(py, Contact { contact, query }),
+        Outcome::Grazing(of) => Ok(grazing(py, query, of)?.into_bound(py).into_any()),
+        Outcome::Separated(separated) => object(py, Separated { separated, query }),
+    }
+}
+
+pub(crate) fn range(py: Python<'_>, query: Query, of: Range) -> PyResult<Bound<'_, PyAny>> {
+    let back = query.reversed(py);
+    let interval = of.interval().map(|[enter, exit]| (enter, exit + 0.0));
+    let (first, last) = match of {
+        Range::Contact { first, last } => {
+            (contact(py, query, first)?.into_any(), contact(py, back, last)?.into_any())
+        }
+        Range::Grazing { first, last } => {
+            (grazing(py, query, first)?.into_any(), grazing(py, back, last)?.into_any())
+        }
+        Range::Separated(separated) => return object(py, Separated { separated, query }),
+    };
+    let interval = interval.unwrap_or((f64::NAN, f64::NAN));
+    object(py, ContactRange { interval, first, last })
+}
+
+pub(crate) fn clearance(py: Python<'_>, query: Query, of: Clearance) -> PyResult<Bound<'_, PyAny>> {
+    match of {
+        Clearance::Blocked { distance, contact: of } => {
+            object(py, Blocked { distance, contact: contact(py, query, of)? })
+        }
+        Clearance::Free(WhyFree::Slides(of)) => {
+            object(py, Slides { grazing: grazing(py, query, of)? })
+        }
+        Clearance::Free(WhyFree::Behind(of)) => {
+            object(py, Behind { contact: contact(py, query.reversed(py), of)? })
+        }
+        Clearance::Free(WhyFree::Separated(separated)) => {
+            object(py, Separated { separated, query })
+        }
+        Clearance::Overlapping(OverlapAhead { first, last }) => {
+            let back = query.reversed(py);
+            let (first, last) = (contact(py, query, first)?, contact(py, back, last)?);
+            object(py, Overlapping { first, last })
+        }
+    }
+}
+
+pub(crate) fn depth(
+    py: Python<'_>,
+    query: Query,
+    of: colltrans::DirectionalDepth,
+) -> PyResult<Bound<'_, PyAny>> {
+    let clearance = clearance(py, query, of.clearance)?.unbind();
+    object(py, DirectionalDepth { depth: of.depth, clearance })
+}
+
+pub(crate) fn intersection(
+    py: Python<'_>,
+    query: Query,
+    of: colltrans::Intersection,
+) -> PyResult<Bound<'_, PyAny>> {
+    let query = Query { direction: of.direction, ..query };
+    let direction = coordinates(of.direction);
+    let outcome = outcome(py, query, of.outcome)?.unbind();
+    object(py, Intersection { meets: of.meets, direction, outcome })
+}

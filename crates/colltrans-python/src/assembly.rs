@@ -1,0 +1,265 @@
+//! Assemblies: which parts come out. What comes back are plain numbers and positions of parts, which
+//! `colltrans.assembly` makes classes of.
+//!
+//! Work is done on threads of its own; the calling thread waits for it and looks for signals, and
+//! cancels it where one raises.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use colltrans::StartOverlap;
+use colltrans::glam::{DAffine3, DVec3};
+use colltrans_assembly::blocking::Blocking;
+use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::map::{MapOptions, RemovalMap};
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::read::{Geometry, ReadOptions};
+use colltrans_assembly::rooms::{PartRoom, rooms};
+use colltrans_assembly::{AssemblyError, Bodies, Fit, Part, Piece, Watch};
+use pyo3::prelude::*;
+
+use crate::arrays::{faces, points};
+use crate::errors::{OrRaise, error};
+
+/// Time between two looks for signals.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// A vector, and the distance and the part (-1 for none) of rooms along it.
+type RoomRow = (Vec<f64>, Vec<i64>);
+/// Parts, direction, travel, and the step that took the group out.
+type StepRow = (Vec<usize>, [f64; 3], f64, Option<usize>);
+/// Parts, and for each of some parts the sets that hold it.
+type StuckRow = (Vec<usize>, Vec<(usize, Vec<Vec<usize>>)>);
+
+/// How tight the parts are, and what overlaps mean.
+#[derive(Clone, Copy)]
+struct Choices {
+    tolerance: Option<f64>,
+    start: StartOverlap,
+}
+
+impl Choices {
+    fn new(tolerance: Option<f64>, ignore_overlaps: bool) -> Self {
+        let start = if ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+        Self { tolerance, start }
+    }
+}
+
+/// The extension's half of ``colltrans.Assembly``.
+#[pyclass(frozen, module = "colltrans._colltrans")]
+pub(crate) struct Assembly(Arc<colltrans_assembly::Assembly>);
+
+impl Assembly {
+    /// Work about the parts, as tight as asked for.
+    fn ask<T: Send>(
+        &self,
+        py: Python<'_>,
+        choices: Choices,
+        work: impl FnOnce(&Bodies<'_>, Watch<'_>) -> Result<T, AssemblyError> + Send,
+    ) -> PyResult<T> {
+        interruptible(py, |watch| {
+            let default = Fit::default_for(&self.0);
+            let fit = choices.tolerance.map_or(default, Fit::Tolerance);
+            work(&Bodies::new(&self.0, fit)?, watch)
+        })
+    }
+}
+
+/// Work on a thread of its own, cancelled where a signal raises.
+fn interruptible<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(Watch<'_>) -> Result<T, AssemblyError> + Send,
+) -> PyResult<T> {
+    let cancel = AtomicBool::new(false);
+    let (answer, raised) = py.detach(|| {
+        let (done, wait) = channel();
+        std::thread::scope(|scope| {
+            let watch = Watch::default().with_cancel(&cancel);
+            let worker = scope.spawn(move || {
+                // Dropped when the work is done, however it ends.
+                let _done = done;
+                work(watch)
+            });
+            let mut raised = Ok(());
+            let waiting = || wait.recv_timeout(PATIENCE) == Err::<(), _>(RecvTimeoutError::Timeout);
+            while waiting() {
+                if raised.is_ok() {
+                    raised = Python::attach(|py| py.check_signals());
+                    cancel.store(raised.is_err(), Ordering::Relaxed);
+                }
+            }
+            (worker.join(), raised)
+        })
+    });
+    raised?;
+    let internal = |_| error("AssemblyError", "internal error; please report it");
+    answer.map_err(internal)?.or_raise()
+}
+
+/// Unit vectors of directions.
+fn units(directions: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
+    directions.iter().map(|d| unit(*d)).collect()
+}
+
+/// The directions that are worth asking: those given, and if none are those found.
+fn found(
+    bodies: &Bodies<'_>,
+    given: &[DVec3],
+    watch: Watch<'_>,
+) -> Result<Candidates, AssemblyError> {
+    let search = given.is_empty();
+    let choice = Choice { given: units(given)?, search, ..Choice::default() };
+    candidates(bodies, &liaisons(bodies, watch)?, &choice)
+}
+
+fn room_row<'a>(rooms: impl Iterator<Item = &'a PartRoom> + Clone) -> RoomRow {
+    let by = |room: &PartRoom| room.by().map_or(-1, |by| by as i64);
+    (rooms.clone().map(PartRoom::distance).collect(), rooms.map(by).collect())
+}
+
+#[pymethods]
+impl Assembly {
+    #[new]
+    fn new(parts: Vec<(String, Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> PyResult<Self> {
+        let part = |(name, vertices, corners): &(String, Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+            let (vertices, faces) = (points(vertices, "vertices")?, faces(corners)?);
+            Part::new(name, &[Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY }])
+                .or_raise()
+        };
+        let parts = parts.iter().map(part).collect::<PyResult<_>>()?;
+        Ok(Self(Arc::new(colltrans_assembly::Assembly::new(parts).or_raise()?)))
+    }
+
+    #[staticmethod]
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        packages: Vec<PathBuf>,
+        skip_missing: bool,
+        visual: bool,
+        joints: BTreeMap<String, f64>,
+    ) -> PyResult<Self> {
+        let geometry = if visual { Geometry::Visual } else { Geometry::Collision };
+        let options = ReadOptions { packages, skip_missing, geometry, joints };
+        let assembly = py.detach(|| colltrans_assembly::read::read(&path, &options)).or_raise()?;
+        Ok(Self(Arc::new(assembly)))
+    }
+
+    fn with_fixed(&self, names: Vec<String>) -> PyResult<Self> {
+        let assembly = colltrans_assembly::Assembly::clone(&self.0);
+        Ok(Self(Arc::new(assembly.with_fixed(&names).or_raise()?)))
+    }
+
+    fn with_ignored(&self, pairs: Vec<[String; 2]>) -> PyResult<Self> {
+        let assembly = colltrans_assembly::Assembly::clone(&self.0);
+        Ok(Self(Arc::new(assembly.with_ignored(&pairs).or_raise()?)))
+    }
+
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        self.0.parts().iter().map(|part| part.name().to_owned()).collect()
+    }
+
+    #[getter]
+    fn unit(&self) -> Option<String> {
+        self.0.unit().map(str::to_owned)
+    }
+
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.0.notes().to_vec()
+    }
+
+    fn index(&self, name: &str) -> PyResult<usize> {
+        self.0.index(name).or_raise()
+    }
+
+    fn rooms(
+        &self,
+        py: Python<'_>,
+        directions: &Bound<'_, PyAny>,
+        tolerance: Option<f64>,
+        ignore_overlaps: bool,
+    ) -> PyResult<Vec<RoomRow>> {
+        let directions = points(directions, "directions")?;
+        let choices = Choices::new(tolerance, ignore_overlaps);
+        self.ask(py, choices, |bodies, watch| {
+            let rooms = rooms(bodies, &units(&directions)?, choices.start, watch)?;
+            Ok(rooms.iter().map(|row| room_row(row.iter())).collect())
+        })
+    }
+
+    fn blocking(
+        &self,
+        py: Python<'_>,
+        direction: &Bound<'_, PyAny>,
+        tolerance: Option<f64>,
+        ignore_overlaps: bool,
+    ) -> PyResult<[Vec<Vec<usize>>; 2]> {
+        let direction = crate::arrays::vector(direction, "direction")?;
+        let choices = Choices::new(tolerance, ignore_overlaps);
+        self.ask(py, choices, |bodies, watch| {
+            let all = vec![true; bodies.len()];
+            let matrix = Matrix::new(bodies, &[unit(direction)?], &all, choices.start, watch)?;
+            let graph = Blocking::new(&matrix, 0, &all);
+            let blockers = (0..bodies.len()).map(|part| graph.blockers(part)).collect();
+            Ok([blockers, graph.removable()])
+        })
+    }
+
+    fn plan(
+        &self,
+        py: Python<'_>,
+        directions: &Bound<'_, PyAny>,
+        samples: usize,
+        tolerance: Option<f64>,
+        ignore_overlaps: bool,
+    ) -> PyResult<(Vec<StepRow>, Vec<usize>, Vec<StuckRow>)> {
+        let given = points(directions, "directions")?;
+        let choices = Choices::new(tolerance, ignore_overlaps);
+        let plan = self.ask(py, choices, |bodies, watch| {
+            let found = found(bodies, &given, watch)?;
+            let all = vec![true; bodies.len()];
+            let matrix = Matrix::new(bodies, &found.directions(), &all, choices.start, watch)?;
+            let options = PlanOptions { start: choices.start, samples };
+            disassemble(bodies, &matrix, &found.finer, options, watch)
+        })?;
+        let steps = plan.steps.into_iter();
+        let steps = steps.map(|s| (s.parts, s.direction.to_array(), s.travel, s.within)).collect();
+        let stuck = plan.stuck.into_iter().map(|stuck| {
+            let sets = |by: Vec<(Vec<usize>, DVec3)>| by.into_iter().map(|(set, _)| set).collect();
+            (stuck.parts, stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect())
+        });
+        Ok((steps, plan.left, stuck.collect()))
+    }
+
+    #[expect(clippy::type_complexity, reason = "a map has four parts")]
+    fn removal_map(
+        &self,
+        py: Python<'_>,
+        group: Vec<usize>,
+        samples: usize,
+        border: f64,
+        tolerance: Option<f64>,
+        ignore_overlaps: bool,
+    ) -> PyResult<(Vec<[f64; 3]>, RoomRow, Vec<(f64, [f64; 3])>, Vec<[f64; 3]>)> {
+        let choices = Choices::new(tolerance, ignore_overlaps);
+        let map = self.ask(py, choices, |bodies, watch| {
+            let directions = found(bodies, &[], watch)?.directions();
+            let options = MapOptions { samples, border, start: choices.start };
+            RemovalMap::new(bodies, &group, &directions, options, watch)
+        })?;
+        Ok((
+            map.sphere.directions.iter().map(DVec3::to_array).collect(),
+            room_row(map.rooms.iter()),
+            map.regions.iter().map(|r| (r.solid_angle, r.center.to_array())).collect(),
+            map.isolated.iter().map(DVec3::to_array).collect(),
+        ))
+    }
+}

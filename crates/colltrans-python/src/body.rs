@@ -1,0 +1,277 @@
+//! Convex bodies.
+
+use std::path::PathBuf;
+
+use colltrans::glam::DVec3;
+use colltrans_mesh::ReadOptions;
+use numpy::{IntoPyArray, PyArray1, PyArray2};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+
+use crate::arrays::{faces, points, row, table, vector};
+use crate::errors::{OrRaise, error};
+
+/// A convex polyhedron in its own frame: the convex hull of points.
+///
+/// Built once, asked as often as one likes, from any thread; it never changes. Flat polygons,
+/// segments and points are bodies too.
+///
+/// Parameters
+/// ----------
+/// points : array_like of shape (N, 3)
+///     In the body frame, in any unit of length. Interior points are dropped.
+///
+/// Raises
+/// ------
+/// BuildError
+///     No points, coordinates that are not finite or out of range.
+/// InputError
+///     No array of that shape.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron
+/// >>> tetrahedron = ConvexPolyhedron([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+/// >>> tetrahedron
+/// ConvexPolyhedron(4 vertices, 6 edges, 4 faces)
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct ConvexPolyhedron(pub(crate) colltrans::ConvexPolyhedron);
+
+/// How deep a face of a file may lie below the hull by default, as a part of the mesh's extent: as
+/// on the command line.
+const FILE_TOLERANCE: f64 = 1e-5;
+
+#[pymethods]
+impl ConvexPolyhedron {
+    #[new]
+    fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let points = self::points(points, "points")?;
+        py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self)
+    }
+
+    /// A closed convex surface.
+    ///
+    /// Parameters
+    /// ----------
+    /// vertices : array_like of shape (N, 3)
+    ///     In the body frame. Those that no face uses are ignored.
+    /// faces : array_like of shape (M, k), or a sequence of sequences
+    ///     Vertex indices, counter-clockwise as seen from outside.
+    /// tolerance : float
+    ///     How far below the convex hull the surface may lie, a length. Rounding error is
+    ///     tolerated in any case. The hull is what is kept.
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     A surface that is open, inside out or not convex, with the place.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import BuildError, ConvexPolyhedron
+    /// >>> vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    /// >>> ConvexPolyhedron.from_mesh(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    /// ConvexPolyhedron(4 vertices, 6 edges, 4 faces)
+    /// >>> try:
+    /// ...     ConvexPolyhedron.from_mesh(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3]])
+    /// ... except BuildError as error:
+    /// ...     print(error)
+    /// the surface is open: the edge from vertex 0 to vertex 2 of face 0 has no face on its other side
+    #[staticmethod]
+    #[pyo3(signature = (vertices, faces, tolerance=0.0))]
+    fn from_mesh(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        tolerance: f64,
+    ) -> PyResult<Self> {
+        let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
+        py.detach(|| colltrans::ConvexPolyhedron::from_mesh(&vertices, &faces, tolerance))
+            .or_raise()
+            .map(Self)
+    }
+
+    /// The box between two corners.
+    ///
+    /// Parameters
+    /// ----------
+    /// low, high : array_like of shape (3,)
+    ///     Opposite corners. A coordinate in common makes a flat box.
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron
+    /// >>> ConvexPolyhedron.cuboid([-2, -2, -1], [2, 2, 0]).volume
+    /// 16.0
+    #[staticmethod]
+    fn cuboid(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (low, high) = (vector(low, "low")?, vector(high, "high")?);
+        colltrans::ConvexPolyhedron::cuboid(low, high).or_raise().map(Self)
+    }
+
+    /// From what `to_json` has written, exact in bits.
+    #[staticmethod]
+    fn from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
+        py.detach(|| colltrans::ConvexPolyhedron::from_json(text)).or_raise().map(Self)
+    }
+
+    /// The body as text: vertices and faces in their order, exact in bits.
+    fn to_json(&self) -> String {
+        self.0.to_json()
+    }
+
+    /// ndarray of shape (N, 3): The vertices, in the body frame.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.0.vertices().iter().map(DVec3::to_array))
+    }
+
+    /// ndarray of shape (N,): For each vertex its index in the points or mesh it was made from.
+    #[getter]
+    fn input_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, self.0.input_indices())
+    }
+
+    /// list of ndarray: The vertices of each face, counter-clockwise as seen from outside.
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<u32>>> {
+        let face = |f| self.0.face_vertices(f).collect::<Vec<_>>().into_pyarray(py);
+        (0..self.0.face_count() as u32).map(face).collect()
+    }
+
+    /// Unit normal of a face, outwards, in the body frame.
+    ///
+    /// Parameters
+    /// ----------
+    /// face : int
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of shape (3,)
+    fn face_normal<'py>(&self, py: Python<'py>, face: u32) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        if face as usize >= self.0.face_count() {
+            return Err(PyIndexError::new_err(format!("there are {} faces", self.0.face_count())));
+        }
+        Ok(row(py, self.0.face_normal(face)))
+    }
+
+    /// int: 3 for a body with a volume, 2 for a flat polygon, 1 for a segment, 0 for a point.
+    #[getter]
+    fn dimension(&self) -> u8 {
+        self.0.dimension()
+    }
+
+    /// float: How far outside the hull an input point lies at most, a length.
+    #[getter]
+    fn hull_error(&self) -> f64 {
+        self.0.hull_error()
+    }
+
+    /// float: The volume, in the cube of the unit of length.
+    #[getter]
+    fn volume(&self) -> f64 {
+        self.0.volume()
+    }
+
+    /// The vertex farthest along a direction.
+    ///
+    /// Parameters
+    /// ----------
+    /// direction : array_like of shape (3,)
+    ///     In the body frame, of any length.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     One of the farthest, to within rounding error.
+    fn support(&self, direction: &Bound<'_, PyAny>) -> PyResult<u32> {
+        Ok(self.0.support(vector(direction, "direction")?))
+    }
+
+    /// int: Bytes of memory that the body occupies.
+    #[getter]
+    fn nbytes(&self) -> usize {
+        self.0.memory_bytes()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        Ok((py.get_type::<Self>().getattr("from_json")?, (self.to_json(),)))
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    fn __repr__(&self) -> String {
+        let (v, e, f) = (self.0.vertices().len(), self.0.edge_count(), self.0.face_count());
+        format!("ConvexPolyhedron({v} vertices, {e} edges, {f} faces)")
+    }
+}
+
+/// Reads a convex body from a mesh file: STL, OBJ, PLY or OFF.
+///
+/// Parameters
+/// ----------
+/// path : str or os.PathLike
+/// hull : bool
+///     Take the convex hull of all vertices, whatever the faces.
+/// scale : float
+///     Lengths are multiplied by this, after the tolerances, which are in the file's unit.
+/// convex_tolerance : float, optional
+///     How far below its convex hull the surface may lie. By default 1e-5 of its extent.
+/// merge_tolerance : float, optional
+///     Up to which distance vertices on open edges are merged. By default a few units in the last
+///     place of the largest coordinate.
+///
+/// Returns
+/// -------
+/// ConvexPolyhedron
+///     The same as the command line makes of the file.
+///
+/// Raises
+/// ------
+/// MeshError
+///     A file that cannot be read, with the place.
+/// BuildError
+///     A mesh that is not convex or not closed; ``hull=True`` takes its hull.
+#[pyfunction]
+#[pyo3(signature = (path, *, hull=false, scale=1.0, convex_tolerance=None, merge_tolerance=None))]
+pub(crate) fn read(
+    py: Python<'_>,
+    path: PathBuf,
+    hull: bool,
+    scale: f64,
+    convex_tolerance: Option<f64>,
+    merge_tolerance: Option<f64>,
+) -> PyResult<ConvexPolyhedron> {
+    if !scale.is_finite() || scale <= 0.0 {
+        return Err(error("InputError", format_args!("scale: {scale} is not finite and positive")));
+    }
+    let options = ReadOptions::default().with_merge_tolerance(merge_tolerance);
+    let (mesh, built) = py.detach(|| {
+        let mut mesh = colltrans_mesh::read_with(&path, options).or_raise()?;
+        let tolerance = convex_tolerance.unwrap_or_else(|| FILE_TOLERANCE * mesh.extent()) * scale;
+        if scale != 1.0 {
+            mesh.vertices.iter_mut().for_each(|v| *v *= scale);
+        }
+        let built = if hull {
+            colltrans::ConvexPolyhedron::from_points(&mesh.vertices)
+        } else {
+            colltrans::ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, tolerance)
+        };
+        PyResult::Ok((path.display().to_string(), built))
+    })?;
+    built.map(ConvexPolyhedron).map_err(|what| error("BuildError", format_args!("{mesh}: {what}")))
+}

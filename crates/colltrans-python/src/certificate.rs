@@ -1,0 +1,147 @@
+//! Proofs, and their checks.
+
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{row, table};
+use crate::errors::OrRaise;
+use crate::query::{Cast, Query};
+
+/// The proof of a contact: both bounds of the collision translation, rounded outwards.
+///
+/// A supporting plane proves the lower bound, three weighted pairs of vertices the upper one.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Certificate {
+    pub(crate) proof: colltrans::Certificate,
+    /// For its [`Query::cast`].
+    pub(crate) query: Query,
+}
+
+#[pymethods]
+impl Certificate {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("lower", "upper");
+
+    /// float: The proven lower bound, in multiples of the direction.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.proof.lower
+    }
+
+    /// float: The proven upper bound; infinite where bodies only touch sideways.
+    #[getter]
+    fn upper(&self) -> f64 {
+        self.proof.upper
+    }
+
+    /// float: ``upper - lower``.
+    #[getter]
+    fn gap(&self) -> f64 {
+        self.proof.gap()
+    }
+
+    /// float: What rounding alone can make of the gap.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.proof.tolerance
+    }
+
+    /// ndarray of shape (3,): Unit normal of the supporting plane, in the world.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.proof.normal)
+    }
+
+    /// ndarray of shape (3, 2): Vertices of the moving and of the fixed body (their own numbers).
+    #[getter]
+    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        table(py, self.proof.pairs.map(|pair| [pair.moving, pair.fixed]))
+    }
+
+    /// ndarray of shape (3,): Weights of the pairs, not negative, of sum 1.
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.proof.weights)
+    }
+
+    /// Checks the proof against the two bodies alone.
+    ///
+    /// Parameters
+    /// ----------
+    /// query : Cast, optional
+    ///     What it is to be a proof of; by default the query that was answered.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     The gap that is really proven, in multiples of the direction.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    #[pyo3(signature = (query=None))]
+    fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
+        let query = query.map_or(&self.query, |cast| &cast.get().0);
+        query.ask(|cast| Ok(cast.verify(&self.proof)))?.or_raise()
+    }
+
+    fn __repr__(&self) -> String {
+        let colltrans::Certificate { lower, upper, .. } = self.proof;
+        format!("Certificate(lower={lower:?}, upper={upper:?})")
+    }
+}
+
+/// The proof that two bodies never meet along a direction: a plane parallel to it between them.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Separation {
+    pub(crate) proof: colltrans::Separation,
+    pub(crate) query: Query,
+}
+
+#[pymethods]
+impl Separation {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("normal", "margin");
+
+    /// ndarray of shape (3,): Unit normal of the plane, in the world, from the moving body to the
+    /// fixed one.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.proof.normal)
+    }
+
+    /// float: A lower bound of the distance of the shadows, a length.
+    #[getter]
+    fn margin(&self) -> f64 {
+        self.proof.margin
+    }
+
+    /// Checks the proof against the two bodies alone.
+    ///
+    /// Parameters
+    /// ----------
+    /// query : Cast, optional
+    ///     What it is to be a proof of; by default the query that was answered.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     The margin that is really proven, a length.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    #[pyo3(signature = (query=None))]
+    fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
+        let query = query.map_or(&self.query, |cast| &cast.get().0);
+        query.ask(|cast| Ok(cast.verify(&self.proof)))?.or_raise()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Separation(margin={:?})", self.proof.margin)
+    }
+}

@@ -1,0 +1,88 @@
+//! The library's errors as the exceptions of `colltrans.errors`, in the library's words.
+//!
+//! The exceptions are classes of Python, because they have two bases: the package's own and the one
+//! of Python that a caller would expect.
+
+use std::fmt::Display;
+
+use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError, SolidError};
+use pyo3::prelude::*;
+use pyo3::types::PyType;
+
+/// The exception called `class`, with a message.
+pub(crate) fn error(class: &str, message: impl Display) -> PyErr {
+    Python::attach(|py| match class_called(py, class) {
+        Ok(class) => PyErr::from_type(class, message.to_string()),
+        Err(error) => error,
+    })
+}
+
+/// Something is wrong with the argument called `name`.
+pub(crate) fn input(name: &str, what: impl Display) -> PyErr {
+    error("InputError", format_args!("{name}: {what}"))
+}
+
+fn class_called<'py>(py: Python<'py>, class: &str) -> PyResult<Bound<'py, PyType>> {
+    Ok(py.import("colltrans.errors")?.getattr(class)?.cast_into()?)
+}
+
+/// A search without an answer, with the query to be replayed.
+pub(crate) fn query_error(what: &QueryError, case: impl FnOnce() -> String) -> PyErr {
+    if !matches!(what, QueryError::NotConverged { .. }) {
+        return error("QueryError", what);
+    }
+    let raised = error("NotConvergedError", what);
+    Python::attach(|py| match raised.value(py).setattr("case", case()) {
+        Ok(()) => raised,
+        Err(error) => error,
+    })
+}
+
+/// Errors that become the exception of one class.
+pub(crate) trait Raised: Display {
+    /// Its name.
+    const CLASS: &'static str;
+}
+
+impl Raised for BuildError {
+    const CLASS: &'static str = "BuildError";
+}
+
+impl Raised for SolidError {
+    const CLASS: &'static str = "BuildError";
+}
+
+impl Raised for PoseError {
+    const CLASS: &'static str = "PoseError";
+}
+
+impl Raised for CertificateError {
+    const CLASS: &'static str = "CertificateError";
+}
+
+impl Raised for CaseError {
+    const CLASS: &'static str = "CaseError";
+}
+
+impl Raised for colltrans_assembly::AssemblyError {
+    const CLASS: &'static str = "AssemblyError";
+}
+
+impl Raised for colltrans_assembly::ReadError {
+    const CLASS: &'static str = "AssemblyError";
+}
+
+impl Raised for colltrans_mesh::Error {
+    const CLASS: &'static str = "MeshError";
+}
+
+/// What was computed, or an exception.
+pub(crate) trait OrRaise<T> {
+    fn or_raise(self) -> PyResult<T>;
+}
+
+impl<T, E: Raised> OrRaise<T> for Result<T, E> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(|what| error(E::CLASS, what))
+    }
+}

@@ -1,0 +1,47 @@
+//! The extension module of the Python package `colltrans`: thin conversions, nothing is computed here.
+//!
+//! The way: `arrays` (numbers in and out) and `errors` (the library's errors as exceptions) ->
+//! `body`, `pose` -> `query` (two placed bodies and a direction; the functions of the package) ->
+//! `answer`, `certificate` (what comes back) -> `solid` (the same for parts that are not convex),
+//! `tracker` and `many` (queries in sequence and in bulk), `assembly` (many parts). The package itself
+//! is in `python/`; its stub `_colltrans.pyi` has the types.
+
+mod answer;
+mod arrays;
+mod assembly;
+mod body;
+mod certificate;
+mod errors;
+mod many;
+mod pose;
+mod query;
+mod solid;
+mod tracker;
+
+/// The module.
+#[pyo3::pymodule(gil_used = false)]
+mod _colltrans {
+    #[pymodule_export]
+    use crate::answer::{
+        Behind, Blocked, Contact, ContactRange, DirectionalDepth, Feature, Features, Grazing,
+        Intersection, Overlapping, Separated, Slides, Steps,
+    };
+    #[pymodule_export]
+    use crate::assembly::Assembly;
+    #[pymodule_export]
+    use crate::body::{ConvexPolyhedron, read};
+    #[pymodule_export]
+    use crate::certificate::{Certificate, Separation};
+    #[pymodule_export]
+    use crate::many::ask_many;
+    #[pymodule_export]
+    use crate::pose::Pose;
+    #[pymodule_export]
+    use crate::query::{Cast, cast, clearance, contact_range, directional_depth, intersects};
+    #[pymodule_export]
+    use crate::solid::{
+        Solid, SolidBlocked, SolidCast, SolidCertificate, SolidContact, SolidFree, SolidOverlapping,
+    };
+    #[pymodule_export]
+    use crate::tracker::Tracker;
+}

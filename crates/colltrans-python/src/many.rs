@@ -1,0 +1,452 @@
+//! Queries in bulk: arrays in, columns out, on any number of threads, without the interpreter's lock.
+//!
+//! The rows are cut into chunks, each with its own part of every column; threads take chunks until
+//! none is left. Threads live for one call: a pool that is kept would be lost in a forked process,
+//! and starting a thread costs as much as some ten casts. Every row is answered by itself, so the
+//! bits do not depend on the threads, and a row without an answer is one of outcome *error*, with a
+//! message, even if it is a bug that ends it.
+//!
+//! The calling thread looks for signals ten times a second, so that Ctrl-C ends the call.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::{
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Outcome, OverlapAhead, Pose,
+    WhyFree,
+};
+use numpy::{
+    IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::arrays::coordinates;
+use crate::body;
+use crate::query::solver_called;
+
+/// Rows of a chunk: some hundred microseconds.
+const CHUNK: usize = 256;
+/// Rows between two looks at the clock.
+const LOOK: usize = 16;
+/// Time between two looks for signals.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// The numbers of an answer; NaN where there is none.
+#[derive(Clone, Copy)]
+struct Row {
+    /// An index into the question's outcomes.
+    outcome: u8,
+    numbers: [f64; NUMBERS.len()],
+    normal: [f64; 3],
+    point: [f64; 3],
+}
+
+/// The names of [`Row::numbers`].
+const NUMBERS: [&str; 9] =
+    ["distance", "translation", "exit", "back", "on", "lower", "upper", "tolerance", "margin"];
+const DISTANCE: usize = 0;
+const TRANSLATION: usize = 1;
+const EXIT: usize = 2;
+const BACK: usize = 3;
+const ON: usize = 4;
+const LOWER: usize = 5;
+const UPPER: usize = 6;
+const TOLERANCE: usize = 7;
+const MARGIN: usize = 8;
+
+/// Which question is asked of every row.
+#[derive(Clone, Copy)]
+enum Question {
+    Contact,
+    Range,
+    Clearance,
+}
+
+impl Question {
+    fn called(name: &str) -> PyResult<Self> {
+        match name {
+            "contact" => Ok(Self::Contact),
+            "range" => Ok(Self::Range),
+            "clearance" => Ok(Self::Clearance),
+            _ => Err(PyValueError::new_err(format!("no question {name:?}"))),
+        }
+    }
+
+    /// The columns that its answers fill.
+    fn numbers(self) -> &'static [usize] {
+        match self {
+            Self::Contact => &[TRANSLATION, LOWER, UPPER, TOLERANCE, MARGIN],
+            Self::Range => &[TRANSLATION, EXIT, LOWER, UPPER, TOLERANCE, MARGIN],
+            Self::Clearance => {
+                &[DISTANCE, TRANSLATION, EXIT, BACK, ON, LOWER, UPPER, TOLERANCE, MARGIN]
+            }
+        }
+    }
+
+    /// The names of the outcomes, by their numbers; the last is *error*.
+    fn outcomes(self) -> &'static [&'static str] {
+        match self {
+            Self::Contact | Self::Range => &["contact", "grazing", "separated", "error"],
+            Self::Clearance => {
+                &["blocked", "slides", "behind", "separated", "overlapping", "error"]
+            }
+        }
+    }
+
+    fn ask(self, cast: &Cast<'_>) -> Result<Row, colltrans::QueryError> {
+        Ok(match self {
+            Self::Contact => match cast.first_contact()? {
+                Outcome::Contact(contact) => Row::of(0, &contact, cast),
+                Outcome::Grazing(grazing) => {
+                    Row::of(1, &grazing.contact, cast).with(MARGIN, 0.0 - grazing.overlap)
+                }
+                Outcome::Separated(separated) => Row::separated(2, &separated),
+            },
+            Self::Range => match cast.contact_range()? {
+                ContactRange::Contact { first, last } => {
+                    Row::of(0, &first, cast).with(EXIT, 0.0 - last.translation)
+                }
+                ContactRange::Grazing { first, last } => Row::of(1, &first.contact, cast)
+                    .with(EXIT, 0.0 - last.contact.translation)
+                    .with(MARGIN, 0.0 - first.overlap),
+                ContactRange::Separated(separated) => Row::separated(2, &separated),
+            },
+            Self::Clearance => Row::clearance(&cast.clearance()?, cast),
+        })
+    }
+}
+
+impl Row {
+    const NONE: Self = Self {
+        outcome: 0,
+        numbers: [f64::NAN; NUMBERS.len()],
+        normal: [f64::NAN; 3],
+        point: [f64::NAN; 3],
+    };
+
+    fn with(mut self, which: usize, number: f64) -> Self {
+        self.numbers[which] = number;
+        self
+    }
+
+    fn of(outcome: u8, first: &Contact, cast: &Cast<'_>) -> Self {
+        let row = Self {
+            outcome,
+            normal: coordinates(first.normal),
+            point: coordinates(first.points(cast).on_fixed),
+            ..Self::NONE
+        };
+        let proof = &first.certificate;
+        row.with(TRANSLATION, first.translation)
+            .with(LOWER, proof.lower)
+            .with(UPPER, proof.upper)
+            .with(TOLERANCE, proof.tolerance)
+    }
+
+    fn separated(outcome: u8, separated: &colltrans::Separated) -> Self {
+        let normal = coordinates(separated.certificate.normal);
+        Self { outcome, normal, ..Self::NONE }.with(MARGIN, separated.certificate.margin)
+    }
+
+    fn clearance(answer: &Clearance, cast: &Cast<'_>) -> Self {
+        let row = match answer {
+            Clearance::Blocked { contact, .. } => Self::of(0, contact, cast),
+            Clearance::Free(WhyFree::Slides(grazing)) => {
+                Self::of(1, &grazing.contact, cast).with(MARGIN, 0.0 - grazing.overlap)
+            }
+            // The last contact is the first one of the way back, whose bounds are not this way's.
+            Clearance::Free(WhyFree::Behind(last)) => Self {
+                numbers: Self::NONE.with(TOLERANCE, last.certificate.tolerance).numbers,
+                ..Self::of(2, last, &cast.reversed())
+            }
+            .with(EXIT, 0.0 - last.translation),
+            Clearance::Free(WhyFree::Separated(separated)) => Self::separated(3, separated),
+            Clearance::Overlapping(OverlapAhead { first, last }) => Self::of(4, first, cast)
+                .with(EXIT, 0.0 - last.translation)
+                .with(BACK, -first.certificate.lower)
+                .with(ON, -last.certificate.lower),
+        };
+        row.with(DISTANCE, answer.distance().unwrap_or(f64::NAN))
+    }
+}
+
+/// A body of every row, or why there is none.
+struct Bodies<'a> {
+    name: &'static str,
+    all: &'a [Result<&'a ConvexPolyhedron, String>],
+    /// Which one for each row; the only one without.
+    index: Option<&'a [i64]>,
+}
+
+impl<'a> Bodies<'a> {
+    fn get(&self, row: usize) -> Result<&'a ConvexPolyhedron, String> {
+        let index = self.index.map_or(0, |index| index[row]);
+        let found = usize::try_from(index).ok().and_then(|index| self.all.get(index));
+        match found {
+            Some(Ok(body)) => Ok(body),
+            Some(Err(why)) => Err(format!("{}: {why}", self.name)),
+            None => Err(format!("{}: no body {index} among {}", self.name, self.all.len())),
+        }
+    }
+}
+
+/// A table with a row for each query, or one for all.
+struct Table<'a> {
+    name: &'static str,
+    numbers: &'a [f64],
+    width: usize,
+}
+
+impl<'a> Table<'a> {
+    fn row(&self, row: usize) -> &'a [f64] {
+        let row = if self.numbers.len() == self.width { 0 } else { row };
+        &self.numbers[row * self.width..(row + 1) * self.width]
+    }
+
+    /// Three numbers.
+    fn vector(&self, row: usize) -> DVec3 {
+        DVec3::from_slice(self.row(row))
+    }
+
+    /// A translation, with a quaternion, or a matrix of three or four rows.
+    fn pose(&self, row: usize) -> Result<Pose, String> {
+        let of_matrix = |r: &[f64]| {
+            let column = |j: usize| DVec3::new(r[j], r[4 + j], r[8 + j]);
+            Pose::from_matrix(DMat3::from_cols(column(0), column(1), column(2)), column(3))
+        };
+        let pose = match self.row(row) {
+            r @ [_, _, _] => Pose::from_translation(DVec3::from_slice(r)),
+            r @ [_, _, _, x, y, z, w] => {
+                Pose::new(DQuat::from_xyzw(*x, *y, *z, *w), DVec3::from_slice(r))
+            }
+            r if r.len() == 16 && r[12..] != [0.0, 0.0, 0.0, 1.0] => {
+                let name = self.name;
+                return Err(format!("{name}: the last row is {:?}, not 0, 0, 0, 1", &r[12..]));
+            }
+            r => of_matrix(r),
+        };
+        pose.map_err(|what| format!("{}: {what}", self.name))
+    }
+}
+
+/// What is asked.
+struct Work<'a> {
+    question: Question,
+    bodies: [Bodies<'a>; 2],
+    poses: [Table<'a>; 2],
+    directions: Table<'a>,
+    graze_tolerances: Table<'a>,
+    options: Options,
+}
+
+impl Work<'_> {
+    fn answer(&self, row: usize) -> Result<Row, String> {
+        let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
+        let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
+        let graze_tolerance = self.graze_tolerances.row(row)[0];
+        let options = Options { graze_tolerance, ..self.options };
+        Cast::new(moving.at(at), fixed.at(to), self.directions.vector(row))
+            .and_then(|cast| cast.with_options(options))
+            .and_then(|cast| self.question.ask(&cast))
+            .map_err(|what| what.to_string())
+    }
+
+    /// The answer, or what went wrong, whatever it was.
+    fn answer_or_error(&self, row: usize) -> Result<Row, String> {
+        catch_unwind(AssertUnwindSafe(|| self.answer(row)))
+            .unwrap_or_else(|_| Err("internal error; please report it".into()))
+    }
+}
+
+/// A chunk's part of every column.
+struct Part<'a> {
+    first: usize,
+    outcome: &'a mut [u8],
+    numbers: Vec<&'a mut [f64]>,
+    vectors: [&'a mut [[f64; 3]]; 2],
+}
+
+/// All columns.
+struct Columns {
+    outcome: Vec<u8>,
+    numbers: Vec<Vec<f64>>,
+    vectors: [Vec<[f64; 3]>; 2],
+}
+
+impl Columns {
+    fn new(n: usize, width: usize) -> Self {
+        let vectors = [vec![[0.0; 3]; n], vec![[0.0; 3]; n]];
+        Self { outcome: vec![0; n], numbers: vec![vec![0.0; n]; width], vectors }
+    }
+
+    fn parts(&mut self) -> Vec<Part<'_>> {
+        let mut numbers: Vec<_> = self.numbers.iter_mut().map(|c| c.chunks_mut(CHUNK)).collect();
+        let [normals, points] = &mut self.vectors;
+        let vectors = normals.chunks_mut(CHUNK).zip(points.chunks_mut(CHUNK));
+        let chunks = self.outcome.chunks_mut(CHUNK).zip(vectors).enumerate();
+        let part = |(chunk, (outcome, (normals, points)))| Part {
+            first: chunk * CHUNK,
+            outcome,
+            numbers: numbers.iter_mut().filter_map(Iterator::next).collect(),
+            vectors: [normals, points],
+        };
+        chunks.map(part).collect()
+    }
+}
+
+/// Rows without an answer, and why.
+type Failures = Mutex<Vec<(usize, String)>>;
+
+/// Fills a chunk, unless `stop` says not to.
+fn fill(work: &Work<'_>, part: Part<'_>, failures: &Failures, mut stop: impl FnMut() -> bool) {
+    let Part { first, outcome, mut numbers, vectors: [normals, points] } = part;
+    let error = work.question.outcomes().len() as u8 - 1;
+    for i in 0..outcome.len() {
+        if i % LOOK == 0 && stop() {
+            return;
+        }
+        let row = work.answer_or_error(first + i).unwrap_or_else(|message| {
+            let mut failures = failures.lock().unwrap_or_else(PoisonError::into_inner);
+            failures.push((first + i, message));
+            Row { outcome: error, ..Row::NONE }
+        });
+        outcome[i] = row.outcome;
+        for (column, which) in numbers.iter_mut().zip(work.question.numbers()) {
+            column[i] = row.numbers[*which];
+        }
+        (normals[i], points[i]) = (row.normal, row.point);
+    }
+}
+
+/// Fills all chunks on some threads; what a signal raised is returned.
+fn fill_all(
+    work: &Work<'_>,
+    parts: Vec<Part<'_>>,
+    threads: usize,
+    failures: &Failures,
+) -> PyResult<()> {
+    let threads = threads.clamp(1, parts.len().max(1));
+    let parts = Mutex::new(parts.into_iter());
+    let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let stopped = AtomicBool::new(false);
+    let mut raised = Ok(());
+    let mut looked = Instant::now();
+    let mut look = || {
+        if looked.elapsed() > PATIENCE {
+            looked = Instant::now();
+            raised = Python::attach(|py| py.check_signals());
+            stopped.store(raised.is_err(), Ordering::Relaxed);
+        }
+        stopped.load(Ordering::Relaxed)
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(|| {
+                while let Some(part) = next() {
+                    fill(work, part, failures, || stopped.load(Ordering::Relaxed));
+                }
+            });
+        }
+        while let Some(part) = next() {
+            fill(work, part, failures, &mut look);
+        }
+    });
+    raised
+}
+
+/// The bodies of a list; exceptions in it stand for bodies that could not be built.
+fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<&'a ConvexPolyhedron, String>>> {
+    let body = |item: &'a Bound<'_, PyAny>| {
+        if item.is_instance_of::<pyo3::exceptions::PyException>() {
+            return Ok(Err(item.to_string()));
+        }
+        Ok(Ok(&item.cast::<body::ConvexPolyhedron>()?.get().0))
+    };
+    of.iter().map(body).collect()
+}
+
+/// Answers `n` queries: the door of `colltrans.many`, which has made all arguments what they have to
+/// be, tables with one row or `n`.
+///
+/// Returns the columns by their names, the names of the outcomes, and the messages by their rows.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are columns")]
+pub(crate) fn ask_many<'py>(
+    py: Python<'py>,
+    n: usize,
+    question: &str,
+    moving: (Vec<Bound<'py, PyAny>>, Option<PyReadonlyArray1<'py, i64>>),
+    fixed: (Vec<Bound<'py, PyAny>>, Option<PyReadonlyArray1<'py, i64>>),
+    direction: PyReadonlyArray2<'py, f64>,
+    moving_pose: PyReadonlyArray2<'py, f64>,
+    fixed_pose: PyReadonlyArray2<'py, f64>,
+    graze_tolerance: PyReadonlyArray2<'py, f64>,
+    solver: &Bound<'py, PyString>,
+    threads: Option<usize>,
+) -> PyResult<(Bound<'py, PyDict>, &'static [&'static str], Bound<'py, PyDict>)> {
+    let threads = threads
+        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get));
+    let question = Question::called(question)?;
+    let all = [bodies(&moving.0)?, bodies(&fixed.0)?];
+    let index = [index(moving.1.as_ref(), n)?, self::index(fixed.1.as_ref(), n)?];
+    let work = Work {
+        question,
+        bodies: [
+            Bodies { name: "moving", all: &all[0], index: index[0] },
+            Bodies { name: "fixed", all: &all[1], index: index[1] },
+        ],
+        poses: [table("moving_pose", &moving_pose, n)?, table("fixed_pose", &fixed_pose, n)?],
+        directions: table("direction", &direction, n)?,
+        graze_tolerances: table("graze_tolerance", &graze_tolerance, n)?,
+        options: Options { solver: solver_called(Some(solver))?, ..Options::default() },
+    };
+    let mut columns = Columns::new(n, question.numbers().len());
+    let failures = Failures::default();
+    py.detach(|| fill_all(&work, columns.parts(), threads, &failures))?;
+    let found = PyDict::new(py);
+    found.set_item("outcome", columns.outcome.into_pyarray(py))?;
+    for (which, column) in question.numbers().iter().zip(columns.numbers) {
+        found.set_item(NUMBERS[*which], column.into_pyarray(py))?;
+    }
+    for (name, column) in ["normal", "point"].into_iter().zip(columns.vectors) {
+        let flat = column.into_flattened().into_pyarray(py);
+        found.set_item(name, flat.reshape([n, 3])?)?;
+    }
+    let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
+    failures.sort_unstable();
+    let messages = PyDict::new(py);
+    failures.into_iter().try_for_each(|(row, message)| messages.set_item(row, message))?;
+    Ok((found, question.outcomes(), messages))
+}
+
+/// An index for every row.
+fn index<'a>(of: Option<&'a PyReadonlyArray1<'_, i64>>, n: usize) -> PyResult<Option<&'a [i64]>> {
+    let index = of.map(PyReadonlyArray1::as_slice).transpose()?;
+    if index.is_some_and(|index| index.len() != n) {
+        return Err(PyValueError::new_err("not an index for every row"));
+    }
+    Ok(index)
+}
+
+/// A table of one row or `n`.
+fn table<'a>(
+    name: &'static str,
+    of: &'a PyReadonlyArray2<'_, f64>,
+    n: usize,
+) -> PyResult<Table<'a>> {
+    let (rows, width) = (of.shape()[0], of.shape()[1]);
+    let widths: &[usize] = match name {
+        "direction" => &[3],
+        "graze_tolerance" => &[1],
+        _ => &[3, 7, 12, 16],
+    };
+    if (rows != n && rows != 1) || !widths.contains(&width) {
+        return Err(PyValueError::new_err(format!("{name}: {rows} rows of {width}")));
+    }
+    Ok(Table { name, numbers: of.as_slice()?, width })
+}

@@ -1,0 +1,141 @@
+//! Poses, and all that stands for one.
+
+use colltrans::glam::{DMat3, DQuat, DVec3};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{Numbers, Shape, numbers, plain_numbers, row, table};
+use crate::errors::{OrRaise, input};
+
+/// A rigid placement of a body in the world: ``x_world = R @ x_body + t``.
+///
+/// Parameters
+/// ----------
+/// source : array_like, Pose or object with ``as_matrix()``, optional
+///     A translation ``(3,)``; a translation and a unit quaternion ``(7,)``: x, y, z, then
+///     qx, qy, qz, qw; a matrix ``(3, 4)`` or ``(4, 4)``, whose entries are taken as they are; or
+///     something that has one (``scipy.spatial.transform``). The identity without.
+///
+/// Raises
+/// ------
+/// PoseError
+///     A rotation that is off one by more than 1e-6, a translation that is not finite or out of range.
+/// InputError
+///     Another shape.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import Pose
+/// >>> turned = Pose([1, 2, 3, 0, 0, 1, 0])
+/// >>> turned.translation
+/// array([1., 2., 3.])
+/// >>> turned.rotation[0]
+/// array([-1.,  0.,  0.])
+#[pyclass(frozen, eq, module = "colltrans")]
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Pose(pub(crate) colltrans::Pose);
+
+#[pymethods]
+impl Pose {
+    #[new]
+    #[pyo3(signature = (source=None))]
+    fn new(source: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        pose(source, "source").map(Self)
+    }
+
+    /// ndarray of shape (3,): The translation ``t``, in world units.
+    #[getter]
+    fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.translation())
+    }
+
+    /// ndarray of shape (3, 3): The matrix ``R``, whose nine entries define where a body is.
+    #[getter]
+    fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.0.matrix().transpose().to_cols_array_2d().map(|row| row.map(|c| c + 0.0)))
+    }
+
+    /// ndarray of shape (4,): The rotation as a unit quaternion x, y, z, w, rounded.
+    #[getter]
+    fn quaternion<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.0.rotation().to_array())
+    }
+
+    /// The matrix of shape (4, 4).
+    fn as_matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (r, t) = (self.0.matrix(), self.0.translation());
+        let line = |i: usize| [r.x_axis[i], r.y_axis[i], r.z_axis[i], t[i]].map(|c| c + 0.0);
+        table(py, [line(0), line(1), line(2), [0.0, 0.0, 0.0, 1.0]])
+    }
+
+    /// The pose that undoes this one, to rounding error.
+    fn inverse(&self) -> PyResult<Self> {
+        self.0.inverse().or_raise().map(Self)
+    }
+
+    /// This pose after another.
+    fn __matmul__(&self, first: &Self) -> PyResult<Self> {
+        self.0.compose(&first.0).or_raise().map(Self)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let arguments = (self.as_matrix(py)?,).into_pyobject(py)?;
+        Ok((py.get_type::<Self>().into_any(), arguments.into_any()))
+    }
+
+    fn __repr__(&self) -> String {
+        let (t, q) = (self.0.translation(), self.0.rotation());
+        let numbers = [t.x, t.y, t.z, q.x, q.y, q.z, q.w].map(|c| c + 0.0);
+        format!("Pose({numbers:?})")
+    }
+}
+
+/// What an argument says about where a body is; nothing says that it is where its own frame is.
+pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltrans::Pose> {
+    let Some(of) = of else { return Ok(colltrans::Pose::IDENTITY) };
+    if let Ok(pose) = of.cast::<Pose>() {
+        return Ok(pose.get().0);
+    }
+    let found = if let Some(found) = plain_numbers(of) {
+        found
+    } else if let Some(as_matrix) = of.getattr_opt("as_matrix")? {
+        let found = numbers(&as_matrix.call0()?, name)?;
+        return of_matrix(&found, true, name);
+    } else {
+        numbers(of, name)?
+    };
+    let [x, y, z, ..] = found.values;
+    let translation = DVec3::new(x, y, z);
+    match found.shape {
+        Shape::Row(3) => colltrans::Pose::from_translation(translation).or_raise(),
+        Shape::Row(7) => {
+            let [_, _, _, x, y, z, w, ..] = found.values;
+            colltrans::Pose::new(DQuat::from_xyzw(x, y, z, w), translation).or_raise()
+        }
+        _ => of_matrix(&found, false, name),
+    }
+}
+
+/// From a matrix with or without a fourth row; a rotation alone where the argument is known to be one.
+fn of_matrix(found: &Numbers, rotation_alone: bool, name: &str) -> PyResult<colltrans::Pose> {
+    let v = &found.values;
+    let (columns, translation) = match found.shape {
+        Shape::Table(3, 4) => (4, DVec3::new(v[3], v[7], v[11])),
+        Shape::Table(4, 4) if v[12..] == [0.0, 0.0, 0.0, 1.0] => (4, DVec3::new(v[3], v[7], v[11])),
+        Shape::Table(4, 4) => {
+            return Err(input(
+                name,
+                format_args!("the last row is {:?}, not 0, 0, 0, 1", &v[12..]),
+            ));
+        }
+        Shape::Table(3, 3) if rotation_alone => (3, DVec3::ZERO),
+        shape => {
+            let shape = shape.text();
+            let what = format_args!("an array of shape {shape}, not (3,), (7,), (3, 4) or (4, 4)");
+            return Err(input(name, what));
+        }
+    };
+    let column = |j: usize| DVec3::new(v[j], v[columns + j], v[2 * columns + j]);
+    let matrix = DMat3::from_cols(column(0), column(1), column(2));
+    colltrans::Pose::from_matrix(matrix, translation).or_raise()
+}

@@ -1,0 +1,143 @@
+//! Trackers: queries that follow each other closely.
+//!
+//! The library's tracker borrows its bodies, so both live together in one cell, and other bodies get
+//! a new cell: a tracker makes nothing of its memory of others anyway.
+
+use colltrans::QueryError;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+use self_cell::self_cell;
+
+use crate::answer::{self, Steps};
+use crate::body::ConvexPolyhedron;
+use crate::errors::error;
+use crate::query::{Arguments, Query};
+
+type Bodies = [Py<ConvexPolyhedron>; 2];
+type Borrowing<'a> = colltrans::Tracker<'a>;
+
+self_cell!(
+    struct Tracked {
+        owner: Bodies,
+        #[not_covariant]
+        dependent: Borrowing,
+    }
+);
+
+/// Queries that follow each other closely, each starting from the answer of the one before.
+///
+/// Outcomes and certificates are those of the functions of the same names; poses, directions and
+/// bodies may jump: a poor beginning costs time, never the answer.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, Tracker
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> tracker = Tracker()
+/// >>> for x in (0.0, 0.1, 0.2):
+/// ...     contact = tracker.cast(cube, cube, [0, 0, -1], moving_pose=[x, 0.2, 4])
+/// ...     print(contact.translation, contact.steps.started_from)
+/// 3.0 scratch
+/// 3.0 features
+/// 3.0 features
+#[pyclass(module = "colltrans")]
+pub(crate) struct Tracker {
+    tracked: Option<Tracked>,
+    steps: colltrans::Steps,
+}
+
+impl Tracker {
+    /// Asks the library's tracker of these bodies.
+    fn ask<T>(
+        &mut self,
+        py: Python<'_>,
+        query: &Query,
+        question: impl for<'a> FnOnce(&mut Borrowing<'a>, &colltrans::Cast<'a>) -> Result<T, QueryError>,
+    ) -> PyResult<T> {
+        let bodies = [&query.moving, &query.fixed];
+        let same = |cell: &Tracked| {
+            let known = cell.borrow_owner();
+            known[0].is(bodies[0]) && known[1].is(bodies[1])
+        };
+        if !self.tracked.as_ref().is_some_and(same) {
+            let owned = bodies.map(|body| body.clone_ref(py));
+            self.tracked = Some(Tracked::new(owned, |_| Borrowing::new()));
+        }
+        let Some(cell) = &mut self.tracked else {
+            return Err(error("ColltransError", "no bodies"));
+        };
+        let (answer, steps) = cell.with_dependent_mut(|[moving, fixed], tracker| {
+            let moving = moving.get().0.at(query.poses[0]);
+            let fixed = fixed.get().0.at(query.poses[1]);
+            let cast = colltrans::Cast::new(moving, fixed, query.direction)
+                .and_then(|cast| cast.with_options(query.options));
+            (cast.and_then(|cast| question(tracker, &cast)), tracker.steps())
+        });
+        self.steps = steps;
+        answer.map_err(|what| query.error(&what))
+    }
+}
+
+/// A method that asks one question.
+macro_rules! questions {
+    ($($(#[$doc:meta])* $name:ident => $ask:ident, $answer:path;)*) => {
+        #[pymethods]
+        impl Tracker {
+            #[new]
+            fn new() -> Self {
+                Self { tracked: None, steps: colltrans::Steps::default() }
+            }
+
+            /// Forgets the last answer: the next query starts from scratch.
+            fn reset(&mut self) {
+                self.tracked = None;
+            }
+
+            /// Steps: The work of the last query, of all its casts together.
+            #[getter]
+            fn steps(&self) -> Steps {
+                Steps::of(self.steps)
+            }
+
+            $(
+                $(#[$doc])*
+                #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
+                    graze_tolerance=0.0, solver=None), text_signature = "($self, moving, fixed, \
+                    direction, *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, \
+                    solver='auto')")]
+                #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+                fn $name<'py>(
+                    &mut self,
+                    py: Python<'py>,
+                    moving: &Bound<'py, ConvexPolyhedron>,
+                    fixed: &Bound<'py, ConvexPolyhedron>,
+                    direction: &Bound<'py, PyAny>,
+                    moving_pose: Option<&Bound<'py, PyAny>>,
+                    fixed_pose: Option<&Bound<'py, PyAny>>,
+                    graze_tolerance: f64,
+                    solver: Option<&Bound<'py, PyString>>,
+                ) -> PyResult<Bound<'py, PyAny>> {
+                    let poses = [moving_pose, fixed_pose];
+                    let arguments =
+                        Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
+                    let query = Query::new(arguments)?;
+                    let answer = self.ask(py, &query, |tracker, cast| tracker.$ask(cast))?;
+                    $answer(py, query, answer)
+                }
+            )*
+        }
+    };
+}
+
+questions! {
+    /// :func:`cast`, starting from the last answer.
+    cast => first_contact, answer::outcome;
+    /// :func:`contact_range`, starting from the last answer.
+    contact_range => contact_range, answer::range;
+    /// :func:`clearance`, starting from the last answer.
+    clearance => clearance, answer::clearance;
+    /// :func:`directional_depth`, starting from the last answer.
+    directional_depth => directional_depth, answer::depth;
+    /// :func:`intersects`, starting from the last answer to the same question.
+    intersects => intersects, answer::intersection;
+}

@@ -1,0 +1,61 @@
+"""Whatever a person calls an array, as what the extension reads: C order, native double precision.
+
+The extension reads tuples, lists and arrays that are already so by itself; the rest comes here.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from colltrans.errors import InputError
+
+
+def floats(values: Any, name: str) -> NDArray[np.float64]:
+    """``values`` as an aligned array of doubles in C order, itself if it is one."""
+    try:
+        array = np.asarray(values)
+    except Exception as error:
+        raise InputError(f"{name}: no array of numbers: {error}") from None
+    if array.dtype.kind not in "fiu":
+        raise InputError(f"{name}: no array of numbers, but of {array.dtype}")
+    return np.require(array, np.float64, ["C", "A"])
+
+
+def indices(values: Any, name: str) -> NDArray[np.uint32]:
+    """``values`` as an aligned array of 32-bit indices in C order, itself if it is one."""
+    try:
+        array = np.asarray(values)
+    except Exception as error:
+        raise InputError(f"{name}: no array of whole numbers: {error}") from None
+    if array.size == 0:
+        return np.zeros(array.shape, np.uint32)
+    if array.dtype.kind not in "iu":
+        raise InputError(f"{name}: no array of whole numbers, but of {array.dtype}")
+    if array.dtype != np.uint32 and (array.min() < 0 or array.max() >= 1 << 32):
+        raise InputError(f"{name}: the index {_outside(array)} is negative or too large")
+    return np.require(array, np.uint32, ["C", "A"])
+
+
+def _outside(array: NDArray[Any]) -> int:
+    return int(array.min()) if array.min() < 0 else int(array.max())
+
+
+def faces(values: Any) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    """Polygons as one run of corners, and where each begins and the last one ends."""
+    if isinstance(values, np.ndarray) and values.dtype != object:
+        if values.ndim != 2:
+            raise InputError(f"faces: an array of shape {values.shape}, not (M, k)")
+        corners = indices(values, "faces")
+        ends = np.arange(len(values) + 1) * values.shape[1]
+        return corners.reshape(-1), ends.astype(np.uint32)
+    if not isinstance(values, (Sequence, np.ndarray)):
+        raise InputError(f"faces: no list of faces, but {type(values).__name__}")
+    each = [indices(face, f"face {number}") for number, face in enumerate(values)]
+    for number, face in enumerate(each):
+        if face.ndim != 1:
+            raise InputError(f"face {number}: an array of shape {face.shape}, not (k,)")
+    ends = np.cumsum([0, *(len(face) for face in each)])
+    corners = np.concatenate(each) if each else np.zeros(0, np.uint32)
+    return corners, ends.astype(np.uint32)

@@ -1,0 +1,627 @@
+"""The types of the extension."""
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import Any, Final, Literal, Protocol, TypeAlias, final, type_check_only
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_Floats: TypeAlias = NDArray[np.float64]
+_Indices: TypeAlias = NDArray[np.uint32]
+_Solver: TypeAlias = Literal["auto", "cta", "portal"]
+_Pose: TypeAlias = ArrayLike | Pose | HasMatrix | None
+_Faces: TypeAlias = NDArray[np.integer[Any]] | Sequence[Sequence[int] | NDArray[np.integer[Any]]]
+_Outcome: TypeAlias = Contact | Grazing | Separated
+_Clearance: TypeAlias = Blocked | Slides | Behind | Separated | Overlapping
+
+__all__ = [
+    "Assembly",
+    "Behind",
+    "Blocked",
+    "Cast",
+    "Certificate",
+    "Contact",
+    "ContactRange",
+    "ConvexPolyhedron",
+    "DirectionalDepth",
+    "Feature",
+    "Features",
+    "Grazing",
+    "Intersection",
+    "Overlapping",
+    "Pose",
+    "Separated",
+    "Separation",
+    "Slides",
+    "Solid",
+    "SolidBlocked",
+    "SolidCast",
+    "SolidCertificate",
+    "SolidContact",
+    "SolidFree",
+    "SolidOverlapping",
+    "Steps",
+    "Tracker",
+    "ask_many",
+    "cast",
+    "clearance",
+    "contact_range",
+    "directional_depth",
+    "intersects",
+    "read",
+]
+_SolidClearance: TypeAlias = SolidBlocked | SolidFree | SolidOverlapping
+
+@type_check_only
+class HasMatrix(Protocol):
+    """A rotation or a placement of another package, scipy's for one."""
+
+    def as_matrix(self) -> Any: ...
+
+@final
+class Pose:
+    def __new__(cls, source: _Pose = None) -> Pose: ...
+    @property
+    def translation(self) -> _Floats: ...
+    @property
+    def rotation(self) -> _Floats: ...
+    @property
+    def quaternion(self) -> _Floats: ...
+    def as_matrix(self) -> _Floats: ...
+    def inverse(self) -> Pose: ...
+    def __matmul__(self, first: Pose, /) -> Pose: ...
+    def __rmatmul__(self, value: Pose, /) -> Pose: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
+
+@final
+class ConvexPolyhedron:
+    def __new__(cls, points: ArrayLike) -> ConvexPolyhedron: ...
+    @staticmethod
+    def from_mesh(
+        vertices: ArrayLike, faces: _Faces, tolerance: float = 0.0
+    ) -> ConvexPolyhedron: ...
+    @staticmethod
+    def cuboid(low: ArrayLike, high: ArrayLike) -> ConvexPolyhedron: ...
+    @staticmethod
+    def from_json(text: str) -> ConvexPolyhedron: ...
+    def to_json(self) -> str: ...
+    @property
+    def vertices(self) -> _Floats: ...
+    @property
+    def input_indices(self) -> _Indices: ...
+    @property
+    def faces(self) -> list[_Indices]: ...
+    def face_normal(self, face: int) -> _Floats: ...
+    @property
+    def dimension(self) -> int: ...
+    @property
+    def hull_error(self) -> float: ...
+    @property
+    def volume(self) -> float: ...
+    def support(self, direction: ArrayLike) -> int: ...
+    @property
+    def nbytes(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
+    def __copy__(self) -> ConvexPolyhedron: ...
+    def __deepcopy__(self, _memo: Any) -> ConvexPolyhedron: ...
+
+@final
+class Assembly:
+    def __new__(cls, parts: list[tuple[str, ArrayLike, Any]]) -> Assembly: ...
+    @staticmethod
+    def read(
+        path: str | PathLike[str],
+        packages: Sequence[str | PathLike[str]],
+        skip_missing: bool,
+        visual: bool,
+        joints: dict[str, float],
+    ) -> Assembly: ...
+    def with_fixed(self, names: list[str]) -> Assembly: ...
+    def with_ignored(self, pairs: list[tuple[str, str]]) -> Assembly: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def unit(self) -> str | None: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def index(self, name: str) -> int: ...
+    def rooms(
+        self, directions: ArrayLike, tolerance: float | None, ignore_overlaps: bool
+    ) -> list[tuple[list[float], list[int]]]: ...
+    def blocking(
+        self, direction: ArrayLike, tolerance: float | None, ignore_overlaps: bool
+    ) -> list[list[list[int]]]: ...
+    def plan(
+        self,
+        directions: ArrayLike,
+        samples: int,
+        tolerance: float | None,
+        ignore_overlaps: bool,
+    ) -> tuple[
+        list[tuple[list[int], list[float], float, int | None]],
+        list[int],
+        list[tuple[list[int], list[tuple[int, list[list[int]]]]]],
+    ]: ...
+    def removal_map(
+        self,
+        group: list[int],
+        samples: int,
+        border: float,
+        tolerance: float | None,
+        ignore_overlaps: bool,
+    ) -> tuple[
+        list[list[float]],
+        tuple[list[float], list[int]],
+        list[tuple[float, list[float]]],
+        list[list[float]],
+    ]: ...
+
+@final
+class Cast:
+    def __new__(
+        cls,
+        moving: ConvexPolyhedron,
+        fixed: ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        graze_tolerance: float = 0.0,
+        solver: _Solver = "auto",
+    ) -> Cast: ...
+    def first_contact(self) -> _Outcome: ...
+    def contact_range(self) -> ContactRange | Separated: ...
+    def clearance(self) -> _Clearance: ...
+    def directional_depth(self) -> DirectionalDepth: ...
+    def intersects(self) -> Intersection: ...
+    def reversed(self) -> Cast: ...
+    def verify(self, proof: Certificate | Separation) -> float: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> Cast: ...
+    @property
+    def moving(self) -> ConvexPolyhedron: ...
+    @property
+    def fixed(self) -> ConvexPolyhedron: ...
+    @property
+    def moving_pose(self) -> Pose: ...
+    @property
+    def fixed_pose(self) -> Pose: ...
+    @property
+    def direction(self) -> _Floats: ...
+    @property
+    def graze_tolerance(self) -> float: ...
+    @property
+    def solver(self) -> _Solver: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
+
+@final
+class Certificate:
+    __match_args__: Final = ("lower", "upper")
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def gap(self) -> float: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def pairs(self) -> _Indices: ...
+    @property
+    def weights(self) -> _Floats: ...
+    def verify(self, query: Cast | None = None) -> float: ...
+
+@final
+class Separation:
+    __match_args__: Final = ("normal", "margin")
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def margin(self) -> float: ...
+    def verify(self, query: Cast | None = None) -> float: ...
+
+@final
+class Steps:
+    @property
+    def planar_problems(self) -> int: ...
+    @property
+    def supports(self) -> int: ...
+    @property
+    def pivots(self) -> int: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def started_from(self) -> Literal["scratch", "region", "features"]: ...
+
+@final
+class Feature:
+    __match_args__: Final = ("kind", "vertices")
+    @property
+    def kind(self) -> Literal["vertex", "edge", "face"]: ...
+    @property
+    def vertices(self) -> _Indices: ...
+
+@final
+class Features:
+    __match_args__: Final = ("moving", "fixed")
+    @property
+    def moving(self) -> Feature: ...
+    @property
+    def fixed(self) -> Feature: ...
+
+@final
+class Contact:
+    __match_args__: Final = ("translation", "normal", "point")
+    @property
+    def translation(self) -> float: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def point(self) -> _Floats: ...
+    @property
+    def point_at_start(self) -> _Floats: ...
+    @property
+    def features(self) -> Features: ...
+    @property
+    def certificate(self) -> Certificate: ...
+    @property
+    def pose_before(self) -> Pose: ...
+    @property
+    def solver(self) -> _Solver: ...
+    @property
+    def steps(self) -> Steps: ...
+    @property
+    def query(self) -> Cast: ...
+
+@final
+class Grazing:
+    __match_args__: Final = ("overlap", "contact")
+    @property
+    def overlap(self) -> float: ...
+    @property
+    def separating_direction(self) -> _Floats: ...
+    @property
+    def contact(self) -> Contact: ...
+
+@final
+class Separated:
+    __match_args__: Final = ("margin", "normal")
+    @property
+    def margin(self) -> float: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def certificate(self) -> Separation: ...
+    @property
+    def distance(self) -> float: ...
+    @property
+    def solver(self) -> _Solver: ...
+    @property
+    def steps(self) -> Steps: ...
+    @property
+    def query(self) -> Cast: ...
+
+@final
+class ContactRange:
+    __match_args__: Final = ("interval",)
+    @property
+    def interval(self) -> tuple[float, float]: ...
+    @property
+    def first(self) -> Contact | Grazing: ...
+    @property
+    def last(self) -> Contact | Grazing: ...
+
+@final
+class Blocked:
+    __match_args__: Final = ("distance", "contact")
+    @property
+    def distance(self) -> float: ...
+    @property
+    def contact(self) -> Contact: ...
+
+@final
+class Slides:
+    __match_args__: Final = ("grazing",)
+    @property
+    def distance(self) -> float: ...
+    @property
+    def grazing(self) -> Grazing: ...
+
+@final
+class Behind:
+    __match_args__: Final = ("contact",)
+    @property
+    def distance(self) -> float: ...
+    @property
+    def contact(self) -> Contact: ...
+
+@final
+class Overlapping:
+    __match_args__: Final = ("first", "last")
+    @property
+    def distance(self) -> None: ...
+    @property
+    def first(self) -> Contact: ...
+    @property
+    def last(self) -> Contact: ...
+
+@final
+class DirectionalDepth:
+    __match_args__: Final = ("depth",)
+    @property
+    def depth(self) -> float: ...
+    @property
+    def clearance(self) -> _Clearance: ...
+
+@final
+class Intersection:
+    __match_args__: Final = ("meets",)
+    @property
+    def meets(self) -> bool: ...
+    @property
+    def direction(self) -> _Floats: ...
+    @property
+    def outcome(self) -> _Outcome: ...
+    def __bool__(self) -> bool: ...
+
+@final
+class Solid:
+    def __new__(cls, vertices: ArrayLike, faces: _Faces, *, open: bool = False) -> Solid: ...
+    @staticmethod
+    def from_pieces(pieces: Sequence[Solid | ConvexPolyhedron]) -> Solid: ...
+    @staticmethod
+    def from_trimesh(mesh: Any) -> Solid: ...
+    @staticmethod
+    def read(
+        path: str | PathLike[str],
+        *,
+        open: bool = False,
+        scale: float = 1.0,
+        merge_tolerance: float | None = None,
+    ) -> Solid: ...
+    @property
+    def vertices(self) -> _Floats: ...
+    @property
+    def triangles(self) -> _Indices: ...
+    @property
+    def input_indices(self) -> _Indices: ...
+    @property
+    def face_indices(self) -> _Indices: ...
+    @property
+    def is_closed(self) -> bool: ...
+    @property
+    def volume(self) -> float: ...
+    @property
+    def bounds(self) -> _Floats: ...
+    @property
+    def nbytes(self) -> int: ...
+    @staticmethod
+    def _closed(v: _Floats, f: list[_Indices]) -> Solid: ...
+    @staticmethod
+    def _open(v: _Floats, f: list[_Indices]) -> Solid: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
+    def __copy__(self) -> Solid: ...
+    def __deepcopy__(self, _memo: Any) -> Solid: ...
+
+@final
+class SolidCast:
+    def __new__(
+        cls,
+        moving: Solid | ConvexPolyhedron,
+        fixed: Solid | ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        tolerance: float | None = None,
+        ignore_start_overlaps: bool = False,
+    ) -> SolidCast: ...
+    def clearance(self) -> _SolidClearance: ...
+    def certified_clearance(self) -> tuple[_SolidClearance, SolidCertificate]: ...
+    def verify(self, proof: SolidCertificate) -> float: ...
+    def intersects(self) -> bool: ...
+    def depth(self) -> float | None: ...
+    def exit(self) -> float | None: ...
+    def reversed(self) -> SolidCast: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def moving(self) -> Solid | ConvexPolyhedron: ...
+    @property
+    def fixed(self) -> Solid | ConvexPolyhedron: ...
+    @property
+    def moving_pose(self) -> Pose: ...
+    @property
+    def fixed_pose(self) -> Pose: ...
+    @property
+    def direction(self) -> _Floats: ...
+
+@final
+class SolidContact:
+    __match_args__: Final = ("nominal", "normal", "point")
+    @property
+    def nominal(self) -> float: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def point(self) -> _Floats: ...
+    @property
+    def point_at_start(self) -> _Floats: ...
+    @property
+    def moving_feature(self) -> Feature: ...
+    @property
+    def fixed_feature(self) -> Feature: ...
+
+@final
+class SolidBlocked:
+    __match_args__: Final = ("distance", "contact")
+    @property
+    def distance(self) -> float: ...
+    @property
+    def contact(self) -> SolidContact: ...
+
+@final
+class SolidFree:
+    @property
+    def distance(self) -> float: ...
+    @property
+    def margin(self) -> float | None: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+
+@final
+class SolidOverlapping:
+    __match_args__: Final = ("depth",)
+    @property
+    def distance(self) -> None: ...
+    @property
+    def depth(self) -> float | None: ...
+
+@final
+class SolidCertificate:
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def lower(self) -> float: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> SolidCertificate: ...
+
+@final
+class Tracker:
+    def __new__(cls) -> Tracker: ...
+    def reset(self) -> None: ...
+    @property
+    def steps(self) -> Steps: ...
+    def cast(
+        self,
+        moving: ConvexPolyhedron,
+        fixed: ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        graze_tolerance: float = 0.0,
+        solver: _Solver = "auto",
+    ) -> _Outcome: ...
+    def contact_range(
+        self,
+        moving: ConvexPolyhedron,
+        fixed: ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        graze_tolerance: float = 0.0,
+        solver: _Solver = "auto",
+    ) -> ContactRange | Separated: ...
+    def clearance(
+        self,
+        moving: ConvexPolyhedron,
+        fixed: ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        graze_tolerance: float = 0.0,
+        solver: _Solver = "auto",
+    ) -> _Clearance: ...
+    def directional_depth(
+        self,
+        moving: ConvexPolyhedron,
+        fixed: ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        graze_tolerance: float = 0.0,
+        solver: _Solver = "auto",
+    ) -> DirectionalDepth: ...
+    def intersects(
+        self,
+        moving: ConvexPolyhedron,
+        fixed: ConvexPolyhedron,
+        direction: ArrayLike,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+        graze_tolerance: float = 0.0,
+        solver: _Solver = "auto",
+    ) -> Intersection: ...
+
+def cast(
+    moving: ConvexPolyhedron,
+    fixed: ConvexPolyhedron,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: float = 0.0,
+    solver: _Solver = "auto",
+) -> _Outcome: ...
+def contact_range(
+    moving: ConvexPolyhedron,
+    fixed: ConvexPolyhedron,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: float = 0.0,
+    solver: _Solver = "auto",
+) -> ContactRange | Separated: ...
+def clearance(
+    moving: ConvexPolyhedron,
+    fixed: ConvexPolyhedron,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: float = 0.0,
+    solver: _Solver = "auto",
+) -> _Clearance: ...
+def directional_depth(
+    moving: ConvexPolyhedron,
+    fixed: ConvexPolyhedron,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: float = 0.0,
+    solver: _Solver = "auto",
+) -> DirectionalDepth: ...
+def intersects(
+    moving: ConvexPolyhedron,
+    fixed: ConvexPolyhedron,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: float = 0.0,
+    solver: _Solver = "auto",
+) -> Intersection: ...
+def read(
+    path: str | PathLike[str],
+    *,
+    hull: bool = False,
+    scale: float = 1.0,
+    convex_tolerance: float | None = None,
+    merge_tolerance: float | None = None,
+) -> ConvexPolyhedron: ...
+def ask_many(
+    n: int,
+    question: Literal["contact", "range", "clearance"],
+    moving: tuple[list[Any], NDArray[np.int64] | None],
+    fixed: tuple[list[Any], NDArray[np.int64] | None],
+    direction: _Floats,
+    moving_pose: _Floats,
+    fixed_pose: _Floats,
+    graze_tolerance: _Floats,
+    solver: _Solver,
+    threads: int | None,
+) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...

@@ -1,0 +1,380 @@
+"""Assemblies: which parts come out, along which directions, in which order, and what holds them.
+
+Lengths are in the unit of the files. Directions are made of length 1, so distances are lengths.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from colltrans import _colltrans
+from colltrans.errors import InputError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Rooms:
+    """How far each part can move in each direction, and what stops it.
+
+    Attributes
+    ----------
+    parts : tuple of str
+    directions : ndarray of shape (D, 3)
+    distance : ndarray of shape (P, D)
+        Lengths: infinite where nothing is in the way, 0 where parts overlap.
+    by : ndarray of int, shape (P, D)
+        The position of the part that is in the way, -1 for none.
+    """
+
+    parts: tuple[str, ...]
+    directions: Floats
+    distance: Floats
+    by: NDArray[np.int64]
+
+    def free(self) -> dict[str, list[int]]:
+        """For each part the positions of the directions in which nothing is in the way."""
+        free = np.isinf(self.distance)
+        return {part: np.flatnonzero(free[k]).tolist() for k, part in enumerate(self.parts)}
+
+
+@dataclass(frozen=True)
+class Blocking:
+    """Who blocks whom along one direction.
+
+    Attributes
+    ----------
+    direction : tuple of float
+    blockers : dict of str to list of str
+        The parts that each part would meet.
+    removable : list of list of str
+        The groups that can be taken out as they are.
+    """
+
+    direction: tuple[float, ...]
+    blockers: dict[str, list[str]]
+    removable: list[list[str]]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A group that is taken out.
+
+    Attributes
+    ----------
+    parts : list of str
+    direction : tuple of float
+        Of length 1.
+    travel : float
+        How far, a length, until it never meets what is left again; 0 if nothing is ahead.
+    within : int or None
+        For a step that takes a group apart, the position of the step that took the group out.
+    """
+
+    parts: list[str]
+    direction: tuple[float, ...]
+    travel: float
+    within: int | None
+
+
+@dataclass(frozen=True)
+class Stuck:
+    """Parts that straight moves cannot part.
+
+    Attributes
+    ----------
+    parts : list of str
+    holds : dict of str to list of list of str
+        For each part the least sets of others that hold it.
+    """
+
+    parts: list[str]
+    holds: dict[str, list[list[str]]]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How an assembly comes apart.
+
+    Attributes
+    ----------
+    steps : list of Step
+        In order.
+    left : list of str
+        Parts that stay: fixed, or stuck to each other.
+    stuck : list of Stuck
+    """
+
+    steps: list[Step]
+    left: list[str]
+    stuck: list[Stuck]
+
+
+@dataclass(frozen=True, eq=False)
+class RemovalMap:
+    """The rooms of a group of parts over the sphere of directions.
+
+    Attributes
+    ----------
+    parts : list of str
+    directions : ndarray of shape (N, 3)
+    distance : ndarray of shape (N,)
+        Lengths, infinite where nothing is in the way.
+    by : ndarray of int, shape (N,)
+        The position of the part that is in the way, -1 for none.
+    regions : list of tuple of (float, tuple of float)
+        Connected sets of free directions, largest first: solid angle in steradians, mean direction.
+    isolated : ndarray of shape (K, 3)
+        Free directions that lie in no region.
+    """
+
+    parts: list[str]
+    directions: Floats
+    distance: Floats
+    by: NDArray[np.int64]
+    regions: list[tuple[float, tuple[float, ...]]]
+    isolated: Floats
+
+    @property
+    def free_share(self) -> float:
+        """The share of the sphere that is free."""
+        return sum(angle for angle, _ in self.regions) / (4 * np.pi)
+
+
+class Assembly:
+    """Parts in one world, in one unit.
+
+    Parameters
+    ----------
+    parts : mapping of str to tuple of (array_like, faces)
+        For each name the vertices, of shape (N, 3), and the faces of a surface.
+
+    Raises
+    ------
+    AssemblyError
+        A part whose surface is none, two of one name.
+
+    Examples
+    --------
+    >>> from colltrans import Assembly
+    >>> gearbox = Assembly.read("data/gearbox_small")
+    >>> len(gearbox.parts)
+    16
+    >>> plan = gearbox.plan()
+    >>> plan.steps[0].parts, len(plan.stuck[0].parts)
+    (['bolt_0'], 6)
+    """
+
+    def __init__(self, parts: Mapping[str, tuple[ArrayLike, Any]]) -> None:
+        self._assembly = _colltrans.Assembly([(name, *mesh) for name, mesh in parts.items()])
+
+    @classmethod
+    def _of(cls, assembly: _colltrans.Assembly) -> "Assembly":
+        made = cls.__new__(cls)
+        made._assembly = assembly
+        return made
+
+    @classmethod
+    def read(
+        cls,
+        path: str | PathLike[str],
+        *,
+        packages: Sequence[str | PathLike[str]] = (),
+        skip_missing: bool = False,
+        visual: bool = False,
+        joints: Mapping[str, float] | None = None,
+    ) -> "Assembly":
+        """Reads a folder of meshes, a manifest, URDF, glTF, GLB or 3MF.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+        packages : sequence of paths
+            Folders in which ``package://`` is looked for.
+        skip_missing : bool
+            Leave out parts whose meshes are missing, with a note.
+        visual : bool
+            Of URDF the visual geometry, not that for collisions.
+        joints : mapping of str to float
+            Positions of joints, in radians or metres.
+
+        Returns
+        -------
+        Assembly
+        """
+        folders = [Path(package) for package in packages]
+        read = _colltrans.Assembly.read
+        return cls._of(read(Path(path), folders, skip_missing, visual, dict(joints or {})))
+
+    @property
+    def parts(self) -> list[str]:
+        """list of str: The names of the parts, in order."""
+        return self._assembly.names
+
+    @property
+    def unit(self) -> str | None:
+        """str or None: The unit of length, where the files say one."""
+        return self._assembly.unit
+
+    @property
+    def notes(self) -> list[str]:
+        """list of str: What was mended, guessed or left out."""
+        return self._assembly.notes
+
+    def with_fixed(self, *names: str) -> "Assembly":
+        """The same with these parts never moved."""
+        return self._of(self._assembly.with_fixed(list(names)))
+
+    def with_ignored(self, *pairs: tuple[str, str]) -> "Assembly":
+        """The same with these pairs of parts passing through each other."""
+        return self._of(self._assembly.with_ignored(list(pairs)))
+
+    def rooms(
+        self,
+        directions: ArrayLike,
+        *,
+        tolerance: float | None = None,
+        ignore_overlaps: bool = False,
+    ) -> Rooms:
+        """How far each part can move in each direction, against all others.
+
+        Parameters
+        ----------
+        directions : array_like of shape (D, 3)
+        tolerance : float, optional
+            Parts are shrunk by half of this length, so that those that fit do not jam.
+        ignore_overlaps : bool
+            Whether parts that overlap now may part, and what they do later counts.
+
+        Returns
+        -------
+        Rooms
+
+        Examples
+        --------
+        >>> from colltrans import Assembly
+        >>> rooms = Assembly.read("data/gearbox_small").rooms([[0, 0, 1], [0, 0, -1]])
+        >>> rooms.free()["bolt_0"]
+        [0]
+        """
+        rows = self._assembly.rooms(directions, tolerance, ignore_overlaps)
+        table = np.asarray(directions, dtype=float)
+        lengths = np.linalg.norm(table, axis=-1, keepdims=True)
+        shape = (len(rows), len(table))
+        distance = np.array([distance for distance, _ in rows], dtype=float).reshape(shape)
+        by = np.array([by for _, by in rows], dtype=np.int64).reshape(shape)
+        return Rooms(tuple(self.parts), table / lengths, distance, by)
+
+    def blocking(
+        self,
+        direction: ArrayLike,
+        *,
+        tolerance: float | None = None,
+        ignore_overlaps: bool = False,
+    ) -> Blocking:
+        """Who blocks whom along a direction, however far one moves.
+
+        Parameters
+        ----------
+        direction : array_like of shape (3,)
+        tolerance, ignore_overlaps
+            As for :meth:`rooms`.
+
+        Returns
+        -------
+        Blocking
+        """
+        graph = self._assembly.blocking(direction, tolerance, ignore_overlaps)
+        blockers, removable = ([self._names(group) for group in groups] for groups in graph)
+        unit = np.asarray(direction, dtype=float) / np.linalg.norm(np.asarray(direction, float))
+        return Blocking(
+            tuple(unit.tolist()), dict(zip(self.parts, blockers, strict=True)), removable
+        )
+
+    def plan(
+        self,
+        directions: ArrayLike = (),
+        *,
+        samples: int = 162,
+        tolerance: float | None = None,
+        ignore_overlaps: bool = False,
+    ) -> Plan:
+        """Takes everything apart that straight moves take apart, the smallest groups first.
+
+        Parameters
+        ----------
+        directions : array_like of shape (D, 3)
+            Those to try; without any they are found from the parts' contacts and axes.
+        samples : int
+            How many directions to sample for what no other moves; 0 for none.
+        tolerance, ignore_overlaps
+            As for :meth:`rooms`.
+
+        Returns
+        -------
+        Plan
+        """
+        steps, left, stuck = self._assembly.plan(directions, samples, tolerance, ignore_overlaps)
+        names = self.parts
+        return Plan(
+            [Step(self._names(parts), tuple(d), travel, at) for parts, d, travel, at in steps],
+            self._names(left),
+            [
+                Stuck(
+                    self._names(parts),
+                    {names[part]: [self._names(group) for group in sets] for part, sets in holds},
+                )
+                for parts, holds in stuck
+            ],
+        )
+
+    def removal_map(
+        self,
+        *parts: str,
+        samples: int = 2562,
+        border: float = 0.01,
+        tolerance: float | None = None,
+        ignore_overlaps: bool = False,
+    ) -> RemovalMap:
+        """Where a part, or several as one, can go: all directions.
+
+        Parameters
+        ----------
+        *parts : str
+            Names.
+        samples : int
+            At least so many directions before anything is refined.
+        border : float
+            The border of free regions is known to this angle, in radians.
+        tolerance, ignore_overlaps
+            As for :meth:`rooms`.
+
+        Returns
+        -------
+        RemovalMap
+        """
+        if not parts:
+            raise InputError("parts: no part was named")
+        group = sorted({self._assembly.index(name) for name in parts})
+        found = self._assembly.removal_map(group, samples, border, tolerance, ignore_overlaps)
+        directions, (distance, by), regions, isolated = found
+        return RemovalMap(
+            self._names(group),
+            np.array(directions),
+            np.array(distance),
+            np.array(by, dtype=np.int64),
+            [(angle, tuple(center)) for angle, center in regions],
+            np.array(isolated).reshape(-1, 3),
+        )
+
+    def _names(self, positions: Sequence[int]) -> list[str]:
+        names = self.parts
+        return [names[k] for k in positions]
+
+    def __repr__(self) -> str:
+        return f"Assembly({len(self.parts)} parts)"

@@ -1,0 +1,13 @@
+"""Queries in files: one shard in, one shard out, on one machine or a cluster.
+
+``python -m colltrans.bulk QUERIES OUT`` is the program; :func:`answer_table` is what it does to a
+table, for pipelines of one's own (``ray.data.Dataset.map_batches``).
+
+The way: ``bodies`` (keys to bodies) -> ``shard`` (a file of queries to a file of answers) ->
+``engines`` (which process answers which shard) -> ``__main__``. A shard knows nothing of engines.
+"""
+
+from colltrans.bulk.bodies import Bodies
+from colltrans.bulk.shard import Job, Options, Report, answer_shard, answer_table
+
+__all__ = ["Bodies", "Job", "Options", "Report", "answer_shard", "answer_table"]

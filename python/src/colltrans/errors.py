@@ -1,0 +1,49 @@
+"""What goes wrong, by type. Messages are those of the library: what, where, and by how much."""
+
+
+class ColltransError(Exception):
+    """The base of all errors of this package."""
+
+
+class InputError(ColltransError, ValueError):
+    """An argument that is no array of numbers, or has another shape than is asked for."""
+
+
+class BuildError(ColltransError, ValueError):
+    """Points or a mesh that make no body."""
+
+
+class PoseError(ColltransError, ValueError):
+    """A rotation that is none, or a translation out of range."""
+
+
+class QueryError(ColltransError, ValueError):
+    """A direction, a tolerance or another choice of a query that is refused."""
+
+
+class NotConvergedError(QueryError):
+    """A search that ended without an answer. No such case is known: please report one.
+
+    Attributes
+    ----------
+    case : str or None
+        The query as a file, for ``Cast.from_json`` and ``colltrans replay``.
+    """
+
+    case: str | None = None
+
+
+class CertificateError(ColltransError, ValueError):
+    """A proof that does not prove what it says."""
+
+
+class CaseError(ColltransError, ValueError):
+    """A saved query or body that cannot be read back."""
+
+
+class MeshError(ColltransError, ValueError):
+    """A mesh file that cannot be read, or holds something else than its name says."""
+
+
+class AssemblyError(ColltransError, ValueError):
+    """An assembly that cannot be read, a part that is none, or a name that no part has."""

@@ -1,0 +1,230 @@
+"""Whatever numpy calls an array is taken, with the same bits, or refused with a reason."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+from numpy.typing import NDArray
+
+import colltrans
+from colltrans import ColltransError, ConvexPolyhedron, InputError, Pose, PoseError, cast, cast_many
+
+CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+
+
+def strided(array: NDArray[Any]) -> NDArray[Any]:
+    wide = np.zeros((*array.shape, 2), array.dtype)
+    wide[..., 0] = array
+    return wide[..., 0]
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    copy = array.copy()
+    copy.flags.writeable = False
+    return copy
+
+
+def unaligned(array: NDArray[Any]) -> NDArray[Any]:
+    raw = np.zeros(array.nbytes + 1, np.uint8)
+    view = np.frombuffer(raw.data, array.dtype, array.size, 1).reshape(array.shape)
+    raw[1:] = np.frombuffer(array.tobytes(), np.uint8)
+    return view
+
+
+FORMS: list[Any] = [
+    lambda a: a,
+    lambda a: a.astype(np.float32),
+    lambda a: a.astype(np.float16),
+    lambda a: a.astype(np.longdouble),
+    lambda a: a.astype(">f8"),
+    lambda a: a.astype(np.int32),
+    lambda a: a.astype(">i2"),
+    lambda a: np.asfortranarray(a),
+    lambda a: a.tolist(),
+    lambda a: [np.float64(x) for x in a] if a.ndim == 1 else tuple(map(tuple, a)),
+    strided,
+    read_only,
+    unaligned,
+    lambda a: a[::-1].copy()[::-1],
+    lambda a: a.view(np.matrix) if a.ndim == 2 else a,
+]
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.filterwarnings("ignore:the matrix subclass")
+def test_every_form_of_an_array_says_the_same(form: Any) -> None:
+    start, direction = np.array([-3.0, 0, 0]), np.array([2.0, 0, 0])
+    turned = np.array([[0.0, -1, 0, -3], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    quaternion = np.array([-3.0, 0, 0, 0, 0, 0, 1])
+    for pose in (start, turned, turned[:3], quaternion):
+        known = cast(CUBE, CUBE, direction, moving_pose=pose)
+        found = cast(CUBE, CUBE, form(direction), moving_pose=form(pose))
+        assert repr(found) == repr(known)
+        rows = cast_many(CUBE, CUBE, form(direction), moving_pose=form(pose))
+        assert len(rows) == 1 and repr(rows[0]) == repr(known)
+    rows = cast_many(CUBE, CUBE, form(np.eye(3)), moving_pose=form(np.tile(start, (3, 1))))
+    assert len(rows) == 3
+    assert ConvexPolyhedron(form(CUBE.vertices)).volume == 1.0
+    square = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+    corners = np.vstack([np.zeros(3), np.eye(3)])
+    assert ConvexPolyhedron.from_mesh(form(corners), square).volume == 1 / 6
+
+
+MATRICES = [np.eye(3, 4), np.eye(4)]
+
+
+@pytest.mark.parametrize("matrix", MATRICES)
+def test_matrices_are_taken_entry_by_entry(matrix: NDArray[Any]) -> None:
+    random = np.random.default_rng(3)
+    for _ in range(50):
+        turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+        matrix[:3, :3] = turn * np.sign(np.linalg.det(turn))
+        matrix[:3, 3] = random.normal(size=3)
+        pose = Pose(matrix)
+        assert np.array_equal(pose.as_matrix()[:3], matrix[:3])
+        assert np.array_equal(pose.rotation, matrix[:3, :3])
+        one = cast(CUBE, CUBE, [0, 0, 1], moving_pose=matrix)
+        many = cast_many(CUBE, CUBE, [0, 0, 1], moving_pose=matrix[None])
+        assert repr(one) == repr(many[0]) == repr(cast(CUBE, CUBE, [0, 0, 1], moving_pose=pose))
+
+
+def test_anything_with_a_matrix_is_a_pose() -> None:
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    whole = np.eye(4)
+    whole[:3, :3] = turn
+    known = cast(CUBE, CUBE, [1, 0, 0], moving_pose=whole)
+    for matrix in (turn, whole):
+        thing = SimpleNamespace(as_matrix=lambda matrix=matrix: matrix)
+        assert repr(cast(CUBE, CUBE, [1, 0, 0], moving_pose=thing)) == repr(known)
+        assert repr(cast_many(CUBE, CUBE, [1, 0, 0], moving_pose=thing)[0]) == repr(known)
+        stack = SimpleNamespace(as_matrix=lambda matrix=matrix: np.stack([matrix] * 5))
+        assert repr(cast_many(CUBE, CUBE, [1, 0, 0], moving_pose=stack)[4]) == repr(known)
+
+
+def test_scipys_rotations_are_poses() -> None:
+    transform = pytest.importorskip("scipy.spatial.transform")
+    turns = transform.Rotation.random(20, random_state=1)
+    rows = cast_many(CUBE, CUBE, [0, 0, 1], moving_pose=turns)
+    for i in range(20):
+        assert repr(rows[i]) == repr(cast(CUBE, CUBE, [0, 0, 1], moving_pose=turns[i]))
+
+
+def test_a_pose_takes_another_back() -> None:
+    pose = Pose([1, 2, 3, 0, 0, 0.6, 0.8])
+    assert np.allclose((pose @ pose.inverse()).as_matrix(), np.eye(4), atol=1e-15)
+    assert np.array_equal(Pose(pose).as_matrix(), pose.as_matrix())
+    assert Pose() == Pose([0, 0, 0]) == Pose(np.eye(4))
+
+
+REFUSED: list[Any] = [
+    None,
+    "north",
+    object(),
+    {1, 2, 3},
+    [],
+    [1, 2],
+    [1, 2, 3, 4],
+    [[1, 2, 3]],
+    ["1", "2", "3"],
+    [1, 2, "3"],
+    [1j, 0, 0],
+    [True, False, False],
+    [[1], [2, 3], [4]],
+    np.zeros((3, 0)),
+    np.zeros((0, 3)),
+    np.zeros((2, 3, 4, 5)),
+    np.array(["a", "b", "c"]),
+    np.array([1, 2, 3], object),
+    np.array([1, 2, 3], "M8[s]"),
+    np.float64(1),
+    10**400,
+    [10**400, 0, 0],
+]
+
+
+@pytest.mark.parametrize("direction", REFUSED)
+def test_what_is_no_vector_is_refused(direction: Any) -> None:
+    with pytest.raises(InputError, match="direction"):
+        cast(CUBE, CUBE, direction)
+
+
+@pytest.mark.parametrize("pose", [p for p in REFUSED if p is not None])
+def test_what_is_no_pose_is_refused(pose: Any) -> None:
+    with pytest.raises(InputError, match="moving_pose"):
+        cast(CUBE, CUBE, [1, 0, 0], moving_pose=pose)
+    with pytest.raises(InputError, match="source"):
+        Pose(pose)
+
+
+def test_poses_that_are_none_are_refused_in_the_librarys_words() -> None:
+    with pytest.raises(PoseError, match="has length 2, not 1"):
+        Pose([0, 0, 0, 0, 0, 0, 2])
+    with pytest.raises(PoseError, match="is no rotation"):
+        Pose(-np.eye(4) + np.diag([0, 0, 0, 2]))
+    with pytest.raises(InputError, match="last row"):
+        Pose(np.ones((4, 4)))
+    with pytest.raises(PoseError, match="not finite"):
+        Pose([np.nan, 0, 0])
+    with pytest.raises(InputError, match=r"\(3, 3\)"):
+        Pose(np.eye(3))
+
+
+ANYTHING = arrays.arrays(
+    dtype=st.one_of(
+        arrays.floating_dtypes(endianness="?"),
+        arrays.integer_dtypes(endianness="?"),
+        arrays.unsigned_integer_dtypes(endianness="?"),
+        arrays.complex_number_dtypes(),
+        arrays.boolean_dtypes(),
+        arrays.unicode_string_dtypes(),
+    ),
+    shape=arrays.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=5),
+)
+DIMENSIONS = st.sampled_from([(3,), (7,), (3, 4), (4, 4), (5, 3), (5, 7), (5, 4, 4)])
+NUMBERS = arrays.arrays(
+    dtype=st.sampled_from(["<f8", ">f8", "<f4", ">f4", "<i4"]),
+    shape=DIMENSIONS,
+    elements=st.integers(-3, 3),
+)
+
+
+def accept(array: NDArray[Any], ways: int) -> NDArray[Any]:
+    if ways & 1 and array.ndim:
+        array = array[..., ::-1][..., ::-1]
+    if ways & 2:
+        array = np.asfortranarray(array)
+    if ways & 4:
+        array = read_only(array)
+    return array
+
+
+@given(ANYTHING | NUMBERS, ANYTHING | NUMBERS, st.integers(0, 7))
+def test_nothing_but_an_answer_or_an_error_of_ours(
+    direction: NDArray[Any], pose: NDArray[Any], ways: int
+) -> None:
+    direction, pose = accept(direction, ways), accept(pose, ways)
+    for question in (colltrans.cast, colltrans.cast_many, colltrans.clearance_many):
+        try:
+            answer = question(CUBE, CUBE, direction, moving_pose=pose)
+        except ColltransError as error:
+            assert str(error)
+        else:
+            assert repr(answer)
+    try:
+        assert ConvexPolyhedron(pose).vertices.shape[1] == 3
+    except ColltransError as error:
+        assert str(error)
+
+
+@given(ANYTHING)
+def test_faces_of_any_kind(faces: NDArray[Any]) -> None:
+    corners = np.vstack([np.zeros(3), np.eye(3)])
+    for form in (faces, faces.tolist()):
+        try:
+            ConvexPolyhedron.from_mesh(corners, form)
+        except ColltransError as error:
+            assert str(error)

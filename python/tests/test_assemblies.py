@@ -1,0 +1,83 @@
+"""Assemblies: the command line's rooms and plans, and refusals."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+from colltrans import Assembly, AssemblyError, InputError
+
+GEARBOX = ROOT / "data" / "gearbox_small"
+BOX = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+
+
+def cuboid(low: list[float], high: list[float]) -> tuple[np.ndarray, list[list[int]]]:
+    corner = np.array([low, high], dtype=float)
+    picks = [[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)]
+    return np.array([[corner[p[a], a] for a in range(3)] for p in picks]), BOX
+
+
+@pytest.fixture(scope="module")
+def gearbox() -> Assembly:
+    return Assembly.read(GEARBOX)
+
+
+def test_the_plan_is_the_command_lines(cli: Path, gearbox: Assembly) -> None:
+    command: list[str | Path] = [cli, "assembly", GEARBOX, "--json"]
+    told = subprocess.run(command, check=True, capture_output=True, text=True)
+    known = json.loads(told.stdout)
+    plan = gearbox.plan()
+    assert [step.parts for step in plan.steps] == [step["parts"] for step in known["plan"]]
+    for step, its in zip(plan.steps, known["plan"], strict=True):
+        assert list(step.direction) == its["direction"]
+        assert step.travel == its["travel"]
+    assert plan.left == known["left"]
+
+
+def test_rooms_and_blocking(gearbox: Assembly) -> None:
+    rooms = gearbox.rooms([[0, 0, 2], [0, 0, -1]])
+    assert rooms.directions.tolist() == [[0, 0, 1], [0, 0, -1]]
+    bolt = rooms.parts.index("bolt_0")
+    assert rooms.distance[bolt, 0] == np.inf and rooms.by[bolt, 0] == -1
+    assert rooms.distance[bolt, 1] < np.inf
+    assert rooms.parts[rooms.by[bolt, 1]] in {"housing", "cover"}
+    graph = gearbox.blocking([0, 0, 1])
+    assert graph.blockers["bolt_0"] == [] and ["bolt_0"] in graph.removable
+    assert "bolt_0" in graph.blockers["cover"]
+
+
+def test_a_removal_map(gearbox: Assembly) -> None:
+    rooms = gearbox.removal_map("bolt_0", samples=162, border=0.2)
+    assert len(rooms.directions) == len(rooms.distance) == len(rooms.by) >= 162
+    assert np.allclose(np.linalg.norm(rooms.directions, axis=1), 1)
+    free = rooms.directions[np.isinf(rooms.distance)]
+    assert [0, 0, 1] in free.tolist() or rooms.isolated.tolist() == [[0, 0, 1]]
+    assert 0 <= rooms.free_share < 0.5
+
+
+def test_parts_by_hand_stuck_and_fixed() -> None:
+    parts = {"lower": cuboid([0, 0, 0], [1, 1, 1]), "upper": cuboid([0, 0, 1], [1, 1, 2])}
+    two = Assembly(parts).with_fixed("lower")
+    plan = two.plan([[0, 0, 1]])
+    assert [step.parts for step in plan.steps] == [["upper"]] and plan.left == ["lower"]
+    overlap = Assembly({"a": cuboid([0, 0, 0], [1, 1, 1]), "b": cuboid([0.5, 0, 0], [2, 1, 1])})
+    assert overlap.plan().steps == [] and overlap.plan().stuck[0].parts == ["a", "b"]
+    assert overlap.with_ignored(("a", "b")).plan().steps != []
+
+
+def test_refusals(tmp_path: Path, gearbox: Assembly) -> None:
+    with pytest.raises(AssemblyError):
+        Assembly.read(tmp_path / "nothing")
+    with pytest.raises(AssemblyError, match="nobody"):
+        gearbox.with_fixed("nobody")
+    with pytest.raises(InputError, match="no part was named"):
+        gearbox.removal_map()
+    with pytest.raises(AssemblyError, match="direction"):
+        gearbox.rooms([[0, 0, 0]])
+    with pytest.raises(InputError, match="directions"):
+        gearbox.rooms([0, 0, 1])
+    with pytest.raises(AssemblyError):
+        gearbox.plan(tolerance=-1.0)

@@ -1,0 +1,122 @@
+"""Bodies: what they are made of, what they refuse, files, copies."""
+
+import copy
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, draw
+
+import colltrans
+from colltrans import BuildError, CaseError, ConvexPolyhedron, InputError, MeshError, cast_many
+
+CORNERS = np.vstack([np.zeros(3), np.eye(3)])
+FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+
+
+def test_a_hull_drops_what_is_inside() -> None:
+    grid = np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3)
+    cube = ConvexPolyhedron(grid)
+    assert (len(cube.vertices), len(cube.faces), cube.volume, cube.dimension) == (8, 6, 8.0, 3)
+    assert np.array_equal(grid[cube.input_indices], cube.vertices)
+    assert cube.vertices[cube.support([1, 1, 1])].tolist() == [2, 2, 2]
+    normals = [cube.face_normal(face) for face in range(6)]
+    for normal, face in zip(normals, cube.faces, strict=True):
+        assert np.ptp(cube.vertices[face] @ normal) == 0
+    with pytest.raises(IndexError):
+        cube.face_normal(6)
+
+
+@pytest.mark.parametrize("faces", [FACES, np.array(FACES), np.array(FACES, ">u2"), tuple(FACES)])
+def test_faces_in_every_form(faces: object) -> None:
+    assert ConvexPolyhedron.from_mesh(CORNERS, faces).volume == 1 / 6  # type: ignore[arg-type]
+
+
+def test_polygons_of_different_lengths() -> None:
+    pyramid = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]])
+    faces = [[3, 2, 1, 0], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+    assert len(ConvexPolyhedron.from_mesh(pyramid, faces).faces) == 5
+
+
+@pytest.mark.parametrize(
+    ("faces", "error", "match"),
+    [
+        (FACES[:3], BuildError, "the surface is open"),
+        ([face[::-1] for face in FACES], BuildError, "oriented inwards"),
+        ([[0, 1, 7]], BuildError, "face 0 names vertex 7"),
+        ([[0, 1, -1]], InputError, "face 0: the index -1"),
+        (np.array([[0, 1, 1 << 40]]), InputError, "the index 1099511627776"),
+        ([[0, 1, 2.5]], InputError, "face 0: no array of whole numbers"),
+        ([], BuildError, "no faces"),
+        (np.zeros((2, 2, 2), int), InputError, r"\(2, 2, 2\)"),
+        (3, InputError, "no list of faces"),
+        ([[[0, 1, 2]]], InputError, "face 0"),
+    ],
+)
+def test_faces_that_are_refused(faces: object, error: type[Exception], match: str) -> None:
+    with pytest.raises(error, match=match):
+        ConvexPolyhedron.from_mesh(CORNERS, faces)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("points", "error", "match"),
+    [
+        ([], BuildError, "no points"),
+        ([[0, 0, np.nan]], BuildError, "point 0 is not finite"),
+        ([[0, 0, 1e300]], BuildError, "exact range"),
+        ([[0, 0]], InputError, r"\(1, 2\), not \(N, 3\)"),
+        ([0, 0, 0], InputError, r"\(3,\), not \(N, 3\)"),
+        ("points", InputError, "points: no array of numbers"),
+    ],
+)
+def test_points_that_are_refused(points: object, error: type[Exception], match: str) -> None:
+    with pytest.raises(error, match=match):
+        ConvexPolyhedron(points)  # type: ignore[arg-type]
+
+
+def test_bodies_pickle_and_copy_with_the_same_bits() -> None:
+    settings = draw(seed=5, count=400)
+    bodies = settings.bodies()
+    again = pickle.loads(pickle.dumps(bodies))
+    answers = [
+        cast_many(
+            those,
+            those,
+            settings.direction,
+            moving_index=settings.moving,
+            fixed_index=settings.fixed,
+            moving_pose=settings.moving_pose,
+        )
+        for those in (bodies, again)
+    ]
+    assert answers[0].translation.tobytes() == answers[1].translation.tobytes()
+    assert answers[0].normal.tobytes() == answers[1].normal.tobytes()
+    assert copy.copy(bodies[0]) is bodies[0] and copy.deepcopy(bodies[0]) is bodies[0]
+    with pytest.raises(CaseError, match="not a case"):
+        ConvexPolyhedron.from_json("{")
+
+
+def test_files_are_read_as_the_command_line_reads_them(tmp_path: Path) -> None:
+    parts = ROOT / "data"
+    body = colltrans.read(parts / "dodecahedron.off")
+    assert (len(body.vertices), len(body.faces)) == (20, 12)
+    assert colltrans.read(str(parts / "dodecahedron.off"), scale=2).volume == 8 * body.volume
+    with pytest.raises(BuildError, match=r"bolt\.stl: "):
+        colltrans.read(parts / "bolt.stl")
+    assert colltrans.read(parts / "bolt.stl", hull=True).dimension == 3
+    with pytest.raises(MeshError, match="nothing.stl: cannot be read"):
+        colltrans.read(tmp_path / "nothing.stl")
+    (tmp_path / "part.step").write_text("ISO-10303-21;")
+    with pytest.raises(MeshError, match="part.step"):
+        colltrans.read(tmp_path / "part.step")
+    with pytest.raises(InputError, match="scale"):
+        colltrans.read(parts / "dodecahedron.off", scale=0)
+
+
+def test_arrays_of_a_body_are_copies() -> None:
+    cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    cube.vertices[:] = 7
+    assert cube.vertices.max() == 1
+    with pytest.raises(AttributeError):
+        cube.volume = 3.0  # type: ignore[misc]

@@ -1,0 +1,258 @@
+"""Shards: every row once, whatever dies; the bits of the command line; what is done is skipped."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT, Batch
+
+from colltrans import ConvexPolyhedron, clearance_many
+
+pa = pytest.importorskip("pyarrow")
+pq = pytest.importorskip("pyarrow.parquet")
+
+from colltrans.bulk import Bodies, Job, Options, Report, answer_shard, engines  # noqa: E402
+from colltrans.bulk.__main__ import main  # noqa: E402
+
+KEYS = ["cube", "cloud", "broken"]
+CORNERS = np.stack(np.meshgrid([0.0, 1], [0.0, 1], [0.0, 1]), axis=-1).reshape(-1, 3)
+
+
+@pytest.fixture
+def bodies(tmp_path: Path) -> Path:
+    cloud = np.random.default_rng(1).normal(size=(60, 3))
+    vertices = [CORNERS.tolist(), cloud.tolist(), [[0.0, 0.0, float("nan")]]]
+    pq.write_table(pa.table({"key": KEYS, "vertices": vertices}), tmp_path / "bodies.parquet")
+    return tmp_path / "bodies.parquet"
+
+
+def queries(seed: int, n: int) -> dict[str, Any]:
+    random = np.random.default_rng(seed)
+    turns = random.normal(size=(n, 4))
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    poses = np.hstack([random.normal(size=(n, 3)) + [0, 0, 6], turns])
+    return {
+        "id": [f"{seed}-{i}" for i in range(n)],
+        "moving": [KEYS[i % 2] for i in range(n)],
+        "fixed": ["cloud"] * n,
+        "moving_pose": poses,
+        "direction": random.normal(size=(n, 3)) * [0.1, 0.1, 1] - [0, 0, 1],
+    }
+
+
+def write(path: Path, columns: dict[str, Any]) -> None:
+    def arrow(column: Any) -> Any:
+        if isinstance(column, np.ndarray):
+            flat = pa.array(column.reshape(-1))
+            return pa.FixedSizeListArray.from_arrays(flat, column.shape[1])
+        return pa.array(column)
+
+    path.parent.mkdir(exist_ok=True)
+    pq.write_table(pa.table({name: arrow(column) for name, column in columns.items()}), path)
+
+
+def shards(folder: Path, count: int, rows: int) -> Path:
+    for k in range(count):
+        write(folder / f"shard-{k}.parquet", queries(k, rows))
+    return folder
+
+
+def ids(folder: Path) -> list[str]:
+    return sorted(
+        id for file in folder.glob("*.parquet") for id in pq.read_table(file)["id"].to_pylist()
+    )
+
+
+def all_ids(count: int, rows: int) -> list[str]:
+    return sorted(f"{k}-{i}" for k in range(count) for i in range(rows))
+
+
+def test_a_folder_of_shards(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    asked = shards(tmp_path / "in", 3, 500)
+    words = [str(asked), str(tmp_path / "out"), "--bodies", str(bodies), "--question", "clearance"]
+    assert main(words) == 0
+    assert "1,500 rows in 3 shards (0 were done before): 0 errors" in capsys.readouterr().out
+    assert ids(tmp_path / "out") == all_ids(3, 500)
+    table = pq.read_table(tmp_path / "out" / "shard-1.parquet")
+    columns = queries(1, 500)
+    cloud = np.random.default_rng(1).normal(size=(60, 3))
+    known = clearance_many(
+        [ConvexPolyhedron(CORNERS), ConvexPolyhedron(cloud)],
+        ConvexPolyhedron(cloud),
+        columns["direction"],
+        moving_index=np.arange(500) % 2,
+        moving_pose=columns["moving_pose"],
+    )
+    assert table["distance"].to_numpy().tobytes() == known.distance.tobytes()
+    assert table["outcome"].to_pylist() == [known.outcomes[code] for code in known.outcome]
+
+
+def test_what_is_done_is_skipped_until_something_changes(
+    tmp_path: Path, bodies: Path, capsys: Any
+) -> None:
+    asked = shards(tmp_path / "in", 3, 50)
+    words = [str(asked), str(tmp_path / "out"), "--bodies", str(bodies)]
+    for threads in ("1", "2"):
+        assert main([*words, "--threads", threads]) == 0
+    assert "(3 were done before)" in capsys.readouterr().out
+    write(asked / "shard-1.parquet", queries(9, 50))
+    (tmp_path / "out" / "shard-2.parquet").write_bytes(b"PAR1 half a file")
+    assert main(words) == 0
+    assert "(1 were done before)" in capsys.readouterr().out
+    assert main([*words, "--solver", "cta"]) == 0
+    assert "(0 were done before)" in capsys.readouterr().out
+    table = pq.read_table(bodies)
+    moved = [[[x + 1, y, z] for x, y, z in body] for body in table["vertices"].to_pylist()]
+    pq.write_table(pa.table({"key": KEYS, "vertices": moved}), bodies)
+    assert main([*words, "--solver", "cta"]) == 0
+    assert "(0 were done before)" in capsys.readouterr().out
+    assert not list((tmp_path / "out").glob(".*"))
+
+
+def test_bad_rows_are_counted_and_kept(tmp_path: Path, bodies: Path) -> None:
+    columns = queries(4, 100)
+    columns["moving"][3], columns["fixed"][5], columns["moving"][7] = "broken", "nothing", None
+    columns["moving_pose"][9, 0] = np.nan
+    write(tmp_path / "queries.parquet", columns)
+    out = tmp_path / "answers.parquet"
+    assert main([str(tmp_path / "queries.parquet"), str(out), "--bodies", str(bodies)]) == 5
+    table = pq.read_table(out)
+    messages = {i: m for i, m in enumerate(table["message"].to_pylist()) if m}
+    assert sorted(messages) == [3, 5, 7, 9]
+    assert messages[3].startswith("moving: point 0 is not finite")
+    assert messages[5].endswith("has no body 'nothing'")
+    assert table["id"].to_pylist() == columns["id"]
+
+
+def test_json_lines_say_what_the_command_line_says(tmp_path: Path, batch: Batch) -> None:
+    data = str(ROOT / "data")
+    asked = [
+        {
+            "id": f"{x}",
+            "moving": {"mesh": f"{data}/dodecahedron.off"},
+            "fixed": {"mesh": f"{data}/bracket.obj"},
+            "moving_pose": {"translation": [x, 1, 9], "rotation": [0.6, 0, 0, 0.8]},
+            "direction": [0, 0.1, -1],
+        }
+        for x in np.linspace(-2, 12, 40)
+    ]
+    bad = ["{", "[]", '{"moving": "none.off", "fixed": "none.off", "direction": "up"}']
+    lines = [*map(json.dumps, asked), *bad]
+    (tmp_path / "queries.jsonl").write_text("\n".join(lines) + "\n")
+    out = tmp_path / "answers.parquet"
+    assert main([str(tmp_path / "queries.jsonl"), str(out)]) == 5
+    rows = pq.read_table(out).to_pylist()
+    assert [row["outcome"] for row in rows[40:]] == ["error"] * 3
+    for row, line in zip(rows, batch(asked), strict=False):
+        assert (row["outcome"], row["id"]) == (line["outcome"], line["id"])
+        if "exit" in line:
+            assert (row["translation"], row["exit"]) == (line["translation"], line["exit"])
+            assert (row["normal"], row["point"]) == (line["normal"], line["point"])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["nowhere", "out"],
+        ["empty", "out"],
+        ["empty/../bodies.parquet", "bodies.parquet"],
+        ["bodies.parquet", "out", "--threads", "0"],
+        ["bodies.parquet", "out"],
+    ],
+)
+def test_files_that_are_none(
+    tmp_path: Path, bodies: Path, words: list[str], capsys: Any, monkeypatch: Any
+) -> None:
+    monkeypatch.chdir(bodies.parent)
+    (tmp_path / "empty").mkdir()
+    assert main(words) == 2
+    assert capsys.readouterr().err.startswith("error: ")
+
+
+def command(asked: Path, out: Path, bodies: Path, *more: str) -> list[str]:
+    words = [str(asked), str(out), "--bodies", str(bodies), *more]
+    return [sys.executable, "-m", "colltrans.bulk", *words]
+
+
+def killed_and_repeated(asked: Path, out: Path, bodies: Path, *more: str) -> str:
+    """Kills the program when it has answered a shard, runs it again; what it then says."""
+    run = command(asked, out, bodies, *more)
+    with subprocess.Popen(run, start_new_session=True) as process:
+        began = time.monotonic()
+        while not list(out.glob("shard-*.parquet")) and time.monotonic() - began < 300:
+            time.sleep(0.002)
+        os.killpg(process.pid, signal.SIGKILL)
+    done = list(out.glob("shard-*.parquet"))
+    assert done
+    return subprocess.run(run, check=True, capture_output=True, text=True).stdout
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes are killed another way")
+def test_a_killed_run_goes_on(tmp_path: Path, bodies: Path) -> None:
+    asked = shards(tmp_path / "in", 8, 60_000)
+    told = killed_and_repeated(asked, tmp_path / "out", bodies, "--threads", "1")
+    assert "(0 were done before)" not in told
+    assert ids(tmp_path / "out") == all_ids(8, 60_000)
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    ray = pytest.importorskip("ray")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
+        # Workers find what tests import.
+        patch.setenv("PYTHONPATH", str(Path(__file__).parent))
+        yield ray
+    ray.shutdown()
+
+
+def dies_once(job: Job, bodies: Bodies) -> Report:
+    """Answers a shard, but the first worker that is at this one is killed half way."""
+    marker = Path(job.answers + ".died")
+    if job.queries.endswith("shard-1.parquet") and not marker.exists():
+        marker.touch()
+
+        def die(rows: int) -> None:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+        return answer_shard(job, bodies, die)
+    return answer_shard(job, bodies)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_ray_answers_every_row_once_though_a_worker_dies(
+    tmp_path: Path, bodies: Path, cluster: Any
+) -> None:
+    asked = shards(tmp_path / "in", 5, 2000)
+    files = sorted(asked.glob("*.parquet"))
+    (tmp_path / "out").mkdir()
+    jobs = [Job(str(f), str(tmp_path / "out" / f.name), Options()) for f in files]
+    reports = list(engines.ray(jobs, Bodies(str(bodies)), 2, answer=dies_once))
+    assert (tmp_path / "out" / "shard-1.parquet.died").exists()
+    assert sum(report.rows for report in reports) == 10_000 and len(reports) == 5
+    assert ids(tmp_path / "out") == all_ids(5, 2000)
+    again = list(engines.ray(jobs, Bodies(str(bodies)), 2))
+    assert all(report.skipped for report in again)
+    known = tmp_path / "known"
+    assert main([str(asked), str(known), "--bodies", str(bodies)]) == 0
+    for file in files:
+        mine, its = (pq.read_table(f / file.name) for f in (known, tmp_path / "out"))
+        assert mine["translation"].to_numpy().tobytes() == its["translation"].to_numpy().tobytes()
+    cluster.shutdown()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes are killed another way")
+def test_ray_goes_on_after_its_driver_died(tmp_path: Path, bodies: Path, cluster: Any) -> None:
+    asked = shards(tmp_path / "in", 8, 60_000)
+    more = ("--engine", "ray", "--threads", "2")
+    told = killed_and_repeated(asked, tmp_path / "out", bodies, *more)
+    assert "(0 were done before)" not in told
+    assert ids(tmp_path / "out") == all_ids(8, 60_000)

@@ -1,0 +1,49 @@
+"""The examples of all docstrings, and of the pages about Python, run."""
+
+import doctest
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import ROOT
+
+import colltrans
+
+PAGES = [page for page in [ROOT / "docs" / "python.md"] if page.exists()]
+
+
+def docstrings() -> Iterator[tuple[str, str]]:
+    for name in colltrans.__all__:
+        thing: Any = getattr(colltrans, name)
+        yield name, thing.__doc__ or ""
+        for member, value in vars(thing).items() if isinstance(thing, type) else ():
+            if not member.startswith("_") and getattr(value, "__doc__", None):
+                yield f"{name}.{member}", value.__doc__
+
+
+@pytest.mark.parametrize(("name", "text"), list(docstrings()))
+def test_docstrings(name: str, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    run(name, text)
+    assert text, f"{name} has no docstring"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_pages(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    run(page.name, page.read_text())
+
+
+def run(name: str, text: str) -> None:
+    test = doctest.DocTestParser().get_doctest(text, {}, name, name, 0)
+    said: list[str] = []
+    doctest.DocTestRunner(verbose=False).run(test, out=said.append)
+    assert not said, "".join(said)
+
+
+def test_everything_that_is_called_has_an_example() -> None:
+    for name in colltrans.__all__:
+        thing = getattr(colltrans, name)
+        if not isinstance(thing, type) and name != "read":
+            assert ">>>" in (thing.__doc__ or ""), name

@@ -1,0 +1,145 @@
+"""Parts that are not convex: the same bits as the command line's, proofs, refusals, copies."""
+
+import pickle
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from conftest import ROOT, Batch
+
+from colltrans import (
+    BuildError,
+    CertificateError,
+    ConvexPolyhedron,
+    MeshError,
+    QueryError,
+    Solid,
+    SolidBlocked,
+    SolidCast,
+    SolidCertificate,
+    SolidFree,
+    SolidOverlapping,
+)
+
+PARTS = ROOT / "data"
+CORNERS = np.vstack([np.zeros(3), np.eye(3)])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+
+
+@pytest.fixture(scope="module")
+def bolt() -> Solid:
+    return Solid.read(PARTS / "bolt.stl")
+
+
+@pytest.fixture(scope="module")
+def plate() -> Solid:
+    return Solid.read(PARTS / "plate.off")
+
+
+def test_the_command_line_says_the_same(batch: Batch, bolt: Solid, plate: Solid) -> None:
+    random = np.random.default_rng(30)
+    turns = random.normal(size=(60, 4))
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    turns[:20] = [0, 0, 0, 1]
+    starts = random.uniform(-1, 1, size=(60, 3)) * [6, 6, 9]
+    starts[:10] = [0, 0, 7]
+    directions = random.normal(size=(60, 3))
+    directions[:20] = [0, 0, -1]
+    lines = batch(
+        {
+            "moving": {"solid": str(PARTS / "bolt.stl")},
+            "fixed": {"solid": str(PARTS / "plate.off")},
+            "moving_pose": {"translation": start.tolist(), "rotation": turn.tolist()},
+            "direction": direction.tolist(),
+            "tolerance": 1e-6,
+        }
+        for start, turn, direction in zip(starts, turns, directions, strict=True)
+    )
+    outcomes = set()
+    for i, line in enumerate(lines):
+        query = SolidCast(
+            bolt, plate, directions[i], moving_pose=np.r_[starts[i], turns[i]], tolerance=1e-6
+        )
+        outcomes.add(line["outcome"])
+        assert query.tolerance == line["tolerance"]
+        match query.clearance():
+            case SolidBlocked(distance, contact):
+                assert (line["outcome"], line["distance"]) == ("blocked", distance)
+                assert line["nominal"] == contact.nominal
+                assert line["normal"] == contact.normal.tolist()
+                assert line["point"] == contact.point.tolist()
+            case SolidFree():
+                assert line["outcome"] == "free"
+            case SolidOverlapping():
+                assert line["outcome"] == "overlapping"
+    assert outcomes == {"blocked", "free", "overlapping"}
+
+
+def test_proofs_are_checked_and_saved(bolt: Solid, plate: Solid) -> None:
+    query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
+    answer, proof = query.certified_clearance()
+    assert repr(answer) == repr(query.clearance()) == "SolidBlocked(distance=7.0)"
+    again = SolidCertificate.from_json(proof.to_json())
+    assert query.verify(again) == query.verify(proof) < 1e-11
+    assert 7 - 1e-11 < proof.lower <= 7
+    nearer = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 6])
+    with pytest.raises(CertificateError):
+        nearer.verify(proof)
+
+
+def test_other_questions(bolt: Solid, plate: Solid) -> None:
+    query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
+    assert query.exit() == 12 and query.depth() == 0 and not query.intersects()
+    assert isinstance(query.reversed().clearance(), SolidFree)
+    inside = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[3, 0, 0])
+    match inside.clearance():
+        case SolidOverlapping(depth=depth):
+            assert depth == inside.depth() and depth is not None and depth > 0
+        case other:
+            raise AssertionError(other)
+    assert inside.intersects()
+    assert query.moving is bolt and query.moving_pose.translation.tolist() == [0, 0, 7]
+
+
+def test_a_union_of_convex_bodies_and_a_convex_body() -> None:
+    cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    post = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 4])
+    step = Solid.from_pieces([cube, post])
+    answer = SolidCast(cube, step, [0, 0, -1], moving_pose=[0.5, 0.5, 6]).clearance()
+    assert isinstance(answer, SolidBlocked) and answer.distance == 2
+    assert answer.contact.fixed_feature.kind in {"face", "vertex", "edge"}
+    assert answer.contact.normal.tolist() == [0, 0, -1]
+    segment = ConvexPolyhedron([[0, 0, 0], [1, 0, 0]])
+    with pytest.raises(BuildError):
+        SolidCast(segment, step, [0, 0, -1])
+
+
+def test_meshes_in_every_form_and_refusals(tmp_path: Path) -> None:
+    for faces in (FACES, FACES.tolist(), FACES.astype(np.uint8)):
+        assert Solid(CORNERS.astype("f4"), faces).volume == 1 / 6
+    mesh = SimpleNamespace(vertices=CORNERS, faces=FACES)
+    assert Solid.from_trimesh(mesh).bounds.tolist() == [[0, 0, 0], [1, 1, 1]]
+    with pytest.raises(BuildError, match="open"):
+        Solid(CORNERS, FACES[:3])
+    assert not Solid(CORNERS, FACES[:3], open=True).is_closed
+    with pytest.raises(MeshError, match="none.stl"):
+        Solid.read(tmp_path / "none.stl")
+    with pytest.raises(TypeError):
+        Solid.from_pieces(["cube"])  # type: ignore[list-item]
+    solid = Solid(CORNERS, FACES)
+    with pytest.raises(QueryError, match="the tolerance -1 is negative"):
+        SolidCast(solid, solid, [1, 0, 0], tolerance=-1)
+    with pytest.raises(QueryError, match="direction"):
+        SolidCast(solid, solid, [0, 0, 0])
+
+
+def test_solids_pickle_with_the_same_bits(bolt: Solid, plate: Solid) -> None:
+    union = Solid.from_pieces([bolt, ConvexPolyhedron.cuboid([0, 0, 9], [1, 1, 10])])
+    scan = Solid(CORNERS, FACES[:3], open=True)
+    for solid in (bolt, plate, union, scan):
+        again = pickle.loads(pickle.dumps(solid))
+        assert np.array_equal(again.vertices, solid.vertices)
+        assert np.array_equal(again.triangles, solid.triangles)
+        assert np.array_equal(again.face_indices, solid.face_indices)
+        assert again.is_closed == solid.is_closed

@@ -12,7 +12,7 @@ use super::side::{Crossing, Side};
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::sections::{AXIS_LENGTH, AxisPair};
 use crate::setting::Setting;
-use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Watch};
+use crate::solve::observe::{self, Cut, Observer, Phase, PlanarProblem, Watch};
 
 /// What a minimisation starts from.
 #[derive(Debug, Clone, Copy)]
@@ -124,6 +124,7 @@ pub(crate) fn minimise<O: Observer>(
     watch: &mut Watch<O>,
 ) -> Narrowed {
     let sections = SectionPair::new(setting);
+    watch.sections(|| sections.told());
     watch.ended(Phase::Setup);
     let narrowed = sections.minimise(setting, options, watch);
     let inner = sections.sides.each_ref().map(|side| side.iterations.get());
@@ -170,6 +171,15 @@ impl<'a> SectionPair<'a> {
             frame,
             // Q's levels are measured in its own frame.
             constant: axes[1].dot(setting.offset),
+        }
+    }
+
+    /// For those who look on.
+    fn told(&self) -> observe::Sections {
+        let frame = &self.frame;
+        observe::Sections {
+            axes: [0, 1].map(|body| frame.axes[body] * frame.along[body]),
+            ranges: [0, 1].map(|body| self.sides[body].range()),
         }
     }
 

@@ -5,11 +5,11 @@
 //   node build.mjs --no-wasm  only the scripts; the library as it was built last
 
 import { execFileSync } from "node:child_process";
-import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync } from "node:fs";
-import { createServer } from "node:http";
-import { dirname, extname, join, normalize } from "node:path";
+import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
+import { serve } from "./serve.mjs";
 import { toolchain } from "./toolchain.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -46,30 +46,7 @@ const notices = ["three"].map((name) => {
   const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
   return `${name} ${version}\n\n${readFileSync(join(folder, "LICENSE"), "utf8")}`;
 });
-const { writeFileSync } = await import("node:fs");
 writeFileSync(join(out, "LICENSES.txt"), notices.join("\n"));
-
-const types = {
-  ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm", ".svg": "image/svg+xml",
-};
-
-/** A static server for a folder, on this machine only. */
-export function serve(folder, port, under = "/") {
-  return new Promise((resolve) => {
-    const server = createServer((request, response) => {
-      const path = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
-      const inside = normalize(path.slice(under.length - 1));
-      const file = join(folder, inside.endsWith("/") ? `${inside}index.html` : inside);
-      if (!path.startsWith(under) || !file.startsWith(folder) || !existsSync(file)) {
-        response.writeHead(404).end();
-        return;
-      }
-      response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream" });
-      response.end(readFileSync(file));
-    });
-    server.listen(port, "127.0.0.1", () => resolve(server));
-  });
-}
 
 if (process.argv.includes("--serve")) {
   const server = await serve(out, Number(process.env.PORT ?? 8000));

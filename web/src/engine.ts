@@ -42,7 +42,7 @@ export interface Feature {
 export interface Certificate {
   normal: Vec;
   lower: number;
-  upper?: number;
+  upper: number | null;
   pairs: [number, number][];
   weights: Vec;
   tolerance: number;
@@ -70,7 +70,7 @@ export interface ConvexAnswer {
   kind: "convex";
   outcome: "contact" | "grazing" | "separated";
   first?: Touch;
-  exit?: number;
+  exit?: number | null;
   overlap?: number;
   sideways?: Vec;
   margin?: number;

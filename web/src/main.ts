@@ -64,7 +64,11 @@ class Page {
 
   async start() {
     await this.loadBoth();
-    this.view.fit();
+    this.fit();
+  }
+
+  private fit(along = false) {
+    this.view.fit(this.state, this.answer, along);
   }
 
   // --- what is asked
@@ -196,7 +200,7 @@ class Page {
     this.verdict = undefined;
     this.state.t = null;
     await this.ask();
-    this.view.fit();
+    this.fit();
     this.remember();
   }
 
@@ -262,7 +266,7 @@ class Page {
       this.state = { ...fromExample(select.value), tab: this.state.tab };
       this.answer = undefined;
       await this.loadBoth();
-      this.view.fit();
+      this.fit();
       this.remember();
     });
     for (const tab of TABS) named(`tab-${tab}`).addEventListener("click", () => this.change((s) => (s.tab = tab), false));
@@ -280,7 +284,7 @@ class Page {
     addEventListener("hashchange", () => {
       if (location.hash === toHash(this.state)) return;
       this.state = fromHash(location.hash);
-      void this.loadBoth().then(() => this.view.fit());
+      void this.loadBoth().then(() => this.fit());
     });
   }
 
@@ -305,8 +309,8 @@ class Page {
     named("tools").append(
       h("div", { class: "group" }, ...tools.map(([, , element]) => element), who),
       h("div", { class: "group" },
-        button("Fit", "Everything into the picture", () => this.view.fit()),
-        button("Along d", "Look along the direction", () => this.view.fit(true))),
+        button("Fit", "Everything into the picture", () => this.fit()),
+        button("Along d", "Look along the direction", () => this.fit(true))),
     );
     pick(0);
   }

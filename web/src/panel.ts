@@ -198,7 +198,7 @@ export class AnswerPanel {
     } else {
       const { kind, headline, sentence } = say(answer, state);
       const work = answer.kind === "convex"
-        ? `${answer.steps.supports} supporting planes, ${answer.steps.pivots} portals${answer.steps.planar_problems ? `, ${answer.steps.planar_problems} planar problems` : ""}; `
+        ? `${counts([[answer.steps.planar_problems, "planar problem"], [answer.steps.supports, "supporting plane"], [answer.steps.pivots, "portal"]])}; `
         : "";
       this.said.className = `said ${kind}`;
       this.said.replaceChildren(
@@ -247,13 +247,13 @@ export class AnswerPanel {
       return;
     }
     const proof = answer.first!.proof!;
-    const gap = proof.upper === undefined ? undefined : proof.upper - proof.lower;
+    const gap = proof.upper === null ? undefined : proof.upper - proof.lower;
     this.proof.replaceChildren(
       bounds(proof),
       h("p", { class: "proof" },
         "The green plane proves that nothing touches before ", h("b", {}, String(proof.lower)),
-        proof.upper === undefined ? "." : "; the two triangles meet in one point, which proves that something does by ",
-        proof.upper === undefined ? null : h("b", {}, String(proof.upper)),
+        proof.upper === null ? "." : "; the two triangles meet in one point, which proves that something does by ",
+        proof.upper === null ? null : h("b", {}, String(proof.upper)),
         gap === undefined ? "" : `. The gap of ${short(gap, 2)} is rounding.`),
       h("div", { class: "row" }, check, judged));
   }
@@ -269,9 +269,13 @@ function bounds(proof: Certificate): SVGSVGElement {
     svg("line", { x1: 8, x2: 308, y1: 22, y2: 22, stroke: "var(--line)", "stroke-width": 6, "stroke-linecap": "round" }),
     svg("line", { x1: x(proof.lower), x2: x(upper), y1: 22, y2: 22, stroke: "var(--free)", "stroke-width": 6, "stroke-linecap": "round" }),
     svg("text", { x: 8, y: 11 }, "lower"),
-    svg("text", { x: Math.max(60, x(upper)), y: 11, "text-anchor": "end" }, proof.upper === undefined ? "" : "upper"),
+    svg("text", { x: Math.max(60, x(upper)), y: 11, "text-anchor": "end" }, proof.upper === null ? "" : "upper"),
     svg("text", { x: 308, y: 40, "text-anchor": "end" }, `rounding alone: ${short(proof.tolerance, 2)}`),
   );
   return picture;
 }
 
+
+/** What there is any of. */
+const counts = (all: [number, string][]) =>
+  all.filter(([n]) => n > 0).map(([n, what]) => `${n} ${what}${n === 1 ? "" : "s"}`).join(", ");

@@ -13,7 +13,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import { type Palette, palette } from "./colours";
-import { h, soon } from "./dom";
+import { h, soon, svg } from "./dom";
 import type { Answer, Body, Feature, Slot, Touch } from "./engine";
 import { type Pose, type Vec, add, cross, dot, length, placed, sub, times, turned, unit } from "./math";
 import type { State } from "./state";
@@ -85,6 +85,8 @@ export class View {
   private tool: Tool = "look";
   private held: Slot = "moving";
   private plain = false;
+  private meshOfGrid = "";
+  private readonly axes = svg("svg", { class: "axes", viewBox: "-40 -40 80 96", "aria-hidden": "true" });
 
   onDirection: (direction: Vec, done: boolean) => void = () => {};
   onPose: (slot: Slot, pose: Pose, done: boolean) => void = () => {};
@@ -97,6 +99,7 @@ export class View {
     canvas.setAttribute("role", "img");
     canvas.tabIndex = 0;
     host.prepend(canvas);
+    host.append(this.axes);
     this.labels = host.appendChild(h("div", { class: "labels", "aria-hidden": "true" }));
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
@@ -124,6 +127,7 @@ export class View {
     this.gizmo.getHelper().updateMatrixWorld();
     this.renderer.render(this.scene, this.camera);
     this.placeLabels();
+    this.placeAxes();
   });
 
   setBody(slot: Slot, body: Body | undefined) {
@@ -161,8 +165,8 @@ export class View {
   }
 
   /** Everything into the picture. `along`: seen along the direction. */
-  fit(along = false) {
-    const { state } = this;
+  fit(state: State, answer: Answer | undefined, along = false) {
+    [this.state, this.answer] = [state, answer];
     const [moving, fixed] = [this.drawnBodies.moving, this.drawnBodies.fixed];
     if (!state || !moving || !fixed) return;
     const balls: [Vec, number][] = [
@@ -187,7 +191,7 @@ export class View {
     this.camera.far = far * 1e3;
     this.camera.updateProjectionMatrix();
     this.orbit.update();
-    this.show(state, this.answer);
+    this.show(state, answer);
   }
 
   /** From the side, so that the way is long, a little from above. */
@@ -195,7 +199,7 @@ export class View {
     const d = unit(direction);
     const normal = this.answer?.first?.normal;
     const candidates: Vec[] = [[-0.62, -0.68, 0.4], [0.62, -0.68, 0.4], [-0.62, 0.68, 0.4], [0.62, 0.68, 0.4]];
-    const score = (v: Vec) => -Math.abs(dot(v, d)) - (normal ? 0.3 * dot(v, normal) : 0);
+    const score = (v: Vec) => -Math.abs(dot(v, d)) - (normal ? 0.8 * dot(v, normal) : 0);
     return candidates.reduce((best, v) => (score(v) > score(best) ? v : best));
   }
 
@@ -282,6 +286,16 @@ export class View {
     return group;
   }
 
+  private above(part: Object3D) {
+    part.renderOrder = 5;
+    const { material } = part as Partial<Mesh>;
+    for (const one of material ? ([material].flat() as Material[]) : []) {
+      one.depthTest = false;
+      // So that it is drawn after what is translucent.
+      one.transparent = true;
+    }
+  }
+
   private addArrow(moving: Drawn, state: State) {
     const base = placed(state.poses.moving, moving.middle);
     const reach = moving.radius + 0.42 * this.size;
@@ -289,12 +303,15 @@ export class View {
     this.tip = this.inScene(tip);
     // Seen through the body it starts in.
     const arrow = this.rod(this.inScene(base), this.tip, this.colours.way, 0.0065 * this.size);
+    // It is there to be dragged: nothing hides it.
+    arrow.traverse((part) => this.above(part));
     this.shown.add(arrow);
     const knob = new Mesh(
       new SphereGeometry(0.024 * this.size, 24, 16),
       new MeshLambertMaterial({ color: this.colours.way, emissive: this.colours.way, emissiveIntensity: 0.2 }),
     );
     knob.position.copy(this.tip);
+    this.above(knob);
     this.shown.add(knob);
     this.texts.push({ text: "d", at: this.inScene(add(base, times(unit(state.direction), reach * 1.07))), kind: "way" });
   }
@@ -306,9 +323,9 @@ export class View {
     const n = first.normal;
     const reach = Math.min(moving.radius, fixed.radius);
     this.addDisc(point, n, 0.8 * reach);
-    const to = this.inScene(sub(first.on_fixed, times(n, 0.6 * reach)));
-    this.shown.add(this.rod(point, to, this.colours.normal, 0.007 * this.size));
-    this.texts.push({ text: "−n", at: this.inScene(sub(first.on_fixed, times(n, 0.68 * reach))), kind: "normal" });
+    const from = this.inScene(sub(first.on_fixed, times(n, 0.62 * reach)));
+    this.shown.add(this.rod(from, point, this.colours.normal, 0.007 * this.size));
+    this.texts.push({ text: "n", at: this.inScene(sub(first.on_fixed, times(n, 0.7 * reach))), kind: "normal" });
     const dot = new Mesh(new SphereGeometry(0.013 * this.size, 24, 16), new MeshBasicMaterial({ color: this.colours.normal }));
     dot.position.copy(point);
     this.shown.add(dot);
@@ -402,7 +419,7 @@ export class View {
     this.shown.add(plane, this.line([corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)], this.colours.plane, false, 0.8, true));
   }
 
-  /** Axes and a grid under everything, with its mesh in round numbers. */
+  /** A grid under everything, with its mesh in round numbers. */
   private addGround() {
     const step = 10 ** Math.floor(Math.log10(this.size / 1.5));
     const low = this.lowest();
@@ -420,14 +437,7 @@ export class View {
       new LineBasicMaterial({ color: this.colours.grid, transparent: true, opacity: 0.45 }),
     );
     this.shown.add(grid);
-    const corner: Vec = [x - step * count, y - step * count, low];
-    const names: [string, Vec][] = [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]];
-    for (const [name, axis] of names) {
-      const end = add(corner, times(axis, 0.3 * this.size));
-      this.shown.add(this.rod(this.inScene(corner), this.inScene(end), this.colours.grid, 0.004 * this.size));
-      this.texts.push({ text: name, at: this.inScene(add(corner, times(axis, 0.35 * this.size))), kind: "axis" });
-    }
-    this.texts.push({ text: `grid ${Number(step.toPrecision(3))}`, at: this.inScene(add(corner, [step * count, 0, 0])), kind: "axis" });
+    this.meshOfGrid = `grid ${Number(step.toPrecision(3))}`;
   }
 
   private lowest(): number {
@@ -454,6 +464,21 @@ export class View {
       label.textContent = text.text;
       label.style.transform = `translate(${((at.x + 1) / 2) * wide}px, ${((1 - at.y) / 2) * high}px) translate(-50%, -50%)`;
     });
+  }
+
+  /** The axes of the world as they are seen, in a corner; those that point away first. */
+  private placeAxes() {
+    const turn = this.camera.quaternion.clone().invert();
+    const axes = [["x", 1, 0, 0], ["y", 0, 1, 0], ["z", 0, 0, 1]] as const;
+    const seen = axes.map(([name, x, y, z]) => ({ name, at: new Vector3(x, y, z).applyQuaternion(turn) }));
+    seen.sort((a, b) => a.at.z - b.at.z);
+    this.axes.replaceChildren(
+      ...seen.flatMap(({ name, at }) => [
+        svg("line", { x1: 0, y1: 0, x2: 24 * at.x, y2: -24 * at.y }),
+        svg("text", { x: 33 * at.x, y: -33 * at.y + 4 }, name),
+      ]),
+      svg("text", { x: 0, y: 52 }, this.plain ? "" : this.meshOfGrid),
+    );
   }
 
   private placeHandle() {

@@ -8,6 +8,8 @@ interface Library {
   text_length(): number;
   numbers(): number;
   numbers_length(): number;
+  last_words(): number;
+  last_words_length(): number;
 }
 
 interface Asked {
@@ -26,21 +28,35 @@ async function load(): Promise<Library> {
   return instance.exports as unknown as Library;
 }
 
+let stopped: string | undefined;
+
 self.onmessage = async ({ data }: MessageEvent<Asked>) => {
   let text: string;
   let numbers = new ArrayBuffer(0);
-  const began = performance.now();
+  let began = performance.now();
   try {
     const loaded = await library;
-    [text, numbers] = answer(loaded, data);
+    if (stopped) throw new Error(stopped);
+    began = performance.now();
+    try {
+      [text, numbers] = answer(loaded, data);
+    } catch (error) {
+      stopped = `the library stopped, reload the page: ${why(loaded, error)}`;
+      throw new Error(stopped);
+    }
   } catch (error) {
-    const why = error instanceof Error ? error.message : String(error);
-    const room = error instanceof RangeError || error instanceof WebAssembly.RuntimeError;
-    text = JSON.stringify({ error: room ? `the library stopped: ${why}; the file may be too large for a page` : why });
+    text = JSON.stringify({ error: error instanceof Error ? error.message : String(error) });
   }
   const took = performance.now() - began;
   self.postMessage({ id: data.id, text, numbers, took }, { transfer: [numbers] });
 };
+
+/** Mostly that a file is too large for 32-bit memory. */
+function why(loaded: Library, error: unknown): string {
+  const words = new Uint8Array(loaded.memory.buffer, loaded.last_words(), loaded.last_words_length());
+  const said = new TextDecoder().decode(words) || String(error);
+  return loaded.memory.buffer.byteLength > 2 ** 31 ? `the file is too large for a page (${said})` : said;
+}
 
 function answer(loaded: Library, { text, file }: Asked): [string, ArrayBuffer] {
   const question = new TextEncoder().encode(text);

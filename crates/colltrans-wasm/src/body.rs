@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use colltrans::{BuildError, ConvexPolyhedron, Feature, Solid, SolidError};
 use colltrans_mesh::{Format, Mesh};
 use glam::DVec3;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::desk::{Answer, Refusal};
 use crate::question::Take;
@@ -62,19 +62,15 @@ impl Part {
 }
 
 /// What is said about a body.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 struct Facts {
     kind: &'static str,
-    /// What a feature's face is called by.
-    vertices: usize,
-    triangles: usize,
     faces: usize,
     edges: usize,
     dimension: u8,
     closed: bool,
     volume: f64,
-    low: [f64; 3],
-    high: [f64; 3],
+    bounds: [[f64; 3]; 2],
     /// What was merged, mended or filled.
     notes: Vec<String>,
 }
@@ -201,36 +197,28 @@ fn bounds(vertices: &[DVec3]) -> [[f64; 3]; 2] {
 }
 
 fn convex_facts(body: &ConvexPolyhedron, notes: Vec<String>) -> Facts {
-    let [low, high] = bounds(body.vertices());
     Facts {
         kind: "convex",
-        vertices: body.vertices().len(),
-        triangles: 0,
         faces: body.face_count(),
         edges: body.edge_count(),
         dimension: body.dimension(),
         closed: true,
         volume: body.volume(),
-        low,
-        high,
+        bounds: bounds(body.vertices()),
         notes,
     }
 }
 
 fn solid_facts(body: &Solid, notes: Vec<String>) -> Facts {
-    let [low, high] = bounds(body.vertices());
     let faces = body.facet_indices().iter().max().map_or(0, |last| *last as usize + 1);
     Facts {
         kind: "solid",
-        vertices: body.vertices().len(),
-        triangles: body.triangles().len(),
         faces,
         edges: 0,
         dimension: 3,
         closed: body.is_closed(),
         volume: body.volume(),
-        low,
-        high,
+        bounds: bounds(body.vertices()),
         notes,
     }
 }
@@ -278,8 +266,20 @@ fn of_solid(body: &Solid) -> Drawn {
 
 fn answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
     let triangles = drawn.triangles.len();
-    let mut answer = Answer::of(&serde_json::json!({
-        "body": Facts { triangles, notes: facts.notes.clone(), ..*facts },
+    let mut answer = Answer::of(&json!({
+        "body": {
+            "kind": facts.kind,
+            "vertices": vertices.len(),
+            "triangles": triangles,
+            "faces": facts.faces,
+            "edges": facts.edges,
+            "dimension": facts.dimension,
+            "closed": facts.closed,
+            "volume": facts.volume,
+            "low": facts.bounds[0],
+            "high": facts.bounds[1],
+            "notes": facts.notes,
+        },
         "edges": drawn.edges.len(),
     }));
     let numbers = &mut answer.numbers;
@@ -292,13 +292,12 @@ fn answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
 }
 
 /// A feature: its kind, what to light, and its numbers in the file.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(crate) struct Lit {
     kind: &'static str,
     /// Vertices of the body as drawn.
     vertices: Vec<u32>,
     /// The face of the body as drawn, for a face.
-    #[serde(skip_serializing_if = "Option::is_none")]
     face: Option<u32>,
     /// The vertices' numbers in the file; for a solid's face, the face's.
     file: Vec<u32>,
@@ -327,5 +326,9 @@ impl Lit {
             Feature::Face(face) => (corners.to_vec(), Some(face), vec![face]),
         };
         Self { kind: feature.kind(), vertices, face, file }
+    }
+
+    pub(crate) fn told(&self) -> Value {
+        json!({ "kind": self.kind, "vertices": self.vertices, "face": self.face, "file": self.file })
     }
 }

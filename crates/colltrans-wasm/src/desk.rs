@@ -1,8 +1,7 @@
 //! The bodies in use, and what is answered about them.
 
 use colltrans_mesh::Mesh;
-use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::body::{self, Part};
 use crate::question::{Load, Question, Slot, Take};
@@ -18,12 +17,11 @@ pub struct Answer {
 }
 
 /// Why there is no answer.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(crate) struct Refusal {
     /// For people.
     pub(crate) error: String,
     /// What the same file could be taken as instead.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) instead: Vec<&'static str>,
 }
 
@@ -34,11 +32,8 @@ impl From<String> for Refusal {
 }
 
 impl Answer {
-    pub(crate) fn of(facts: &impl Serialize) -> Self {
-        let text = serde_json::to_vec(facts).unwrap_or_else(|error| {
-            json!({ "error": format!("the answer cannot be written: {error}") }).to_string().into()
-        });
-        Self { text, numbers: Vec::new() }
+    pub(crate) fn of(facts: &Value) -> Self {
+        Self { text: facts.to_string().into_bytes(), numbers: Vec::new() }
     }
 }
 
@@ -60,11 +55,13 @@ struct Loaded {
 impl Desk {
     /// Answers one question; `file` holds the bytes that come with it, if any.
     pub fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
-        let answer = match serde_json::from_slice(question) {
+        let answer = match Question::read(question) {
             Ok(question) => self.answer(question, file),
             Err(error) => Err(format!("the question cannot be read: {error}").into()),
         };
-        answer.unwrap_or_else(|refusal| Answer::of(&refusal))
+        answer.unwrap_or_else(|Refusal { error, instead }| {
+            Answer::of(&json!({ "error": error, "instead": instead }))
+        })
     }
 
     fn answer(&mut self, question: Question, file: Vec<u8>) -> Result<Answer, Refusal> {
@@ -79,7 +76,7 @@ impl Desk {
                     _ => solid::cast(bodies, &pair),
                 }
             }
-            Question::Verify { pair, proof } => convex::verify(self.convex()?, &pair, &proof),
+            Question::Verify(pair, proof) => convex::verify(self.convex()?, &pair, &proof),
             Question::Search(asked) => search::search(self.convex()?, &asked),
             Question::Levels(asked) => levels::levels(self.convex()?, &asked),
         }

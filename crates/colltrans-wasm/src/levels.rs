@@ -7,6 +7,7 @@
 //! (`f64`); not a number where sections miss each other or are none. Then the sections' corners, in
 //! the world, at their start: the JSON tells how many each has.
 
+use colltrans::observe::Recording;
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 use glam::DVec3;
 use serde_json::json;
@@ -20,7 +21,7 @@ use crate::question::Levels;
 const MOST_PAIRS: usize = 1 << 14;
 
 pub(crate) fn levels(bodies: [&Hull; 2], asked: &Levels) -> Result<Answer, Refusal> {
-    if asked.moving.len().saturating_mul(asked.fixed.len()) > MOST_PAIRS {
+    if asked.levels[0].len().saturating_mul(asked.levels[1].len()) > MOST_PAIRS {
         return Err(format!("more than {MOST_PAIRS} pairs of levels").into());
     }
     let whole = query(bodies, &asked.pair)?;
@@ -29,8 +30,8 @@ pub(crate) fn levels(bodies: [&Hull; 2], asked: &Levels) -> Result<Answer, Refus
         let axis = pose.matrix().transpose() * DVec3::from_array(axis);
         levels.iter().map(|level| Section::new(body, &pose, axis, *level)).collect::<Vec<_>>()
     };
-    let moving = cut(whole.moving(), whole.moving_pose(), asked.axes[0], &asked.moving);
-    let fixed = cut(whole.fixed(), whole.fixed_pose(), asked.axes[1], &asked.fixed);
+    let moving = cut(whole.moving(), whole.moving_pose(), asked.axes[0], &asked.levels[0]);
+    let fixed = cut(whole.fixed(), whole.fixed_pose(), asked.axes[1], &asked.levels[1]);
     let mut values = Vec::with_capacity(moving.len() * fixed.len());
     for p in &moving {
         for q in &fixed {
@@ -92,7 +93,7 @@ fn ring(points: &[DVec3], axis: DVec3) -> Vec<DVec3> {
 fn phi(moving: &Section, fixed: &Section, whole: &Cast) -> f64 {
     let (Some(p), Some(q)) = (&moving.body, &fixed.body) else { return f64::NAN };
     let cast = Cast::new(p.at(whole.moving_pose()), q.at(whole.fixed_pose()), whole.direction());
-    match cast.and_then(|cast| cast.first_contact()) {
+    match cast.and_then(|cast| cast.first_contact_observed(&mut Recording::default())) {
         Ok(Outcome::Contact(contact)) => contact.translation,
         Ok(Outcome::Grazing(grazing)) => grazing.contact.translation,
         _ => f64::NAN,

@@ -1,23 +1,18 @@
-//! The questions, as the page writes them.
+//! The questions, as the page writes them: objects with a field `do`.
+//!
+//! Read by hand: what derived readers add would be a third of the download.
 
-use serde::Deserialize;
+use serde_json::{Map, Value};
 
 /// One question.
-#[derive(Debug, Deserialize)]
-#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+#[derive(Debug)]
 pub(crate) enum Question {
     /// The file that comes with the question becomes a body.
     Load(Load),
     /// When do they meet, and how far can the moving one go?
     Cast(Pair),
-    /// Is this proof one?
-    Verify {
-        /// What it is about.
-        #[serde(flatten)]
-        pair: Pair,
-        /// The proof, as an answer had it.
-        proof: Proof,
-    },
+    /// Is this proof, as an answer had it, one?
+    Verify(Pair, Proof),
     /// What does a search do?
     Search(Search),
     /// The collision translation of pairs of sections.
@@ -25,16 +20,14 @@ pub(crate) enum Question {
 }
 
 /// Which of the two bodies.
-#[derive(Debug, Clone, Copy, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Slot {
     Moving,
     Fixed,
 }
 
 /// How a mesh becomes a body.
-#[derive(Debug, Clone, Copy, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Take {
     /// It must be convex.
     Convex,
@@ -46,8 +39,7 @@ pub(crate) enum Take {
     Open,
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug)]
 pub(crate) struct Load {
     pub(crate) slot: Slot,
     /// The file's name; its extension tells the format.
@@ -56,49 +48,40 @@ pub(crate) struct Load {
 }
 
 /// Two placed bodies and a direction. Poses are `x,y,z,qx,qy,qz,qw`.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone)]
 pub(crate) struct Pair {
     pub(crate) moving_pose: [f64; 7],
     pub(crate) fixed_pose: [f64; 7],
     pub(crate) direction: [f64; 3],
     /// Between convex bodies: sideways overlap that counts as grazing.
-    #[serde(default)]
     pub(crate) graze: f64,
     /// Between convex bodies.
-    #[serde(default)]
     pub(crate) solver: Solver,
     /// Between solids: by how much they are shrunk; what the files' precision asks for by default.
-    #[serde(default)]
     pub(crate) tolerance: Option<f64>,
     /// Between solids: facets that cross at the start do not block.
-    #[serde(default)]
     pub(crate) ignore_overlaps: bool,
 }
 
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy)]
 pub(crate) enum Solver {
-    #[default]
     Auto,
     Cta,
     Portal,
 }
 
-/// A proof to check: of a contact or of a separation.
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+/// A proof to check.
+#[derive(Debug)]
 pub(crate) enum Proof {
     Contact(Certificate),
     Separation { normal: [f64; 3], margin: f64 },
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug)]
 pub(crate) struct Certificate {
     pub(crate) normal: [f64; 3],
     pub(crate) lower: f64,
-    /// Infinite where there is none.
-    #[serde(default)]
+    /// `None` where there is none.
     pub(crate) upper: Option<f64>,
     pub(crate) pairs: [[u32; 2]; 3],
     pub(crate) weights: [f64; 3],
@@ -106,37 +89,158 @@ pub(crate) struct Certificate {
 }
 
 /// A search to look at.
-#[derive(Debug, Deserialize)]
+#[derive(Debug)]
 pub(crate) struct Search {
-    #[serde(flatten)]
     pub(crate) pair: Pair,
     /// The minimisation starts at the centre of all levels, as in the paper, and ends when its bounds
     /// are this close, as a share of the bodies' extent; else as the library does by default.
-    #[serde(default)]
     pub(crate) from_center: Option<f64>,
     /// A query asked before, whose answer a tracker starts from.
-    #[serde(default)]
-    pub(crate) after: Option<Before>,
-}
-
-/// Where the bodies were at the query before.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Before {
-    pub(crate) moving_pose: [f64; 7],
-    pub(crate) fixed_pose: [f64; 7],
-    pub(crate) direction: [f64; 3],
+    pub(crate) after: Option<Pair>,
 }
 
 /// A grid of pairs of levels.
-#[derive(Debug, Deserialize)]
+#[derive(Debug)]
 pub(crate) struct Levels {
-    #[serde(flatten)]
     pub(crate) pair: Pair,
     /// Section axes in the world.
     pub(crate) axes: [[f64; 3]; 2],
-    /// Levels of the moving body's sections, each in its own frame.
-    pub(crate) moving: Vec<f64>,
-    /// Those of the fixed body.
-    pub(crate) fixed: Vec<f64>,
+    /// Levels of the moving and of the fixed body's sections, each in its own frame.
+    pub(crate) levels: [Vec<f64>; 2],
+}
+
+impl Question {
+    /// From JSON.
+    pub(crate) fn read(text: &[u8]) -> Result<Self, String> {
+        let value: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        let Value::Object(map) = &value else { return Err("it is no object".into()) };
+        let fields = Fields(map);
+        match fields.text("do")? {
+            "load" => fields.load().map(Self::Load),
+            "cast" => fields.pair().map(Self::Cast),
+            "verify" => Ok(Self::Verify(fields.pair()?, fields.object("proof")?.proof()?)),
+            "search" => fields.search().map(Self::Search),
+            "levels" => fields.levels().map(Self::Levels),
+            other => Err(format!("nothing is known to do for {other}")),
+        }
+    }
+}
+
+/// The fields of an object.
+struct Fields<'a>(&'a Map<String, Value>);
+
+impl<'a> Fields<'a> {
+    /// `None` for what is missing or null.
+    fn get(&self, key: &str) -> Option<&'a Value> {
+        self.0.get(key).filter(|value| !value.is_null())
+    }
+
+    fn need(&self, key: &str) -> Result<&'a Value, String> {
+        self.get(key).ok_or_else(|| format!("{key} is missing"))
+    }
+
+    fn object(&self, key: &str) -> Result<Self, String> {
+        let map = self.need(key)?.as_object().ok_or_else(|| format!("{key} is no object"))?;
+        Ok(Self(map))
+    }
+
+    fn text(&self, key: &str) -> Result<&'a str, String> {
+        self.need(key)?.as_str().ok_or_else(|| format!("{key} is no text"))
+    }
+
+    fn flag(&self, key: &str) -> bool {
+        self.get(key).and_then(Value::as_bool).unwrap_or(false)
+    }
+
+    fn number(&self, key: &str) -> Result<Option<f64>, String> {
+        let number = |value: &Value| value.as_f64().ok_or_else(|| format!("{key} is no number"));
+        self.get(key).map(number).transpose()
+    }
+
+    fn list(&self, key: &str) -> Result<Vec<f64>, String> {
+        numbers(self.need(key)?).ok_or_else(|| format!("{key} is no list of numbers"))
+    }
+
+    fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], String> {
+        self.list(key)?.try_into().map_err(|_| format!("{key} does not hold {N} numbers"))
+    }
+
+    fn load(&self) -> Result<Load, String> {
+        let slot = match self.text("slot")? {
+            "moving" => Slot::Moving,
+            "fixed" => Slot::Fixed,
+            other => return Err(format!("there is no body {other}")),
+        };
+        let take = match self.text("take")? {
+            "convex" => Take::Convex,
+            "hull" => Take::Hull,
+            "solid" => Take::Solid,
+            "open" => Take::Open,
+            other => return Err(format!("a mesh cannot be taken as {other}")),
+        };
+        Ok(Load { slot, name: self.text("name")?.to_owned(), take })
+    }
+
+    fn pair(&self) -> Result<Pair, String> {
+        let solver = match self.get("solver").and_then(Value::as_str) {
+            None | Some("auto") => Solver::Auto,
+            Some("cta") => Solver::Cta,
+            Some("portal") => Solver::Portal,
+            Some(other) => return Err(format!("there is no solver {other}")),
+        };
+        Ok(Pair {
+            moving_pose: self.array("moving_pose")?,
+            fixed_pose: self.array("fixed_pose")?,
+            direction: self.array("direction")?,
+            graze: self.number("graze")?.unwrap_or(0.0),
+            solver,
+            tolerance: self.number("tolerance")?,
+            ignore_overlaps: self.flag("ignore_overlaps"),
+        })
+    }
+
+    fn proof(&self) -> Result<Proof, String> {
+        if let Ok(given) = self.object("separation") {
+            let margin = given.number("margin")?.ok_or("margin is missing")?;
+            return Ok(Proof::Separation { normal: given.array("normal")?, margin });
+        }
+        let given = self.object("contact")?;
+        let number = |key: &str| given.number(key)?.ok_or_else(|| format!("{key} is missing"));
+        Ok(Proof::Contact(Certificate {
+            normal: given.array("normal")?,
+            lower: number("lower")?,
+            upper: given.number("upper")?,
+            pairs: pairs(given.need("pairs")?).ok_or("pairs are not three pairs of vertices")?,
+            weights: given.array("weights")?,
+            tolerance: number("tolerance")?,
+        }))
+    }
+
+    fn search(&self) -> Result<Search, String> {
+        let after =
+            self.get("after").is_some().then(|| self.object("after")?.pair()).transpose()?;
+        Ok(Search { pair: self.pair()?, from_center: self.number("from_center")?, after })
+    }
+
+    fn levels(&self) -> Result<Levels, String> {
+        Ok(Levels {
+            pair: self.pair()?,
+            axes: [self.array("moving_axis")?, self.array("fixed_axis")?],
+            levels: [self.list("moving_levels")?, self.list("fixed_levels")?],
+        })
+    }
+}
+
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    value.as_array()?.iter().map(Value::as_f64).collect()
+}
+
+fn pairs(value: &Value) -> Option<[[u32; 2]; 3]> {
+    let pair = |value: &Value| -> Option<[u32; 2]> {
+        let [moving, fixed] = value.as_array()?.as_slice() else { return None };
+        let vertex = |v: &Value| u32::try_from(v.as_u64()?).ok();
+        Some([vertex(moving)?, vertex(fixed)?])
+    };
+    let [a, b, c] = value.as_array()?.as_slice() else { return None };
+    Some([pair(a)?, pair(b)?, pair(c)?])
 }

@@ -1,14 +1,14 @@
 //! What a search did: the library's recording, as a page reads it.
 
 use colltrans::observe::{Event, Recording};
-use colltrans::{NarrowFrom, Narrowing, Options, Solver, Tracker};
+use colltrans::{Cast, NarrowFrom, Narrowing, Options, Solver, Tracker};
 use glam::DVec3;
 use serde_json::{Value, json};
 
 use crate::body::Hull;
-use crate::convex::{Work, query};
+use crate::convex::{query, work};
 use crate::desk::{Answer, Refusal};
-use crate::question::{Pair, Search};
+use crate::question::Search;
 
 pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
     let mut cast = query(bodies, &asked.pair)?;
@@ -23,22 +23,22 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
     let solver = if cast.options().solver == Solver::Cta { Solver::Cta } else { Solver::Portal };
     let mut told = json!({
         "events": events,
-        "steps": Work::of(solver, &outcome.steps()),
+        "steps": work(solver, &outcome.steps()),
     });
     if let Some(before) = &asked.after {
-        let first = Pair {
-            moving_pose: before.moving_pose,
-            fixed_pose: before.fixed_pose,
-            direction: before.direction,
-            ..asked.pair.clone()
-        };
-        let first = query(bodies, &first)?;
-        let mut tracker = Tracker::new();
-        tracker.first_contact(&first).map_err(|error| error.to_string())?;
-        let outcome = tracker.first_contact(&cast).map_err(|error| error.to_string())?;
+        let first = query(bodies, before)?;
+        let (mut tracker, mut seen) = (Tracker::new(), Recording::default());
+        let mut outcome = None;
+        for asked in [&first, &cast] {
+            seen.clear();
+            let answered = tracker.first_contact_observed(asked, &mut seen);
+            outcome = Some(answered.map_err(|error| error.to_string())?);
+        }
+        let steps = outcome.map(|outcome| outcome.steps()).unwrap_or_default();
         told["tracked"] = json!({
-            "steps": Work::of(solver, &outcome.steps()),
-            "from": format!("{:?}", outcome.steps().started_from).to_lowercase(),
+            "steps": work(solver, &steps),
+            "from": format!("{:?}", steps.started_from).to_lowercase(),
+            "events": seen.events().iter().filter_map(event).collect::<Vec<_>>(),
         });
     }
     Ok(Answer::of(&told))

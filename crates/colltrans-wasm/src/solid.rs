@@ -39,8 +39,8 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
                     "normal": contact.normal.to_array(),
                     "on_moving": contact.point_on_moving.to_array(),
                     "on_fixed": contact.point_on_fixed.to_array(),
-                    "moving": Lit::of_solid(contact.moving_feature, on_moving, &moving.body),
-                    "fixed": Lit::of_solid(contact.fixed_feature, on_fixed, &fixed.body),
+                    "moving": Lit::of_solid(contact.moving_feature, on_moving, &moving.body).told(),
+                    "fixed": Lit::of_solid(contact.fixed_feature, on_fixed, &fixed.body).told(),
                 },
             })
         }

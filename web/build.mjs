@@ -10,7 +10,17 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 import { serve } from "./serve.mjs";
-import { toolchain } from "./toolchain.mjs";
+import { Missing, toolchain } from "./toolchain.mjs";
+
+/** Without a compiler for the target it ends with 3, to be told from a failure. */
+function found() {
+  try {
+    return toolchain();
+  } catch (error) {
+    console.error(error.message);
+    process.exit(error instanceof Missing || error.code === "ENOENT" ? 3 : 1);
+  }
+}
 
 const here = dirname(fileURLToPath(import.meta.url));
 const crate = join(here, "../crates/colltrans-wasm");
@@ -18,7 +28,7 @@ const data = join(here, "../data");
 const out = join(here, "dist");
 
 if (!process.argv.includes("--no-wasm")) {
-  const { args, env } = toolchain();
+  const { args, env } = found();
   execFileSync("cargo", ["build", "--release", "--lib", "--target", "wasm32-unknown-unknown", ...args], {
     cwd: crate,
     env: { ...process.env, ...env },

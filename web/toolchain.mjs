@@ -30,7 +30,7 @@ function unpacked(folder) {
   const linker = newest(existsSync("/usr/bin") ? readdirSync("/usr/bin") : [], /^wasm-ld(-\d+)?$/);
   if (!existsSync(rustc) || !linker) return undefined;
   return {
-    args: ["-Zbuild-std=std,panic_abort"],
+    args: ["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"],
     env: {
       LD_LIBRARY_PATH: join(folder, "usr/lib/x86_64-linux-gnu"),
       RUSTC: rustc,
@@ -53,6 +53,9 @@ function unpack(folder) {
   run("apt-get", ["install", "-qq", "-y", "--no-install-recommends", linker], quiet);
 }
 
+/** There is no compiler for the target: nothing is wrong with the page. */
+export class Missing extends Error {}
+
 /** Arguments and environment for cargo; installs what can be installed if `install` is given. */
 export function toolchain(install = process.argv.includes("--install")) {
   if (installed()) return { args: [], env: {} };
@@ -64,5 +67,5 @@ export function toolchain(install = process.argv.includes("--install")) {
     const now = unpacked(folder);
     if (now) return now;
   }
-  throw new Error(`rustc has no target ${TARGET}: rustup target add ${TARGET} (or --install, from Debian's packages)`);
+  throw new Missing(`rustc has no target ${TARGET}: rustup target add ${TARGET} (or --install, from Debian's packages)`);
 }

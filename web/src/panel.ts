@@ -57,9 +57,12 @@ export class AnswerPanel {
   private readonly graze: HTMLElement;
   private readonly solid: HTMLElement;
   private readonly ignore = h("input", { type: "checkbox" });
+  private readonly check: HTMLButtonElement;
+  private readonly known = new Map<string, string>();
   private now: Shown | undefined;
 
   constructor(private readonly act: Actions) {
+    this.check = h("button", { class: "small main", onclick: () => act.verify() }, "Verify");
     for (const [value, text] of [["auto", "auto"], ["portal", "portal refinement"], ["cta", "collision translation algorithm"]]) {
       this.solver.append(h("option", { value: value! }, text!));
     }
@@ -188,6 +191,14 @@ export class AnswerPanel {
     }
   }
 
+  /** Whether something has changed: what has not is left alone, so that a click on it is not lost. */
+  private fresh(what: string, value: unknown): boolean {
+    const text = JSON.stringify(value);
+    const changed = this.known.get(what) !== text;
+    this.known.set(what, text);
+    return changed;
+  }
+
   private showSaid({ state, answer, error, took }: Shown) {
     if (error) {
       this.said.className = "said care";
@@ -211,6 +222,7 @@ export class AnswerPanel {
   }
 
   private showParts({ state, bodies, refusals }: Shown) {
+    if (!this.fresh("parts", [state.parts, bodies.moving?.body.facts, bodies.fixed?.body.facts, refusals])) return;
     const rows = (["moving", "fixed"] as const).map((slot) => {
       const facts = bodies[slot]?.body.facts;
       const refusal = refusals[slot];
@@ -234,7 +246,8 @@ export class AnswerPanel {
 
   private showProof(answer: Answer, shown: Shown) {
     const { verdict } = shown;
-    const check = h("button", { class: "small main", onclick: () => this.act.verify() }, "Verify");
+    if (!this.fresh("proof", [answer, verdict])) return;
+    const { check } = this;
     const judged = verdict && h("span", { class: `verdict ${verdict.holds ? "yes" : "no"}`, role: "status" }, verdict.text);
     if (answer.kind === "solid") {
       this.proof.replaceChildren(h("p", { class: "proof" }, "Answers for parts that are not convex are decided exactly, but carry no certificate yet."));

@@ -210,10 +210,10 @@ export class View {
     this.texts = [];
     this.tip = undefined;
     const { moving, fixed } = this.drawnBodies;
-    if (fixed) this.addBody(fixed, matrixOf(state.poses.fixed, fixed.middle, this.origin), this.colours.fixed, "solid");
+    if (fixed) this.addBody(fixed, matrixOf(state.poses.fixed, fixed.middle, this.origin), this.colours.fixed, this.plain ? "ghost" : "solid");
     if (moving) this.addMoving(moving, state, answer);
+    this.addGround();
     if (!this.plain) {
-      this.addGround();
       const first = answer?.first;
       if (first && moving && fixed) this.addContact(first, answer, state, moving, fixed);
       else if (answer?.kind === "convex" && answer.outcome === "separated") this.addGap(answer.sideways!, answer.margin!, state);
@@ -226,7 +226,7 @@ export class View {
   private addMoving(moving: Drawn, state: State, answer: Answer | undefined) {
     const t = state.t ?? 0;
     const at = (t: number) => matrixOf(state.poses.moving, moving.middle, this.origin, times(state.direction, t));
-    this.addBody(moving, at(t), this.colours.moving, "solid");
+    this.addBody(moving, at(this.plain ? 0 : t), this.colours.moving, this.plain ? "ghost" : "solid");
     if (this.plain) return;
     if (t !== 0) this.addBody(moving, at(0), this.colours.moving, "outline");
     const stop = answer?.first?.t;

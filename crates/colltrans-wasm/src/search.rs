@@ -1,7 +1,7 @@
 //! What a search did: the library's recording, as a page reads it.
 
 use colltrans::observe::{Event, Recording};
-use colltrans::{Cast, NarrowFrom, Narrowing, Options, Solver, Tracker};
+use colltrans::{NarrowFrom, Narrowing, Options, Solver, Tracker};
 use glam::DVec3;
 use serde_json::{Value, json};
 

@@ -5,14 +5,13 @@ use std::io::{self, Read as _};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{Clearance, ContactRange, Options};
+use colltrans::{Cast, Clearance, ContactRange, Options, QueryError};
 
 use crate::args::{self, PairArguments};
 use crate::body::{self, Part};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
 use crate::picture::{Scene, draw};
-use crate::query::Query;
 use crate::record::{Hulls, Name, Record};
 use crate::replay;
 use crate::report;
@@ -50,19 +49,15 @@ pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure
         graze_tolerance: arguments.graze_tolerance,
         ..Options::default()
     };
-    let [moving_body, fixed_body] = [&moving.body, &fixed.body];
-    let query = |direction| Query {
-        moving: moving_body,
-        moving_pose,
-        fixed: fixed_body,
-        fixed_pose,
-        direction,
-        options,
-    };
+    let [moving_at, fixed_at] = [moving.body.at(moving_pose), fixed.body.at(fixed_pose)];
+    let cast = |direction| Cast::new(moving_at, fixed_at, direction)?.with_options(options);
     let parts = [&moving, &fixed];
     match directions {
-        Directions::One(direction) => answer_one(arguments, asked, &query(direction), parts),
-        Directions::Many(all) => scan(arguments.json, asked, all.into_iter().map(query), parts),
+        Directions::One(direction) => answer_one(arguments, asked, &cast(direction)?, parts),
+        Directions::Many(all) => {
+            let casts = all.into_iter().map(|direction| (direction, cast(direction)));
+            scan(arguments.json, asked, casts, parts)
+        }
     }
 }
 
@@ -115,18 +110,18 @@ fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
 /// An answer, and what is said about it.
 fn ask(
     asked: Asked,
-    query: &Query<'_>,
+    cast: &Cast<'_>,
     [moving, fixed]: [&Part; 2],
-) -> Result<(Answer, Record), colltrans::QueryError> {
+) -> Result<(Answer, Record), QueryError> {
     let (answer, record) = match asked {
         Asked::Contact => {
-            let answer = query.contact_range()?;
-            let record = Record::of_answer(&answer, &query.cast()?);
+            let answer = cast.contact_range()?;
+            let record = Record::of_answer(&answer, cast);
             (Answer::Contact(answer), record)
         }
         Asked::Clearance => {
-            let answer = query.clearance()?;
-            let record = Record::of_clearance(&answer, &query.cast()?);
+            let answer = cast.clearance()?;
+            let record = Record::of_clearance(&answer, cast);
             (Answer::Clearance(answer), record)
         }
     };
@@ -136,54 +131,58 @@ fn ask(
 fn answer_one(
     arguments: &PairArguments,
     asked: Asked,
-    query: &Query<'_>,
+    cast: &Cast<'_>,
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
-    let answered = ask(asked, query, parts);
-    let (answer, record) = answered.map_err(|error| replay::failure(error, query))?;
+    let answered = ask(asked, cast, parts);
+    let (answer, record) = answered.map_err(|error| replay::failure(error, cast))?;
     let text = if arguments.json {
         record.json()?
     } else {
         match &answer {
-            Answer::Contact(answer) => report::cast(answer, &record, query.direction),
-            Answer::Clearance(answer) => report::clearance(answer, &record, query.direction),
+            Answer::Contact(answer) => report::cast(answer, &record, cast.direction()),
+            Answer::Clearance(answer) => report::clearance(answer, &record, cast.direction()),
         }
     };
     print(&text)?;
     let Some(path) = &arguments.picture else { return Ok(()) };
     let range = match answer {
         Answer::Contact(range) => range,
-        Answer::Clearance(_) => query.contact_range()?,
+        Answer::Clearance(_) => cast.contact_range()?,
     };
-    fs::write(path, draw(&Scene { query, cast: &query.cast()?, answer: &range }))
+    fs::write(path, draw(&Scene { cast, answer: &range }))
         .map_err(|error| Failure::output(path.display(), &error))
 }
 
-/// One line for each query, also for those without an answer.
+/// One line for each direction, also for those without an answer.
 fn scan<'a>(
     as_json: bool,
     asked: Asked,
-    queries: impl ExactSizeIterator<Item = Query<'a>>,
+    casts: impl ExactSizeIterator<Item = (DVec3, Result<Cast<'a>, QueryError>)>,
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
-    let (count, mut failed) = (queries.len(), 0);
+    let (count, mut failed) = (casts.len(), 0);
     if !as_json {
-        print(&report::scan_head())?;
+        print(&report::scan_head(asked))?;
         for (name, excess) in
             Hulls::of(parts[0].excess, parts[1].excess).iter().flat_map(Hulls::named)
         {
             note(&format!("{name}: {}", report::exceeds(&excess)));
         }
     }
-    for query in queries {
-        let record = match ask(asked, &query, parts) {
+    for (direction, cast) in casts {
+        let answered = cast.map_err(Failure::from).and_then(|cast| {
+            let answered = ask(asked, &cast, parts);
+            answered.map_err(|error| replay::failure(error, &cast))
+        });
+        let record = match answered {
             Ok((_, record)) => record,
-            Err(error) => Record::of_error(replay::failure(error, &query).into_message()),
+            Err(failure) => Record::of_error(failure.into_message()),
         };
         failed += usize::from(record.outcome == Name::Error);
-        let record = Record { direction: Some(query.direction.to_array()), ..record };
+        let record = Record { direction: Some(direction.to_array()), ..record };
         let text =
-            if as_json { record.json()? } else { report::scan_line(&record, query.direction) };
+            if as_json { record.json()? } else { report::scan_line(&record, asked, direction) };
         print(&text)?;
     }
     if failed > 0 {

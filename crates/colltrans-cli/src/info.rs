@@ -39,7 +39,11 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     let mut text = format!("{}\n", path.display());
     line(&mut text, "vertices", &mesh.vertices.len().to_string());
     line(&mut text, "faces", &faces(mesh));
-    if let Some([low, high]) = mesh.bounds() {
+    let not_finite = mesh.vertices.iter().position(|v| !v.is_finite());
+    let no_number = not_finite.map(|vertex| format!("none: vertex {vertex} is not finite"));
+    if let Some(why) = &no_number {
+        line(&mut text, "extent", why);
+    } else if let Some([low, high]) = mesh.bounds() {
         let [x, y, z] = (high - low).to_array().map(|c| known(c, 1e-14 * mesh.extent()));
         line(&mut text, "extent", &format!("{x} x {y} x {z}"));
         line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
@@ -51,10 +55,10 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         line(&mut text, "surface", &surface(mesh));
     }
     let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
-    let volume = if is_closed {
-        computed(mesh.signed_volume())
-    } else {
-        "none: the faces do not enclose a body".into()
+    let volume = match no_number {
+        Some(why) => why,
+        None if is_closed => computed(mesh.signed_volume()),
+        None => "none: the faces do not enclose a body".into(),
     };
     line(&mut text, "volume", &volume);
     for (name, what) in solid::describe(mesh) {

@@ -1,7 +1,7 @@
 //! `colltrans`: how far can one body translate before it touches another.
 //!
 //! The data's way: [`args`] -> [`body`] (mesh file to polyhedron; [`excess`]: what a hull has more)
-//! -> [`query`] (the library's part) -> [`record`] (what is said about the answer) -> [`report`]
+//! -> the library's `Cast` -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read.
 //! [`info`] looks at one mesh, [`assembly`] at many parts. Parts that need not be convex go from [`solid`] (mesh files to
@@ -20,7 +20,6 @@ mod inputs;
 mod numbers;
 mod picture;
 mod progress;
-mod query;
 mod record;
 mod replay;
 mod report;

@@ -19,8 +19,8 @@ pub(crate) fn known(value: f64, error: f64) -> String {
     if !value.is_finite() || !error.is_normal() || value == 0.0 {
         return number(value);
     }
-    let place = error.abs().log10().floor() as i32;
-    let leading = value.abs().log10().floor() as i32;
+    let place = decade(error);
+    let leading = decade(value);
     if place > leading {
         // Nothing of it is known.
         return if value.abs() <= error.abs() { "0".into() } else { format!("{value:.0e}") };
@@ -63,8 +63,15 @@ pub(crate) fn about(value: f64) -> String {
         return nearest;
     }
     // Rounded down; half a unit of the digit more is rounded up.
-    let exponent = nearest.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0);
-    format!("{:.0e}", value + 0.5 * 10.0_f64.powi(exponent).copysign(value))
+    let half: f64 = format!("5e{}", decade(value) - 1).parse().unwrap_or(0.0);
+    format!("{:.0e}", value + half.copysign(value))
+}
+
+/// The power of ten of the first digit of a number that is finite and not 0: exact, as no logarithm
+/// of the platform is.
+pub(crate) fn decade(value: f64) -> i32 {
+    let written = format!("{value:e}");
+    written.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0)
 }
 
 /// How many there are of something.
@@ -86,6 +93,15 @@ mod tests {
             (-1.2, "-2e0"),
         ] {
             assert_eq!(about(value), shown);
+        }
+    }
+
+    #[test]
+    fn decades_are_exact() {
+        for (value, power) in
+            [(1.0, 0), (-10.0, 1), (999.999, 2), (1e-3, -3), (0.001_f64.next_down(), -4)]
+        {
+            assert_eq!(decade(value), power, "{value}");
         }
     }
 

@@ -13,7 +13,6 @@ use serde_json::value::RawValue;
 use crate::excess::Excess;
 use crate::failure::{Code, Failure};
 use crate::numbers::{six_digits, unit_vector};
-use crate::query::exit_of;
 use crate::solid::{Answer, Kind};
 
 /// One result; fields that do not apply are left out.
@@ -68,6 +67,9 @@ pub(crate) struct Record {
     pub(crate) steps: Option<StepCounts>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) message: Option<String>,
+    /// What was done to the meshes, in a batch; other commands say it on standard error.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) notes: Vec<String>,
 }
 
 /// How a query ended.
@@ -311,6 +313,12 @@ impl StepCounts {
         let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
         Self { planar_problems, supports, pivots }
     }
+}
+
+/// The translation of the last contact, which its own cast counts backwards.
+pub(crate) fn exit_of(last: &Contact) -> f64 {
+    // Not -0.
+    0.0 - last.translation
 }
 
 /// Without -0.

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use colltrans::glam::DVec3;
 use colltrans::{Clearance, Contact, ContactRange, Grazing, Separated, Steps};
 
+use crate::cast::Asked;
 use crate::excess::Excess;
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
-use crate::query::{When, exit_of, when};
-use crate::record::{FeatureRecord, Hulls, Name, Record, solver_name};
+use crate::record::{FeatureRecord, Hulls, Name, Record, exit_of, solver_name};
 
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;
@@ -53,7 +53,10 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
         Clearance::Slides(grazing) => {
             text.push_str("slides: free, the bodies slide along each other\n");
             overlap(&mut text, grazing);
-            contact(&mut text, &grazing.contact, record, direction);
+            let first = &grazing.contact;
+            let translation = along(first.translation, first.certificate.tolerance, direction);
+            line(&mut text, "translation", &translation);
+            contact(&mut text, first, record, direction);
         }
         Clearance::Behind(last) => {
             text.push_str("behind: free, the bodies only meet behind\n");
@@ -78,18 +81,17 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
     text
 }
 
-/// One line of a scan, under [`SCAN_HEAD`].
-pub(crate) fn scan_line(record: &Record, direction: DVec3) -> String {
+/// One line of a scan, under [`scan_head`].
+pub(crate) fn scan_line(record: &Record, asked: Asked, direction: DVec3) -> String {
     let (length, error) = (direction.length(), record.tolerance.unwrap_or_default());
-    let translation = record.distance.or(record.translation).or(record.exit);
     let mut columns = vec![record.outcome.text().to_owned()];
-    match (record.outcome, translation) {
+    match (record.outcome, asked) {
         (Name::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
-        (_, Some(t)) => {
-            columns.push(known(t, error));
-            columns.push(known(t * length, error * length));
-        }
-        (_, None) => columns.extend(["-".to_owned(), "-".to_owned()]),
+        (_, Asked::Clearance) => columns.extend(safe(record.distance, direction)),
+        (_, Asked::Contact) => columns.extend(match record.translation {
+            Some(t) => [known(t, error), known(t * length, error * length)],
+            None => ["-", "-"].map(str::to_owned),
+        }),
     }
     if let Some(normal) = record.normal {
         columns.push(unit_vector(DVec3::from_array(normal)));
@@ -98,9 +100,26 @@ pub(crate) fn scan_line(record: &Record, direction: DVec3) -> String {
     format!("{d:<24} {}\n", align(&columns))
 }
 
+/// A distance that is safe, with all its digits, and a length that is, too.
+fn safe(distance: Option<f64>, direction: DVec3) -> [String; 2] {
+    let Some(distance) = distance else { return ["-", "-"].map(str::to_owned) };
+    // The direction's length and the product are rounded: three roundings down.
+    let length = distance * direction.length();
+    let length = if direction.length_squared() == 1.0 {
+        distance
+    } else {
+        (length - 4.0 * f64::EPSILON * length).max(0.0)
+    };
+    [number(distance), number(length)]
+}
+
 /// The names of the columns of a scan.
-pub(crate) fn scan_head() -> String {
-    let columns = ["outcome", "translation", "length", "normal"].map(str::to_owned);
+pub(crate) fn scan_head(asked: Asked) -> String {
+    let far = match asked {
+        Asked::Contact => "translation",
+        Asked::Clearance => "distance",
+    };
+    let columns = ["outcome", far, "length", "normal"].map(str::to_owned);
     format!("{:<24} {}\n", "direction", align(&columns))
 }
 
@@ -126,13 +145,12 @@ pub(crate) fn times(t: f64) -> String {
 }
 
 fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
-    let remark = match when(first, last) {
-        When::Behind => " (the contact lies behind)",
-        When::Now => " (the bodies overlap now)",
-        When::Ahead if first.translation.abs() <= first.certificate.tolerance => {
-            " (the bodies touch)"
-        }
-        When::Ahead => "",
+    // Also of bodies that slide: where the contact lies if their overlap is taken for real.
+    let remark = match (ContactRange::Contact { first: *first, last: *last }).clearance() {
+        Clearance::Behind(_) => " (the contact lies behind)",
+        Clearance::Overlapping { .. } => " (the bodies overlap now)",
+        _ if first.translation.abs() <= first.certificate.tolerance => " (the bodies touch)",
+        _ => "",
     };
     let translation = along(first.translation, first.certificate.tolerance, direction);
     line(text, "translation", &format!("{translation}{remark}"));

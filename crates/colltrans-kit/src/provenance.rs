@@ -110,7 +110,10 @@ mod tests {
     #[test]
     fn commands_can_be_typed_again() {
         let typed = |arguments: &[&str]| command(arguments.iter().map(|a| (*a).to_owned()));
-        assert_eq!(typed(&["/a b/colltrans", "lab", "-o", "my dir"]), "colltrans lab -o 'my dir'");
+        assert_eq!(
+            typed(&["/a b/colltrans-lab", "all", "-o", "my dir"]),
+            "colltrans-lab all -o 'my dir'"
+        );
         assert_eq!(typed(&["colltrans", "it's", ""]), r"colltrans 'it'\''s' ''");
         assert_eq!(typed(&[]), "");
     }

@@ -30,7 +30,8 @@ use plan::{Plan, Progress};
 
 pub use error::LabError;
 pub use experiments::experiments;
-pub use run::{Done, Summary, run};
+pub use report::Done;
+pub use run::{Summary, run};
 
 /// One figure or table of the paper.
 #[derive(Debug, Clone, Copy)]

@@ -4,12 +4,25 @@
 use std::fmt::{self, Write};
 use std::time::Duration;
 
+use crate::Experiment;
 use crate::claims::{PaperClaim, Verdict};
 use crate::draw::Picture;
-use crate::finding::{Claim, Figure, Table};
+use crate::finding::{Claim, Figure, Finding, Table};
 use crate::plan::Plan;
-use crate::run::Done;
 use colltrans_kit::provenance::{Provenance, for_people};
+
+/// An experiment that was run.
+#[derive(Debug, Clone)]
+pub struct Done {
+    /// Which.
+    pub experiment: Experiment,
+    /// What it found.
+    pub finding: Finding,
+    /// Its figures, drawn, in their order.
+    pub pictures: Vec<Picture>,
+    /// How long it took.
+    pub wall: Duration,
+}
 
 /// What the page is about.
 #[derive(Debug)]

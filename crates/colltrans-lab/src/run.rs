@@ -14,22 +14,9 @@ use crate::draw::{Picture, draw};
 use crate::error::LabError;
 use crate::finding::Finding;
 use crate::plan::{Plan, Progress};
-use crate::report::{self, Report};
+use crate::report::{self, Done, Report};
 use crate::{Experiment, csv, shapes};
 use colltrans_kit::provenance::{Provenance, for_people};
-
-/// An experiment that was run.
-#[derive(Debug, Clone)]
-pub struct Done {
-    /// Which.
-    pub experiment: Experiment,
-    /// What it found.
-    pub finding: Finding,
-    /// Its figures, drawn, in their order.
-    pub pictures: Vec<Picture>,
-    /// How long it took.
-    pub wall: Duration,
-}
 
 /// What a run found, in short: its [`Display`](fmt::Display) is for people.
 #[derive(Debug, Clone)]

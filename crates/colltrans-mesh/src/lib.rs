@@ -24,12 +24,12 @@ mod write;
 use std::fmt;
 use std::path::Path;
 
+use error::Fault;
 use merge::{Places, Precision};
 use sniff::{Content, sniff};
 
 pub use error::{Error, Place};
-pub use merge::Merged;
-pub use mesh::Mesh;
+pub use mesh::{Merged, Mesh};
 pub use write::{to_obj, to_off, to_stl, write};
 
 /// A format of mesh files, told by the file's extension.
@@ -159,6 +159,9 @@ pub fn parse_with(
 ) -> Result<Mesh, Error> {
     if let Some(tolerance) = options.merge_tolerance.filter(|t| !t.is_finite() || *t < 0.0) {
         return Err(Error::MergeTolerance { path: path.to_owned(), tolerance });
+    }
+    if bytes.is_empty() {
+        return Err(Fault::new(Place::End, "the file is empty").in_file(path));
     }
     if let Some(content) = sniff(&bytes).filter(|content| *content != Content::Mesh(format)) {
         let found = content.name(&bytes);

@@ -20,6 +20,7 @@
 //! a few dozen roundings of `2^-53 m`: `2^-48 m` covers it.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use glam::DVec3;
 
@@ -37,11 +38,11 @@ pub(crate) enum Precision {
 impl Precision {
     /// The default tolerance for vertices of this precision.
     fn tolerance(self, vertices: &[DVec3]) -> f64 {
-        let exponent = match self {
-            Self::Single => -22,
-            Self::Double => -48,
+        let share = match self {
+            Self::Single => 1.0 / (1_u64 << 22) as f64,
+            Self::Double => 1.0 / (1_u64 << 48) as f64,
         };
-        largest_magnitude(vertices) * 2.0_f64.powi(exponent)
+        largest_magnitude(vertices) * share
     }
 }
 
@@ -54,24 +55,35 @@ pub(crate) enum Places {
     Closed,
 }
 
-/// What was merged when a file was read.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Merged {
-    /// The distance up to which vertices on open edges were merged, in the file's unit; 0 if only
-    /// equal ones were.
-    pub tolerance: f64,
-    /// How many vertices were replaced by another with different coordinates.
-    pub vertices: usize,
-    /// The largest distance between a vertex and the one that took its place.
-    pub largest_distance: f64,
-    /// How many vertices had more than one other to choose from: where there are any, the
-    /// tolerance is as large as details of the surface.
-    pub ambiguous: usize,
-    /// How many faces were left without area, as less than three different corners, and dropped.
-    pub dropped_faces: usize,
-}
-
 impl Mesh {
+    /// Merges vertices with equal coordinates (bit for bit, except that `-0` equals `0`).
+    ///
+    /// Vertices keep the order of their first appearance. Steps that a face then makes to and
+    /// fro are taken out of it, and so are faces with fewer than three corners left: such a
+    /// face has no area, and the edges it joined become neighbours.
+    #[must_use]
+    pub fn weld(&self) -> Self {
+        let mut index_of = HashMap::with_capacity(self.vertices.len() / 4);
+        let mut vertices = Vec::new();
+        let welded: Vec<u32> = self
+            .vertices
+            .iter()
+            .map(|&vertex| match index_of.entry(key(vertex)) {
+                Entry::Occupied(known) => *known.get(),
+                Entry::Vacant(new) => {
+                    let index = vertices.len() as u32;
+                    vertices.push(vertex);
+                    *new.insert(index)
+                }
+            })
+            .collect();
+        let renamed = |face: &Vec<u32>| face.iter().map(|&v| welded[v as usize]).collect();
+        let faces = self.faces.iter().map(renamed).collect();
+        let mut mesh = Self { vertices, faces, merged: self.merged };
+        mesh.drop_flat_faces();
+        mesh
+    }
+
     /// Merges twins along open edges. `None` is the default tolerance.
     pub(crate) fn close(&mut self, asked: Option<f64>, precision: Precision, places: Places) {
         self.merged.tolerance = asked.unwrap_or_else(|| precision.tolerance(&self.vertices));
@@ -168,6 +180,12 @@ impl Mesh {
         });
         self.merged.dropped_faces += before - self.faces.len();
     }
+}
+
+/// Equal exactly for equal coordinates.
+fn key(vertex: DVec3) -> [u64; 3] {
+    // Adding 0 turns -0 into 0 and changes nothing else.
+    vertex.to_array().map(|c| (c + 0.0).to_bits())
 }
 
 /// A cycle of corners without repeated corners in a row (`a a`) and without spikes (`a b a`).
@@ -295,6 +313,25 @@ fn largest_magnitude(vertices: &[DVec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn welding_merges_signed_zeros_and_drops_faces_without_area() {
+        let mesh = Mesh::new(
+            vec![
+                DVec3::new(0.0, 0.0, 0.0),
+                DVec3::new(1.0, 0.0, 0.0),
+                DVec3::new(0.0, 1.0, 0.0),
+                DVec3::new(-0.0, 0.0, 0.0),
+                DVec3::new(1.0, 0.0, 1e-300),
+            ],
+            vec![vec![0, 1, 2], vec![0, 3, 1], vec![3, 1, 4, 2], vec![2, 0, 3, 1]],
+        );
+        let welded = mesh.weld();
+        assert_eq!(welded.vertices.len(), 4, "only the two zeros are equal");
+        assert_eq!(welded.faces, [vec![0, 1, 2], vec![0, 1, 3, 2], vec![2, 0, 1]]);
+        assert_eq!(welded.merged.dropped_faces, 1);
+        assert_eq!(welded.weld(), welded);
+    }
 
     #[test]
     fn faces_lose_repeated_corners_and_spikes() {

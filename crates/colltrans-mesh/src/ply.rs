@@ -144,10 +144,11 @@ fn smallest_size(property: &PropertyType) -> usize {
 fn check_properties(header: &Header) -> Result<Precision, Fault> {
     let fault = |what: String| Fault::new(Place::Header, what);
     let element = |name: &str| header.elements.iter().find(|(n, _)| n.as_str() == name);
-    let vertex = element("vertex").map(|(_, e)| &e.properties);
+    let (_, vertex) =
+        element("vertex").ok_or_else(|| fault("there is no element `vertex`".into()))?;
     let mut precision = Precision::Double;
     for coordinate in ["x", "y", "z"] {
-        let property = vertex.and_then(|properties| properties.get(coordinate));
+        let property = vertex.properties.get(coordinate);
         let property = property
             .ok_or_else(|| fault(format!("the element `vertex` has no property `{coordinate}`")))?;
         if matches!(property.data_type, PropertyType::Scalar(ScalarType::Float)) {

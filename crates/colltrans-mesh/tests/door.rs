@@ -411,3 +411,12 @@ fn mangled_files_give_sound_meshes_or_errors() {
     }
     assert!((1000..39_000).contains(&read_well), "{read_well}");
 }
+
+#[test]
+fn files_that_hold_nothing_are_named_as_such() {
+    for (format, _) in texts() {
+        assert!(message(format, Vec::new()).ends_with("end of file: the file is empty"));
+    }
+    let header = message(Format::Ply, b"ply\nformat ascii 1.0\nend_header\n".to_vec());
+    assert!(header.ends_with("header: there is no element `vertex`"), "{header}");
+}

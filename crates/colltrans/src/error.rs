@@ -68,6 +68,12 @@ pub enum BuildError {
         /// The depth that would have been tolerated.
         tolerance: f64,
     },
+    /// The depth to be tolerated is negative or no number.
+    #[error("the tolerance {tolerance} is negative or no number")]
+    Tolerance {
+        /// The tolerance as given.
+        tolerance: f64,
+    },
 }
 
 /// Why faces do not form the boundary of one body.

@@ -2,9 +2,9 @@
 
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
-    BuildError, Cast, Certificate, Clearance, ContactRange, ConvexPolyhedron, MAX_MAGNITUDE,
-    MIN_MAGNITUDE, Narrowing, Options, Outcome, Pose, PoseError, QueryError, Separation,
-    TopologyError, cast,
+    BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
+    MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, Pose, PoseError, QueryError,
+    Separation, TopologyError, cast,
 };
 use colltrans_oracle::exact::Vector;
 use colltrans_oracle::settings::{FAMILIES, Setting, cuboid, setting};
@@ -297,6 +297,22 @@ fn tampered_certificates_are_refused() {
         assert!(verify(&Certificate { weights: [bad, 0.0, 0.0], ..good }).is_err());
     }
     assert!(verify(&Certificate { upper: 1.0, ..good }).is_err());
+    // 2 is proven by this plane, and not one bit more.
+    assert_eq!(verify(&Certificate { lower: 2.0 - 2e-15, ..good }), verify(&good));
+    for lie in [2.0_f64.next_up(), 2.0 + 4e-14] {
+        let refused = verify(&Certificate { lower: lie, ..good }).unwrap_err();
+        assert!(matches!(refused, CertificateError::Bound { .. }), "{refused}");
+    }
+    let refused = verify(&Certificate { lower: 2.0, upper: 1.0, ..good }).unwrap_err();
+    assert_eq!(refused, CertificateError::Order { lower: 2.0, upper: 1.0 });
+    for lie in [2.0, 2.0_f64.next_up(), good.lower] {
+        let refused = verify(&Certificate { upper: lie, ..good }).unwrap_err();
+        assert!(matches!(refused, CertificateError::Bound { .. }), "{refused}");
+    }
+    for lie in [-1e-15, -1.0, 100.0 * good.tolerance] {
+        let refused = verify(&Certificate { tolerance: lie, ..good }).unwrap_err();
+        assert!(matches!(refused, CertificateError::Tolerance { .. }), "{refused}");
+    }
     let mut pairs = good.pairs;
     pairs[0].fixed = 99;
     assert!(verify(&Certificate { pairs, ..good }).is_err());
@@ -313,4 +329,53 @@ fn tampered_certificates_are_refused() {
         assert!(verify(&Separation { margin: bad, ..good }).is_err());
     }
     assert!(verify(&Separation { normal: -good.normal, ..good }).is_err());
+    // The shadows are 4 apart.
+    assert!(verify(&Separation { margin: 4.0 - 4e-15, ..good }).is_ok());
+    let refused = verify(&Separation { margin: 4.0_f64.next_up(), ..good }).unwrap_err();
+    assert!(matches!(refused, CertificateError::Bound { .. }), "{refused}");
+}
+
+#[test]
+fn corners_of_a_box_may_be_given_in_any_order() {
+    let (low, high) = (DVec3::new(-1.0, 2.0, -3.0), DVec3::new(4.0, 5.0, 6.0));
+    let swapped = ConvexPolyhedron::cuboid(DVec3::new(4.0, 2.0, 6.0), DVec3::new(-1.0, 5.0, -3.0));
+    let body = ConvexPolyhedron::cuboid(high, low).unwrap();
+    for body in [body, swapped.unwrap()] {
+        assert_eq!(body.volume(), 135.0);
+        let corners = body.vertices().iter();
+        assert_eq!(corners.clone().copied().reduce(DVec3::min), Some(low));
+        assert_eq!(corners.copied().reduce(DVec3::max), Some(high));
+    }
+    assert!(ConvexPolyhedron::cuboid(low, DVec3::NAN).is_err());
+}
+
+#[test]
+fn convex_tolerances_are_lengths() {
+    let vertices = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    for bad in [f64::NAN, -1e-9, f64::NEG_INFINITY] {
+        let refused = ConvexPolyhedron::from_mesh(&vertices, &faces, bad).unwrap_err();
+        assert!(matches!(refused, BuildError::Tolerance { .. }), "{refused}");
+    }
+    for good in [0.0, -0.0, 1.0, f64::INFINITY] {
+        assert!(ConvexPolyhedron::from_mesh(&vertices, &faces, good).is_ok());
+    }
+}
+
+#[test]
+fn a_range_knows_the_clearance() {
+    for (family, ..) in FAMILIES {
+        for seed in 0..20 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let cast = setting.query(&bodies).expect("a query");
+            let (Ok(range), Ok(clearance)) = (cast.contact_range(), cast.clearance()) else {
+                continue;
+            };
+            let same =
+                std::mem::discriminant(&range.clearance()) == std::mem::discriminant(&clearance);
+            assert!(same, "{setting}");
+            assert_eq!(range.clearance().distance(), clearance.distance(), "{setting}");
+        }
+    }
 }

@@ -475,7 +475,7 @@ mod tests {
 
     #[test]
     fn commands_name_no_folders() {
-        let run = serde_json::json!({ "command": "table --quick --json /tmp/x/t.json" });
+        let run = serde_json::json!({ "command": "table --quick --json /elsewhere/t.json" });
         let line = cargo_command(&run);
         assert_eq!(
             line,

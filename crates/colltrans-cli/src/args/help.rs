@@ -111,6 +111,7 @@ Each result is one JSON object with those of these fields that apply:
                parts too, and a translation is a lower bound: they meet no earlier, if at all.
   solver steps what narrowed the search, and how much work it was
   message      what is wrong; grazing: along which direction the shadows overlap
+  notes        what was merged or mended when the meshes were read
 
 Translations, bounds and tolerance are in multiples of the direction, other lengths in the unit of
 the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results

@@ -116,11 +116,11 @@ impl Angles {
     }
 }
 
-/// Exact at multiples of 90 degrees.
+/// Exact at multiples of 90 degrees, and the same bits on every platform, as those of `std` are not.
 fn sin_cos_degrees(degrees: f64) -> [f64; 2] {
     let turn = degrees.rem_euclid(360.0);
     let quarter = (turn / 90.0).round();
-    let (sin, cos) = (turn - 90.0 * quarter).to_radians().sin_cos();
+    let (sin, cos) = libm::sincos((turn - 90.0 * quarter).to_radians());
     match quarter as i64 % 4 {
         0 => [sin, cos],
         1 => [cos, -sin],
@@ -259,6 +259,18 @@ mod tests {
         assert_eq!(quarter.matrix(), DMat3::from_cols(DVec3::Y, DVec3::NEG_X, DVec3::Z));
         let both = place("0,0,0,0,0,0,1").unwrap().pose(angles("1,2,3").ok(), "--moving");
         assert!(both.unwrap_err().contains("give one of them"));
+    }
+
+    #[test]
+    fn angles_have_the_same_bits_everywhere() {
+        for (degrees, bits) in [
+            (30.0, [0x3fdf_ffff_ffff_ffff, 0x3feb_b67a_e858_4cab]),
+            (-77.25, [0xbfef_3601_191f_a459, 0x3fcc_3fd0_44dd_3d45]),
+            (1e-3, [0x3ef2_4d15_2115_36db, 0x3fef_ffff_ffeb_111d]),
+            (44.999, [0x3fe6_a084_84bb_5f49, 0x3fe6_a0b8_4825_7db4]),
+        ] {
+            assert_eq!(sin_cos_degrees(degrees).map(f64::to_bits), bits, "{degrees}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{ConvexPolyhedron, Options, Pose, QueryError};
+use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -14,7 +14,6 @@ use super::pipeline::Line;
 use crate::args::{BodyArguments, SolverName};
 use crate::body::{self, Part};
 use crate::inputs::FilesRead;
-use crate::query;
 use crate::record::{Hulls, Name, Record};
 use crate::replay;
 use crate::solid::{self, Question};
@@ -32,7 +31,7 @@ pub(crate) struct Desk {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object that holds a query")]
 struct Query {
     id: Option<Box<RawValue>>,
     moving: BodySource,
@@ -60,7 +59,7 @@ enum Asked {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object that holds a body")]
 struct BodySource {
     points: Option<Vec<[f64; 3]>>,
     mesh: Option<PathBuf>,
@@ -70,7 +69,7 @@ struct BodySource {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields, default, expecting = "an object that holds a pose")]
 struct PoseSource {
     translation: [f64; 3],
     rotation: [f64; 4],
@@ -204,23 +203,18 @@ impl Query {
             graze_tolerance: self.graze_tolerance.unwrap_or_default(),
             ..Options::default()
         };
-        let query = query::Query {
-            moving: &moving.body,
-            moving_pose: poses[0],
-            fixed: &fixed.body,
-            fixed_pose: poses[1],
-            direction: DVec3::from_array(self.direction),
-            options,
+        let (moving_at, fixed_at) = (moving.body.at(poses[0]), fixed.body.at(poses[1]));
+        let direction = DVec3::from_array(self.direction);
+        let cast = Cast::new(moving_at, fixed_at, direction)
+            .and_then(|cast| cast.with_options(options))
+            .map_err(|error| error.to_string())?;
+        let answered = match self.asked.unwrap_or(Asked::Contact) {
+            Asked::Contact => cast.contact_range().map(|range| Record::of_answer(&range, &cast)),
+            Asked::Clearance => cast.clearance().map(|far| Record::of_clearance(&far, &cast)),
         };
-        let answer = || {
-            let cast = query.cast()?;
-            Ok(match self.asked.unwrap_or(Asked::Contact) {
-                Asked::Contact => Record::of_answer(&cast.contact_range()?, &cast),
-                Asked::Clearance => Record::of_clearance(&cast.clearance()?, &cast),
-            })
-        };
-        let record = answer().map_err(|e: QueryError| replay::failure(e, &query).into_message())?;
-        Ok(Record { hull: Hulls::of(moving.excess, fixed.excess), ..record })
+        let record = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
+        let notes = [moving, fixed].into_iter().filter_map(|part| part.note.clone()).collect();
+        Ok(Record { hull: Hulls::of(moving.excess, fixed.excess), notes, ..record })
     }
 
     /// At least one of the bodies is a solid.
@@ -243,7 +237,10 @@ impl Query {
             ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
         };
         let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
-        Ok(Record::of_solids(&answer).without_names())
+        let bodies = [question.moving, question.fixed];
+        let told = bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
+        let notes = told.cloned().collect();
+        Ok(Record { notes, ..Record::of_solids(&answer).without_names() })
     }
 }
 
@@ -286,5 +283,11 @@ fn syntax_message(number: u64, error: &serde_json::Error) -> String {
     let message = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     let what = message.strip_suffix(&place).unwrap_or(&message);
+    // The parser names types by what Rust calls them.
+    let what = what
+        .replace("floating point", "number")
+        .replace("expected f64", "expected a number")
+        .replace("expected path string", "expected a path")
+        .replace("expected an array of length", "expected numbers in an array of length");
     format!("line {number}, column {}: {what}", error.column())
 }

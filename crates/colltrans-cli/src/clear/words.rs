@@ -3,7 +3,7 @@
 use colltrans::Feature;
 use colltrans::glam::DVec3;
 
-use crate::numbers::{known_vector, number, unit_vector};
+use crate::numbers::{decade, known_vector, number, unit_vector};
 use crate::report::{along, line, times};
 use crate::solid::{Answer, Kind, Overlap, Stop, Touch};
 
@@ -83,7 +83,7 @@ fn overlaps(text: &mut String, answer: &Answer<'_>) {
 /// A few digits, and no less than the value.
 fn above(value: f64) -> String {
     let short: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    let step = 10.0_f64.powi(value.log10().floor() as i32 - 3);
+    let step: f64 = format!("1e{}", decade(value) - 3).parse().unwrap_or(0.0);
     let rounded = if short >= value { short } else { short + step };
     let shown: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
     number(if shown >= value { shown } else { value })

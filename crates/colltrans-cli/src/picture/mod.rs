@@ -14,22 +14,23 @@
 //!
 //! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths.
 //!
-//! The data's way: [`story`] (what is to be shown) -> [`view`] (from where) -> [`layout`] (how
-//! large) -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
+//! The data's way: [`story`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
+//! (how large, by [`size`]) -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
 
 mod layout;
 mod notes;
 mod parts;
 mod raster;
+mod size;
 mod solid;
 mod story;
 mod svg;
 mod view;
+mod viewpoint;
 
 use colltrans::ContactRange;
 use colltrans::glam::{DVec2, DVec3};
 
-use crate::query::Query;
 use layout::Layout;
 use notes::Notes;
 pub(crate) use parts::draw_solids;
@@ -40,8 +41,6 @@ use view::View;
 
 /// A query and its answer.
 pub(crate) struct Scene<'a> {
-    pub(crate) query: &'a Query<'a>,
-    /// The query as the library sees it.
     pub(crate) cast: &'a colltrans::Cast<'a>,
     pub(crate) answer: &'a ContactRange,
 }
@@ -80,8 +79,8 @@ struct Cast {
 pub(crate) fn draw(scene: &Scene<'_>) -> String {
     let story = Story::of(scene);
     let cast = Cast::of(scene, &story);
-    let unit = scene.query.direction.normalize();
-    let view = View::choose([&cast.stop, &cast.fixed], unit, story.looked_along());
+    let unit = scene.cast.direction().normalize();
+    let view = viewpoint::choose([&cast.stop, &cast.fixed], unit, story.looked_along());
     let layout = Layout::of(&cast, &story, &view);
     let on_page = |p: DVec3| layout.on_page(view.project(p));
     let mut page = Page::new(layout.window);
@@ -104,17 +103,17 @@ fn fixed_is_nearer(story: &Story, view: &View) -> bool {
 
 impl Cast {
     fn of(scene: &Scene<'_>, story: &Story) -> Self {
-        let query = scene.query;
-        let fixed = Solid::new(query.fixed, &query.fixed_pose, story.origin);
-        let moving = Solid::new(query.moving, &query.moving_pose, story.origin);
-        Self::placed(&moving, fixed, query.direction, story)
+        let cast = scene.cast;
+        let fixed = Solid::new(cast.fixed(), &cast.fixed_pose(), story.origin);
+        let moving = Solid::new(cast.moving(), &cast.moving_pose(), story.origin);
+        Self::placed(&moving, fixed, cast.direction(), story)
     }
 
     /// From where the bodies are.
     fn placed(moving: &Solid, fixed: Solid, direction: DVec3, story: &Story) -> Self {
         let unit = direction.normalize();
         let stop = moving.moved(unit * story.stop);
-        let size = layout::working_size(stop.ball().1, fixed.ball().1, story.stop.abs());
+        let size = size::working_size(stop.ball().1, fixed.ball().1, story.stop.abs());
         let longest = 5.0 * size;
         let shown = story.stop.clamp(-longest, longest);
         let way = unit * shown;
@@ -182,7 +181,7 @@ impl Cast {
 mod tests {
     use super::*;
     use colltrans::glam::DQuat;
-    use colltrans::{ConvexPolyhedron, Options, Pose};
+    use colltrans::{ConvexPolyhedron, Pose};
 
     /// Numbers from -1 to 1.
     fn random(state: &mut u64) -> f64 {
@@ -234,23 +233,16 @@ mod tests {
             let fixed_pose = random_pose(state, 1.0);
             let towards = fixed_pose.translation() - moving_pose.translation();
             let direction = towards + 0.7 * random_vector(state);
-            let query = Query {
-                moving: &moving,
-                moving_pose,
-                fixed: &fixed,
-                fixed_pose,
-                direction,
-                options: Options::default(),
-            };
-            let answer = query.contact_range().unwrap();
-            let question = query.cast().unwrap();
-            let scene = Scene { query: &query, cast: &question, answer: &answer };
+            let (moving, fixed) = (moving.at(moving_pose), fixed.at(fixed_pose));
+            let question = colltrans::Cast::new(moving, fixed, direction).unwrap();
+            let answer = question.contact_range().unwrap();
+            let scene = Scene { cast: &question, answer: &answer };
             let story = Story::of(&scene);
             if story.stop < 0.0 {
                 continue;
             }
             let cast = Cast::of(&scene, &story);
-            let view = View::choose(
+            let view = viewpoint::choose(
                 [&cast.stop, &cast.fixed],
                 direction.normalize(),
                 [story.normal, -story.normal][round % 2],

@@ -11,14 +11,15 @@ use std::path::Path;
 
 use colltrans::glam::{DVec2, DVec3};
 
-use super::layout::{Layout, working_size};
+use super::layout::Layout;
 use super::notes::Notes;
 use super::raster::Raster;
+use super::size::working_size;
 use super::solid::{Paint, SHADES, SMOOTH, Solid, brightness};
 use super::story::{Story, components, quantity, short};
 use super::svg::{Page, Stroke};
 use super::view::View;
-use super::{Cast, FIXED, MOVING};
+use super::{Cast, FIXED, MOVING, viewpoint};
 use crate::solid::{Answer, Kind, Question, Stop};
 
 /// Hidden edges are drawn if no more edges than this are drawn at all.
@@ -38,7 +39,7 @@ pub(crate) fn draw_solids(question: &Question<'_>, answer: &Answer<'_>) -> Strin
     let fixed = Solid::of_triangles(vertices, &fixed_triangles);
     let cast = Cast::placed(&moving, fixed, direction, &story);
     let unit = direction.normalize();
-    let view = View::choose([&cast.stop, &cast.fixed], unit, story.normal);
+    let view = viewpoint::choose([&cast.stop, &cast.fixed], unit, story.normal);
     let layout = Layout::of(&cast, &story, &view);
     let eye = Eye { view: &view, layout: &layout };
     let mut page = Page::new(layout.window);

@@ -1,10 +1,11 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Contact, ContactRange, Feature, Features, Separated};
+use colltrans::{Clearance, Contact, ContactRange, Feature, Features, Separated};
 
-use super::{Cast, Scene, Solid, layout};
-use crate::query::{When, when};
+use super::size::working_size;
+use super::{Cast, Scene, Solid};
+use crate::numbers::decade;
 
 /// What is shown and said.
 pub(super) struct Story {
@@ -29,13 +30,12 @@ impl Story {
     pub(super) fn of(scene: &Scene<'_>) -> Self {
         match scene.answer {
             ContactRange::Contact { first, last } => {
-                Self::of_contact(scene, first, "Contact", when(first, last), None)
+                Self::of_contact(scene, [first, last], "Contact", None)
             }
             ContactRange::Grazing { first, last } => {
                 let overlap = short(first.overlap);
                 let also = format!("the bodies slide along each other, overlapping by {overlap}");
-                let when = when(&first.contact, &last.contact);
-                Self::of_contact(scene, &first.contact, "Grazing", when, Some(also))
+                Self::of_contact(scene, [&first.contact, &last.contact], "Grazing", Some(also))
             }
             ContactRange::Separated(separated) => Self::of_separated(scene, separated),
         }
@@ -43,12 +43,11 @@ impl Story {
 
     fn of_contact(
         scene: &Scene<'_>,
-        contact: &Contact,
+        [contact, last]: [&Contact; 2],
         name: &str,
-        when: When,
         also: Option<String>,
     ) -> Self {
-        let length = scene.query.direction.length();
+        let length = scene.cast.direction().length();
         let (features, points) = (contact.features(scene.cast), contact.points(scene.cast));
         let way = quantity(contact.translation, length);
         let proof = &contact.certificate;
@@ -74,10 +73,12 @@ impl Story {
             touches: true,
             features: Some(features),
             margin: None,
-            headline: match when {
-                When::Ahead => format!("{name} at {way}"),
-                When::Now => format!("{name}: the bodies overlap now, first contact at {way}"),
-                When::Behind => format!("{name}: lies behind, at {way}"),
+            headline: match (ContactRange::Contact { first: *contact, last: *last }).clearance() {
+                Clearance::Overlapping { .. } => {
+                    format!("{name}: the bodies overlap now, first contact at {way}")
+                }
+                Clearance::Behind(_) => format!("{name}: lies behind, at {way}"),
+                _ => format!("{name} at {way}"),
             },
             way,
             details,
@@ -87,11 +88,11 @@ impl Story {
     /// The bodies pass each other: shown where they are side by side.
     fn of_separated(scene: &Scene<'_>, separated: &Separated) -> Self {
         let normal = separated.certificate.normal;
-        let query = scene.query;
-        let origin = query.fixed_pose.transform_point(query.fixed.vertices()[0]);
-        let moving = Solid::new(query.moving, &query.moving_pose, origin);
-        let fixed = Solid::new(query.fixed, &query.fixed_pose, origin);
-        let unit = query.direction.normalize();
+        let cast = scene.cast;
+        let origin = cast.fixed_pose().transform_point(cast.fixed().vertices()[0]);
+        let moving = Solid::new(cast.moving(), &cast.moving_pose(), origin);
+        let fixed = Solid::new(cast.fixed(), &cast.fixed_pose(), origin);
+        let unit = cast.direction().normalize();
         let ahead = (fixed.support(-normal) - moving.support(normal)).dot(unit);
         let margin = separated.certificate.margin;
         Self {
@@ -132,7 +133,7 @@ impl Story {
         let [from, to] = self.gap(cast)?;
         let along = cast.way.normalize_or(self.normal.any_orthonormal_vector());
         let across = self.normal.cross(along);
-        let half = 1.1 * layout::working_size(cast.stop.ball().1, cast.fixed.ball().1, 0.0);
+        let half = 1.1 * working_size(cast.stop.ball().1, cast.fixed.ball().1, 0.0);
         let middle = 0.5 * (from + to);
         let corner = |a: f64, b: f64| middle + a * half * along + b * half * across;
         Some([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)])
@@ -162,7 +163,7 @@ pub(super) fn short(value: f64) -> String {
     if !(1e-4..1e6).contains(&magnitude) {
         return format!("{value:.2e}");
     }
-    let decimals = (5 - magnitude.log10().floor() as i32).clamp(0, 9) as usize;
+    let decimals = (5 - decade(magnitude)).clamp(0, 9) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -264,3 +264,61 @@ fn results_never_overwrite_their_queries() {
         .unwrap();
     assert_eq!(many.status.code(), Some(2));
 }
+
+#[test]
+fn errors_speak_json_and_not_rust() {
+    let text = r#"{"moving": 3}
+{"moving": {"points": "all"}}
+{"moving": {"points": [[1, 2, "z"]]}}
+{"direction": "x"}
+{"direction": [1, "a", 2]}
+{"moving_pose": 4}
+{"graze_tolerance": "a"}
+{"ignore_start_overlaps": 1}
+{"moving": {"mesh": 3}}
+[]"#;
+    let (_, results) = run(text, &[]);
+    assert_eq!(results.len(), 10);
+    for (result, word) in results.iter().zip([
+        "expected an object that holds a body",
+        "expected a sequence",
+        "expected a number",
+        "expected numbers in an array of length 3",
+        "expected a number",
+        "expected an object that holds a pose",
+        "expected a number",
+        "expected a boolean",
+        "expected a path",
+        "expected an object that holds a query",
+    ]) {
+        let message = result["message"].as_str().unwrap();
+        assert!(message.contains(word), "{message}");
+        for name in ["f64", "struct", "Query", "Source", "tuple", "PathBuf"] {
+            assert!(!message.contains(name), "{message}");
+        }
+    }
+}
+
+#[test]
+fn what_was_merged_is_told_with_the_result() {
+    let folder = folder();
+    // The tetrahedron's first corner once more, a little off, for one of its faces.
+    let text = "OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1e-17 0 0\n\
+        3 0 2 1\n3 0 1 3\n3 4 3 2\n3 1 2 3\n";
+    std::fs::write(folder.path().join("twins.off"), text).unwrap();
+    let query = |of: &str| {
+        format!(
+            r#"{{"moving": {{"{of}": "twins.off"}}, "fixed": {{"{of}": "cube.off"}}, "direction": [1,0,0]}}"#
+        )
+    };
+    let queries = format!("{}\n{}\n", query("mesh"), query("solid"));
+    std::fs::write(folder.path().join("q.jsonl"), queries).unwrap();
+    let output = colltrans(folder.path()).args(["batch", "q.jsonl"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
+    for line in stdout(&output).lines() {
+        let notes = json(line)["notes"].clone();
+        assert_eq!(notes.as_array().map(Vec::len), Some(1), "{line}");
+        let note = notes[0].as_str().unwrap();
+        assert!(note.contains("twins.off: 1 vertex on open edges merged"), "{note}");
+    }
+}

@@ -368,3 +368,54 @@ fn the_cache_has_a_size() {
     assert_eq!(stdout(&batch("0")), expected);
     assert_eq!(batch("much").status.code(), Some(2));
 }
+
+#[test]
+fn a_scan_of_clearances_never_says_more_than_is_proven() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("d.txt"), "x\n0.7,0.01,0.02\n-x\nz\n").unwrap();
+    let arguments = [
+        "clearance",
+        "cube.off",
+        "cube.off",
+        "--moving-pose=-3.1,0.3,0.1",
+        "--directions",
+        "d.txt",
+    ];
+    let text = stdout(&run(path, &arguments));
+    let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
+    assert_eq!(lines[0], ["direction", "outcome", "distance", "length", "normal"]);
+    let records = stdout(&run(path, &[&arguments[..], &["--json"]].concat()));
+    let records: Vec<_> = records.lines().map(json).collect();
+    let longer = 0.7_f64.hypot(0.01).hypot(0.02);
+    for (line, record, length) in [(&lines[1], &records[0], 1.0), (&lines[2], &records[1], longer)]
+    {
+        assert_eq!(line[1], "blocked");
+        let [distance, far] = [line[2], line[3]].map(|word| word.parse::<f64>().unwrap());
+        assert_eq!(record["distance"], distance);
+        assert!(far <= distance * length && far > distance * length * (1.0 - 1e-14), "{line:?}");
+    }
+    assert!(lines[1][2].parse::<f64>().unwrap() <= 2.1, "the cubes are 2.1 apart");
+    assert_eq!(lines[3][1..4], ["behind", "-", "-"]);
+    assert_eq!(lines[4][1..4], ["separated", "-", "-"]);
+}
+
+#[test]
+fn where_sliding_bodies_meet_is_said() {
+    let folder = folder();
+    let beside = ["clearance", "cube.off", "cube.off", "--moving-pose=-3,1,0", "--direction", "x"];
+    let text = stdout(&run(folder.path(), &beside));
+    assert!(text.starts_with("slides: free"), "{text}");
+    let translation = text.lines().find(|line| line.starts_with("  translation"));
+    assert_eq!(translation, Some("  translation  2 times the direction, a length of 2"), "{text}");
+}
+
+#[test]
+fn a_mesh_that_is_not_finite_has_no_volume() {
+    let folder = folder();
+    let text = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 nan 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    std::fs::write(folder.path().join("nan.off"), text).unwrap();
+    let text = stdout(&run(folder.path(), &["info", "nan.off"]));
+    assert!(text.contains("volume       none: vertex 2 is not finite"), "{text}");
+    assert!(text.contains("extent       none: vertex 2 is not finite"), "{text}");
+}

@@ -19,7 +19,7 @@ fn page(done: &[Done], all: usize, is_optimised: bool) -> String {
         versions: "colltrans 0".into(),
         build: "stone".into(),
         date: "2007-06-01 12:00 UTC".into(),
-        command: "colltrans lab all -o 'a & b'".into(),
+        command: "colltrans-lab all -o 'a & b'".into(),
         is_optimised,
     };
     let plan = Plan { scale: Scale::Full, seed: 42, parts: None };
@@ -44,7 +44,7 @@ fn it_says_everything() {
     for text in [
         "Abacus &lt;1&gt;",
         "2007-06-01 12:00 UTC",
-        "colltrans lab all -o 'a &amp; b'",
+        "colltrans-lab all -o 'a &amp; b'",
         "<dt>Seed</dt><dd>42</dd>",
         "<dt>Scale</dt><dd>full</dd>",
         "3 min 20 s",

@@ -1,4 +1,4 @@
-//! Certificates: proofs of an answer that two support evaluations can check.
+//! Certificates: proofs of an answer that anyone can check who has the two bodies.
 //!
 //! Notation (section 1 of the paper). `P` moves along `d`, `Q` is fixed, both are placed in the
 //! world; `M = {q - p : p in P, q in Q}`. The line `t d` meets `M` for `t` in `[coll, exit]`.
@@ -8,11 +8,15 @@
 //!   `sum w_i (q_i - p_i) = t d`; then `coll <= t`.
 //! - Separation: `n` with `n.d = 0` and `min_Q n.q - max_P n.p > 0`.
 //!
-//! Rounding: see [`noise`]. The two bounds differ by at most [`Certificate::tolerance`].
+//! Rounding: see [`noise`]. The two bounds differ by at most [`Certificate::tolerance`]. A search lowers
+//! what it computed by more than its rounding can be. The check computes the heights of the vertices
+//! along the normal with hardly any ([`extent`](crate::number::extent)), so it accepts no lower bound
+//! and no margin beyond what the plane proves, and still each that a search has lowered.
 
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::number::extent;
 use crate::number::noise::{self, Noise};
 use crate::setting::{Setting, VertexPair};
 
@@ -95,15 +99,29 @@ pub enum CertificateError {
         /// What rounding explains.
         tolerance: f64,
     },
-    /// The bodies reach across the plane.
-    #[error("the plane proves {proven}, not {claimed} (tolerated: {tolerance:e})")]
+    /// A bound or a margin says more than is proven.
+    #[error("{proven} is proven, not {claimed}")]
     Bound {
-        /// The bound, or margin, that the plane proves.
+        /// The bound, or margin, that is proven.
         proven: f64,
         /// The one claimed.
         claimed: f64,
-        /// What rounding explains.
-        tolerance: f64,
+    },
+    /// The lower bound is above the upper one.
+    #[error("the lower bound {lower} is above the upper bound {upper}")]
+    Order {
+        /// The lower bound.
+        lower: f64,
+        /// The upper bound.
+        upper: f64,
+    },
+    /// The tolerance is negative, no number, or more than rounding explains.
+    #[error("the tolerance {claimed:e} is not between 0 and what rounding explains, {derived:e}")]
+    Tolerance {
+        /// The one claimed.
+        claimed: f64,
+        /// The largest that rounding explains.
+        derived: f64,
     },
 }
 
@@ -163,14 +181,11 @@ impl Along {
     }
 }
 
-/// What is proven along a normal.
-fn along(setting: &Setting, normal: DVec3) -> Along {
-    let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-    let support = VertexPair {
-        moving: setting.moving.support(normals[0]),
-        fixed: setting.fixed.support(-normals[1]),
-    };
-    Along::new(setting, setting.noise(), normal, &normals, support)
+/// At most `min_Q n.q - max_P n.p`: all vertices are looked at.
+fn distance_along(setting: &Setting, normal: DVec3) -> f64 {
+    let fixed = (setting.fixed.vertices(), &setting.fixed_matrix);
+    let moving = (setting.moving.vertices(), &setting.moving_matrix);
+    extent::distance(normal, fixed, moving, setting.exact_offset())
 }
 
 /// What rounding, and a widening sideways, can make of the difference between the estimates of the
@@ -196,23 +211,22 @@ impl Certificate {
         if !unit || steepness.is_nan() || steepness <= 0.0 {
             return Err(CertificateError::Normal { normal });
         }
+        if self.lower > self.upper {
+            return Err(CertificateError::Order { lower: self.lower, upper: self.upper });
+        }
         let noise = setting.noise();
-        let along = along(setting, normal);
-        let lower = along.lower(steepness);
-        let proven = self.proven_upper(setting)?;
-        let upper = proven + noise.raised() / steepness;
-        // What a certificate says of its own tolerance proves nothing: it is derived anew.
-        let widest = gap_tolerance(setting, normal, noise, noise.widest());
-        let tolerance = widest + (noise.raised() + along.error) / steepness;
-        let claims_upper = self.upper != f64::INFINITY;
-        for (proven, claimed, holds) in [
-            (lower, self.lower, self.lower <= lower + tolerance),
-            (upper, self.upper, !claims_upper || (self.upper - upper).abs() <= tolerance),
-            (tolerance, self.tolerance, self.tolerance <= 2.0 * tolerance),
-        ] {
-            if !holds {
-                return Err(CertificateError::Bound { proven, claimed, tolerance });
-            }
+        let upper = self.proven_upper(setting)? + noise.above_mean() / steepness;
+        let lower = proven_lower(setting, normal)?;
+        let derived = derived_tolerance(setting, normal);
+        if self.lower.is_nan() || self.lower > lower {
+            return Err(CertificateError::Bound { proven: lower, claimed: self.lower });
+        }
+        let is_proven = self.upper >= upper && self.upper <= upper + derived;
+        if self.upper != f64::INFINITY && !is_proven {
+            return Err(CertificateError::Bound { proven: upper, claimed: self.upper });
+        }
+        if !(0.0..=derived).contains(&self.tolerance) {
+            return Err(CertificateError::Tolerance { claimed: self.tolerance, derived });
         }
         Ok(upper - lower)
     }
@@ -225,24 +239,53 @@ impl Certificate {
         {
             return Err(CertificateError::Weights { weights });
         }
-        let mut difference = setting.offset;
-        for (pair, (vertices, weight)) in self.pairs.iter().zip(weights).enumerate() {
-            let unknown = CertificateError::UnknownVertex { pair };
-            let q = setting.fixed.vertices().get(vertices.fixed as usize);
-            let p = setting.moving.vertices().get(vertices.moving as usize);
-            let (Some(&q), Some(&p)) = (q, p) else { return Err(unknown) };
-            difference += (setting.fixed_matrix * q - setting.moving_matrix * p) * weight;
+        let mut mean = DVec3::ZERO;
+        for (pair, (&vertices, weight)) in self.pairs.iter().zip(weights).enumerate() {
+            let VertexPair { moving, fixed } = vertices;
+            let known = (moving as usize) < setting.moving.vertices().len()
+                && (fixed as usize) < setting.fixed.vertices().len();
+            if !known {
+                return Err(CertificateError::UnknownVertex { pair });
+            }
+            mean += setting.terms(vertices).point() * (weight / sum);
         }
-        let upper = difference.dot(setting.unit) / setting.length;
-        let residual = (difference - setting.direction * upper).length();
-        // Grazing contacts may miss by the widening along both lateral axes.
-        let tolerance = setting.noise().residual();
+        let upper = mean.dot(setting.unit) / setting.length;
+        let residual = (mean - setting.direction * upper).length();
+        let noise = setting.noise();
+        // Bodies that were widened sideways may miss by that, and claim no upper bound.
+        let tolerance =
+            if self.upper == f64::INFINITY { noise.residual_widened() } else { noise.residual() };
         if residual <= tolerance {
             Ok(upper)
         } else {
             Err(CertificateError::Residual { residual, tolerance })
         }
     }
+}
+
+/// The lower bound of the translation that the plane with this normal proves.
+fn proven_lower(setting: &Setting, normal: DVec3) -> Result<f64, CertificateError> {
+    let [least, most] = extent::dot(normal, setting.direction);
+    if least <= 0.0 {
+        return Err(CertificateError::Normal { normal });
+    }
+    let distance = distance_along(setting, normal);
+    // Rounded down, whichever sign.
+    Ok((distance / if distance < 0.0 { least } else { most }).next_down())
+}
+
+/// The largest tolerance that a certificate may state: what it says of it proves nothing, so it is
+/// derived anew, from other support points, which may let the bodies reach twice as far beyond.
+fn derived_tolerance(setting: &Setting, normal: DVec3) -> f64 {
+    let noise = setting.noise();
+    let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+    let support = VertexPair {
+        moving: setting.moving.support(normals[0]),
+        fixed: setting.fixed.support(-normals[1]),
+    };
+    let along = Along::new(setting, noise, normal, &normals, support);
+    let rounding = (noise.raised() + along.error) / normal.dot(setting.direction);
+    2.0 * (gap_tolerance(setting, normal, noise, noise.widest()) + rounding)
 }
 
 impl Separation {
@@ -253,13 +296,13 @@ impl Separation {
         if !is_unit || normal.dot(setting.unit).abs() > noise::UNIT_VECTOR {
             return Err(CertificateError::Normal { normal });
         }
-        let along = along(setting, normal);
-        let margin = along.distance - along.error;
-        let (claimed, tolerance) = (self.margin, setting.noise().point());
-        if margin > 0.0 && claimed > 0.0 && claimed <= margin + tolerance {
-            Ok(margin)
+        // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
+        let closing = normal.dot(setting.unit).abs() * setting.scale();
+        let (proven, claimed) = (distance_along(setting, normal), self.margin);
+        if claimed > 0.0 && claimed <= proven && proven > closing {
+            Ok(proven)
         } else {
-            Err(CertificateError::Bound { proven: margin, claimed, tolerance })
+            Err(CertificateError::Bound { proven, claimed })
         }
     }
 }

@@ -61,7 +61,11 @@ pub struct Grazing {
     /// How far the shadows overlap along `separating_direction`, in world units: at most the graze
     /// tolerance; negative when they miss each other by less than rounding error can tell.
     pub overlap: f64,
-    /// The contact that results if the overlap is taken for real.
+    /// The contact that results if the overlap is taken for real. Its certificate claims an upper
+    /// bound only where the shadows overlap by more than rounding can tell (a graze tolerance may be
+    /// larger than that): there the line pierces the triangle of its pairs, as of any other contact.
+    /// Else bodies widened sideways were asked, of which nothing is known from above, and `upper` is
+    /// infinite.
     pub contact: Contact,
 }
 

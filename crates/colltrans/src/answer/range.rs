@@ -40,6 +40,18 @@ impl ContactRange {
         };
         Some([first.translation, -last.translation])
     }
+
+    /// How far the moving body can move from where it is, as [`Cast::clearance`](crate::Cast::clearance)
+    /// says.
+    pub fn clearance(&self) -> Clearance {
+        match *self {
+            Self::Contact { first, last } => {
+                Clearance::blocked(&first).unwrap_or_else(|| Clearance::past(first, last))
+            }
+            Self::Grazing { first, .. } => Clearance::Slides(first),
+            Self::Separated(separated) => Clearance::Separated(separated),
+        }
+    }
 }
 
 /// The answer of [`Cast::clearance`](crate::Cast::clearance): how far the moving body can move *from
@@ -71,6 +83,24 @@ pub enum Clearance {
 }
 
 impl Clearance {
+    /// That of a first contact which is ahead, or here to within rounding.
+    #[inline]
+    pub(crate) fn blocked(first: &Contact) -> Option<Self> {
+        let is_ahead = first.translation >= -first.certificate.tolerance;
+        let distance = first.certificate.lower.max(0.0);
+        is_ahead.then_some(Self::Blocked { distance, contact: *first })
+    }
+
+    /// That of a first contact which is not.
+    #[inline]
+    pub(crate) fn past(first: Contact, last: Contact) -> Self {
+        if last.translation < -last.certificate.tolerance {
+            Self::Overlapping { first, last }
+        } else {
+            Self::Behind(last)
+        }
+    }
+
     /// How far the moving body may safely move, in multiples of the direction: infinite where
     /// nothing stops it, `None` if the bodies overlap now.
     pub fn distance(&self) -> Option<f64> {

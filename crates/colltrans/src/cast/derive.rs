@@ -58,15 +58,11 @@ pub(crate) fn clearance_of<'a>(
         Outcome::Grazing(grazing) => return Ok(Clearance::Slides(grazing)),
         Outcome::Separated(separated) => return Ok(Clearance::Separated(separated)),
     };
-    if contact.translation >= -contact.certificate.tolerance {
-        let distance = contact.certificate.lower.max(0.0);
-        return Ok(Clearance::Blocked { distance, contact });
+    if let Some(blocked) = Clearance::blocked(&contact) {
+        return Ok(blocked);
     }
     Ok(match run(&cast.reversed())? {
-        Outcome::Contact(last) if last.translation < -last.certificate.tolerance => {
-            Clearance::Overlapping { first: contact, last }
-        }
-        Outcome::Contact(last) => Clearance::Behind(last),
+        Outcome::Contact(last) => Clearance::past(contact, last),
         // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
         Outcome::Grazing(grazing) => Clearance::Slides(grazing),
         Outcome::Separated(separated) => Clearance::Separated(separated),

@@ -330,14 +330,16 @@ impl Cast<'_> {
     /// the two bodies, and returns the gap, in multiples of the direction, or the margin, in world
     /// units, that is really proven.
     ///
-    /// Nothing of the search is used: two support points for the lower bound or the margin, three
-    /// pairs of vertices for the upper bound. The cast must be the one that was answered; for the
-    /// `last` contact of a [`ContactRange`] it is the [reversed](Self::reversed) one. Support points
-    /// are searched anew, so a claim may exceed what they prove by as much as rounding explains: the
-    /// tolerance, which is derived here and not taken from the certificate.
+    /// Nothing of the search is used: all vertices are looked at for the lower bound or the margin,
+    /// three pairs of them for the upper bound, so a check takes `O(n)` steps. The cast must be the one
+    /// that was answered; for the `last` contact of a [`ContactRange`] it is the
+    /// [reversed](Self::reversed) one. A lower bound or a margin is refused if it is above what the
+    /// plane proves, by however little; an upper bound if it is not above what the pairs prove by what
+    /// the rounding of their weights explains. An infinite one claims nothing.
     ///
     /// # Errors
-    /// What is not proven, to within that tolerance.
+    /// What is not proven, bounds in the wrong order, and a tolerance that is negative or more than
+    /// rounding explains.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;

@@ -75,6 +75,8 @@ impl Case {
     /// # Errors
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        // Some editors begin a file with a byte-order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file: File = serde_json::from_str(text)?;
         if file.format != FORMAT {
             return Err(CaseError::Format { found: file.format });

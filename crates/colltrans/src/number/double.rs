@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 use super::error_free::{product_error, split, sum_error};
 
 /// Products of this size or more have low parts that are not lost.
-const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
+pub(super) const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
 
 /// The number `high + low`, up to `error`; exact if that is 0.
 #[derive(Debug, Clone, Copy)]

@@ -4,6 +4,7 @@
 pub(crate) mod determinant;
 mod double;
 pub(crate) mod error_free;
+pub(crate) mod extent;
 mod integer;
 pub(crate) mod noise;
 pub(crate) mod orientation;

@@ -29,9 +29,11 @@
 //!   the support points. The upper bound's weights are of a triangle more than eight noises high, so
 //!   its plane is tilted by rounding by less than an eighth; the weighted mean of its corners is off
 //!   the line by at most two noises sideways, as its weights are off by a noise over that height, and
-//!   off in height by one: together less than four noises along `n`.
-//! - *Residual.* The witness points of a certificate may miss each other by the corner of the widest
-//!   rectangle, and by one noise for each body.
+//!   off in height by one: together less than four noises along `n`. Whoever computes the height of
+//!   the mean without rounding misses that one, and has to find the bound three noises above it.
+//! - *Residual.* The witness points of a certificate are the same weighted mean, so they miss each
+//!   other by at most two noises sideways, and one that the weights' sum may be off; of bodies that
+//!   were widened by the corner of the widest rectangle, and by one noise for each body.
 //! - *Unit vector.* Normalising leaves `4 u`, rotating into the world `3 u sqrt(3)`, normalising
 //!   again `4 u`; an orthogonal one inherits the same from its axes. Tolerated is twice their sum.
 //! - *Gain.* A dot product of a direction with an edge vector, itself rounded, has an error of `4 u`
@@ -72,6 +74,9 @@ const BOUNDS: f64 = 2.0;
 
 /// By how many noises an upper bound is raised.
 const RAISED: f64 = 4.0;
+
+/// By how many noises witness points may miss each other.
+const RESIDUAL: f64 = 3.0;
 
 /// Relative error of a unit vector's length and of its product with one it should be orthogonal to.
 pub(crate) const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
@@ -154,8 +159,20 @@ impl Noise {
         RAISED * self.0
     }
 
-    /// By how much the witness points of a certificate may miss each other.
+    /// By how much an upper bound along `n` has to lie above the weighted mean of the corners, if
+    /// that is computed without rounding.
+    pub(crate) fn above_mean(self) -> f64 {
+        (RAISED - 1.0) * self.0
+    }
+
+    /// By how much the witness points of a certificate may miss each other that claims an upper
+    /// bound.
     pub(crate) fn residual(self) -> f64 {
+        RESIDUAL * self.0
+    }
+
+    /// The same for bodies that were widened sideways.
+    pub(crate) fn residual_widened(self) -> f64 {
         WIDENING_CORNER * self.widest() + BOUNDS * self.0
     }
 }

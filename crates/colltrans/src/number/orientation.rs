@@ -49,6 +49,11 @@ impl Terms<'_> {
         ]
     }
 
+    /// The point, rounded as if its coordinates had been computed without rounding, or nearly so.
+    pub(crate) fn point(&self) -> DVec3 {
+        DVec3::from_array(self.rounded([0, 1, 2]).map(|coordinate| coordinate.high))
+    }
+
     fn coordinate<const N: usize>(&self, row: usize) -> Option<Integer<N>> {
         let mut sum = Integer::ZERO;
         for (a, b) in self.row(row) {

@@ -124,10 +124,7 @@ impl<'a> MinkowskiDifference<'a> {
 
     /// The same, climbing from a pair believed to be near.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a direction passed through memory stalls the scan: 7 %"
-    )]
+    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
         let moving = self.setting.moving.support_from(self.in_moving(normal), near.moving);
         let fixed = self.setting.fixed.support_from(-self.in_fixed(normal), near.fixed);
@@ -167,7 +164,7 @@ impl<'a> MinkowskiDifference<'a> {
 
     /// The point of `M`, not widened, that a pair of vertices gives.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 3 %")]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
         let p = self.setting.moving.vertices()[pair.moving as usize];
         let q = self.setting.fixed.vertices()[pair.fixed as usize];
@@ -177,10 +174,7 @@ impl<'a> MinkowskiDifference<'a> {
     }
 
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a direction passed through memory stalls the scan: 7 %"
-    )]
+    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
         let mut point = self.vertex(pair);
         if self.widening != 0.0 {

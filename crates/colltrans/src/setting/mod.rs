@@ -61,7 +61,7 @@ impl<B> Copy for Setting<'_, B> {}
 
 impl<'a, B> Setting<'a, B> {
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 2 %")]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(crate) fn new(
         moving: Placed<'a, B>,
         fixed: Placed<'a, B>,
@@ -111,6 +111,12 @@ impl Setting<'_> {
         Noise::of(self.scale())
     }
 
+    /// `t_Q - t_P`, and what rounding took from it.
+    #[inline]
+    pub(crate) fn exact_offset(&self) -> [DVec3; 2] {
+        [self.offset, self.offset_error]
+    }
+
     /// A pair's vertices, in the frames of the moving and the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
@@ -119,7 +125,7 @@ impl Setting<'_> {
 
     /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory they stall their reader: 1 %")]
+    #[expect(clippy::inline_always, reason = "passed through memory they stall their reader")]
     pub(crate) fn weighted(&self, pairs: &[VertexPair; 3], weights: &[f64; 3]) -> [DVec3; 2] {
         let mut means = [DVec3::ZERO; 2];
         for (pair, &weight) in pairs.iter().zip(weights) {

@@ -20,7 +20,7 @@ use crate::answer::{Grazing, Outcome, Separated, Separation, Solver, StartedFrom
 use crate::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
-use cta::{ContactGuess, CtaOptions, Guess, Origin, RegionFocus};
+use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
 use portal::{Enclosure, FirstNormal, Followed, Optimum, Overlap, Portal, Refined, SeparatingLine};
@@ -93,6 +93,14 @@ const TURNS: [DVec2; 3] = [
 /// one where ties follow each other.
 const MOST_AFTER_FOLLOWING: usize = 30;
 
+/// What narrowing leaves to portal refinement.
+enum Start {
+    /// A guess of the contact normal.
+    Normal(FirstNormal),
+    /// A portal, or a separating direction.
+    Enclosed(Enclosure),
+}
+
 /// One cast under way.
 struct Run<'a, 'o, O> {
     difference: MinkowskiDifference<'a>,
@@ -120,12 +128,7 @@ impl<O: Observer> Run<'_, '_, O> {
             self.watch.steps.started_from = StartedFrom::Features;
             followed
         } else {
-            let start = self.start(focus.region, last);
-            self.watch.ended(Phase::Setup);
-            match self.approach(&start) {
-                None => portal::enclose(&self.difference, &start, &mut self.watch),
-                found => found,
-            }
+            self.enclosure(focus.region, last)
         };
         self.watch.ended(Phase::Finish);
         match enclosure {
@@ -163,6 +166,19 @@ impl<O: Observer> Run<'_, '_, O> {
         }
     }
 
+    /// A portal, or a separating direction, from scratch or from the region of the last solution.
+    fn enclosure(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
+        let start = match self.start(region, last) {
+            Start::Enclosed(found) => return Some(found),
+            Start::Normal(start) => start,
+        };
+        self.watch.ended(Phase::Setup);
+        match self.approach(&start) {
+            None => portal::enclose(&self.difference, &start, &mut self.watch),
+            found => found,
+        }
+    }
+
     /// A portal, or a separating direction, face by face from a guess that is not lateral.
     #[inline]
     fn approach(&mut self, start: &FirstNormal) -> Option<Enclosure> {
@@ -194,64 +210,59 @@ impl<O: Observer> Run<'_, '_, O> {
         (margin >= least).then_some(Enclosure::Beside(SeparatingLine { normal, margin, point }))
     }
 
-    /// The first guess of the contact normal.
-    fn start(&mut self, region: Region, last: &WarmStart) -> FirstNormal {
+    /// The first guess of the contact normal, or more than a guess.
+    fn start(&mut self, region: Region, last: &WarmStart) -> Start {
         let setting = self.difference.setting;
         let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
         if self.solver != Solver::Cta || !solid {
-            return FirstNormal::new(&self.difference);
+            return Start::Normal(FirstNormal::new(&self.difference));
         }
         let ellipsoids = FirstNormal::from_ellipsoids(&self.difference);
-        let start = match self.cta_start(&ellipsoids, region, last) {
-            Ok(start) => start,
-            Err(extreme) => return ellipsoids.guided(ellipsoids.normal, extreme),
-        };
+        if let Some(focus) = self.region(region, last) {
+            self.watch.steps.started_from = StartedFrom::Region;
+            return self.narrow(&ellipsoids, Origin::Region(focus));
+        }
+        match self.narrowing.start {
+            NarrowFrom::Center => self.narrow(&ellipsoids, Origin::Center),
+            NarrowFrom::Ellipsoids => self.start_at_ellipsoids(&ellipsoids),
+        }
+    }
+
+    /// Where the ellipsoids meet, their normal is the start of portal refinement: a planar problem
+    /// costs more than it saves there (measured). Where they pass each other and the bodies are
+    /// not seen to do so, it is solved.
+    fn start_at_ellipsoids(&mut self, ellipsoids: &FirstNormal) -> Start {
+        let normal = ellipsoids.normal;
+        if normal.z > 0.0 {
+            return Start::Normal(*ellipsoids);
+        }
+        let support = self.difference.support(normal);
+        self.watch.support(|| Support::of(normal, &support));
+        if normal.dot(support.at) > 0.0 {
+            return Start::Normal(ellipsoids.guided(normal, support.pair));
+        }
+        self.narrow(ellipsoids, Origin::Center)
+    }
+
+    /// By the collision translation algorithm.
+    fn narrow(&mut self, ellipsoids: &FirstNormal, origin: Origin) -> Start {
         self.watch.ended(Phase::Setup);
-        let options = CtaOptions::new(start, self.narrowing.gap);
-        let narrowed = cta::minimise(setting, &options, &mut self.watch);
+        let options = CtaOptions { start: origin, gap: self.narrowing.gap };
+        let narrowed = cta::minimise(self.difference.setting, &options, &mut self.watch);
+        let corners = narrowed.corners.as_ref();
+        if let Some(portal) = corners.and_then(|c| portal::around(&self.difference, c)) {
+            return Start::Enclosed(Enclosure::Portal(portal));
+        }
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair { moving: moving[0], fixed: fixed[0] };
         let in_shadow = |normal| self.difference.setting_from_shadow.transpose() * normal;
-        match narrowed.guess {
+        Start::Normal(match narrowed.guess {
             Guess::Contact { normal } => ellipsoids.guided(in_shadow(normal), near),
             Guess::Separation { direction } => {
                 ellipsoids.guided(in_shadow(direction).with_z(0.0), near)
             }
-            Guess::Nothing => ellipsoids,
-        }
-    }
-
-    /// Where the minimisation starts; an error, with the pair extreme along it, if the ellipsoids'
-    /// normal already separates the bodies.
-    fn cta_start(
-        &mut self,
-        ellipsoids: &FirstNormal,
-        region: Region,
-        last: &WarmStart,
-    ) -> Result<Origin, VertexPair> {
-        let by_ellipsoids = self.narrowing.start == NarrowFrom::Ellipsoids;
-        let normal = ellipsoids.normal;
-        if by_ellipsoids && normal.z == 0.0 {
-            let support = self.difference.support(normal);
-            self.watch.support(|| Support::of(normal, &support));
-            if normal.dot(support.at) > 0.0 {
-                return Err(support.pair);
-            }
-        }
-        if let Some(focus) = self.region(region, last) {
-            self.watch.steps.started_from = StartedFrom::Region;
-            return Ok(Origin::Region(focus));
-        }
-        if !by_ellipsoids || normal.z == 0.0 {
-            return Ok(Origin::Center);
-        }
-        let support = self.difference.support(normal);
-        self.watch.support(|| Support::of(normal, &support));
-        Ok(Origin::Contact(ContactGuess {
-            normal: self.difference.setting_from_shadow * normal,
-            supports: [support.pair.moving, support.pair.fixed],
-            touching: ellipsoids.touching(&self.difference),
-        }))
+            Guess::Nothing => *ellipsoids,
+        })
     }
 
     /// Region focus: the last contact points, and the half-side of the square around them.

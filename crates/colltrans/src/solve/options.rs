@@ -58,8 +58,8 @@ impl Default for Narrowing {
 /// Where a minimisation starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum NarrowFrom {
-    /// Where the bodies would meet if they were ellipsoids; from there two planar problems at most
-    /// pay off.
+    /// Where the bodies would meet if they were ellipsoids: portal refinement begins there, and
+    /// planar problems are solved only if the ellipsoids pass each other and the bodies may not.
     #[default]
     Ellipsoids,
     /// At the centre of all section levels (the paper, section III-A).

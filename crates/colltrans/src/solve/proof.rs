@@ -7,8 +7,8 @@ use crate::error::{QueryError, Stalled};
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::portal::{ContactPortal, Optimum, Portal, SeparatingLine};
 
-/// An optimum and what it proves, in the world. Small and passed by reference: moving an outcome
-/// about costs a tenth of a coherent query.
+/// An optimum and what it proves, in the world. Small and passed by reference: moved about, an outcome
+/// goes through memory.
 pub(crate) struct Proven<'a> {
     portal: &'a Portal,
     optimum: &'a Optimum,
@@ -27,7 +27,7 @@ impl<'a> Proven<'a> {
     /// # Errors
     /// Bounds that rounding alone does not explain.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader: 5 %")]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(crate) fn new(
         difference: &MinkowskiDifference,
         portal: &'a Portal,
@@ -73,7 +73,7 @@ impl<'a> Proven<'a> {
     }
 
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "built where it is to stay: 5 %")]
+    #[expect(clippy::inline_always, reason = "built where it is to stay")]
     pub(crate) fn contact(&self, solver: Solver, steps: Steps) -> Contact {
         Contact {
             translation: self.translation,

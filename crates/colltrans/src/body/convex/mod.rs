@@ -137,10 +137,7 @@ impl ConvexPolyhedron {
 
     /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a direction passed through memory stalls the scan: 7 %"
-    )]
+    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
         self.support.extreme_from(&self.vertices, &self.topology, direction, near)
     }

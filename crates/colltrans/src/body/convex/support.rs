@@ -80,10 +80,7 @@ impl SupportIndex {
 
     /// The vertex farthest along `direction` (body frame, any length).
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a direction passed through memory stalls the scan: 7 %"
-    )]
+    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn extreme(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3) -> u32 {
         if self.resolution == 0 {
             return scan(&self.groups, direction);
@@ -93,10 +90,7 @@ impl SupportIndex {
 
     /// The same, starting from a vertex believed to be near; if it is not, the table helps out.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a direction passed through memory stalls the scan: 7 %"
-    )]
+    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn extreme_from(
         &self,
         vertices: &[DVec3],
@@ -386,7 +380,7 @@ fn groups(vertices: &[DVec3]) -> Vec<Group> {
 /// Looks at every vertex. Of equals, one is chosen by position alone, so the answer does not depend
 /// on where a search starts.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan: 7 %")]
+#[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
 fn scan(groups: &[Group], direction: DVec3) -> u32 {
     let mut reach = [f64::NEG_INFINITY; LANES];
     // Group numbers as f64, so that number and reach are selected by the same mask.

@@ -10,7 +10,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::cell::{Affine, Piece};
+use super::piece::{Affine, Piece};
 use crate::number::noise;
 
 /// The sides of the rectangle of levels, the artificial bound, and one piece per step.
@@ -60,11 +60,6 @@ impl LowerBound {
         };
         bound.inverse = bound.basis_matrix().inverse();
         bound
-    }
-
-    /// The pieces that were added.
-    pub(super) fn added(&self) -> &[Piece] {
-        &self.pieces[5..self.count]
     }
 
     /// Adds a piece, relative to the same origin as the rectangle.

@@ -1,97 +1,82 @@
-//! Pieces and cells: where the features in contact stay the same, `phi` is linear (the paper,
-//! section III-C).
+//! Cells: where a piece is `phi` itself, and what ends at their sides (the paper, section III-C).
 //!
-//! Notation. `(X, Y) = (x - x0, y - y0)` around the levels `(x0, y0)` of a planar problem. A
-//! *piece* is an affine function that bounds `phi` from below (weight 1), or that is positive only
-//! where the sections miss each other (weight 0). The covector of a piece, in the shadow plane's
-//! terms, is what the supporting plane of the sections contributes to the contact normal. A *cell*
-//! is the set, an intersection of half-planes, on which the piece is `phi` itself.
+//! Notation. `(X, Y)` as in [`super::piece`]. A cell is an intersection of half-planes around the
+//! origin. A section edge lies on a face of its body, whatever the level; in the plane of the
+//! position along the edge and the level that face is a convex polygon, and the cell is where the
+//! contact stays in it. So it does not end where the section edge passes a mesh vertex, and each
+//! side is tagged with the mesh edge over which the contact leaves. Cells only guess: a face of many
+//! sides, or one that the contact seems to have left by rounding, is replaced by the part between
+//! the two mesh edges that cross, within their levels.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
+use super::crossing::{Bracket, Crossing, is_horizontal};
+use super::piece::{Affine, contact_motion, unit};
 use super::planar::Planar;
-use super::side::Bracket;
-
-/// An affine function of `(X, Y)`.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Affine {
-    pub(super) value: f64,
-    pub(super) gradient: DVec2,
-}
-
-/// The directions of a query in the setting frame.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    /// `a / (a . d)` and `b / (b . d)`.
-    pub(super) axes: [DVec3; 2],
-    /// `a . d` and `b . d`.
-    pub(super) along: [f64; 2],
-    /// The covectors of the shadow coordinates `h` and `g`.
-    pub(super) shadow: [DVec3; 2],
-}
-
-impl Frame {
-    /// What the levels add to the height of the contact in `phi`.
-    pub(super) fn base(&self, levels: [f64; 2]) -> f64 {
-        levels[1] / self.along[1] - levels[0] / self.along[0]
-    }
-}
-
-/// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and
-/// `normal . d = weight`.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Piece {
-    pub(super) bound: Affine,
-    pub(super) weight: f64,
-    pub(super) normal: DVec3,
-}
-
-impl Piece {
-    /// A supporting plane of the bodies: a bound that holds for all levels.
-    pub(super) fn constant(t: f64, normal: DVec3) -> Self {
-        Self { bound: Affine { value: t, gradient: DVec2::ZERO }, weight: 1.0, normal }
-    }
-}
+use super::side::Side;
+use crate::number::noise;
 
 /// At most so many half-planes bound a cell: those of a vertex contact.
-const CELL_SIDES: usize = 12;
+const CELL_SIDES: usize = 2 + 2 * (1 + FACE_SIDES);
+
+/// A face with more vertices is replaced by the part between two mesh edges.
+const FACE_SIDES: usize = 6;
+
+/// What ends at a side of a cell, for a body by its index.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) enum End {
+    /// Nothing that has a name.
+    #[default]
+    Level,
+    /// The contact leaves a face over this half-edge.
+    Edge(usize, u32),
+    /// The contact reaches the end of a mesh edge.
+    Vertex(usize, u32),
+    /// The contact reaches the face of this half-edge.
+    Face(usize, u32),
+}
 
 /// An intersection of half-planes `value + gradient . (X, Y) >= 0` around the origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
     sides: [Affine; CELL_SIDES],
+    ends: [End; CELL_SIDES],
     count: usize,
+}
+
+/// The best point of a cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Best {
+    /// Where it is.
+    at: DVec2,
+    /// The change of the piece's value up to there.
+    pub(super) change: f64,
+    /// The sides on which the simplex method ended.
+    on: [Option<usize>; 2],
 }
 
 impl Cell {
     fn new() -> Self {
-        Self { sides: [Affine::default(); CELL_SIDES], count: 0 }
+        Self { sides: [Affine::default(); CELL_SIDES], ends: [End::Level; CELL_SIDES], count: 0 }
     }
 
     /// Rounding may put the origin outside by a little: it counts as on the boundary.
-    fn keep(&mut self, value: f64, gradient: DVec2) {
+    fn keep(&mut self, value: f64, gradient: DVec2, end: End) {
         self.sides[self.count] = Affine { value: value.max(0.0), gradient };
+        self.ends[self.count] = end;
         self.count += 1;
     }
 
-    /// `levels[body]` within all of `ranges`.
-    fn keep_levels(&mut self, unit: DVec2, level: f64, ranges: &[[f64; 2]]) {
-        let low = ranges.iter().map(|r| r[0]).fold(f64::NEG_INFINITY, f64::max);
-        let high = ranges.iter().map(|r| r[1]).fold(f64::INFINITY, f64::min);
-        self.keep(level - low, unit);
-        self.keep(high - level, -unit);
-    }
-
-    /// The least change of `gradient . (X, Y)` over the cell: the simplex method in the plane, from
-    /// the inside.
-    pub(super) fn least(&self, gradient: DVec2) -> f64 {
-        let mut at = DVec2::ZERO;
+    /// The best point for a gradient: the simplex method in the plane, from the inside.
+    pub(super) fn best(&self, gradient: DVec2) -> Best {
+        let mut best = Best { at: DVec2::ZERO, change: 0.0, on: [None; 2] };
         let mut way = -gradient;
         let mut on: Option<usize> = None;
         // A vertex where more than two sides meet may be visited more than once, hence the limit.
         for _ in 0..=self.count {
-            let Some((side, step)) = self.ray(at, way, on) else { break };
-            at += way * step;
+            let Some((side, step)) = self.ray(best.at, way, on) else { break };
+            best.at += way * step;
+            best.on = [on, Some(side)];
             let along = self.sides[side].gradient.perp();
             let descent = -gradient.dot(along);
             way = if descent < 0.0 { -along } else { along };
@@ -101,14 +86,15 @@ impl Cell {
             }
             on = Some(side);
         }
-        gradient.dot(at)
+        best.change = gradient.dot(best.at);
+        best
     }
 
     /// The side that a ray hits first, and after which multiple of `way`.
     fn ray(&self, at: DVec2, way: DVec2, on: Option<usize>) -> Option<(usize, f64)> {
         // Without branches in the first pass: they would be unpredictable.
         let mut steps = [f64::INFINITY; CELL_SIDES];
-        for (step, side) in steps.iter_mut().zip(&self.sides) {
+        for (step, side) in steps.iter_mut().zip(&self.sides[..self.count]) {
             let rate = -side.gradient.dot(way);
             let slack = (side.value + side.gradient.dot(at)).max(0.0);
             *step = if rate > 0.0 { slack / rate } else { f64::INFINITY };
@@ -122,103 +108,180 @@ impl Cell {
         let side = steps.iter().position(|&step| step == least)?;
         (least < f64::INFINITY).then_some((side, least))
     }
+
+    /// What ends at the sides that meet in the best point, up to rounding.
+    pub(super) fn ends_at<'a>(&'a self, best: &'a Best) -> impl Iterator<Item = End> + 'a {
+        let meets = |(index, side): (usize, &Affine)| {
+            let slack = side.value + side.gradient.dot(best.at);
+            let size = side.value.abs() + side.gradient.length() * best.at.length();
+            (best.on.contains(&Some(index)) || slack <= noise::SECTION * size)
+                .then_some(self.ends[index])
+        };
+        self.sides[..self.count].iter().enumerate().filter_map(meets)
+    }
 }
 
-impl Planar {
-    /// The piece that the answer at `levels` gives, up to the constant of `t`.
-    pub(super) fn piece(&self, frame: &Frame, levels: [f64; 2]) -> Piece {
-        let base = frame.base(levels);
-        let slope = DVec2::new(-1.0 / frame.along[0], 1.0 / frame.along[1]);
-        match self {
-            Self::Vertex { upper, vertex, .. } => Piece {
-                bound: Affine {
-                    value: base + vertex.h(),
-                    gradient: slope + unit(*upper) * vertex.drift.x,
-                },
-                weight: 1.0,
-                normal: frame.axes[1 - upper],
-            },
-            Self::Edges { edges, contact } => {
-                let motion = contact_motion(edges);
-                let [r, s] = edges.each_ref().map(|edge| edge.direction);
-                let [c, g] = frame.shadow;
-                Piece {
-                    bound: Affine {
-                        value: base + contact.x,
-                        gradient: slope + DVec2::new(motion[0].x, motion[1].x),
-                    },
-                    weight: 1.0,
-                    normal: frame.axes[0] + (c * r.y - g * r.x) * (s.x / r.perp_dot(s)),
-                }
-            }
-            Self::Separated { u, supports } => Piece {
-                bound: Affine {
-                    value: u.dot(supports[1].w - supports[0].w),
-                    gradient: DVec2::new(-u.dot(supports[0].drift), u.dot(supports[1].drift)),
-                },
-                weight: 0.0,
-                normal: frame.shadow[0] * u.x + frame.shadow[1] * u.y,
-            },
+/// The face that an edge of a section lies on, by a half-edge, and the sense of its boundary in the
+/// plane of the position along the edge and the level: 1 counter-clockwise.
+pub(super) fn face_of(side: &Side, edge: &Bracket) -> Option<(u32, f64)> {
+    let topology = side.topology;
+    let face = |h: u32| topology.half_edge(h).face;
+    let twin = |h: u32| topology.half_edge(h).twin;
+    let (low, high) = (edge.low.up, edge.high.up);
+    if face(high) == face(twin(low)) {
+        Some((high, 1.0))
+    } else if face(low) == face(twin(high)) {
+        Some((low, -1.0))
+    } else {
+        None
+    }
+}
+
+/// Where the contact is on a section edge: its position as measured by a covector, and how that
+/// changes with the levels.
+#[derive(Debug, Clone, Copy)]
+struct OnEdge<'a> {
+    body: usize,
+    edge: &'a Bracket,
+    level: f64,
+    measure: DVec2,
+    position: f64,
+    motion: DVec2,
+}
+
+impl OnEdge<'_> {
+    /// A half-edge of its face as a half-plane; `None` if the contact is beyond it by more than
+    /// rounding, or it has no direction.
+    fn side(&self, side: &Side, half_edge: u32, sense: f64) -> Option<Affine> {
+        let topology = side.topology;
+        let from = side.point(topology.half_edge(half_edge).origin);
+        let to = side.point(topology.target(half_edge));
+        let along = self.measure.dot(to.shadow - from.shadow);
+        let rise = to.level - from.level;
+        let start = self.measure.dot(from.shadow);
+        let value = sense * (along * (self.level - from.level) - rise * (self.position - start));
+        // What rounding can make of positions and levels, of either sign.
+        let blur = [
+            noise::SECTION * self.measure.length() * (to.shadow.length() + from.shadow.length()),
+            noise::SECTION * (to.level.abs() + from.level.abs()),
+        ];
+        let error = noise::SECTION
+            * (along.abs() * (self.level.abs() + from.level.abs())
+                + rise.abs() * (self.position.abs() + start.abs()));
+        let gradient = (unit(self.body) * along - self.motion * rise) * sense;
+        let directed = along.abs() > blur[0] || rise.abs() > blur[1];
+        (value >= -error && directed).then_some(Affine { value, gradient })
+    }
+}
+
+impl Cell {
+    /// The contact stays on the face of an edge.
+    fn keep_on(&mut self, on: &OnEdge, side: &Side) {
+        let kept = self.count;
+        if self.keep_face(on, side).is_none() {
+            self.count = kept;
+            self.keep_between(on);
         }
     }
 
+    fn keep_face(&mut self, on: &OnEdge, side: &Side) -> Option<()> {
+        let [bottom, top] = side.range();
+        if on.edge.steeper().span() <= noise::SECTION * (top - bottom) {
+            return None;
+        }
+        let (half_edge, sense) = face_of(side, on.edge)?;
+        let topology = side.topology;
+        let boundary = topology.face(topology.half_edge(half_edge).face);
+        if boundary.len() > FACE_SIDES {
+            return None;
+        }
+        for h in boundary {
+            let Affine { value, gradient } = on.side(side, h, sense)?;
+            self.keep(value, gradient, End::Edge(on.body, h));
+        }
+        Some(())
+    }
+
+    /// The contact stays between the ends of an edge, and these on their mesh edges.
+    fn keep_between(&mut self, on: &OnEdge) {
+        let Bracket { low, high, .. } = on.edge;
+        let own = unit(on.body);
+        self.keep(on.level - low.levels[0].max(high.levels[0]), own, End::Level);
+        self.keep(low.levels[1].min(high.levels[1]) - on.level, -own, End::Level);
+        for (end, sign) in [(low, 1.0), (high, -1.0)] {
+            self.keep(
+                sign * (on.position - on.measure.dot(end.w)),
+                sign * (on.motion - own * on.measure.dot(end.drift)),
+                End::Edge(on.body, end.up),
+            );
+        }
+    }
+
+    /// A vertex of section `upper` stays in the other section: on its mesh edge, and between two
+    /// edges at its height.
+    fn keep_inside(
+        &mut self,
+        (upper, vertex): (usize, &Crossing),
+        [left, right]: [&Bracket; 2],
+        sides: &[Side; 2],
+        levels: [f64; 2],
+    ) {
+        let lower = 1 - upper;
+        let (own, other) = (unit(upper), unit(lower));
+        let [bottom, top] = vertex.levels;
+        self.keep(levels[upper] - bottom, own, End::Vertex(upper, vertex.vertices[0]));
+        self.keep(top - levels[upper], -own, End::Vertex(upper, vertex.vertices[1]));
+        for (edge, inward) in [(left, 1.0), (right, -1.0)] {
+            let normal = edge.direction.perp() * inward;
+            let face = face_of(&sides[lower], edge);
+            let end = edge.steeper();
+            self.keep(
+                normal.dot(vertex.w - end.w),
+                own * normal.dot(vertex.drift) - other * normal.dot(end.drift),
+                face.map_or(End::Level, |(h, _)| End::Face(lower, h)),
+            );
+            let on = OnEdge {
+                body: lower,
+                edge,
+                level: levels[lower],
+                measure: DVec2::X,
+                position: vertex.h(),
+                motion: own * vertex.drift.x,
+            };
+            if is_horizontal(edge.direction) {
+                self.keep_between(&on);
+            } else {
+                self.keep_on(&on, &sides[lower]);
+            }
+        }
+    }
+}
+
+impl Planar {
     /// The cell of a contact.
-    pub(super) fn cell(&self, levels: [f64; 2]) -> Option<Cell> {
+    pub(super) fn cell(&self, sides: &[Side; 2], levels: [f64; 2]) -> Option<Cell> {
         let mut cell = Cell::new();
         match self {
             Self::Vertex { upper, vertex, left, right } => {
-                let (own, other) = (unit(*upper), unit(1 - *upper));
-                cell.keep_levels(own, levels[*upper], &[vertex.levels]);
-                let ranges =
-                    [left.low.levels, left.high.levels, right.low.levels, right.high.levels];
-                cell.keep_levels(other, levels[1 - *upper], &ranges);
-                for (edge, inward) in [(left, 1.0), (right, -1.0)] {
-                    let normal = edge.direction.perp() * inward;
-                    cell.keep(
-                        normal.dot(vertex.w - edge.low.w),
-                        own * normal.dot(vertex.drift) - other * normal.dot(edge.low.drift),
-                    );
-                    for (end, sign) in [(&edge.low, 1.0), (&edge.high, -1.0)] {
-                        cell.keep(
-                            sign * (vertex.h() - end.h()),
-                            sign * (own * vertex.drift.x - other * end.drift.x),
-                        );
-                    }
-                }
+                cell.keep_inside((*upper, vertex), [left, right], sides, levels);
             }
             Self::Edges { edges, contact } => {
                 let motion = contact_motion(edges);
                 for (body, edge) in edges.iter().enumerate() {
-                    let ranges = [edge.low.levels, edge.high.levels];
-                    cell.keep_levels(unit(body), levels[body], &ranges);
-                    for (end, sign) in [(&edge.low, 1.0), (&edge.high, -1.0)] {
-                        let along = edge.direction * sign;
-                        let moved = DVec2::new(along.dot(motion[0]), along.dot(motion[1]));
-                        cell.keep(
-                            along.dot(*contact - end.w),
-                            moved - unit(body) * along.dot(end.drift),
-                        );
-                    }
+                    let measure = edge.direction;
+                    let on = OnEdge {
+                        body,
+                        edge,
+                        level: levels[body],
+                        measure,
+                        position: measure.dot(*contact),
+                        motion: DVec2::new(measure.dot(motion[0]), measure.dot(motion[1])),
+                    };
+                    cell.keep_on(&on, &sides[body]);
                 }
             }
             Self::Separated { .. } => return None,
         }
         Some(cell)
     }
-}
-
-/// The unit vector of a body's level.
-fn unit(body: usize) -> DVec2 {
-    if body == 0 { DVec2::X } else { DVec2::Y }
-}
-
-/// How the point where two moving lines cross moves per unit of each level.
-fn contact_motion(edges: &[Bracket; 2]) -> [DVec2; 2] {
-    let [r, s] = edges.each_ref().map(|edge| edge.direction);
-    let cross = r.perp_dot(s);
-    // A line moves across itself by `direction x drift`.
-    [
-        s * (r.perp_dot(edges[0].low.drift) / cross),
-        r * (s.perp_dot(edges[1].low.drift) / cross) * -1.0,
-    ]
 }

@@ -9,21 +9,30 @@
 //! `phi(x, y) = y/(b.d) - x/(a.d) + psi(x, y)`, `psi` the least `h` common to both sections'
 //! shadows.
 //!
-//! The data's way: [`side`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) ->
-//! [`cell`] (its linear piece and where it holds) -> [`region`] (what is left of the levels) and
-//! [`bound`] (what the pieces prove together) -> [`mod@minimise`]. The result is a guess of the
-//! contact normal and features, in floating point: portal refinement makes it exact.
+//! The data's way: [`pair`] (a setting in section coordinates), [`start`] (the first levels) ->
+//! [`side`] and [`section`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) ->
+//! [`piece`] (a linear bound) and [`cell`] (where it is `phi`) -> [`exit`] (whether the cell's best
+//! point solves the problem), else [`region`] (what is left of the levels) and [`bound`] (what the
+//! pieces prove together) -> [`mod@minimise`]. The result is a guess of the contact normal and
+//! features, in floating point: portal refinement makes it exact.
 
 mod bound;
 mod cell;
+mod crossing;
+mod exit;
 mod minimise;
+mod pair;
+mod piece;
 mod planar;
 mod region;
+mod section;
 mod side;
+mod start;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use minimise::{ContactGuess, CtaOptions, Guess, Origin, RegionFocus, minimise};
+pub(crate) use minimise::{CtaOptions, Guess, minimise};
+pub(crate) use start::{Origin, RegionFocus};
 
 /// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^40 < 2e-8` of the region
 /// by then.

@@ -78,6 +78,22 @@ impl Region {
     }
 }
 
+/// The paper's neighbourhood `N(p)` of a solution `p`; levels are relative to `origin`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Square {
+    pub(super) center: DVec2,
+    pub(super) half: f64,
+}
+
+impl Square {
+    /// The point `c*` where the way from `c` to the centre enters; `c` itself if that is inside.
+    pub(super) fn entry(&self, c: DVec2) -> DVec2 {
+        let way = c - self.center;
+        let farther = way.abs().max_element();
+        if farther <= self.half { c } else { self.center + way * (self.half / farther) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

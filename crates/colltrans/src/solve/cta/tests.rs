@@ -4,18 +4,33 @@ use glam::{DQuat, DVec3};
 
 use super::minimise::{Narrowed, minimise};
 use super::{CtaOptions, Guess, Origin};
+use crate::answer::Steps;
 use crate::body::ConvexPolyhedron;
 use crate::body::Pose;
-use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism};
+use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism, thin_ellipsoid};
 use crate::setting::Setting;
-use crate::solve::observe::{Nobody, Watch};
+use crate::solve::observe::{Nobody, Observer, Watch};
 
-/// The result of a minimisation, and how many planar problems it took.
-fn minimised(setting: &Setting, options: &CtaOptions) -> (Narrowed, u32) {
+/// Exit tests, and how many of them ended a search.
+#[derive(Debug, Default)]
+struct Exits {
+    tests: u32,
+    hits: u32,
+}
+
+impl Observer for Exits {
+    fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
+        self.tests += 1;
+        self.hits += u32::from(solved());
+    }
+}
+
+/// The result of a minimisation, and the work it took.
+fn minimised(setting: &Setting, options: &CtaOptions) -> (Narrowed, Steps) {
     let mut nobody = Nobody;
     let mut watch = Watch::new(&mut nobody);
     let narrowed = minimise(setting, options, &mut watch);
-    (narrowed, watch.steps.planar_problems)
+    (narrowed, watch.steps)
 }
 
 /// What is to be found.
@@ -88,8 +103,7 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
     Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
 }
 
-const EXACT: CtaOptions =
-    CtaOptions { start: Origin::Center, max_steps: super::MAX_STEPS, gap: 1e-10 };
+const EXACT: CtaOptions = CtaOptions { start: Origin::Center, gap: 1e-10 };
 
 /// Compares with brute force to `tolerance`; returns the result.
 fn check(
@@ -237,6 +251,43 @@ fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
 }
 
 #[test]
+fn the_exit_test_ends_nearly_every_search_at_the_contact() {
+    let mut random = Random(23);
+    let bodies = [
+        ellipsoid(30, DVec3::ONE),
+        ellipsoid(60, DVec3::new(1.0, 0.7, 1.3)),
+        ellipsoid(60, DVec3::new(100.0, 1.0, 1.0)),
+        prism(5, DVec3::ONE),
+        cone(6, DVec3::ONE),
+        cuboid(DVec3::ZERO, DVec3::ONE),
+    ];
+    let mut counted = Exits::default();
+    let mut contacts = 0;
+    for round in 0..500 {
+        let (p, q) = (&bodies[random.index(bodies.len())], &bodies[random.index(bodies.len())]);
+        let Example { poses, d } = colliding(&mut random);
+        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), d).unwrap();
+        let mut exits = Exits::default();
+        let narrowed = minimise(&setting, &EXACT, &mut Watch::new(&mut exits));
+        let truth =
+            brute_force(&Placed::new(p, &poses[0]), &Placed::new(q, &poses[1]), setting.unit);
+        let Truth::Contact(t) = truth else { continue };
+        contacts += 1;
+        counted.tests += exits.tests;
+        counted.hits += exits.hits;
+        // No search goes on after a hit, and none is wrong.
+        assert!(exits.hits <= 1, "round {round}");
+        assert!(
+            exits.hits == 0 || (narrowed.lower - t).abs() < 1e-7,
+            "round {round}: {narrowed:?}"
+        );
+    }
+    assert!(contacts > 250 && counted.hits * 100 >= contacts * 99, "{contacts} {counted:?}");
+    // The test is not asked so often that it could not but hit.
+    assert!(counted.tests > 2 * counted.hits, "{counted:?}");
+}
+
+#[test]
 fn steps_do_not_grow_with_the_bodies() {
     for count in [8, 128, 2000, 20_000] {
         let mut random = Random(19);
@@ -249,7 +300,7 @@ fn steps_do_not_grow_with_the_bodies() {
         for _ in 0..300 {
             let e = colliding(&mut random);
             let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
-            steps += minimised(&setting, &options).1;
+            steps += minimised(&setting, &options).1.planar_problems;
         }
         assert!(
             steps <= 300 * 10,
@@ -274,12 +325,12 @@ fn colliding(random: &mut Random) -> Example {
 }
 
 /// All vertices of a section in order, from the bottom up the left chain.
-fn polygon(side: &super::side::Side, x: f64) -> Vec<super::side::Crossing> {
-    let section = side.section(x);
+fn polygon(side: &super::side::Side, x: f64) -> Vec<super::crossing::Crossing> {
+    let section = super::section::Section::new(side, x);
     let first = section.bottom().unwrap().vertex;
     let mut all = vec![first];
     loop {
-        let next = section.up(super::side::Chain::Left, &all[all.len() - 1]);
+        let next = section.up(super::crossing::Chain::Left, &all[all.len() - 1]);
         if next.up == first.up {
             return all;
         }
@@ -305,19 +356,19 @@ fn planar_problems_agree_with_brute_force() {
 }
 
 fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
-    use super::planar::{Planar, solve};
-    let query = super::minimise::SectionPair::new(setting);
+    use super::planar::{Hint, Planar, solve};
+    let query = super::pair::SectionPair::new(setting);
     let levels = [0, 1].map(|i| {
         let [low, high] = query.sides[i].range();
         random.within(low, high)
     });
     let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
     for (i, polygon) in polygons.iter().enumerate() {
-        let least = polygon.iter().map(super::side::Crossing::h).fold(f64::INFINITY, f64::min);
+        let least = polygon.iter().map(super::crossing::Crossing::h).fold(f64::INFINITY, f64::min);
         assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
     }
     let edges = |i: usize| {
-        let of: &Vec<super::side::Crossing> = &polygons[i];
+        let of: &Vec<super::crossing::Crossing> = &polygons[i];
         (0..of.len()).map(move |k| (of[k].w, of[(k + 1) % of.len()].w))
     };
     // Clockwise with g to the right and h upwards.
@@ -344,18 +395,21 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             }
         }
     }
-    let height = |known: f64| match solve(&query.sides, levels, known).unwrap() {
+    let height = |hint: &Hint| match solve(&query.sides, levels, hint).unwrap() {
         Planar::Vertex { vertex, .. } => vertex.h(),
         Planar::Edges { contact, .. } => contact.x,
         Planar::Separated { .. } => f64::INFINITY,
     };
-    // A bound from below changes the way, not the answer.
-    let unguided = height(f64::NEG_INFINITY);
+    // A bound from below and a guess, right or wrong, change the way, not the answer.
+    let unguided = height(&Hint::NONE);
     for known in [1e-6, 1e-2, 1.0] {
-        let found = height(least.min(10.0) - known);
-        assert!(found == unguided || (found - unguided).abs() < 1e-9, "{name}: {found} {unguided}");
+        for right in [None, Some(0), Some(1)] {
+            let found = height(&Hint { height: least.min(10.0) - known, right });
+            let same = found == unguided || (found - unguided).abs() < 1e-9;
+            assert!(same, "{name}: {found} {unguided}");
+        }
     }
-    let answer = solve(&query.sides, levels, f64::NEG_INFINITY).unwrap();
+    let answer = solve(&query.sides, levels, &Hint::NONE).unwrap();
     match answer {
         Planar::Vertex { vertex, .. } => {
             assert!((vertex.h() - least).abs() < 1e-9, "{name}: {least} {}", vertex.h());
@@ -373,6 +427,45 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             for c in &polygons[1] {
                 assert!(u.dot(c.w - supports[1].w) > -1e-9, "{name}");
             }
+        }
+    }
+}
+
+/// Iterations of all loops per planar problem, and planar problems per search, of searches from the
+/// centre to the end.
+fn work_per_problem(bodies: &[ConvexPolyhedron; 2], aside: f64, rounds: usize) -> [f64; 2] {
+    let mut random = Random(29);
+    let (mut problems, mut iterations) = (0, 0);
+    for _ in 0..rounds {
+        let mut e = colliding(&mut random);
+        let shift = random.unit().cross(e.d).normalize() * aside;
+        e.poses[1] = Pose::new(e.poses[1].rotation(), e.poses[1].translation() + shift).unwrap();
+        let [p, q] = bodies;
+        let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
+        let steps = minimised(&setting, &EXACT).1;
+        problems += steps.planar_problems;
+        iterations += steps.iterations;
+    }
+    let problems = f64::from(problems);
+    [f64::from(iterations) / problems, problems / rounds as f64]
+}
+
+#[test]
+fn planar_problems_do_not_walk_along_sections() {
+    for (count, thin) in [(2000, false), (20_000, false), (2000, true), (20_000, true)] {
+        let mut random = Random(31);
+        let bodies = [0, 1].map(|_| {
+            let axes = DVec3::from_array([0, 1, 2].map(|_| random.within(0.6, 1.4)));
+            if thin { thin_ellipsoid(count, axes) } else { ellipsoid(count, axes) }
+        });
+        for aside in [0.0, 1.5, 3.0] {
+            let [iterations, problems] = work_per_problem(&bodies, aside, 200);
+            println!(
+                "{count} thin {thin} aside {aside}: {iterations:.1} iterations a problem, \
+                 {problems:.1} problems"
+            );
+            let most = if thin { 200.0 } else { 80.0 };
+            assert!(iterations < most, "{count} {thin} {aside}: {iterations}");
         }
     }
 }

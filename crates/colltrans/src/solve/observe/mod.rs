@@ -142,6 +142,12 @@ pub trait Observer {
         let _ = problem;
     }
 
+    /// The best point of a cell was the best so far: whether the features that touch there were
+    /// seen to solve the problem.
+    fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
+        let _ = solved;
+    }
+
     /// The region of levels was cut.
     fn cut(&mut self, cut: impl FnOnce() -> Cut) {
         let _ = cut;
@@ -207,6 +213,12 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.1.planar_problem(|| problem);
     }
 
+    fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
+        let solved = solved();
+        self.0.exit_test(|| solved);
+        self.1.exit_test(|| solved);
+    }
+
     fn cut(&mut self, cut: impl FnOnce() -> Cut) {
         let cut = cut();
         self.0.cut(|| cut);
@@ -261,6 +273,11 @@ impl<O: Observer> Observer for Watch<'_, O> {
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
         self.steps.planar_problems += 1;
         self.observer.planar_problem(problem);
+    }
+
+    #[inline]
+    fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
+        self.observer.exit_test(solved);
     }
 
     #[inline]

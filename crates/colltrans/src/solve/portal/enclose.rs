@@ -13,6 +13,7 @@ use glam::{DVec2, DVec3};
 use super::start::steep;
 use super::{FirstNormal, Portal, normal_of};
 use crate::number::determinant::accurate_det;
+use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support, Watch};
 
@@ -274,4 +275,21 @@ fn from_segment(segment: &[Point; 2]) -> Option<(DVec2, f64)> {
     }
     let end = if a.dot(along) >= 0.0 { a } else { b };
     Some((end.try_normalize()?, end.length()))
+}
+
+/// The triangle of a convex quadrilateral of points of `M`, in order, that the line pierces; the last
+/// two corners of a triangle are the same.
+pub(crate) fn around(
+    difference: &MinkowskiDifference,
+    corners: &[VertexPair; 4],
+) -> Option<Portal> {
+    let [a, b, c, d] = corners.map(|pair| difference.vertex(pair));
+    let halves = if corners[2] == corners[3] { 1 } else { 2 };
+    [[a, b, c], [a, c, d]].into_iter().take(halves).find_map(|[a, b, c]| {
+        match [(&a, &b), (&b, &c), (&c, &a)].map(|(from, to)| difference.is_left(from, to)) {
+            [true, true, true] => Some([a, b, c]),
+            [false, false, false] => Some([a, c, b]),
+            _ => None,
+        }
+    })
 }

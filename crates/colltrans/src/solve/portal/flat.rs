@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 use super::Portal;
-use super::follow::{Edge, left_behind};
+use super::edge::{Edge, left_behind};
 use super::refine::{Optimum, plane_normal};
 use crate::body::ConvexPolyhedron;
 use crate::setting::VertexPair;

@@ -16,14 +16,14 @@
 
 use glam::{DVec2, DVec3};
 
+use super::edge::{Edge, crossed, left_behind};
 use super::flat::{Flat, across, has_large_faces};
 use super::start::continued;
-use super::tied::{Pointed, crossed_or_tied, lowest_edge, pointed};
-use super::wrap::{Neighbour, Tilt, first_met};
+use super::tied::{Pointed, beside, pointed};
+use super::wrap::{Neighbour, first_met};
 use super::{FirstNormal, Optimum, Portal, normal_of};
-use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::{Observer, Support, Watch};
 
 /// What became of an old portal.
@@ -138,7 +138,7 @@ const PROGRESS: f64 = 0.5;
 /// Where the support point is itself on the line, or nearly so, its plane may prove that the portal
 /// reached is the lowest; then `optimum` says so.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "passed through memory its result stalls its reader: 3 %")]
+#[expect(clippy::inline_always, reason = "passed through memory its result stalls its reader")]
 pub(crate) fn approach<O: Observer>(
     difference: &MinkowskiDifference,
     start: &FirstNormal,
@@ -212,80 +212,6 @@ fn slopes(
     near.then(|| [p, q].map(|n| n.truncate() / n.z))
 }
 
-/// The corner after another.
-const NEXT: [usize; 3] = [1, 2, 0];
-
-/// A directed edge of a portal with the third corner on its left and the line on its right.
-pub(super) struct Edge {
-    pub(super) from: Point,
-    pub(super) to: Point,
-    third: Point,
-}
-
-/// The corner of the portal where an edge begins over which the line has left it; none, and perhaps
-/// the `optimum`, if it has not.
-#[inline]
-fn crossed<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<usize> {
-    match difference.is_left_rounded(&portal[0], &portal[1]) {
-        Some(true) => left_behind(difference, portal, optimum, watch),
-        Some(false) => Some(0),
-        None => crossed_or_tied(difference, portal, optimum, watch),
-    }
-}
-
-/// The same, if the line is known to be on the left of the first edge.
-#[inline]
-pub(super) fn left_behind<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<usize> {
-    let second = difference.is_left_rounded(&portal[1], &portal[2]);
-    let third = difference.is_left_rounded(&portal[2], &portal[0]);
-    match (second, third) {
-        (Some(true), Some(true)) => None,
-        (Some(false), _) => Some(1),
-        (_, Some(false)) => Some(2),
-        _ => crossed_or_tied(difference, portal, optimum, watch),
-    }
-}
-
-impl Edge {
-    /// The edge that begins at a corner.
-    #[inline]
-    pub(super) fn of(portal: &Portal, from: usize) -> Self {
-        let [to, third] = [NEXT[from], NEXT[NEXT[from]]];
-        Self { from: portal[from], to: portal[to], third: portal[third] }
-    }
-
-    /// From the edge away from the triangle, as long as the edge.
-    pub(super) fn outward(&self) -> DVec2 {
-        -(self.to.shadow() - self.from.shadow()).perp()
-    }
-
-    /// How wide the triangle is over the edge, times the edge's length.
-    fn width(&self) -> f64 {
-        self.outward().dot(self.from.shadow() - self.third.shadow())
-    }
-
-    /// How far the line is beyond the edge, times the edge's length.
-    fn distance(&self) -> f64 {
-        -self.outward().dot(self.from.shadow())
-    }
-
-    /// The turn of the triangle's plane about the edge; `None` if the plane stands upright.
-    fn tilt(&self) -> Option<Tilt> {
-        let normal = triangle_normal([self.from.at, self.to.at, self.third.at]);
-        (normal.z > 0.0).then_some(Tilt { normal, outward: self.outward() })
-    }
-}
-
 /// The face of `M` at the support point along a slope, on the side of the line.
 fn jump<O: Observer>(
     difference: &MinkowskiDifference,
@@ -300,37 +226,4 @@ fn jump<O: Observer>(
     let vertex = difference.support_from(normal_of(slope), near);
     watch.support(|| Support::of(normal_of(slope), &vertex));
     beside(difference, &vertex, slope, -vertex.shadow(), optimum, watch)
-}
-
-/// The face of `M` at the support point `vertex` along a slope, in the direction of the line, with
-/// the line on the left of its first edge; or an edge under the line, with the `optimum`.
-pub(super) fn beside<O: Observer>(
-    difference: &MinkowskiDifference,
-    vertex: &Point,
-    slope: DVec2,
-    line: DVec2,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<Portal> {
-    let (vertex, normal) = (*vertex, normal_of(slope));
-    let toward_line = Tilt { normal, outward: line };
-    let Neighbour::Met(second) = first_met(difference, &vertex, &toward_line) else { return None };
-    // The plane after the turn, which contains both.
-    let edge = second.at - vertex.at;
-    let turn = normal.dot(edge) / toward_line.outward.dot(edge.truncate());
-    let normal = normal_of(slope - toward_line.outward * turn);
-    let rounded = difference.is_left_rounded(&vertex, &second);
-    if rounded.is_none()
-        && let Some((portal, found)) = lowest_edge(difference, &[vertex, second], normal, watch)
-    {
-        *optimum = Some(found);
-        return Some(portal);
-    }
-    let line_is_left = rounded.unwrap_or_else(|| difference.is_left(&vertex, &second));
-    let left = edge.truncate().perp();
-    let outward = if line_is_left { left } else { -left };
-    let Neighbour::Met(third) = first_met(difference, &vertex, &Tilt { normal, outward }) else {
-        return None;
-    };
-    Some(if line_is_left { [vertex, second, third] } else { [second, vertex, third] })
 }

@@ -10,6 +10,7 @@
 //! supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
+mod edge;
 mod enclose;
 mod flat;
 mod follow;
@@ -21,7 +22,7 @@ mod wrap;
 
 use glam::{DVec2, DVec3};
 
-pub(crate) use enclose::{Enclosure, SeparatingLine, enclose, widest_margin};
+pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, widest_margin};
 pub(crate) use follow::{ContactPortal, Followed, approach, follow};
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, refine};

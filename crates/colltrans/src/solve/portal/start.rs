@@ -115,22 +115,6 @@ impl FirstNormal {
         Self { normal, near: None, slope_per_shadow }
     }
 
-    /// Where the ellipsoids have their supporting planes across the normal, in the frames of the
-    /// moving and of the fixed body.
-    pub(crate) fn touching(&self, difference: &MinkowskiDifference) -> [DVec3; 2] {
-        let setting = difference.setting;
-        let normal = self.normal;
-        let away = |k: &Symmetric| {
-            let kn = k.apply(normal);
-            difference.setting_from_shadow * (kn * (1.0 / normal.dot(kn).sqrt()))
-        };
-        let (_, [a, b]) = difference.ellipsoids();
-        [
-            setting.moving.inertia().center + setting.moving_normal(away(&a)),
-            setting.fixed.inertia().center - setting.fixed_normal(away(&b)),
-        ]
-    }
-
     /// With a normal (shadow frame) and a pair that another solver found.
     pub(crate) fn guided(&self, normal: DVec3, near: VertexPair) -> Self {
         Self { normal: tempered(normal), near: Some(near), ..*self }

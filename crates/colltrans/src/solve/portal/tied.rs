@@ -9,8 +9,8 @@
 use glam::{DVec2, DVec3};
 
 use super::enclose::nearest_share;
-use super::follow::beside;
 use super::refine::{Optimum, depth_below, largest, plane_normal, weights};
+use super::wrap::{Neighbour, Tilt, first_met};
 use super::{Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
@@ -191,4 +191,37 @@ fn lowest_face<O: Observer>(
     let is_lowest =
         depth_below(portal, normal, &point) <= difference.noise.point() * normal.length();
     is_lowest.then_some(Optimum { normal, lowest: point.pair, weights })
+}
+
+/// The face of `M` at the support point `vertex` along a slope, in the direction of the line, with
+/// the line on the left of its first edge; or an edge under the line, with the `optimum`.
+pub(super) fn beside<O: Observer>(
+    difference: &MinkowskiDifference,
+    vertex: &Point,
+    slope: DVec2,
+    line: DVec2,
+    optimum: &mut Option<Optimum>,
+    watch: &mut Watch<O>,
+) -> Option<Portal> {
+    let (vertex, normal) = (*vertex, normal_of(slope));
+    let toward_line = Tilt { normal, outward: line };
+    let Neighbour::Met(second) = first_met(difference, &vertex, &toward_line) else { return None };
+    // The plane after the turn, which contains both.
+    let edge = second.at - vertex.at;
+    let turn = normal.dot(edge) / toward_line.outward.dot(edge.truncate());
+    let normal = normal_of(slope - toward_line.outward * turn);
+    let rounded = difference.is_left_rounded(&vertex, &second);
+    if rounded.is_none()
+        && let Some((portal, found)) = lowest_edge(difference, &[vertex, second], normal, watch)
+    {
+        *optimum = Some(found);
+        return Some(portal);
+    }
+    let line_is_left = rounded.unwrap_or_else(|| difference.is_left(&vertex, &second));
+    let left = edge.truncate().perp();
+    let outward = if line_is_left { left } else { -left };
+    let Neighbour::Met(third) = first_met(difference, &vertex, &Tilt { normal, outward }) else {
+        return None;
+    };
+    Some(if line_is_left { [vertex, second, third] } else { [second, vertex, third] })
 }

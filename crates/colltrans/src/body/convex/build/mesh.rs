@@ -57,10 +57,12 @@ pub(super) fn from_mesh<F: AsRef<[u32]>>(
     faces: &[F],
     tolerance: f64,
 ) -> Result<ConvexPolyhedron, BuildError> {
+    if tolerance.is_nan() || tolerance < 0.0 {
+        return Err(BuildError::Tolerance { tolerance });
+    }
     let surface = Surface::new(vertices, faces)?;
     let hull = surface.hull();
     let ConvexityDefect { face, depth } = surface.defect(&hull);
-    // A tolerance that is no number tolerates nothing.
     let tolerance = hull::tolerance(&surface.points).max(tolerance);
     if depth > tolerance {
         return Err(BuildError::NotConvex { face, depth, tolerance });

@@ -46,8 +46,8 @@ impl ConvexPolyhedron {
         Ok(Self::from_hull(points, hull::convex_hull(points)))
     }
 
-    /// The box from corner `min` to corner `max`, of 8 vertices and 6 faces; a flat one if they have a
-    /// coordinate in common.
+    /// The box between two opposite corners, of 8 vertices and 6 faces; a flat one if they have a
+    /// coordinate in common. Which corner is which does not matter.
     ///
     /// # Errors
     /// A corner that is not finite or out of range.
@@ -76,7 +76,7 @@ impl ConvexPolyhedron {
     ///
     /// # Errors
     /// What is wrong with the points, the topology, the orientation, or the convexity (with the
-    /// worst face and its depth).
+    /// worst face and its depth); a tolerance that is negative or no number.
     ///
     /// ```
     /// use colltrans::glam::DVec3;

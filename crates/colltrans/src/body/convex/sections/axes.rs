@@ -34,7 +34,7 @@ impl AxisPair {
     pub(crate) fn choose(moving: &DMat3, fixed: &DMat3, unit: DVec3) -> Self {
         let a = AXES.map(|axis| *moving * axis);
         let b = AXES.map(|axis| *fixed * axis);
-        let along = |axes: &[DVec3; 4]| axes.map(|axis| 3.0 * axis.dot(unit).powi(2));
+        let along = |axes: &[DVec3; 4]| axes.map(|axis| 3.0 * (axis.dot(unit) * axis.dot(unit)));
         let (a_along, b_along) = (along(&a), along(&b));
         let (mut best, mut quality) = ((0, 0), -1.0);
         for i in 0..4 {

@@ -4,8 +4,11 @@
 //! many edges as [`EDGES_PER_ENTRY`] times the edges of the current section, so all snapshots
 //! together have `O(n)` entries, and a vertex of very many edges (the apex of a cone) gets a
 //! snapshot of its own. A query at level `x` starts from the last snapshot at or below `x`: no such
-//! vertex lies between. An entry holds a crossing edge and, as `f32`, where it crosses; these
-//! positions only guide a search, whose end is decided on the mesh.
+//! vertex lies between. An entry holds a crossing edge and, as `f32`, where it crosses, and its
+//! *way*: how a climb from it, at each vertex along the edge that leads highest, moves per level up
+//! to the next snapshot. Where faces are thin, corners of the section pass many vertices between two
+//! snapshots, so that only the way tells where they are. Positions and ways only guide a search,
+//! whose end is decided on the mesh.
 
 use glam::DVec3;
 
@@ -26,6 +29,86 @@ struct Entry {
     up: u32,
     /// Where it crosses, in the scaled coordinates of the section plane.
     position: [f32; 2],
+    /// How a climb from there moves per level.
+    way: [f32; 2],
+}
+
+impl Entry {
+    /// Where it seems to be, so many levels above the snapshot.
+    #[inline]
+    fn at(&self, above: f32) -> [f32; 2] {
+        [0, 1].map(|i| self.position[i] + self.way[i] * above)
+    }
+}
+
+/// What sections are built from.
+#[derive(Clone, Copy)]
+struct Mesh<'a> {
+    vertices: &'a [DVec3],
+    topology: &'a Topology,
+    /// Level of each vertex.
+    levels: &'a [f64],
+}
+
+impl Mesh<'_> {
+    /// Where a mesh edge, by a half-edge upwards, crosses a level.
+    fn crossing(&self, up: u32, level: f64) -> DVec3 {
+        let [low, high] = [self.topology.half_edge(up).origin, self.topology.target(up)];
+        let [from, to] = [low, high].map(|v| self.levels[v as usize]);
+        let share = ((level - from) / (to - from)).min(1.0);
+        let [low, high] = [low, high].map(|v| self.vertices[v as usize]);
+        low + (high - low) * share
+    }
+
+    /// The edge from each vertex that leads highest, if one leads up.
+    fn highest_edges(&self) -> Vec<Option<u32>> {
+        let level = |v: u32| self.levels[v as usize];
+        let highest = |v: u32| {
+            let (edges, ends) = (self.topology.outgoing(v), self.topology.neighbours(v));
+            let upwards = edges.iter().zip(ends).filter(|&(_, &end)| level(end) > level(v));
+            upwards.max_by(|a, b| level(*a.1).total_cmp(&level(*b.1))).map(|(&edge, _)| edge)
+        };
+        (0..self.vertices.len() as u32).map(highest).collect()
+    }
+}
+
+/// Climbs to one level after the other, each along the edges that lead highest. A vertex passes on to
+/// later climbs where the one before arrived, so all climbs to a level visit it once.
+struct Climbs<'a> {
+    mesh: &'a Mesh<'a>,
+    highest: Vec<Option<u32>>,
+    /// For which climb a vertex knows the edge of arrival, and that edge.
+    known: Vec<(u32, u32)>,
+    passed: Vec<u32>,
+}
+
+impl<'a> Climbs<'a> {
+    fn new(mesh: &'a Mesh<'a>) -> Self {
+        let known = vec![(u32::MAX, 0); mesh.vertices.len()];
+        Self { mesh, highest: mesh.highest_edges(), known, passed: Vec::new() }
+    }
+
+    /// The edge that crosses `to`, or the last one below it, on climb number `number`.
+    fn from(&mut self, mut up: u32, (number, to): (u32, f64)) -> u32 {
+        self.passed.clear();
+        loop {
+            let end = self.mesh.topology.target(up) as usize;
+            let Some(ahead) = self.highest[end] else { break };
+            if self.mesh.levels[end] > to {
+                break;
+            }
+            if self.known[end].0 == number {
+                up = self.known[end].1;
+                break;
+            }
+            self.passed.push(end as u32);
+            up = ahead;
+        }
+        for &vertex in &self.passed {
+            self.known[vertex as usize] = (number, up);
+        }
+        up
+    }
 }
 
 /// The sections across one axis.
@@ -41,6 +124,9 @@ pub(crate) struct AxisSections {
     origin: [f64; 2],
     /// Level of each snapshot, ascending.
     levels: Vec<f64>,
+    /// The level at which positions of each snapshot are meant, between that of the snapshot and
+    /// the next one of a vertex.
+    halfway: Vec<f64>,
     /// First entry of each snapshot, and one past the end.
     starts: Vec<u32>,
     /// Each snapshot counter-clockwise.
@@ -63,23 +149,22 @@ impl AxisSections {
             plane,
             origin,
             levels: Vec::new(),
+            halfway: Vec::new(),
             starts: vec![0],
             entries: Vec::new(),
         };
-        sections.take_snapshots(vertices, topology, &vertex_levels, &order);
+        let mesh = Mesh { vertices, topology, levels: &vertex_levels };
+        sections.take_snapshots(&mesh, &order);
+        sections.find_ways(&mesh);
+        sections.halfway.shrink_to_fit();
         sections.levels.shrink_to_fit();
         sections.starts.shrink_to_fit();
         sections.entries.shrink_to_fit();
         sections
     }
 
-    fn take_snapshots(
-        &mut self,
-        vertices: &[DVec3],
-        topology: &Topology,
-        vertex_levels: &[f64],
-        order: &[(f64, u32)],
-    ) {
+    fn take_snapshots(&mut self, mesh: &Mesh, order: &[(f64, u32)]) {
+        let Mesh { topology, levels: vertex_levels, .. } = *mesh;
         let mut edges_passed = 0;
         let mut edges_due = 0;
         for (rank, &(level, vertex)) in order.iter().enumerate() {
@@ -95,7 +180,7 @@ impl AxisSections {
                 outgoing.find(|&h| vertex_levels[topology.target(h) as usize] > level)
             });
             if let Some(first) = first {
-                self.take_snapshot(vertices, topology, vertex_levels, first, [level, next_level]);
+                self.take_snapshot(mesh, first, [level, next_level]);
                 edges_due = EDGES_PER_ENTRY
                     * (self.entries.len() - self.starts[self.starts.len() - 2] as usize);
                 edges_passed = 0;
@@ -104,33 +189,40 @@ impl AxisSections {
     }
 
     /// Appends the section between two successive levels of vertices, which `first` crosses.
-    fn take_snapshot(
-        &mut self,
-        vertices: &[DVec3],
-        topology: &Topology,
-        vertex_levels: &[f64],
-        first: u32,
-        [level, next_level]: [f64; 2],
-    ) {
+    fn take_snapshot(&mut self, mesh: &Mesh, first: u32, [level, next_level]: [f64; 2]) {
+        let topology = mesh.topology;
         // Halfway no two of its vertices coincide.
         let halfway = f64::midpoint(level, next_level);
         let mut up = first;
         // A section has no more entries than there are edges; rounding in the levels could make the
         // walk miss its start.
         for _ in 0..topology.edge_count() {
-            let (low, high) = (topology.half_edge(up).origin, topology.target(up));
-            let (low_level, high_level) =
-                (vertex_levels[low as usize], vertex_levels[high as usize]);
-            let s = (halfway - low_level) / (high_level - low_level);
-            let (low, high) = (vertices[low as usize], vertices[high as usize]);
-            self.entries.push(Entry { up, position: self.position(low + (high - low) * s) });
-            up = next_counter_clockwise(topology, up, |v| vertex_levels[v as usize] > level);
+            let position = self.position(mesh.crossing(up, halfway));
+            self.entries.push(Entry { up, position, way: [0.0; 2] });
+            up = next_counter_clockwise(topology, up, |v| mesh.levels[v as usize] > level);
             if up == first {
                 break;
             }
         }
         self.levels.push(level);
+        self.halfway.push(halfway);
         self.starts.push(self.entries.len() as u32);
+    }
+
+    /// Climbs from every entry to the next snapshot, or the top.
+    fn find_ways(&mut self, mesh: &Mesh) {
+        let mut climbs = Climbs::new(mesh);
+        for index in 0..self.halfway.len() {
+            let from = self.halfway[index];
+            let to = self.halfway.get(index + 1).map_or(self.range[1], |&next| next);
+            for i in self.starts[index] as usize..self.starts[index + 1] as usize {
+                let Entry { up, position, .. } = self.entries[i];
+                let arrival = climbs.from(up, (index as u32, to));
+                let there = self.position(mesh.crossing(arrival, to));
+                let way = [0, 1].map(|k| f64::from(there[k] - position[k]) / (to - from));
+                self.entries[i].way = way.map(|w| if w.is_finite() { w as f32 } else { 0.0 });
+            }
+        }
     }
 
     fn position(&self, v: DVec3) -> [f32; 2] {
@@ -141,7 +233,8 @@ impl AxisSections {
     pub(crate) fn snapshot(&self, x: f64) -> Snapshot<'_> {
         let index = self.levels.partition_point(|&level| level <= x).max(1) - 1;
         let end = self.starts.get(index + 1).map_or(0, |&end| end as usize);
-        Snapshot { entries: &self.entries[self.starts[index] as usize..end] }
+        let above = self.halfway.get(index).map_or(0.0, |halfway| (x - halfway) as f32);
+        Snapshot { entries: &self.entries[self.starts[index] as usize..end], above }
     }
 
     /// The linear form `covector . v + constant` of the body frame, on this axis' sections.
@@ -159,7 +252,7 @@ impl AxisSections {
     }
 
     pub(crate) fn heap_bytes(&self) -> usize {
-        size_of::<f64>() * self.levels.capacity()
+        size_of::<f64>() * (self.levels.capacity() + self.halfway.capacity())
             + size_of::<u32>() * self.starts.capacity()
             + size_of::<Entry>() * self.entries.capacity()
     }
@@ -227,6 +320,8 @@ impl Turn {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Snapshot<'a> {
     entries: &'a [Entry],
+    /// How far the level in question is above it.
+    above: f32,
 }
 
 impl Snapshot<'_> {
@@ -245,7 +340,7 @@ impl Snapshot<'_> {
     }
 
     fn value(&self, form: &SectionForm, index: usize) -> f32 {
-        form.at(self.entries[index].position)
+        form.at(self.entries[index].at(self.above))
     }
 
     /// The entry where `sign * form` is least, `sign` being 1 or -1.
@@ -257,7 +352,7 @@ impl Snapshot<'_> {
         let count = self.entries.len();
         let slope = form.slope.map(|s| sign * s);
         let value = |i: usize| {
-            let [u, v] = self.entries[i].position;
+            let [u, v] = self.entries[i].at(self.above);
             slope[0] * u + slope[1] * v
         };
         let mut stride = 1;

@@ -1,0 +1,326 @@
+//! The exit test: whether the best point of a cell solves the problem (line 6 of the paper's
+//! algorithm).
+//!
+//! Notation. The sides of a cell that meet in its best point `q` name the *features* that touch
+//! there, of P and of Q: a vertex, an edge or a face. `q` minimises `phi` exactly if these features
+//! have a common normal `n`, `n . d > 0`, that supports P outward and Q inward: zero is then in the
+//! convex hull of the gradients of all cells at `q`. A face or two crossing edges leave one normal,
+//! which is held against the neighbours of the features; anything else is a linear programme in
+//! the two lateral parts of `n`.
+//!
+//! Local support of a convex body is support. So a hit is a proof up to rounding, at the height
+//! where the plane meets: if that is not `q`'s, ties have named features that do not touch, and the
+//! test misses. A miss costs a step, and the finish proves whatever a hit claims.
+
+use glam::{DVec2, DVec3};
+
+use super::cell::{Best, Cell, End, face_of};
+use super::planar::Planar;
+use super::region::Region;
+use super::side::Side;
+use crate::body::topology::Topology;
+use crate::setting::{Setting, VertexPair};
+
+/// The height of a supporting plane is that of the best point if they differ by less than this
+/// share of the extent along the direction: sections have lost about six digits of sixteen where
+/// faces are as thin as they get.
+const SAME_HEIGHT: f64 = 1e-10;
+
+/// Ways out of the features that are compared; vertices with more are not decided.
+const MOST_WAYS: usize = 40;
+
+/// The greatest lateral part of a normal with `n . d = 1` that the linear programme finds.
+const STEEPEST: f64 = 1e3;
+
+/// Two edges with a smaller sine between them count as parallel.
+const PARALLEL: f64 = 1e-8;
+
+/// Corners of a face of the difference of the bodies, in order.
+pub(crate) type Corners = [VertexPair; 4];
+
+/// The contact, as the features that touch prove it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Solved {
+    /// The contact normal, with `n . d = 1`.
+    pub(super) normal: DVec3,
+    /// The features of each body, as two pairs of vertices.
+    pub(super) vertices: [[u32; 4]; 2],
+    /// The face of the difference that the line passes, if it has three or four corners.
+    pub(super) corners: Option<Corners>,
+}
+
+/// What of a body touches; edges and faces by a half-edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Feature {
+    Vertex(u32),
+    Edge(u32),
+    Face(u32),
+}
+
+/// The bodies of a query, in the setting frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ExitTest<'q, 'a> {
+    pub(super) sides: &'q [Side<'a>; 2],
+    pub(super) setting: &'q Setting<'a>,
+    /// Of both bodies along the direction.
+    pub(super) extent: f64,
+}
+
+impl ExitTest<'_, '_> {
+    /// Whether the best point of a cell solves the problem, at height `upper` along the direction.
+    pub(super) fn solves(
+        &self,
+        answer: &Planar,
+        (cell, best): (&Cell, &Best),
+        upper: f64,
+    ) -> Option<Solved> {
+        let features = self.features(answer, cell, best)?;
+        let normal = self.common_normal(features)?;
+        let [p, q] = [0, 1].map(|body| self.at(body, self.vertex_of(body, features[body])));
+        let height = normal.dot(q + self.setting.offset - p);
+        let vertices = [0, 1].map(|body| self.named(body, features[body]));
+        ((upper - height).abs() <= SAME_HEIGHT * self.extent).then(|| Solved {
+            normal,
+            vertices,
+            corners: self.corners(features),
+        })
+    }
+
+    /// The features that touch in the best point.
+    fn features(&self, answer: &Planar, cell: &Cell, best: &Best) -> Option<[Feature; 2]> {
+        match answer {
+            Planar::Edges { edges, .. } => {
+                let of = |body: usize| {
+                    let (face, _) = face_of(&self.sides[body], &edges[body])?;
+                    Some(self.narrowed(body, Feature::Face(face), cell.ends_at(best)))
+                };
+                Some([of(0)?, of(1)?])
+            }
+            Planar::Vertex { upper, vertex, .. } => {
+                let lower = 1 - upper;
+                let own = self.narrowed(*upper, Feature::Edge(vertex.up), cell.ends_at(best));
+                let face = cell.ends_at(best).find_map(|end| match end {
+                    End::Face(_, h) => Some(h),
+                    _ => None,
+                })?;
+                let topology = self.sides[lower].topology;
+                let on_face = cell.ends_at(best).filter(|end| match end {
+                    End::Edge(_, h) => bounds(topology, *h, face),
+                    _ => true,
+                });
+                let other = self.narrowed(lower, Feature::Face(face), on_face);
+                Some(if *upper == 0 { [own, other] } else { [other, own] })
+            }
+            Planar::Separated { .. } => None,
+        }
+    }
+
+    /// A feature of a body, narrowed to what ends there.
+    fn narrowed(&self, body: usize, from: Feature, ends: impl Iterator<Item = End>) -> Feature {
+        let topology = self.sides[body].topology;
+        let mut feature = from;
+        for end in ends {
+            feature = match (end, feature) {
+                (End::Vertex(b, v), _) if b == body => Feature::Vertex(v),
+                (End::Edge(b, h), Feature::Face(_)) if b == body => Feature::Edge(h),
+                (End::Edge(b, h), Feature::Edge(e)) if b == body => {
+                    shared(topology, e, h).map_or(feature, Feature::Vertex)
+                }
+                _ => feature,
+            };
+        }
+        feature
+    }
+
+    /// A normal with `n . d = 1` that supports both bodies where the features touch.
+    fn common_normal(&self, features: [Feature; 2]) -> Option<DVec3> {
+        let unit = self.setting.unit;
+        let single = match features {
+            [Feature::Face(f), _] => Some(self.face_normal(0, f)),
+            [_, Feature::Face(f)] => Some(self.face_normal(1, f)),
+            [Feature::Edge(e), Feature::Edge(f)] => self.across(e, f),
+            _ => None,
+        };
+        let Some(single) = single else { return self.any_normal(features) };
+        let along = single.dot(unit);
+        // A face has an outside; two edges do not.
+        let outward = match features {
+            [Feature::Face(_), _] => along > 0.0,
+            [_, Feature::Face(_)] => along < 0.0,
+            _ => along != 0.0,
+        };
+        let normal = single / along;
+        let supports = |body: usize| self.supports(body, normal, features[body]);
+        (outward && normal.is_finite() && supports(0) && supports(1)).then_some(normal)
+    }
+
+    /// The normal of two edges, of either sense; `None` if they are parallel.
+    fn across(&self, e: u32, f: u32) -> Option<DVec3> {
+        let along = |body: usize, h: u32| {
+            let topology = self.sides[body].topology;
+            self.at(body, topology.target(h)) - self.at(body, topology.half_edge(h).origin)
+        };
+        let (p, q) = (along(0, e), along(1, f));
+        let normal = p.cross(q);
+        let sizes = p.length_squared() * q.length_squared();
+        (normal.length_squared() > PARALLEL * PARALLEL * sizes).then_some(normal)
+    }
+
+    /// The outward normal of a face, of any length.
+    fn face_normal(&self, body: usize, half_edge: u32) -> DVec3 {
+        let topology = self.sides[body].topology;
+        let third = topology.target(topology.next(half_edge));
+        let corners = [topology.half_edge(half_edge).origin, topology.target(half_edge), third];
+        let [a, b, c] = corners.map(|v| self.at(body, v));
+        (b - a).cross(c - a)
+    }
+
+    /// Whether no way out of a feature leads beyond a plane, up to rounding.
+    fn supports(&self, body: usize, normal: DVec3, feature: Feature) -> bool {
+        let outward = if body == 0 { normal } else { -normal };
+        let noise = self.setting.noise().point() * normal.length();
+        let mut beyond = 0_u32;
+        self.for_ways(body, feature, |way| {
+            beyond += u32::from(outward.dot(way) > noise);
+        });
+        beyond == 0
+    }
+
+    /// By clipping the plane of normals `d + s1 e1 + s2 e2` with all ways out of both features,
+    /// each by as much too little as rounding may hide.
+    fn any_normal(&self, features: [Feature; 2]) -> Option<DVec3> {
+        let unit = self.setting.unit;
+        let e1 = unit.any_orthonormal_vector();
+        let e2 = unit.cross(e1);
+        let ways = |body: usize| self.count_ways(body, features[body]);
+        if ways(0) + ways(1) > MOST_WAYS {
+            return None;
+        }
+        let noise = self.setting.noise().point();
+        let mut normals = Region::rectangle(DVec2::splat(-STEEPEST), DVec2::splat(STEEPEST));
+        for (body, feature) in features.into_iter().enumerate() {
+            let sign = if body == 0 { 1.0 } else { -1.0 };
+            self.for_ways(body, feature, |way| {
+                let way = way * sign;
+                normals.cut(DVec2::new(e1.dot(way), e2.dot(way)), noise - unit.dot(way));
+            });
+        }
+        let slope = normals.centroid()?;
+        Some(unit + e1 * slope.x + e2 * slope.y)
+    }
+
+    fn count_ways(&self, body: usize, feature: Feature) -> usize {
+        match feature {
+            Feature::Vertex(v) => self.sides[body].topology.neighbours(v).len(),
+            Feature::Edge(_) => 4,
+            Feature::Face(_) => 3,
+        }
+    }
+
+    /// The ways out of a feature along the surface, and both ways along it.
+    fn for_ways(&self, body: usize, feature: Feature, mut visit: impl FnMut(DVec3)) {
+        let topology = self.sides[body].topology;
+        let here = self.vertex_of(body, feature);
+        let from = self.at(body, here);
+        let mut visit_way = |to: u32| visit(self.at(body, to) - from);
+        match feature {
+            Feature::Vertex(v) => {
+                topology.neighbours(v).iter().copied().for_each(visit_way);
+            }
+            Feature::Edge(h) => {
+                let twin = topology.half_edge(h).twin;
+                let end = topology.target(h);
+                visit_way(end);
+                visit_way(topology.target(topology.next(h)));
+                visit_way(topology.target(topology.next(twin)));
+                visit(from - self.at(body, end));
+            }
+            Feature::Face(h) => {
+                let next = topology.next(h);
+                visit_way(topology.target(h));
+                visit_way(topology.target(next));
+                let [back, third] = [topology.target(h), topology.target(next)];
+                visit(from - self.at(body, back));
+                visit(from - self.at(body, third));
+            }
+        }
+    }
+
+    /// A vertex of the body in the setting frame, up to Q's offset.
+    fn at(&self, body: usize, vertex: u32) -> DVec3 {
+        let Setting { moving_matrix, fixed_matrix, .. } = self.setting;
+        let matrix = if body == 0 { moving_matrix } else { fixed_matrix };
+        *matrix * self.sides[body].vertices[vertex as usize]
+    }
+
+    /// A vertex of a feature.
+    fn vertex_of(&self, body: usize, feature: Feature) -> u32 {
+        match feature {
+            Feature::Vertex(v) => v,
+            Feature::Edge(h) | Feature::Face(h) => self.sides[body].topology.half_edge(h).origin,
+        }
+    }
+
+    /// A feature as two pairs of its vertices.
+    fn named(&self, body: usize, feature: Feature) -> [u32; 4] {
+        let topology = self.sides[body].topology;
+        let first = self.vertex_of(body, feature);
+        match feature {
+            Feature::Vertex(_) => [first; 4],
+            Feature::Edge(h) => [first, topology.target(h), first, topology.target(h)],
+            Feature::Face(h) => {
+                let third = topology.target(topology.next(h));
+                [first, topology.target(h), third, first]
+            }
+        }
+    }
+
+    /// The corners of the features' difference, if it is a triangle or a quadrilateral.
+    fn corners(&self, features: [Feature; 2]) -> Option<Corners> {
+        let ends = |body: usize, h: u32| {
+            let topology = self.sides[body].topology;
+            [topology.half_edge(h).origin, topology.target(h)]
+        };
+        let on_face = |body: usize, h: u32, pair: &dyn Fn(u32) -> VertexPair| {
+            let topology = self.sides[body].topology;
+            let boundary = topology.face(topology.half_edge(h).face);
+            let corner = |i: usize| topology.half_edge(boundary.start + i as u32).origin;
+            match boundary.len() {
+                3 => Some([corner(0), corner(1), corner(2), corner(2)].map(pair)),
+                4 => Some([corner(0), corner(1), corner(2), corner(3)].map(pair)),
+                _ => None,
+            }
+        };
+        match features {
+            [Feature::Edge(e), Feature::Edge(f)] => {
+                let (p, q) = (ends(0, e), ends(1, f));
+                let pair = |i: usize, j: usize| VertexPair { moving: p[i], fixed: q[j] };
+                Some([pair(0, 0), pair(1, 0), pair(1, 1), pair(0, 1)])
+            }
+            [Feature::Vertex(moving), Feature::Face(h)] => {
+                on_face(1, h, &|fixed| VertexPair { moving, fixed })
+            }
+            [Feature::Face(h), Feature::Vertex(fixed)] => {
+                on_face(0, h, &|moving| VertexPair { moving, fixed })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether an edge bounds the face of another half-edge.
+fn bounds(topology: &Topology, edge: u32, of_face: u32) -> bool {
+    let face = |h: u32| topology.half_edge(h).face;
+    let twin = topology.half_edge(edge).twin;
+    face(edge) == face(of_face) || face(twin) == face(of_face)
+}
+
+/// The vertex that two different edges share.
+fn shared(topology: &Topology, e: u32, f: u32) -> Option<u32> {
+    let ends = |h: u32| [topology.half_edge(h).origin, topology.target(h)];
+    let (of_e, of_f) = (ends(e), ends(f));
+    if f == e || f == topology.half_edge(e).twin {
+        return None;
+    }
+    of_e.into_iter().find(|v| of_f.contains(v))
+}

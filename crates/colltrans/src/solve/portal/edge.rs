@@ -1,0 +1,84 @@
+//! The edges of a portal, and over which of them the line has left it.
+
+use glam::DVec2;
+
+use super::tied::crossed_or_tied;
+use super::wrap::Tilt;
+use super::{Optimum, Portal};
+use crate::number::plane::triangle_normal;
+use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::solve::observe::{Observer, Watch};
+
+/// The corner after another.
+const NEXT: [usize; 3] = [1, 2, 0];
+
+/// A directed edge of a portal with the third corner on its left and the line on its right.
+pub(super) struct Edge {
+    pub(super) from: Point,
+    pub(super) to: Point,
+    pub(super) third: Point,
+}
+
+/// The corner of the portal where an edge begins over which the line has left it; none, and perhaps
+/// the `optimum`, if it has not.
+#[inline]
+pub(super) fn crossed<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    optimum: &mut Option<Optimum>,
+    watch: &mut Watch<O>,
+) -> Option<usize> {
+    match difference.is_left_rounded(&portal[0], &portal[1]) {
+        Some(true) => left_behind(difference, portal, optimum, watch),
+        Some(false) => Some(0),
+        None => crossed_or_tied(difference, portal, optimum, watch),
+    }
+}
+
+/// The same, if the line is known to be on the left of the first edge.
+#[inline]
+pub(super) fn left_behind<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    optimum: &mut Option<Optimum>,
+    watch: &mut Watch<O>,
+) -> Option<usize> {
+    let second = difference.is_left_rounded(&portal[1], &portal[2]);
+    let third = difference.is_left_rounded(&portal[2], &portal[0]);
+    match (second, third) {
+        (Some(true), Some(true)) => None,
+        (Some(false), _) => Some(1),
+        (_, Some(false)) => Some(2),
+        _ => crossed_or_tied(difference, portal, optimum, watch),
+    }
+}
+
+impl Edge {
+    /// The edge that begins at a corner.
+    #[inline]
+    pub(super) fn of(portal: &Portal, from: usize) -> Self {
+        let [to, third] = [NEXT[from], NEXT[NEXT[from]]];
+        Self { from: portal[from], to: portal[to], third: portal[third] }
+    }
+
+    /// From the edge away from the triangle, as long as the edge.
+    pub(super) fn outward(&self) -> DVec2 {
+        -(self.to.shadow() - self.from.shadow()).perp()
+    }
+
+    /// How wide the triangle is over the edge, times the edge's length.
+    pub(super) fn width(&self) -> f64 {
+        self.outward().dot(self.from.shadow() - self.third.shadow())
+    }
+
+    /// How far the line is beyond the edge, times the edge's length.
+    pub(super) fn distance(&self) -> f64 {
+        -self.outward().dot(self.from.shadow())
+    }
+
+    /// The turn of the triangle's plane about the edge; `None` if the plane stands upright.
+    pub(super) fn tilt(&self) -> Option<Tilt> {
+        let normal = triangle_normal([self.from.at, self.to.at, self.third.at]);
+        (normal.z > 0.0).then_some(Tilt { normal, outward: self.outward() })
+    }
+}

@@ -203,7 +203,12 @@ export class Found {
       this.graph.show(found, this.grid, this.step);
       this.steps.replaceChildren(...buttons(found.steps.length, this.step, (k) => this.pick(k)));
       this.tellStep(found);
-    } else this.told.textContent = "Bodies without a volume have no sections to speak of.";
+    } else {
+      this.told.textContent = this.from.value === "guess"
+        ? "Portal refinement began where the ellipsoids would meet, and no planar problem was needed."
+        : "Bodies without a volume have no sections to speak of.";
+    }
+    for (const part of [this.graph.element, this.steps, this.planar.parentElement!]) part.hidden = !found;
     this.drawPlanar();
     this.drawPortals();
     this.portalSteps.replaceChildren(...buttons(this.refined?.steps.length ?? 0, this.portal, (k) => {

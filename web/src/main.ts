@@ -23,6 +23,8 @@ class Page {
   private answer: Answer | undefined;
   private error: string | undefined;
   private took = 0;
+  /** Milliseconds from the page's beginning. */
+  private firstAnswer: number | undefined;
   private verdict: Shown["verdict"];
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
   private readonly engine = new Engine(new URL("worker.js", import.meta.url));
@@ -105,6 +107,7 @@ class Page {
     this.asking = true;
     try {
       const { answer, took } = await this.engine.cast(this.pair());
+      this.firstAnswer ??= performance.now();
       [this.answer, this.took, this.error] = [answer, took, undefined];
     } catch (error) {
       [this.answer, this.error] = [undefined, String(error instanceof Error ? error.message : error)];
@@ -363,7 +366,7 @@ class Page {
 
   /** For tests. */
   probe() {
-    return { engine: this.engine, view: this.view, state: this.state, answer: this.answer };
+    return { engine: this.engine, view: this.view, state: this.state, answer: this.answer, firstAnswer: this.firstAnswer };
   }
 }
 

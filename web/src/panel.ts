@@ -150,6 +150,7 @@ export class AnswerPanel {
           if (l > 0) s.direction = s.direction.map((x) => x / l) as Vec;
         }) }, "length 1")),
       ...pose("moving"), ...pose("fixed"), this.graze, this.solid,
+      h("small", { style: "color: var(--soft)" }, "Lengths are in the unit of the files; t counts in multiples of d."),
     );
   }
 

@@ -35,12 +35,17 @@ export class Shadow {
   private readonly canvas = h("canvas");
   private readonly note = h("figcaption");
   private late = 0;
+  private known: unknown[] = [];
 
   constructor() {
     this.element = h("figure", { class: "shadow" }, h("div", { class: "shadow-pictures" }, this.canvas, this.picture), this.note);
   }
 
   show(state: State, bodies: Record<Slot, Drawn>, answer: Answer | undefined) {
+    const { moving, fixed } = state.poses;
+    const now = [bodies.moving, bodies.fixed, answer, palette(), [...state.direction, ...moving, ...fixed].join()];
+    if (now.every((value, k) => value === this.known[k])) return;
+    this.known = now;
     const d = unit(state.direction);
     const [right, up] = eyes(d);
     const points = {

@@ -25,7 +25,7 @@ export class Timeline {
   show(state: State, answer: Answer | undefined, pass: number) {
     const first = answer?.first?.t;
     const exit = answer?.exit ?? undefined;
-    const ends = [0, first ?? 0, exit ?? (first === undefined ? pass : first)];
+    const ends = [0, first ?? pass, exit ?? first ?? pass];
     const [low, high] = [Math.min(...ends), Math.max(...ends)];
     const more = (high - low || 1) * 0.06;
     this.range = [low < 0 ? low - more : low, high + more];

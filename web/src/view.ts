@@ -86,6 +86,8 @@ export class View {
   private held: Slot = "moving";
   private plain = false;
   private meshOfGrid = "";
+  /** Where the grid lies, and for what. */
+  private ground: { of: unknown[]; low: number } = { of: [], low: 0 };
   private readonly axes = svg("svg", { class: "axes", viewBox: "-40 -40 80 96", "aria-hidden": "true" });
 
   onDirection: (direction: Vec, done: boolean) => void = () => {};
@@ -175,6 +177,8 @@ export class View {
     ];
     const t = this.answer?.first?.t;
     if (t !== undefined && t > 0) balls.push([add(balls[0]![0], times(state.direction, t)), moving.radius]);
+    // The arrow's tip, which is a little farther out when all of it is in the picture.
+    balls.push([add(balls[0]![0], times(unit(state.direction), 1.1 * moving.radius + 0.2 * (moving.radius + fixed.radius))), 0]);
     let [low, high]: [Vec, Vec] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     for (const [at, r] of balls) {
       low = low.map((x, k) => Math.min(x, at[k]! - r)) as Vec;
@@ -217,7 +221,7 @@ export class View {
       const first = answer?.first;
       if (first && moving && fixed) this.addContact(first, answer, state, moving, fixed);
       else if (answer?.kind === "convex" && answer.outcome === "separated") this.addGap(answer.sideways!, answer.margin!, state);
-      if (moving) this.addArrow(moving, state);
+      if (moving && fixed) this.addArrow(moving, fixed, state);
     }
     this.placeHandle();
     this.render();
@@ -296,9 +300,9 @@ export class View {
     }
   }
 
-  private addArrow(moving: Drawn, state: State) {
+  private addArrow(moving: Drawn, fixed: Drawn, state: State) {
     const base = placed(state.poses.moving, moving.middle);
-    const reach = moving.radius + 0.42 * this.size;
+    const reach = 1.05 * moving.radius + 0.14 * Math.min(this.size, moving.radius + fixed.radius);
     const tip = add(base, times(unit(state.direction), reach));
     this.tip = this.inScene(tip);
     // Seen through the body it starts in.
@@ -442,12 +446,17 @@ export class View {
 
   private lowest(): number {
     const { state } = this;
-    let low = Infinity;
-    for (const slot of ["moving", "fixed"] as const) {
-      const body = this.drawnBodies[slot];
-      if (body && state) low = Math.min(low, -highest(body.body, state.poses[slot], [0, 0, -1]));
+    if (!state) return 0;
+    const { moving, fixed } = this.drawnBodies;
+    const now = [moving, fixed, state.poses.moving.join(), state.poses.fixed.join(), this.size];
+    if (!now.every((value, k) => value === this.ground.of[k])) {
+      const lows = (["moving", "fixed"] as const).flatMap((slot) => {
+        const body = this.drawnBodies[slot];
+        return body ? [-highest(body.body, state.poses[slot], [0, 0, -1])] : [];
+      });
+      this.ground = { of: now, low: lows.length ? Math.min(...lows) - 0.02 * this.size : 0 };
     }
-    return Number.isFinite(low) ? low - 0.02 * this.size : 0;
+    return this.ground.low;
   }
 
   private placeLabels() {

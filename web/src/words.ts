@@ -89,7 +89,7 @@ const kind = (of: Feature) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
 
 function solid(answer: SolidAnswer, state: State): Said {
   const tolerance: [string, string] = ["tolerance", short(answer.tolerance, 3)];
-  const exit: [string, string][] = answer.exit === null ? [] : [["parted for good after t", short(answer.exit, 9)]];
+  const exit: [string, string][] = answer.exit === null || answer.exit <= 0 ? [] : [["parted for good after t", short(answer.exit, 9)]];
   const { first } = answer;
   if (answer.outcome === "free") {
     return {

@@ -58,6 +58,8 @@ test("it opens solved, without a complaint, and is small", async () => {
   const page = await opened();
   assert.equal(await headline(page), "Contact at t = 4.31674");
   assert.deepEqual(page.complaints, []);
+  const first = await page.evaluate(() => window.colltrans.probe().firstAnswer);
+  console.log(`first answer ${Math.round(first)} ms after the page began to load`);
   const code = readdirSync(dist).filter((file) => [".js", ".wasm", ".css", ".html"].includes(extname(file)));
   const bytes = code.map((file) => brotliCompressSync(readFileSync(join(dist, file))).length);
   const total = bytes.reduce((sum, n) => sum + n, 0);
@@ -129,6 +131,38 @@ test("1,000 answers are the native ones, bit for bit", async () => {
   for (const name of ["convex contact", "convex grazing", "convex separated", "solid blocked", "solid free"]) {
     assert.ok(outcomes.get(name) > 0, `no answer was ${name}`);
   }
+  await page.context().close();
+});
+
+test("how it was found: planar problems, portals, and what a tracker saves", async () => {
+  const page = await opened("", { viewport: { width: 1200, height: 900 } });
+  await page.click("#tab-found");
+  await page.waitForSelector(".stack .pick");
+  const steps = await page.locator(".found .steps").first().locator("button").count();
+  assert.ok(steps > 1, `${steps} planar problems`);
+  await page.locator(".found .steps").first().locator("button").nth(1).click();
+  await page.waitForFunction(() => /^At x = /.test(document.querySelectorAll(".found .card .proof")[1].textContent));
+  // The least value of the graph that is drawn is near the answer, and none is below it.
+  const { least, t } = await page.evaluate(async () => {
+    const { engine, answer, state } = window.colltrans.probe();
+    const pair = { moving_pose: state.poses.moving, fixed_pose: state.poses.fixed, direction: state.direction };
+    const { events } = (await engine.ask({ do: "search", ...pair, solver: "cta", from_center: 1e-9 })).facts;
+    const { sections, ranges } = events.find((event) => event.sections);
+    const levels = ([low, high]) => Array.from({ length: 60 }, (_, k) => low + ((k + 0.5) / 60) * (high - low));
+    const { numbers } = await engine.ask({
+      do: "levels", ...pair, moving_axis: sections[0], fixed_axis: sections[1],
+      moving_levels: levels(ranges[0]), fixed_levels: levels(ranges[1]),
+    });
+    const values = [...new Float64Array(numbers, 0, 3600)].filter((x) => !Number.isNaN(x));
+    return { least: Math.min(...values), t: answer.first.t };
+  });
+  assert.ok(least >= t - 1e-9 && least < t + 0.5, `${least} ${t}`);
+  await page.click("#tab-answer");
+  await page.fill('[aria-label="Direction y"]', "0.105");
+  await page.waitForFunction((t) => window.colltrans.probe().answer?.first?.t !== t, t);
+  await page.click("#tab-found");
+  await page.waitForSelector("text=a tracker starts from the features");
+  assert.deepEqual(page.complaints, []);
   await page.context().close();
 });
 

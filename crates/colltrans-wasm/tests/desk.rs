@@ -58,11 +58,12 @@ fn a_cast_is_the_library_s() {
 /// cut out and cast as bodies of their own.
 #[test]
 fn phi_is_what_the_minimisation_says() {
-    for (moving, fixed) in
-        [("dodecahedron.off", "bracket.obj"), ("bracket.obj", "dodecahedron.off")]
-    {
+    let settings = [
+        ("dodecahedron.off", "bracket.obj", [-0.3, 0.1, -1.0]),
+        ("ellipsoid_a.obj", "ellipsoid_b.off", [-0.6, -0.1, -0.9]),
+    ];
+    for (moving, fixed, direction) in settings {
         let mut desk = loaded(moving, fixed, "convex");
-        let direction = [-0.3, 0.1, -1.0];
         let length = direction.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
         let mut question = pair("search", direction);
         question["solver"] = json!("cta");

@@ -134,7 +134,7 @@ export class Engine {
   constructor(private readonly script: URL) {}
 
   /** A question, and the bytes of a file with it. */
-  async ask(question: object, file?: ArrayBuffer): Promise<{ facts: any; numbers: ArrayBuffer; took: number }> {
+  async ask(question: object, file?: ArrayBuffer): Promise<{ facts: any; text: string; numbers: ArrayBuffer; took: number }> {
     const id = this.next++;
     const reply = await new Promise<Reply>((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
@@ -143,7 +143,7 @@ export class Engine {
     });
     const facts = JSON.parse(reply.text);
     if (facts.error !== undefined) throw new Refused(facts.error, facts.instead);
-    return { facts, numbers: reply.numbers, took: reply.took };
+    return { facts, text: reply.text, numbers: reply.numbers, took: reply.took };
   }
 
   async load(slot: Slot, name: string, take: Take, file?: ArrayBuffer): Promise<Body> {

@@ -75,6 +75,10 @@ fn check(body: &ConvexPolyhedron, points: &[DVec3]) {
     }
 }
 
+/// What takes about a second, and minutes if it becomes quadratic, may take this long on a machine
+/// that is busy with other things.
+const PATIENCE: std::time::Duration = std::time::Duration::from_secs(60);
+
 #[test]
 fn rotated_grids_are_boxes() {
     let mut random = Random(1);
@@ -341,7 +345,7 @@ fn a_large_sphere_is_built_quickly() {
         body.hull_error()
     );
     assert!(body.vertices().len() > count * 999 / 1000);
-    assert!(start.elapsed().as_secs_f64() < 10.0);
+    assert!(start.elapsed() < PATIENCE);
     let faces: Vec<Vec<u32>> =
         (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
     let start = std::time::Instant::now();
@@ -410,7 +414,7 @@ fn many_points_on_a_flat_circle() {
     let body = ConvexPolyhedron::from_points(&points).unwrap();
     assert_eq!((body.dimension(), body.vertices().len()), (2, points.len()));
     assert!(body.hull_error() < 1e-13);
-    assert!(start.elapsed().as_secs_f64() < 20.0, "{:?}", start.elapsed());
+    assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
 }
 
 proptest! {
@@ -455,7 +459,7 @@ fn exactly_planar_caps_cost_no_more() {
     let body = ConvexPolyhedron::from_points(&prism).unwrap();
     println!("prism with {sides} sides: {:?}", start.elapsed());
     assert_eq!(body.face_count(), sides as usize + 2);
-    assert!(start.elapsed().as_secs_f64() < 5.0);
+    assert!(start.elapsed() < PATIENCE);
 }
 
 /// Two rings, as of a prism, a frustum or a bottle: once a quadratic case, because one ring was

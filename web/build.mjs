@@ -29,7 +29,7 @@ const out = join(here, "dist");
 
 if (!process.argv.includes("--no-wasm")) {
   const { args, env } = found();
-  execFileSync("cargo", ["build", "--release", "--lib", "--target", "wasm32-unknown-unknown", ...args], {
+  execFileSync("cargo", ["build", "--profile", "page", "--lib", "--target", "wasm32-unknown-unknown", ...args], {
     cwd: crate,
     env: { ...process.env, ...env },
     stdio: "inherit",
@@ -38,7 +38,7 @@ if (!process.argv.includes("--no-wasm")) {
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-copyFileSync(join(crate, "target/wasm32-unknown-unknown/release/colltrans_wasm.wasm"), join(out, "colltrans.wasm"));
+copyFileSync(join(crate, "target/wasm32-unknown-unknown/page/colltrans_wasm.wasm"), join(out, "colltrans.wasm"));
 for (const file of ["index.html", "style.css"]) copyFileSync(join(here, "src", file), join(out, file));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 await build({

@@ -131,7 +131,10 @@ export class Engine {
   private readonly waiting = new Map<number, Waiting>();
   private next = 1;
 
-  constructor(private readonly script: URL) {}
+  /** The worker starts at once: the library is read while the page is still being made. */
+  constructor(private readonly script: URL) {
+    this.running();
+  }
 
   /** A question, and the bytes of a file with it. */
   async ask(question: object, file?: ArrayBuffer): Promise<{ facts: any; text: string; numbers: ArrayBuffer; took: number }> {

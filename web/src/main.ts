@@ -14,9 +14,10 @@ import { AnswerPanel, type Refusal, type Shown } from "./panel";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
-import { type Tool, View } from "./view";
+import { type Bodies, type Tool, View, drawn, forget } from "./view";
 
 const TABS: Tab[] = ["answer", "found"];
+const engine = new Engine(new URL("worker.js", import.meta.url));
 
 class Page {
   private state: State = fromHash(location.hash);
@@ -27,11 +28,13 @@ class Page {
   private firstAnswer: number | undefined;
   private verdict: Shown["verdict"];
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
-  private readonly engine = new Engine(new URL("worker.js", import.meta.url));
-  private readonly view: View;
+  private readonly engine = engine;
+  private readonly bodies: Bodies = {};
+  /** Made after the first answer, because graphics may take a while to begin. */
+  private view: View | undefined;
   private readonly shadow = new Shadow();
   private readonly panel: AnswerPanel;
-  private readonly found: Found;
+  private found: Found | undefined;
   private readonly time: Timeline;
   private asking = false;
   private again = false;
@@ -40,7 +43,6 @@ class Page {
   private held: Slot = "moving";
 
   constructor() {
-    this.view = new View(named("view"));
     named("inset").append(this.shadow.element);
     this.panel = new AnswerPanel({
       change: (change) => this.change(change),
@@ -54,23 +56,43 @@ class Page {
       copy: (text, what) => void this.copy(text, what),
       save: (how) => void this.save(how),
     });
-    this.found = new Found(this.engine, this.view, () => this.pair());
-    named("panel").append(this.panel.element, this.found.element);
+    named("panel").append(this.panel.element);
     this.time = new Timeline(named("time"), (t) => this.change((state) => (state.t = t), false));
-    this.view.onDirection = (d) => this.change((state) => (state.direction = d));
-    this.view.onPose = (slot, pose) => this.change((state) => (state.poses[slot] = pose));
     this.controls();
-    this.tools();
     this.drops();
   }
 
   async start() {
     await this.loadBoth();
+    // The answer is read while the view is being made.
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+    const view = this.makeView();
+    if (!view) return;
+    view.onDirection = (d) => this.change((state) => (state.direction = d));
+    view.onPose = (slot, pose) => this.change((state) => (state.poses[slot] = pose));
+    this.view = view;
+    this.found = new Found(this.engine, view, () => this.pair());
+    named("panel").append(this.found.element);
+    this.found.changed(this.answer);
+    this.tools(view);
     this.fit();
+    this.show();
+  }
+
+  /** The answer and the shadows do without. */
+  private makeView(): View | undefined {
+    try {
+      return new View(named("view"), this.bodies);
+    } catch (error) {
+      const why = error instanceof Error ? error.message : String(error);
+      named("view").append(h("p", { class: "lone", role: "alert" },
+        `The view in three dimensions draws with WebGL 2, which this browser does not have, or has switched off (${why}). The answer, its proof and the shadows need none.`));
+      return undefined;
+    }
   }
 
   private fit(along = false) {
-    this.view.fit(this.state, this.answer, along);
+    this.view?.fit(this.state, this.answer, along);
   }
 
   // --- what is asked
@@ -103,7 +125,7 @@ class Page {
       this.again = true;
       return;
     }
-    if (!this.view.bodyOf("moving") || !this.view.bodyOf("fixed")) return;
+    if (!this.bodies.moving || !this.bodies.fixed) return;
     this.asking = true;
     try {
       const { answer, took } = await this.engine.cast(this.pair());
@@ -118,7 +140,7 @@ class Page {
       void this.ask();
     }
     this.show();
-    this.found.changed(this.answer);
+    this.found?.changed(this.answer);
   }
 
   private async verify() {
@@ -164,7 +186,8 @@ class Page {
     this.waiting(+1);
     try {
       const body = await this.engine.load(slot, name, take, bytes);
-      this.view.setBody(slot, body);
+      forget(this.bodies[slot]);
+      this.bodies[slot] = drawn(body);
       this.state.parts[slot] = { file: name, take };
       delete this.refusals[slot];
     } finally {
@@ -232,23 +255,22 @@ class Page {
 
   private readonly show = soon(() => {
     const { state, answer, view } = this;
-    const [moving, fixed] = [view.bodyOf("moving"), view.bodyOf("fixed")];
+    const { moving, fixed } = this.bodies;
     document.body.dataset.tab = state.tab;
     for (const tab of TABS) named(`tab-${tab}`).setAttribute("aria-selected", String(state.tab === tab));
-    const bodies = { ...(moving && { moving }), ...(fixed && { fixed }) };
-    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies, refusals: this.refusals, verdict: this.verdict };
+    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, verdict: this.verdict };
     this.panel.show(shown);
-    this.found.show(state, state.tab === "found");
+    this.found?.show(state, state.tab === "found");
     this.time.show(state, answer, this.pass());
-    view.setPlain(state.tab === "found");
-    view.show(state, answer);
+    view?.setPlain(state.tab === "found");
+    view?.show(state, answer);
     named("inset").hidden = !moving || !fixed || state.tab !== "answer";
     if (moving && fixed) this.shadow.show(state, { moving, fixed }, answer);
   });
 
   /** The translation after which the bodies have passed each other. */
   private pass(): number {
-    const [moving, fixed] = [this.view.bodyOf("moving"), this.view.bodyOf("fixed")];
+    const { moving, fixed } = this.bodies;
     const { poses, direction } = this.state;
     if (!moving || !fixed || !length(direction)) return 1;
     const apart = sub(placed(poses.fixed, fixed.middle), placed(poses.moving, moving.middle));
@@ -277,11 +299,11 @@ class Page {
       const root = document.documentElement;
       const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
       root.dataset.theme = dark ? "light" : "dark";
-      this.view.themeChanged();
+      this.view?.themeChanged();
       this.show();
     });
     onChange(() => {
-      this.view.themeChanged();
+      this.view?.themeChanged();
       this.show();
     });
     addEventListener("hashchange", () => {
@@ -291,7 +313,7 @@ class Page {
     });
   }
 
-  private tools() {
+  private tools(view: View) {
     const button = (text: string, title: string, press: () => void) => h("button", { title, onclick: press }, text);
     const tools: [Tool, Slot, HTMLButtonElement][] = [
       ["look", "moving", button("Turn view", "Drag turns the view; drag the tip of d to aim", () => pick(0))],
@@ -307,7 +329,7 @@ class Page {
       tools.forEach(([, , element], other) => element.setAttribute("aria-pressed", String(other === k)));
       who.textContent = this.held;
       who.hidden = this.tool === "look";
-      this.view.setTool(this.tool, this.held);
+      view.setTool(this.tool, this.held);
     };
     named("tools").append(
       h("div", { class: "group" }, ...tools.map(([, , element]) => element), who),
@@ -356,6 +378,7 @@ class Page {
   }
 
   private async save(how: "png" | "svg") {
+    if (!this.view) return;
     const blob = how === "png"
       ? await this.view.picture()
       : new Blob([this.shadow.source()], { type: "image/svg+xml" });
@@ -388,12 +411,8 @@ function start() {
 
 function fail(error: unknown) {
   const why = error instanceof Error ? error.message : String(error);
-  const missing = /WebGL/i.test(why);
   document.querySelector("main")!.replaceChildren(
-    h("p", { class: "lone", role: "alert" },
-      missing
-        ? "This page draws with WebGL 2, which this browser does not have, or has switched off. The command line needs none: colltrans cast A B --direction=X,Y,Z --picture out.svg."
-        : `The page could not be started: ${why}`),
+    h("p", { class: "lone", role: "alert" }, `The page could not be started: ${why}`),
   );
 }
 

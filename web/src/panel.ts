@@ -3,7 +3,7 @@
 import { h, svg } from "./dom";
 import type { Answer, Certificate, Slot, Take } from "./engine";
 import { type Vec, length, short } from "./math";
-import { asCommand, asRust } from "./share";
+import { asCommand, asPython, asRust } from "./share";
 import type { Solver, State } from "./state";
 import type { Drawn } from "./view";
 import { say } from "./words";
@@ -161,7 +161,8 @@ export class AnswerPanel {
       h("div", { class: "row" },
         h("button", { class: "small", onclick: copy(() => location.href, "The link") }, "Copy link"),
         h("button", { class: "small", onclick: copy(() => asCommand(state()), "The command") }, "Copy as command line"),
-        h("button", { class: "small", onclick: copy(() => asRust(state()), "The program") }, "Copy as Rust")),
+        h("button", { class: "small", onclick: copy(() => asRust(state()), "The program") }, "Copy as Rust"),
+        h("button", { class: "small", onclick: copy(() => asPython(state()), "The program") }, "Copy as Python")),
       h("div", { class: "row" },
         h("button", { class: "small", onclick: () => this.act.save("png") }, "Save the view (PNG)"),
         h("button", { class: "small", onclick: () => this.act.save("svg") }, "Save the shadows (SVG)")),

@@ -90,3 +90,39 @@ ${rustBody("moving", state)}${rustBody("fixed", state)}    let cast = Cast::new(
 }
 `;
 }
+
+function pythonBody(slot: Slot, state: State): string {
+  const file = JSON.stringify(files(state)[slot]);
+  const read: Record<Take, string> = {
+    convex: `colltrans.read(${file})`,
+    hull: `colltrans.read(${file}, hull=True)`,
+    solid: `colltrans.Solid.read(${file})`,
+    open: `colltrans.Solid.read(${file}, open=True)`,
+  };
+  return `${slot} = ${read[state.parts[slot].take]}\n`;
+}
+
+export function asPython(state: State): string {
+  const solids = isSolid(state.parts.moving.take) || isSolid(state.parts.fixed.take);
+  const named = [`[${list(state.direction)}]`];
+  for (const slot of ["moving", "fixed"] as const) {
+    if (!isHome(state.poses[slot])) named.push(`${slot}_pose=[${list(state.poses[slot])}]`);
+  }
+  if (solids) {
+    if (state.tolerance !== null) named.push(`tolerance=${float(state.tolerance)}`);
+    if (state.ignore) named.push("ignore_start_overlaps=True");
+  } else {
+    if (state.graze) named.push(`graze_tolerance=${float(state.graze)}`);
+    if (state.solver !== "auto") named.push(`solver="${state.solver}"`);
+  }
+  const choices = named.map((one) => `    ${one},\n`).join("");
+  const asked = solids ? "colltrans.SolidCast" : "colltrans.clearance";
+  return `import colltrans
+
+${pythonBody("moving", state)}${pythonBody("fixed", state)}answer = ${asked}(
+    moving,
+    fixed,
+${choices})${solids ? ".clearance()" : ""}
+print(answer)
+`;
+}

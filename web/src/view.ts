@@ -29,6 +29,15 @@ export interface Drawn {
   edges: BufferGeometry;
 }
 
+/** The bodies there are. */
+export type Bodies = Partial<Record<Slot, Drawn>>;
+
+/** Gives back what a body holds of the graphics memory. */
+export function forget(body: Drawn | undefined) {
+  body?.geometry.dispose();
+  body?.edges.dispose();
+}
+
 /** Where a body is, its geometry being about its middle. */
 function matrixOf(pose: Pose, middle: Vec, origin: Vec, shift: Vec = [0, 0, 0]): Matrix4 {
   const at = sub(add(placed(pose, middle), shift), origin);
@@ -74,7 +83,6 @@ export class View {
   /** What another part of the page adds. */
   readonly extra = new Group();
   private readonly labels: HTMLElement;
-  private readonly drawnBodies: Partial<Record<Slot, Drawn>> = {};
   private origin: Vec = [0, 0, 0];
   private size = 1;
   private colours: Palette = palette();
@@ -93,7 +101,10 @@ export class View {
   onDirection: (direction: Vec, done: boolean) => void = () => {};
   onPose: (slot: Slot, pose: Pose, done: boolean) => void = () => {};
 
-  constructor(private readonly host: HTMLElement) {
+  constructor(
+    private readonly host: HTMLElement,
+    private readonly drawnBodies: Bodies,
+  ) {
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     const canvas = this.renderer.domElement;
@@ -131,14 +142,6 @@ export class View {
     this.placeLabels();
     this.placeAxes();
   });
-
-  setBody(slot: Slot, body: Body | undefined) {
-    const old = this.drawnBodies[slot];
-    old?.geometry.dispose();
-    old?.edges.dispose();
-    if (body) this.drawnBodies[slot] = drawn(body);
-    else delete this.drawnBodies[slot];
-  }
 
   bodyOf(slot: Slot): Drawn | undefined {
     return this.drawnBodies[slot];

@@ -42,6 +42,7 @@ async function opened(hash = "", options = {}) {
   page.on("requestfailed", (request) => page.complaints.push(request.url()));
   await page.goto(base + hash);
   await page.waitForSelector("#headline");
+  await page.waitForSelector("#tools button");
   return page;
 }
 
@@ -245,6 +246,9 @@ test("without WebGL it says so", async () => {
   const page = await without.newPage();
   await page.goto(base);
   await page.waitForSelector("text=draws with WebGL 2");
+  assert.equal(await headline(page), "Contact at t = 4.31674");
+  await page.fill('[aria-label="moving position z"]', "12.5");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.first?.t > 7);
   await without.close();
 });
 

@@ -87,6 +87,9 @@ export interface SolidAnswer {
   depth?: number | null;
   tolerance: number;
   precision: number;
+  /** Of a plane between bodies that never meet, where there is one. */
+  sideways?: Vec | null;
+  margin?: number | null;
 }
 
 export type Answer = ConvexAnswer | SolidAnswer;

@@ -96,10 +96,10 @@ export class Shadow {
     flatten: (v: Vec) => Flat, scale: number, colours: Palette,
   ): string {
     const first = answer?.first;
-    const sideways = answer?.kind === "convex" ? answer.sideways : undefined;
+    const sideways = answer?.sideways;
     if (sideways) {
       // The line through the end of the moving body's shadow, and the one through the fixed one's.
-      const gap = answer?.kind === "convex" ? (answer.margin ?? -(answer.overlap ?? 0)) : 0;
+      const gap = answer.margin ?? (answer.kind === "convex" ? -(answer.overlap ?? 0) : 0);
       const end = farthest(bodies.moving, state.poses.moving, sideways);
       const along = cross(unit(state.direction), sideways);
       const far = (2 * WIDE) / scale;
@@ -116,7 +116,7 @@ export class Shadow {
         svg("line", { x1: a[0], y1: a[1], x2: b[0], y2: b[1], stroke: colours.normal, "stroke-width": 3 }),
         svg("circle", { cx: a[0], cy: a[1], r: 3.5, fill: colours.normal }),
       );
-      return answer?.outcome === "separated"
+      return answer.margin
         ? `Seen along d: the shadows are apart by at least ${short(answer.margin ?? 0)}, so the bodies never meet.`
         : `Seen along d: the shadows overlap by ${short(Math.abs(answer?.kind === "convex" ? (answer.overlap ?? 0) : 0))}, no more than is tolerated.`;
     }

@@ -223,7 +223,7 @@ export class View {
     if (!this.plain) {
       const first = answer?.first;
       if (first && moving && fixed) this.addContact(first, answer, state, moving, fixed);
-      else if (answer?.kind === "convex" && answer.outcome === "separated") this.addGap(answer.sideways!, answer.margin!, state);
+      else if (answer?.sideways && answer.margin) this.addGap(answer.sideways, answer.margin, state);
       if (moving && fixed) this.addArrow(moving, fixed, state);
     }
     this.placeHandle();

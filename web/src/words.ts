@@ -95,8 +95,10 @@ function solid(answer: SolidAnswer, state: State): Said {
     return {
       kind: "free",
       headline: "Nothing stops it",
-      sentence: "The moving body can go as far as it likes.",
-      rows: [...exit, tolerance],
+      sentence: answer.margin
+        ? `The moving body can go as far as it likes: a plane along d lies between the bodies, with a gap of at least ${short(answer.margin)}.`
+        : "The moving body can go as far as it likes.",
+      rows: [...(answer.margin ? [["margin", short(answer.margin, 9)] as [string, string]] : []), ...exit, tolerance],
     };
   }
   if (!first) {

@@ -3,7 +3,9 @@
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
-use colltrans::{Cast, Pose, Solid, SolidClearance, SolidOptions, StartOverlap, Workspace};
+use colltrans::{
+    Cast, Clearance, Pose, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
+};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -46,6 +48,9 @@ impl Fit {
 pub struct Stop {
     /// How far the bodies, shrunk or grown, can move; never negative.
     pub distance: f64,
+    /// Where what stops them meets in its true place, before it was shrunk or grown; never negative.
+    /// What a person expects to read: 7 for a head that stops at 7.
+    pub nominal: f64,
     /// Unit contact normal in the world, from the moving part to the other one.
     pub normal: DVec3,
     /// The contact point on the other part, in the world.
@@ -161,18 +166,23 @@ impl<'a> Bodies<'a> {
         start: StartOverlap,
         workspace: &mut Workspace,
     ) -> Room {
-        let start = match (self.overlaps(a, b), start) {
-            (false, _) => StartOverlap::Apart,
-            (true, StartOverlap::Ignore | StartOverlap::KnownIgnore) => StartOverlap::KnownIgnore,
-            (true, _) => return Room::Overlapping,
+        let overlapping = self.overlaps(a, b);
+        if overlapping && start == StartOverlap::Refuse {
+            return Room::Overlapping;
+        }
+        let options = SolidOptions {
+            start_overlap: start,
+            tolerance: Some(0.0),
+            before,
+            overlapping: Some(overlapping),
         };
-        let options = SolidOptions { start_overlap: start, tolerance: Some(0.0), before };
         let at = |k: usize| self.solids[k].at(Pose::IDENTITY);
         // Directions and tolerances are checked at the door, so nothing is refused here.
         let cast = Cast::new(at(a), at(b), d).and_then(|c| c.with_options(options));
         match cast.map(|cast| cast.clearance_in(workspace)) {
-            Ok(SolidClearance::Blocked { distance, contact, .. }) => Room::Blocked(Stop {
+            Ok(Clearance::Blocked { distance, contact }) => Room::Blocked(Stop {
                 distance,
+                nominal: self.nominal([a, b], d, distance, &contact),
                 normal: contact.normal,
                 point: contact.point_on_fixed,
             }),
@@ -180,10 +190,29 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// Where the planes that stop two parts meet in their true place, before they were shrunk or
-    /// grown: what a person expects to read. Exact where a facet stops a facet.
-    pub fn nominal(&self, stop: &Stop, d: DVec3) -> f64 {
-        (stop.distance - self.fit.tolerance() / stop.normal.dot(d)).max(0.0)
+    /// The contact points are put back to where they are on the parts as they were given.
+    fn nominal(&self, [a, b]: [usize; 2], d: DVec3, distance: f64, contact: &SolidContact) -> f64 {
+        let [moving, fixed] = contact.triangles.map(|t| t as usize);
+        let moved = self.displacement(a, moving, contact.point_on_moving)
+            - self.displacement(b, fixed, contact.point_on_fixed);
+        let nominal = distance + contact.normal.dot(moved) / contact.normal.dot(d);
+        if nominal.is_finite() { nominal.max(0.0) } else { distance }
+    }
+
+    /// How far a point of a triangle was displaced when the part was shrunk or grown: its corners
+    /// keep their numbers.
+    fn displacement(&self, part: usize, triangle: usize, point: DVec3) -> DVec3 {
+        let solid = &self.solids[part];
+        let given = self.assembly.parts()[part].solid();
+        let corners = solid.triangles()[triangle].map(|v| v as usize);
+        let weights = weights(corners.map(|v| solid.vertices()[v]), point);
+        let of = |k: usize| solid.vertices()[corners[k]] - given.vertices()[corners[k]];
+        of(0) * weights.x + of(1) * weights.y + of(2) * weights.z
+    }
+
+    /// Pairs that overlap where they are, with this fit; the smaller index first, in order.
+    pub fn overlapping(&self) -> &[[usize; 2]] {
+        &self.overlapping
     }
 
     /// Whether two parts overlap where they are, with this fit.
@@ -226,4 +255,19 @@ impl<'a> Bodies<'a> {
         let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
+}
+
+/// The weights of a triangle's corners at a point of it.
+fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
+    let normal = (b - a).cross(c - a);
+    let whole = normal.length_squared();
+    if whole == 0.0 {
+        return DVec3::X;
+    }
+    let v = (point - a).cross(c - a).dot(normal) / whole;
+    let w = (b - a).cross(point - a).dot(normal) / whole;
+    // A point on the rim may have come out beyond it, by rounding.
+    let (v, w) = (v.clamp(0.0, 1.0), w.clamp(0.0, 1.0));
+    let excess = (v + w).max(1.0);
+    DVec3::new(1.0 - (v + w) / excess, v / excess, w / excess)
 }

@@ -8,7 +8,7 @@
 //! directions) -> [`report`] (pictures, one HTML file, an animation).
 //!
 //! Lengths are in the unit of the files. Directions have length 1, so distances are lengths.
-//! Everything is the same on any number of threads. The memory of a run is that of the parts and 64
+//! Everything is the same on any number of threads. The memory of a run is that of the parts and 90
 //! bytes for each pair of parts that meets along a direction asked.
 
 mod bodies;

@@ -8,6 +8,7 @@
 
 mod draw;
 mod regions;
+mod way;
 
 use std::collections::BTreeSet;
 
@@ -23,6 +24,7 @@ use crate::watch::{Stage, Watch};
 
 pub use draw::{png, svg};
 pub use regions::Region;
+pub(crate) use way::way_out;
 
 /// Choices for a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,14 +72,7 @@ impl RemovalMap {
         options: MapOptions,
         watch: Watch,
     ) -> Result<Self, AssemblyError> {
-        let mut mapper = Mapper {
-            bodies,
-            group,
-            options,
-            watch,
-            sphere: Sphere::with_directions(options.samples),
-            rooms: Vec::new(),
-        };
+        let mut mapper = Mapper::new(bodies, group, vec![true; bodies.len()], options, watch);
         mapper.ask()?;
         let free = mapper.free_candidates(candidates)?;
         mapper.refine_farthest()?;
@@ -149,13 +144,25 @@ const PEAK_ROUNDS: usize = 3;
 struct Mapper<'a> {
     bodies: &'a Bodies<'a>,
     group: &'a [usize],
+    others: Vec<bool>,
     options: MapOptions,
     watch: Watch<'a>,
     sphere: Sphere,
     rooms: Vec<PartRoom>,
 }
 
-impl Mapper<'_> {
+impl<'a> Mapper<'a> {
+    fn new(
+        bodies: &'a Bodies<'a>,
+        group: &'a [usize],
+        others: Vec<bool>,
+        options: MapOptions,
+        watch: Watch<'a>,
+    ) -> Self {
+        let sphere = Sphere::with_directions(options.samples);
+        Self { bodies, group, others, options, watch, sphere, rooms: Vec::new() }
+    }
+
     /// Asks the directions that have no room yet.
     fn ask(&mut self) -> Result<(), AssemblyError> {
         let fresh = self.rooms_of(&self.sphere.directions[self.rooms.len()..])?;
@@ -165,10 +172,9 @@ impl Mapper<'_> {
 
     fn rooms_of(&self, directions: &[DVec3]) -> Result<Vec<PartRoom>, AssemblyError> {
         let tally = self.watch.stage(Stage::Map, directions.len());
-        let others = vec![true; self.bodies.len()];
         let look = |workspace: &mut Workspace, d: &DVec3| {
             let start = self.options.start;
-            let room = room_of(self.bodies, self.group, &others, *d, start, workspace);
+            let room = room_of(self.bodies, self.group, &self.others, *d, start, workspace);
             tally.step().map(|()| room)
         };
         directions.par_iter().map_init(Workspace::default, look).collect()

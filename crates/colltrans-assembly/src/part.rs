@@ -1,6 +1,7 @@
 //! Parts in one world.
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 
 use colltrans::{Solid, SolidError};
 use glam::{DAffine3, DVec3};
@@ -131,6 +132,7 @@ pub struct Assembly {
     ignored: Vec<[usize; 2]>,
     unit: Option<String>,
     notes: Vec<String>,
+    files: Vec<PathBuf>,
 }
 
 impl Assembly {
@@ -187,6 +189,12 @@ impl Assembly {
         self
     }
 
+    /// The same, with the files that it was read from.
+    #[must_use]
+    pub fn with_files(self, files: Vec<PathBuf>) -> Self {
+        Self { files, ..self }
+    }
+
     /// The parts.
     pub fn parts(&self) -> &[Part] {
         &self.parts
@@ -200,6 +208,11 @@ impl Assembly {
     /// What the reader noted: meshes skipped, for instance.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// The files that it was read from: whoever writes files must not write over these.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
     }
 
     /// Pairs (smaller index first) that are not asked about.

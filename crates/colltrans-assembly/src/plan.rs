@@ -4,7 +4,8 @@
 //! was taken out before: one matrix answers for every state, as the subgraph of the parts that are
 //! left. A step takes the smallest removable group over all directions; of equal ones the *base* (the
 //! largest part if none is fixed) comes last. Each group is then taken apart by itself. Where no direction of the
-//! matrix helps, finer candidates of what is left are asked, and then a sphere of samples.
+//! matrix helps, finer candidates of what is left are asked, then a sphere of samples, and then, for
+//! what is loose, that sphere refined where outcomes change.
 //!
 //! Every step is replayed before it is reported: asked again, pair by pair, against what is left, and
 //! looked at in a few places on its way for overlaps.
@@ -13,13 +14,17 @@ mod hold;
 mod loose;
 mod replay;
 
+use std::collections::BTreeMap;
+
 use colltrans::StartOverlap;
 use glam::DVec3;
+use petgraph::unionfind::UnionFind;
 
 use crate::blocking::Blocking;
 use crate::bodies::Bodies;
 use crate::candidates::Finer;
 use crate::error::AssemblyError;
+use crate::map::{MapOptions, way_out};
 use crate::matrix::Matrix;
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
@@ -119,6 +124,10 @@ fn base(bodies: &Bodies) -> Vec<bool> {
 
 /// Of the finer directions of what is stuck, at most so many are asked.
 const MOST_FINER: usize = 64;
+/// Of the parts that are stuck, a sphere is refined for at most so many.
+const MOST_LOOSE: usize = 64;
+/// Worth a look is what can go this share of its own size along a main direction.
+const LOOSE: f64 = 0.125;
 
 struct Planner<'a> {
     bodies: &'a Bodies<'a>,
@@ -155,7 +164,7 @@ impl Planner<'_> {
             }
             let mut way = self.smallest(matrix, &alive, left.len());
             if way.is_none() {
-                way = self.search_finer(&left, &alive, &mut asked)?;
+                way = self.search_finer(&left, &alive, matrix, &mut asked)?;
             }
             let Some(way) = way else {
                 self.explain(&left, matrix, asked);
@@ -233,6 +242,7 @@ impl Planner<'_> {
         &self,
         left: &[usize],
         alive: &[bool],
+        matrix: &Matrix,
         asked: &mut usize,
     ) -> Result<Option<Way>, AssemblyError> {
         if left.iter().filter(|&&k| !self.fixed(k)).count() == 0 {
@@ -259,7 +269,62 @@ impl Planner<'_> {
                 return Ok(way);
             }
         }
+        self.search_refined(left, alive, matrix)
+    }
+
+    /// A way for something loose, on a sphere that is refined where outcomes change: for single
+    /// parts and for those that overlap, and so move as one.
+    fn search_refined(
+        &self,
+        left: &[usize],
+        alive: &[bool],
+        matrix: &Matrix,
+    ) -> Result<Option<Way>, AssemblyError> {
+        let PlanOptions { start, samples } = self.options;
+        if samples == 0 {
+            return Ok(None);
+        }
+        let based = |g: &[usize]| g.iter().any(|&k| self.base[k]);
+        let mut groups = self.rigid(left);
+        groups.retain(|g| g.len() < left.len() && !g.iter().any(|&k| self.fixed(k)));
+        groups.retain(|g| self.is_loose(g, alive, matrix));
+        groups.sort_by_key(|g| (based(g), g.len(), g[0]));
+        groups.truncate(MOST_LOOSE);
+        let options = MapOptions { samples, start, ..MapOptions::default() };
+        for parts in groups {
+            if let Some(direction) = way_out(self.bodies, &parts, alive, options, self.watch)? {
+                return Ok(Some(Way { parts, direction }));
+            }
+        }
         Ok(None)
+    }
+
+    /// Whether a group can go [`LOOSE`] of its own size along a direction of the matrix.
+    fn is_loose(&self, group: &[usize], alive: &[bool], matrix: &Matrix) -> bool {
+        let bounds = group.iter().map(|&k| self.bodies.bounds(k)).reduce(|a, b| a.join(&b));
+        let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
+        (0..matrix.directions().len()).any(|k| {
+            let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
+            let mut met = met.filter(|m| alive[m.fixed] && !group.contains(&m.fixed));
+            met.all(|m| m.distance() >= LOOSE * size)
+        })
+    }
+
+    /// These parts, those that overlap in one group, unless overlaps are ignored.
+    fn rigid(&self, left: &[usize]) -> Vec<Vec<usize>> {
+        let mut sets = UnionFind::new(self.bodies.len());
+        if self.options.start == StartOverlap::Refuse {
+            for &[a, b] in self.bodies.overlapping() {
+                if left.contains(&a) && left.contains(&b) {
+                    sets.union(a, b);
+                }
+            }
+        }
+        let mut groups = BTreeMap::<usize, Vec<usize>>::new();
+        for &k in left {
+            groups.entry(sets.find(k)).or_default().push(k);
+        }
+        groups.into_values().collect()
     }
 
     fn explain(&mut self, left: &[usize], matrix: &Matrix, asked: usize) {

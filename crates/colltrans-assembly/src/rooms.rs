@@ -89,9 +89,14 @@ pub fn room_of(
             if !others[by] || group.contains(&by) {
                 continue;
             }
-            // Equal distances are let through, so that the choice among them is ours.
-            let before = best.distance().next_up();
-            let before = before.is_finite().then_some(before);
+            // Of equal distances only those are let through that would be named instead.
+            let before = match best {
+                PartRoom::Blocked { part: p, by: b, stop } if (part, by) < (p, b) => {
+                    Some(stop.distance.next_up())
+                }
+                PartRoom::Blocked { stop, .. } => Some(stop.distance),
+                _ => None,
+            };
             match bodies.room([part, by], d, before, start, workspace) {
                 Room::Free => (),
                 Room::Overlapping => return PartRoom::Overlapping { part, by },

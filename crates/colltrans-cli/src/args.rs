@@ -125,8 +125,13 @@ pub(crate) struct ClearArguments {
     ///
     /// The answer is in multiples of this vector: a length, in the unit of the meshes, if it has
     /// length 1, as the axes have.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
-    pub(crate) direction: DVec3,
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction, required_unless_present = "directions")]
+    pub(crate) direction: Option<DVec3>,
+    /// Many directions: a file with one a line, `-` for standard input; one answer a line
+    ///
+    /// As for `cast`.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["direction", "picture"])]
+    pub(crate) directions: Option<PathBuf>,
     /// How deep bodies may enter each other [default: from the files' precision]
     ///
     /// In the unit of the meshes. Both bodies are shrunk by half of it. A curved fit of tessellated

@@ -36,6 +36,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let given = given_directions(arguments)?;
     let assembly = assembly(arguments)?;
     let groups = groups(arguments, &assembly)?;
+    output::refuse_inputs(arguments, &assembly)?;
     let fit = match (arguments.tolerance, arguments.margin) {
         (Some(tolerance), _) => Fit::Tolerance(tolerance),
         (None, Some(margin)) => Fit::Margin(margin),

@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure
     let usage = |message| Failure::new(Code::Usage, message);
     let moving_pose = places.moving_pose.pose(places.moving_rpy, "--moving").map_err(usage)?;
     let fixed_pose = places.fixed_pose.pose(places.fixed_rpy, "--fixed").map_err(usage)?;
-    let directions = directions(arguments)?;
+    let directions = directions(arguments.direction, arguments.directions.as_deref())?;
     let [moving_recipe, fixed_recipe] = arguments.recipes();
     let moving = body::load_or_fail(&arguments.moving, moving_recipe)?;
     let fixed = body::load_or_fail(&arguments.fixed, fixed_recipe)?;
@@ -61,15 +61,17 @@ pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure
     }
 }
 
-enum Directions {
+/// One answer in full, or one a line.
+pub(crate) enum Directions {
     One(DVec3),
     Many(Vec<DVec3>),
 }
 
-fn directions(arguments: &PairArguments) -> Result<Directions, Failure> {
-    match (&arguments.direction, &arguments.directions) {
+/// What `--direction` and `--directions` say.
+pub(crate) fn directions(one: Option<DVec3>, many: Option<&Path>) -> Result<Directions, Failure> {
+    match (one, many) {
         (_, Some(file)) => read_directions(file).map(Directions::Many),
-        (Some(direction), None) => Ok(Directions::One(*direction)),
+        (Some(direction), None) => Ok(Directions::One(direction)),
         (None, None) => Err(Failure::new(Code::Usage, "give --direction or --directions")),
     }
 }
@@ -185,6 +187,11 @@ fn scan<'a>(
             if as_json { record.json()? } else { report::scan_line(&record, asked, direction) };
         print(&text)?;
     }
+    all_answered(count, failed)
+}
+
+/// A failure if some directions have no answer.
+pub(crate) fn all_answered(count: usize, failed: usize) -> Result<(), Failure> {
     if failed > 0 {
         let message = format!("{failed} of {count} directions have no answer");
         return Err(Failure::new(Code::Lines, message));

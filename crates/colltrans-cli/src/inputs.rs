@@ -48,13 +48,23 @@ pub(crate) fn overwritten<'a>(output: &Path, inputs: &[&'a Path]) -> Option<&'a 
 
 /// A picture must not take the place of what is read.
 pub(crate) fn refuse_picture(picture: Option<&Path>, inputs: &[&Path]) -> Result<(), Failure> {
-    let Some(picture) = picture else { return Ok(()) };
-    match overwritten(picture, inputs) {
+    picture.map_or(Ok(()), |picture| {
+        refuse_overwriting(picture, inputs, "give the picture another name")
+    })
+}
+
+/// An output must not take the place of what is read; says what to do instead.
+pub(crate) fn refuse_overwriting(
+    output: &Path,
+    inputs: &[&Path],
+    instead: &str,
+) -> Result<(), Failure> {
+    match overwritten(output, inputs) {
         Some(input) => Err(Failure::new(
             Code::Input,
             format!(
-                "{}: is the same file as {}, which would be lost; give the picture another name",
-                picture.display(),
+                "{}: is the same file as {}, which would be lost; {instead}",
+                output.display(),
                 input.display()
             ),
         )),

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, Separated, Solver,
-    Steps,
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, OverlapAhead,
+    Separated, Solver, Steps, WhyFree,
 };
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -185,14 +185,14 @@ impl Record {
                 distance: Some(*distance),
                 ..Self::of_first(contact, cast)
             },
-            Clearance::Slides(grazing) => Self {
+            Clearance::Free(WhyFree::Slides(grazing)) => Self {
                 outcome: Name::Slides,
                 margin: Some(0.0 - grazing.overlap),
                 message: Some(describe(grazing)),
                 ..Self::of_first(&grazing.contact, cast)
             },
             // The last contact is the first one of the way back.
-            Clearance::Behind(last) => Self {
+            Clearance::Free(WhyFree::Behind(last)) => Self {
                 outcome: Name::Behind,
                 exit: Some(exit_of(last)),
                 translation: None,
@@ -200,8 +200,8 @@ impl Record {
                 upper: None,
                 ..Self::of_first(last, &cast.reversed())
             },
-            Clearance::Separated(separated) => Self::of_separated(separated),
-            Clearance::Overlapping { first, last } => Self {
+            Clearance::Free(WhyFree::Separated(separated)) => Self::of_separated(separated),
+            Clearance::Overlapping(OverlapAhead { first, last }) => Self {
                 outcome: Name::Overlapping,
                 back: Some(-first.certificate.lower),
                 on: Some(-last.certificate.lower),

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
-use colltrans::{Clearance, Contact, ContactRange, Grazing, Separated, Steps};
+use colltrans::{
+    Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Steps, WhyFree,
+};
 
 use crate::cast::Asked;
 use crate::excess::Excess;
@@ -50,7 +52,7 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
             line(&mut text, "certain", &times(*distance));
             contact(&mut text, first, record, direction);
         }
-        Clearance::Slides(grazing) => {
+        Clearance::Free(WhyFree::Slides(grazing)) => {
             text.push_str("slides: free, the bodies slide along each other\n");
             overlap(&mut text, grazing);
             let first = &grazing.contact;
@@ -58,16 +60,16 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
             line(&mut text, "translation", &translation);
             contact(&mut text, first, record, direction);
         }
-        Clearance::Behind(last) => {
+        Clearance::Free(WhyFree::Behind(last)) => {
             text.push_str("behind: free, the bodies only meet behind\n");
             let exit = along(exit_of(last), last.certificate.tolerance, direction);
             line(&mut text, "last contact", &exit);
         }
-        Clearance::Separated(answer) => {
+        Clearance::Free(WhyFree::Separated(answer)) => {
             text.push_str("separated: free, the bodies never meet along this direction\n");
             separated(&mut text, answer);
         }
-        Clearance::Overlapping { first, last } => {
+        Clearance::Overlapping(OverlapAhead { first, last }) => {
             text.push_str("overlapping: the bodies overlap now\n");
             // The last contact is the first one of the way back.
             for (name, contact, way) in [("free after", first, "back"), ("or after", last, "on")] {
@@ -147,8 +149,8 @@ pub(crate) fn times(t: f64) -> String {
 fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
     // Also of bodies that slide: where the contact lies if their overlap is taken for real.
     let remark = match (ContactRange::Contact { first: *first, last: *last }).clearance() {
-        Clearance::Behind(_) => " (the contact lies behind)",
-        Clearance::Overlapping { .. } => " (the bodies overlap now)",
+        Clearance::Free(WhyFree::Behind(_)) => " (the contact lies behind)",
+        Clearance::Overlapping(_) => " (the bodies overlap now)",
         _ if first.translation.abs() <= first.certificate.tolerance => " (the bodies touch)",
         _ => "",
     };

@@ -5,11 +5,15 @@
 //! which reaches every special value and magnitude, or as small whole numbers, which reaches every
 //! tie.
 
-use colltrans::{ConvexPolyhedron, Pose, PoseError, Solver};
+use colltrans::{
+    Cast, Clearance, ConvexPolyhedron, Pose, PoseError, Solid, SolidOptions, Solver, StartProof,
+};
 use glam::{DQuat, DVec3};
 
 use crate::exact::Vector;
 use crate::settings::{Bodies, Setting};
+use crate::solids::facets::{rule, triangles};
+use crate::solids::proof::{MOST_PAIRS, approve};
 use crate::tracked::{Finding, Lanes};
 
 /// Points of a body: more would only make a run slower.
@@ -148,6 +152,68 @@ pub fn track(bytes: &[u8]) {
         }
         change(&mut setting, &mut reader);
     }
+}
+
+/// A clearance between solids is proven, with its proof approved in fractions and the distance that of
+/// the rule over all pairs of facets where both are few and not shrunk.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn solids(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let turned = reader.byte();
+    let (Some(a), Some(b)) = (read_solid(&mut reader), read_solid(&mut reader)) else { return };
+    let mut pose = |is_turned: bool| {
+        let rotation = if is_turned { reader.rotation() } else { DQuat::IDENTITY };
+        Pose::new(rotation, reader.vector()).ok()
+    };
+    let (Some(s), Some(t)) = (pose(turned & 1 == 1), pose(turned & 2 == 2)) else { return };
+    let direction = reader.vector();
+    let tolerance = f64::from(reader.byte() % 32) / 64.0;
+    let options = SolidOptions { tolerance: Some(tolerance), ..SolidOptions::default() };
+    let cast = Cast::new(a.at(s), b.at(t), direction).and_then(|c| c.with_options(options));
+    let Ok(cast) = cast else { return };
+    let (answer, certificate) = cast.certified_clearance();
+    assert_eq!(answer, cast.clearance(), "with its proof and without");
+    cast.verify(&certificate).unwrap_or_else(|e| panic!("{answer:?}: {e}"));
+    if let Clearance::Free(Some(plane)) = &answer {
+        cast.verify(plane).unwrap_or_else(|e| panic!("{answer:?}: {e}"));
+    }
+    let few = a.triangles().len() * b.triangles().len() <= MOST_PAIRS;
+    if !few || tolerance != 0.0 || matches!(certificate.start, StartProof::Overlapping(_)) {
+        return;
+    }
+    let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let size = reach(&a) + reach(&b) + (t.translation() - s.translation()).length();
+    // The distance of facets that are steep is accurate to so much of the size.
+    let slack = 1e-9 * size / direction.length();
+    approve(&cast, &certificate, slack).unwrap_or_else(|e| panic!("{answer:?}: {e}"));
+    let placed = |solid: &Solid, pose: &Pose| {
+        triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
+    };
+    let right = rule(&placed(&a, &s), &placed(&b, &t), direction).stop;
+    let right = right.map(|r| r.to_f64());
+    match (&answer, right) {
+        (Clearance::Free(_), None) => {}
+        (Clearance::Blocked { distance, .. }, Some(right)) if (distance - right).abs() <= slack => {
+        }
+        (found, right) => panic!("{found:?}, by the rule {right:?}"),
+    }
+}
+
+/// A convex body, a closed mesh or an open one.
+fn read_solid(reader: &mut Reader) -> Option<Solid> {
+    let kind = reader.byte() % 3;
+    if kind == 0 {
+        let body = ConvexPolyhedron::from_points(&reader.points(MOST_JUDGED)).ok()?;
+        return Solid::from_convex(&body).ok();
+    }
+    let vertices = reader.points(MOST_JUDGED + 6);
+    let facets: Vec<Vec<u32>> = (0..reader.byte() % 25)
+        .map(|_| (0..reader.byte() % 6).map(|_| u32::from(reader.byte())).collect())
+        .collect();
+    let built = if kind == 1 { Solid::from_mesh } else { Solid::from_open_mesh };
+    built(&vertices, &facets).ok()
 }
 
 /// Two bodies, their poses and a direction; the first byte says which body is turned.

@@ -3,6 +3,7 @@
 use colltrans::observe::Recording;
 use colltrans::{
     Cast, Certificate, Clearance, Contact, ContactRange, Options, Solver, Steps, VertexPair,
+    WhyFree,
 };
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -103,10 +104,10 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
 fn free(clearance: &Clearance) -> Value {
     let kind = match clearance {
         Clearance::Blocked { .. } => "blocked",
-        Clearance::Slides(_) => "slides",
-        Clearance::Behind(_) => "behind",
-        Clearance::Separated(_) => "separated",
-        Clearance::Overlapping { .. } => "overlapping",
+        Clearance::Free(WhyFree::Slides(_)) => "slides",
+        Clearance::Free(WhyFree::Behind(_)) => "behind",
+        Clearance::Free(WhyFree::Separated(_)) => "separated",
+        Clearance::Overlapping(_) => "overlapping",
     };
     json!({ "kind": kind, "distance": clearance.distance().filter(|d| d.is_finite()) })
 }

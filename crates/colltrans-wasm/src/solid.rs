@@ -1,6 +1,6 @@
 //! Casts between bodies of which at least one need not be convex.
 
-use colltrans::{Cast, Pose, Solid, SolidClearance, SolidOptions, StartOverlap};
+use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions, StartOverlap};
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -25,17 +25,21 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
         "precision": moving.precision + fixed.precision,
     });
     let more: Value = match clearance {
-        SolidClearance::Free => json!({ "outcome": "free" }),
-        SolidClearance::Overlapping { depth } => {
-            json!({ "outcome": "overlapping", "depth": depth })
+        Clearance::Free(plane) => json!({
+            "outcome": "free",
+            "sideways": plane.map(|plane| plane.normal.to_array()),
+            "margin": plane.map(|plane| plane.margin),
+        }),
+        Clearance::Overlapping(overlap) => {
+            json!({ "outcome": "overlapping", "depth": overlap.depth })
         }
-        SolidClearance::Blocked { distance, nominal, contact } => {
+        Clearance::Blocked { distance, contact } => {
             let [on_moving, on_fixed] = contact.triangles;
             json!({
                 "outcome": "blocked",
                 "distance": distance,
                 "first": {
-                    "t": nominal,
+                    "t": contact.nominal,
                     "normal": contact.normal.to_array(),
                     "on_moving": contact.point_on_moving.to_array(),
                     "on_fixed": contact.point_on_fixed.to_array(),

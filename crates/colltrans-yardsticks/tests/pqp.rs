@@ -244,6 +244,24 @@ fn parallel_faces_take_few_steps() {
     }
 }
 
+/// Faces of very many corners beside each other in any position: cut into fans, volumes around their
+/// triangles would all overlap, and nearly all pairs be looked at.
+#[test]
+fn large_faces_take_few_steps() {
+    for sides in [64, 512, 4096] {
+        let soup = Soup::of_polyhedron(&prism(sides, DVec3::ONE));
+        assert_eq!(soup.triangle_count(), 4 * sides as usize - 4);
+        let mut rng = Rng::new(16);
+        let mut tests = 0;
+        for _ in 0..20 {
+            let at = Pose::new(rng.rotation(), rng.direction() * 3.0).unwrap();
+            let fixed_at = Pose::new(rng.rotation(), DVec3::ZERO).unwrap();
+            tests += Pqp::new(&soup, &soup).distance(&at, &fixed_at).steps.volume_tests;
+        }
+        assert!(tests < 20 * 60 * u64::from(sides), "{sides}: {tests}");
+    }
+}
+
 #[test]
 fn a_sequence_gives_what_single_queries_give() {
     let mut rng = Rng::new(15);

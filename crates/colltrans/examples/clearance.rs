@@ -3,7 +3,7 @@
 //! `cargo run --release -p colltrans --example clearance`
 
 use colltrans::glam::DVec3;
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, WhyFree};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let drawer = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(4.0, 5.0, 2.0))?;
@@ -22,12 +22,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     let there = contact.pose_before(&cast)?.translation();
                     format!("blocked after {distance}, at {there}")
                 }
-                Clearance::Slides(grazing) => format!("slides, overlap {:e}", grazing.overlap),
-                Clearance::Behind(_) => "free, moves away".into(),
-                Clearance::Separated(separated) => {
+                Clearance::Free(WhyFree::Slides(grazing)) => {
+                    format!("slides, overlap {:e}", grazing.overlap)
+                }
+                Clearance::Free(WhyFree::Behind(_)) => "free, moves away".into(),
+                Clearance::Free(WhyFree::Separated(separated)) => {
                     format!("free, passes by {}", separated.certificate.margin)
                 }
-                Clearance::Overlapping { .. } => "overlaps now".into(),
+                Clearance::Overlapping(_) => "overlaps now".into(),
             };
             println!("{name:<6} {direction}: {answer}");
         }

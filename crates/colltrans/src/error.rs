@@ -3,6 +3,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::body::solid::SolidError;
+
 /// Why no [`ConvexPolyhedron`](crate::ConvexPolyhedron) could be built.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -251,6 +253,9 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// A convex body that is no solid.
+    #[error("a convex body is no solid: {0}")]
+    NoSolid(#[from] SolidError),
     /// The gap at which narrowing ends is negative or not a number.
     #[error("the gap {gap} at which narrowing ends is negative or not a number")]
     NarrowingGap {

@@ -127,9 +127,10 @@ mod tracker;
 
 pub use answer::{
     Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
-    Intersection, Outcome, Proof, Separated, Separation, Solver, StartedFrom, Steps,
+    Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver, StartedFrom, Steps,
+    WhyFree,
 };
-pub use body::solid::{Shell, ShrinkReport, Solid, SolidError, SolidReport};
+pub use body::solid::{AsSolid, Shell, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{Body, ConvexPolyhedron, ConvexityDefect, Feature, Placed, Pose, convexity_defect};
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
@@ -138,7 +139,10 @@ pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;
-pub use solve::facets::{SolidClearance, SolidContact, SolidOptions, StartOverlap, Workspace};
+pub use solve::facets::{
+    Claim, Cover, Overlap, Reason, SolidCertificate, SolidContact, SolidOptions, SolidOverlap,
+    SolidProof, StartOverlap, StartProof, StopProof, Workspace,
+};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
 pub use tracker::Tracker;

@@ -1,8 +1,9 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is.
 
-use colltrans::{Focus, Region, Solver, Tracker};
+use colltrans::{Cast, Focus, Region, Solid, Solver, Tracker, Workspace};
 use colltrans_oracle::sequences::Walk;
 use colltrans_oracle::settings::{FAMILIES, setting};
+use colltrans_oracle::solids::settings as solids;
 
 #[test]
 fn queries_allocate_nothing() {
@@ -53,6 +54,35 @@ fn tracked_queries_allocate_nothing() {
                     walk.advance();
                 }
             }
+        }
+    }
+}
+
+/// A query between solids allocates nothing once its queue has grown, shells inside each other
+/// included; without a queue that is kept it allocates that queue and nothing else.
+#[test]
+fn queries_between_solids_allocate_their_queue_only() {
+    for family in solids::FAMILIES {
+        for seed in 0..100 {
+            let setting = solids::Setting::draw(family, seed).expect("a family");
+            let [a, b] = [0, 1].map(|k| {
+                let (vertices, facets) = &setting.surfaces[k];
+                Solid::from_mesh(vertices, facets).expect("a closed mesh")
+            });
+            let cast = Cast::new(a.at(setting.poses[0]), b.at(setting.poses[1]), setting.direction)
+                .expect("a direction");
+            let mut workspace = Workspace::default();
+            let first = (cast.clearance_in(&mut workspace), cast.exit_in(&mut workspace));
+            let mut again = None;
+            let count = allocation_counter::measure(|| {
+                again = Some((cast.clearance_in(&mut workspace), cast.exit_in(&mut workspace)));
+            });
+            assert_eq!(again, Some(first), "{family}:{seed}");
+            assert_eq!(count.count_total, 0, "{family}:{seed}");
+            let count = allocation_counter::measure(|| {
+                assert!(cast.intersects() || !cast.overlaps());
+            });
+            assert_eq!(count.count_total, 0, "{family}:{seed}");
         }
     }
 }

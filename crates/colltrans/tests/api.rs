@@ -3,8 +3,8 @@
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
-    MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, Pose, PoseError, QueryError,
-    Separation, TopologyError, cast,
+    MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, OverlapAhead, Pose, PoseError,
+    QueryError, Separation, TopologyError, WhyFree, cast,
 };
 use colltrans_oracle::exact::Vector;
 use colltrans_oracle::settings::{FAMILIES, Setting, cuboid, setting};
@@ -178,11 +178,11 @@ fn a_box_before_a_box() {
     assert!(distance <= 2.0 && distance > 2.0 - 1e-13);
     assert_eq!(ahead.distance(), Some(distance));
     let away = go(DVec3::NEG_X).clearance().expect("an answer");
-    let Clearance::Behind(last) = away else { panic!("{away:?}") };
+    let Clearance::Free(WhyFree::Behind(last)) = away else { panic!("{away:?}") };
     assert!(away.is_free() && (last.translation - 2.0).abs() < 1e-13);
     assert!(go(DVec3::X).verify(&last.certificate).is_ok(), "that of the reversed cast");
     let aside = go(DVec3::Y).clearance().expect("an answer");
-    let Clearance::Separated(separated) = aside else { panic!("{aside:?}") };
+    let Clearance::Free(WhyFree::Separated(separated)) = aside else { panic!("{aside:?}") };
     assert!(go(DVec3::Y).verify(&separated.certificate).is_ok());
 }
 
@@ -193,8 +193,8 @@ fn touching_boxes_block_one_way_only() {
     let clearance = |direction| go(direction).clearance().expect("an answer");
     let ahead = clearance(DVec3::X);
     assert!(matches!(ahead, Clearance::Blocked { distance: 0.0, .. }), "{ahead:?}");
-    assert!(matches!(clearance(DVec3::NEG_X), Clearance::Behind(_)));
-    assert!(matches!(clearance(DVec3::Y), Clearance::Slides(_)));
+    assert!(matches!(clearance(DVec3::NEG_X), Clearance::Free(WhyFree::Behind(_))));
+    assert!(matches!(clearance(DVec3::Y), Clearance::Free(WhyFree::Slides(_))));
     assert_eq!(clearance(DVec3::Y).distance(), Some(f64::INFINITY));
     assert!(go(DVec3::X).intersects().expect("an answer").meets);
 }
@@ -204,7 +204,7 @@ fn overlapping_boxes() {
     let cube = cube();
     let cast = cubes(&cube, DVec3::new(0.75, 0.25, 0.0), DVec3::X);
     let found = cast.clearance().expect("an answer");
-    let Clearance::Overlapping { first, last } = found else { panic!("{found:?}") };
+    let Clearance::Overlapping(OverlapAhead { first, last }) = found else { panic!("{found:?}") };
     assert!((first.translation + 0.25).abs() < 1e-13 && (last.translation + 1.75).abs() < 1e-13);
     assert_eq!(found.distance(), None);
     let depth = cast.directional_depth().expect("an answer");

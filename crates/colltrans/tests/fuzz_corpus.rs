@@ -37,6 +37,11 @@ fn cast_corpus() {
 }
 
 #[test]
+fn solids_corpus() {
+    replay("solids", fuzz::solids, 12);
+}
+
+#[test]
 fn track_corpus() {
     replay("track", fuzz::track, 24);
 }

@@ -3,7 +3,9 @@
 use std::thread;
 
 use colltrans::glam::DVec3;
-use colltrans::{Clearance, ConvexPolyhedron, Outcome, Pose, QueryError, Solver};
+use colltrans::{
+    Clearance, ConvexPolyhedron, Outcome, OverlapAhead, Pose, QueryError, Solver, WhyFree,
+};
 use colltrans_oracle::scene::Scene;
 use colltrans_oracle::settings::{Bodies, FAMILIES, Rng, Setting, setting};
 use colltrans_oracle::shadow::sideways_overlap;
@@ -181,16 +183,16 @@ proptest! {
                 prop_assert!(first.max(0.0) - distance <= tolerance, "{setting}");
                 prop_assert!(distance >= 0.0 && contact.normal.dot(setting.direction) > 0.0);
             }
-            Clearance::Overlapping { first: enter, last: exit } => {
+            Clearance::Overlapping(OverlapAhead { first: enter, last: exit }) => {
                 let range = [enter.translation, -exit.translation];
                 prop_assert!(first < 0.0 && last > -tolerance, "{setting}: range {first}..{last}");
                 prop_assert!((range[0] - first).abs() <= tolerance, "{setting}");
                 prop_assert!((range[1] - last).abs() <= tolerance, "{setting}");
             }
-            Clearance::Behind(_) => {
+            Clearance::Free(WhyFree::Behind(_)) => {
                 prop_assert!(last <= tolerance, "{setting}: range {first}..{last}");
             }
-            free => prop_assert!(false, "{setting}: {free:?}, range {first}..{last}"),
+            free @ Clearance::Free(_) => prop_assert!(false, "{setting}: {free:?}, range {first}..{last}"),
         }
     }
 

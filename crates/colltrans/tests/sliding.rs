@@ -1,7 +1,7 @@
 //! Unit cubes that slide past each other with a small lateral gap never count as contact.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver, WhyFree};
 use colltrans_oracle::check::Judge;
 use colltrans_oracle::settings::{Rng, cuboid};
 
@@ -23,7 +23,7 @@ fn slide(gap: f64, rotation: DQuat, start: DVec3, origin: DVec3) {
             "gap {gap:e}, rotation {rotation}, start {start}, {solver:?}: {outcome:?}"
         );
         let clearance = cast.clearance();
-        assert!(matches!(clearance, Ok(Clearance::Separated(_))), "{clearance:?}");
+        assert!(matches!(clearance, Ok(Clearance::Free(WhyFree::Separated(_)))), "{clearance:?}");
     }
 }
 
@@ -74,5 +74,5 @@ fn cubes_without_a_gap_graze() {
     assert!((grazing.contact.translation - 2.0).abs() <= grazing.contact.certificate.tolerance);
     assert!(grazing.separating_direction.distance(DVec3::NEG_Y) < 1e-12);
     let cast = Cast::new(cube.at(pose), cube.at(world), DVec3::X).expect("a query");
-    assert_eq!(cast.clearance(), Ok(Clearance::Slides(grazing)));
+    assert_eq!(cast.clearance(), Ok(Clearance::Free(WhyFree::Slides(grazing))));
 }

@@ -2,8 +2,8 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{
-    Cast, Clearance, ContactRange, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Region,
-    Solver, StartedFrom, Steps, Tracker,
+    Cast, Clearance, ContactRange, ConvexPolyhedron, Focus, Outcome, OverlapAhead, Pose,
+    QueryError, Region, Solver, StartedFrom, Steps, Tracker,
 };
 use colltrans_oracle::check::same;
 use colltrans_oracle::sequences::Walk;
@@ -78,8 +78,10 @@ fn clearances_agree(setting: &Setting, bodies: &Bodies, a: &Clearance, b: &Clear
     let close = |s: f64, t: f64| (s - t).abs() <= tolerance;
     let range = |c: &Clearance| match c {
         Clearance::Blocked { distance, .. } => Some([*distance; 2]),
-        Clearance::Overlapping { first, last } => Some([first.translation, -last.translation]),
-        _ => None,
+        Clearance::Overlapping(OverlapAhead { first, last }) => {
+            Some([first.translation, -last.translation])
+        }
+        Clearance::Free(_) => None,
     };
     match (range(a), range(b)) {
         (None, None) => true,

@@ -19,7 +19,12 @@ pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
     }
     // Folders list their files in any order.
     files.sort_by_key(|file| natural(&stem(file)));
-    read_files(path, &files)
+    let assembly = read_files(path, &files)?;
+    if files.is_empty() {
+        let note = format!("{}: no STL, OBJ, PLY or OFF file is in this folder", path.display());
+        return Ok(assembly.with_note(note));
+    }
+    Ok(assembly)
 }
 
 pub(super) fn read_files(path: &Path, files: &[PathBuf]) -> Result<Assembly, ReadError> {
@@ -28,7 +33,7 @@ pub(super) fn read_files(path: &Path, files: &[PathBuf]) -> Result<Assembly, Rea
         let piece = piece(file, DAffine3::IDENTITY)?;
         parts.push(Part::new(stem(file), &[piece]).map_err(in_file(file))?);
     }
-    assembled(path, parts)
+    assembled(path, parts, files.to_vec())
 }
 
 /// A key by which `bolt_2` comes before `bolt_10`.

@@ -2,7 +2,7 @@
 //!
 //! Vertices of one place that differ in normal or texture are welded: glTF stores them apart.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -21,13 +21,21 @@ pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
     let Gltf { document, blob } =
         Gltf::from_slice(&bytes).map_err(|e| contents(path, "glTF", e))?;
     let buffers = buffers(path, &document, blob)?;
+    let files = document.buffers().filter_map(|b| file_of(path, &b)).collect();
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let Some(scene) = scene else { return Err(contents(path, "scenes", "there is no scene")) };
     let mut reader = Reader { path, buffers, parts: Vec::new(), names: Names::default() };
     for node in scene.nodes() {
         reader.node(&node, DAffine3::IDENTITY, 0)?;
     }
-    Ok(assembled(path, reader.parts)?.with_unit("m"))
+    Ok(assembled(path, reader.parts, files)?.with_unit("m"))
+}
+
+/// The file of a buffer that has one of its own.
+fn file_of(path: &Path, buffer: &gltf::Buffer) -> Option<PathBuf> {
+    let Source::Uri(uri) = buffer.source() else { return None };
+    let folder = path.parent().unwrap_or(Path::new("."));
+    (!uri.starts_with("data:")).then(|| folder.join(uri))
 }
 
 fn buffers(
@@ -35,20 +43,21 @@ fn buffers(
     document: &Document,
     mut blob: Option<Vec<u8>>,
 ) -> Result<Vec<Vec<u8>>, ReadError> {
-    let folder = path.parent().unwrap_or(Path::new("."));
     let read = |buffer: gltf::Buffer| {
         let place = format!("buffer {}", buffer.index());
         let bytes = match buffer.source() {
             Source::Bin => {
                 blob.take().ok_or_else(|| contents(path, &place, "the binary chunk is missing"))?
             }
-            Source::Uri(uri) => match uri.strip_prefix("data:") {
-                Some(data) => {
+            Source::Uri(uri) => {
+                if let Some(data) = uri.strip_prefix("data:") {
                     let text = data.split_once(";base64,").map_or(data, |(_, text)| text);
                     STANDARD.decode(text).map_err(|e| contents(path, &place, e))?
+                } else {
+                    let file = file_of(path, &buffer).unwrap_or_default();
+                    std::fs::read(&file).map_err(io(&file))?
                 }
-                None => std::fs::read(folder.join(uri)).map_err(io(&folder.join(uri)))?,
-            },
+            }
         };
         if bytes.len() < buffer.length() {
             let reason = format!("has {} bytes of {}", bytes.len(), buffer.length());

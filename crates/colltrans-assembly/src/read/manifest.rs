@@ -78,7 +78,7 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
             .map_err(|e| contents(path, format!("line {}, column {}", e.line(), e.column()), e))?
     };
     let folder = path.parent().unwrap_or(Path::new("."));
-    let (mut parts, mut missing) = (Vec::new(), Vec::new());
+    let (mut parts, mut missing, mut read) = (Vec::new(), Vec::new(), Vec::new());
     for (k, entry) in manifest.parts.iter().enumerate() {
         let files: Vec<&String> = match &entry.file {
             OneOrMany::One(file) => vec![file],
@@ -91,11 +91,12 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
             continue;
         }
         parts.push(part(path, folder, k, entry, &files)?);
+        read.extend(files.iter().map(|f| folder.join(f)));
     }
     if !missing.is_empty() && !options.skip_missing {
         return Err(ReadError::Missing { path: path.into(), missing });
     }
-    let mut assembly = assembled(path, parts)?;
+    let mut assembly = assembled(path, parts, read)?;
     let known = |n: &String| missing.is_empty() || assembly.index(n).is_ok();
     let ignore: Vec<[String; 2]> =
         manifest.ignore.iter().filter(|pair| pair.iter().all(known)).cloned().collect();

@@ -106,7 +106,14 @@ impl Names {
     }
 }
 
-/// An assembly of parts that came from one file.
-fn assembled(path: &Path, parts: Vec<Part>) -> Result<Assembly, ReadError> {
-    Assembly::new(parts).map_err(in_file(path))
+/// An assembly of parts that came from one source, and from the files that it names.
+fn assembled(
+    path: &Path,
+    parts: Vec<Part>,
+    mut files: Vec<PathBuf>,
+) -> Result<Assembly, ReadError> {
+    if path.is_file() {
+        files.push(path.into());
+    }
+    Ok(Assembly::new(parts).map_err(in_file(path))?.with_files(files))
 }

@@ -35,7 +35,7 @@ pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
             Ok(())
         })?;
     }
-    Ok(assembled(path, parts)?.with_unit(model.unit))
+    Ok(assembled(path, parts, Vec::new())?.with_unit(model.unit))
 }
 
 /// The text of the package's model.

@@ -23,6 +23,7 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
     let places = places(path, &robot, options)?;
     let finder = Finder { folder: path.parent().unwrap_or(Path::new(".")), options };
     let (mut parts, mut missing, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut read = Vec::new();
     for link in &robot.links {
         let world = places[link.name.as_str()];
         let mut pieces = Vec::new();
@@ -33,6 +34,7 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
                     Some(file) => {
                         let scale = scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.0));
                         pieces.push(piece(&file, at * DAffine3::from_scale(scale))?);
+                        read.push(file);
                     }
                     None => missing.push(filename.clone()),
                 },
@@ -54,7 +56,7 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
         return Err(ReadError::Missing { path: path.into(), missing });
     }
     notes.extend(missing.iter().map(|file| format!("{file} cannot be found and is left out")));
-    let assembly = assembled(path, parts)?.with_unit("m");
+    let assembly = assembled(path, parts, read)?.with_unit("m");
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 

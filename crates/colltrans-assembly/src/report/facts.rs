@@ -75,7 +75,7 @@ fn room(f: &Findings, part: usize, d: DVec3, room: &PartRoom) -> Value {
         "by": room.by().map(name),
     });
     if let PartRoom::Blocked { stop, .. } = room {
-        entry["nominal"] = json!(f.bodies.nominal(stop, d));
+        entry["nominal"] = json!(stop.nominal);
         entry["point"] = json!(stop.point.to_array());
         entry["normal"] = json!(stop.normal.to_array());
     }

@@ -7,12 +7,17 @@ use glam::DVec3;
 use serde_json::{Value, json};
 
 use super::tint;
+use crate::boxes::Aabb;
 use crate::part::{Assembly, Part};
 use crate::plan::Plan;
 
 /// Seconds of a step, and of the pause before it.
 const STEP: f64 = 1.6;
 const PAUSE: f64 = 0.4;
+/// What has come out is put away so far beyond its travel, as a share of the assembly's size, or
+/// farther: in moves of a tenth of that size, so many at most.
+const NEAREST: f64 = 0.35;
+const MOST_MOVES: usize = 200;
 
 /// A file's bytes.
 pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
@@ -54,13 +59,13 @@ pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
 
 fn metres_per_unit(unit: Option<&str>) -> f64 {
     match unit {
-        Some("m" | "meter" | "metre") => 1.0,
-        Some("cm" | "centimeter") => 0.01,
+        Some("mm" | "millimeter" | "millimetre") => 0.001,
+        Some("cm" | "centimeter" | "centimetre") => 0.01,
         Some("in" | "inch") => 0.0254,
         Some("foot" | "ft") => 0.3048,
         Some("micron") => 1e-6,
-        // What CAD programs write where nothing is said.
-        _ => 0.001,
+        // Metres, or not known: lengths stay the numbers that they are.
+        _ => 1.0,
     }
 }
 
@@ -71,6 +76,7 @@ fn channels(
     plan: &Plan,
     size: f64,
 ) -> (Vec<Value>, Vec<Value>) {
+    let parked = parked(assembly, plan, size);
     let (mut channels, mut samplers) = (Vec::new(), Vec::new());
     for part in 0..assembly.parts().len() {
         let (mut at, mut times, mut places) = (DVec3::ZERO, vec![0.0], vec![DVec3::ZERO]);
@@ -82,7 +88,7 @@ fn channels(
             let start = k as f64 * (STEP + PAUSE) + PAUSE;
             times.extend([start, start + STEP]);
             places.push(at);
-            at += step.direction * (step.travel + 0.35 * size);
+            at += step.direction * parked[k];
             places.push(at);
         }
         if places.len() == 1 {
@@ -99,6 +105,33 @@ fn channels(
         samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
     }
     (channels, samplers)
+}
+
+/// How far each step's parts are put away: so far that nothing that comes after is put there too.
+fn parked(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
+    let mut distances = vec![0.0; plan.steps.len()];
+    let mut taken: Vec<Aabb> = Vec::new();
+    // What comes out last stays nearest, so that nothing passes it.
+    for (k, step) in plan.steps.iter().enumerate().rev() {
+        distances[k] = step.travel + NEAREST * size;
+        let boxes = step.parts.iter().map(|&p| assembly.parts()[p].bounds());
+        let Some(group) = boxes.reduce(|a, b| a.join(&b)).filter(|_| step.within.is_none()) else {
+            continue;
+        };
+        let at = |distance: f64| {
+            let by = step.direction * distance;
+            Aabb { low: group.low + by, high: group.high + by }
+        };
+        for _ in 0..MOST_MOVES {
+            let wide = at(distances[k]).grown(0.02 * size);
+            if !taken.iter().any(|other| other.meets(&wide)) {
+                break;
+            }
+            distances[k] += 0.1 * size;
+        }
+        taken.push(at(distances[k]));
+    }
+    distances
 }
 
 #[derive(Default)]

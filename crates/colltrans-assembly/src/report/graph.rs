@@ -1,7 +1,6 @@
-//! Directional blocking graphs as SVG: parts on a circle, an arrow from each to what it meets; groups
+//! Directional blocking graphs as SVG: parts on a ring, from the top down on either side, an arrow from each to what it meets; groups
 //! of several parts that move as one are ringed in one colour.
 
-use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use glam::DVec2;
@@ -10,19 +9,22 @@ use super::escaped;
 use crate::blocking::Blocking;
 use crate::bodies::Bodies;
 
-const RADIUS: f64 = 150.0;
+const RADIUS: f64 = 175.0;
 const MIDDLE: DVec2 = DVec2::new(280.0, 200.0);
 
 /// The graph of all parts along one direction.
 pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
     let n = bodies.len();
+    // At equal heights, so that names stand below each other.
     let at = |k: usize| {
-        let (s, c) = (k as f64 / n.max(1) as f64 * TAU).sin_cos();
-        MIDDLE + DVec2::new(s, -c) * RADIUS
+        let (round, side) = if 2 * k < n { (k, 1.0) } else { (n - 1 - k, -1.0) };
+        let height = (4 * round + 2) as f64 / n.max(1) as f64 - 1.0;
+        let height = height.clamp(-1.0, 1.0);
+        MIDDLE + DVec2::new(side * (1.0 - height * height).sqrt().max(0.3), height) * RADIUS
     };
     let mut text = String::from(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 560 400\" \
-         font-family=\"sans-serif\" font-size=\"10\">\n<rect width=\"560\" height=\"400\" \
+         font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"560\" height=\"400\" \
          fill=\"#fff\"/>\n",
     );
     let groups = graph.groups();
@@ -70,7 +72,7 @@ fn node(text: &mut String, at: DVec2, name: &str, free: bool, group: usize) {
          <text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
         at.x,
         at.y,
-        at.y + 3.5,
+        at.y + 4.0,
         escaped(name)
     );
 }

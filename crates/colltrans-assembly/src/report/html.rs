@@ -16,7 +16,7 @@ table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ddd;paddin
 text-align:left;vertical-align:top}th{background:#f3f5f8}td.n{text-align:right}\
 td.free{background:#fde3c4}td.overlapping{background:#eac8c8}.wide{overflow-x:auto}\
 .steps{display:grid;grid-template-columns:repeat(auto-fill,minmax(20em,1fr));gap:1em}\
-.steps figure{margin:0;border:1px solid #ddd;padding:.5em}figure svg{width:100%;height:auto}\
+.graphs{grid-template-columns:repeat(auto-fill,minmax(min(30em,100%),1fr))}.steps figure{margin:0;border:1px solid #ddd;padding:.5em}figure svg{width:100%;height:auto}\
 figcaption{font-size:13px}.warn{background:#fff3e0;border-left:4px solid #f6963a;padding:.5em 1em}";
 
 /// Tables of rooms and pictures of graphs are cut off here; the JSON has all.
@@ -236,6 +236,11 @@ fn map_section(text: &mut String, map: &map::RemovalMap, title: &str) {
     }
 }
 
+/// Zero instead of what rounding has left of it.
+fn tidy(x: f64, size: f64) -> f64 {
+    if x.abs() < 1e-9 * size { 0.0 } else { x }
+}
+
 fn rooms(text: &mut String, f: &Findings) {
     text.push_str(
         "<h2>Rooms</h2>\n<p>How far each part can move before another stops it, with all \
@@ -245,16 +250,17 @@ fn rooms(text: &mut String, f: &Findings) {
         let _ = write!(text, "<th>{}</th>", arrow(*d));
     }
     text.push_str("</tr>\n");
+    let size = f.bodies.assembly().size();
     for part in 0..f.bodies.len().min(MOST_ROWS) {
         let name = |k: usize| escaped(f.bodies.assembly().parts()[k].name());
         let _ = write!(text, "<tr><th>{}</th>", name(part));
-        for (k, d) in f.matrix.directions().iter().enumerate() {
+        for k in 0..f.matrix.directions().len() {
             let room = f.matrix.room(k, part);
             let cell = match room {
                 PartRoom::Free => "free".into(),
                 PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(by)),
                 PartRoom::Blocked { by, stop, .. } => {
-                    format!("{} {}", short(f.bodies.nominal(&stop, *d)), name(by))
+                    format!("{} {}", short(tidy(stop.nominal, size)), name(by))
                 }
             };
             let _ = write!(text, "<td class=\"{}\">{cell}</td>", room.outcome());
@@ -271,7 +277,7 @@ fn graphs(text: &mut String, f: &Findings) {
     }
     text.push_str("<h2>Blocking graphs</h2>\n<p>An arrow from a part to each one that it meets. \
                    Orange: comes out as it is, alone or with its group; red rings and arrows: moves \
-                   as one.</p>\n<div class=\"steps\">\n");
+                   as one.</p>\n<div class=\"steps graphs\">\n");
     let all = vec![true; f.bodies.len()];
     for (k, d) in f.matrix.directions().iter().enumerate().take(MOST_GRAPHS) {
         let picture = graph::svg(f.bodies, &Blocking::new(f.matrix, k, &all));
@@ -286,12 +292,15 @@ fn graphs(text: &mut String, f: &Findings) {
 }
 
 fn contacts(text: &mut String, f: &Findings) {
-    text.push_str(
-        "<h2>Contacts</h2>\n<table><tr><th>parts</th><th>area</th><th>around</th></tr>\n",
-    );
+    text.push_str("<h2>Contacts</h2>\n");
+    if f.liaisons.is_empty() {
+        text.push_str("<p>None.</p>\n");
+        return;
+    }
+    text.push_str("<table><tr><th>parts</th><th>area</th><th>around</th></tr>\n");
     for l in f.liaisons.iter().take(MOST_ROWS) {
         let [a, b] = l.parts.map(|k| escaped(f.bodies.assembly().parts()[k].name()));
-        let c = l.center().to_array().map(short);
+        let c = l.center().to_array().map(|x| short(tidy(x, f.bodies.assembly().size())));
         let _ = writeln!(
             text,
             "<tr><td>{a}, {b}</td><td class=\"n\">{}</td><td>{}</td></tr>",

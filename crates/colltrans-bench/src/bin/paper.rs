@@ -4,14 +4,15 @@
 //! Every contestant answers a block of settings twice, and its second pass is timed: caches hold
 //! what the block needs, for all of them alike. The order changes from block to block. A query is
 //! timed alone, with the clock's own cost taken off. Parry's cast of bodies of 8 vertices stands
-//! beside every row, so that rows of different runs can be compared.
+//! beside every row, so that rows of different runs can be compared. Where the time goes is asked in
+//! a further pass, of the search from the centre to the end.
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::{
     BuildError, Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Steps,
-    Tracker,
+    Tracker, observe,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParrySetting};
@@ -133,7 +134,9 @@ fn measure_size(
             let (measured, parry) = one_off(&blocks, &scale);
             let unit = *unit.get_or_insert(measured[0].times.median());
             let name = format!("{}, {name}", kind.name());
-            rows.push(row(&name, n, &CONTESTANTS.map(|c| c.0), &measured, (unit, &parry)));
+            let mut row = row(&name, n, &CONTESTANTS.map(|c| c.0), &measured, (unit, &parry));
+            row["phases"] = phases(&blocks);
+            rows.push(row);
         }
         if focus && matches!(kind, Kind::Balanced | Kind::Thin) {
             for change in CHANGES {
@@ -218,6 +221,7 @@ impl Measured {
         self.steps.planar_problems += steps.planar_problems;
         self.steps.supports += steps.supports;
         self.steps.pivots += steps.pivots;
+        self.steps.iterations += steps.iterations;
     }
 
     fn average(&self, count: u32) -> f64 {
@@ -231,6 +235,7 @@ impl Measured {
             ("planar_problems", self.steps.planar_problems),
             ("supports", self.steps.supports),
             ("pivots", self.steps.pivots),
+            ("iterations", self.steps.iterations),
         ] {
             json.insert(name.into(), json!(self.average(count)));
         }
@@ -267,6 +272,35 @@ fn one_off(blocks: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
         scale.measure(&mut parry);
     }
     sorted(measured, parry)
+}
+
+/// Median nanoseconds of each phase of a search from the centre to the end, on all blocks.
+fn phases(blocks: &Blocks) -> Value {
+    let options = options(CONTESTANTS[CONTESTANTS.len() - 1].1);
+    let mut spent: Vec<(&str, Times)> = Vec::new();
+    for (bodies, settings) in blocks {
+        for pass in 0..2 {
+            for setting in settings {
+                let mut clock = observe::Clock::new();
+                let cast = setting.cast(bodies, &options);
+                let found = cast.and_then(|cast| cast.first_contact_observed(&mut clock));
+                if pass == 0 || found.is_err() {
+                    continue;
+                }
+                let phases = clock.profile().phases();
+                spent.resize_with(phases.len(), || ("", Times::default()));
+                for ((name, times), (phase, nanoseconds)) in spent.iter_mut().zip(phases) {
+                    *name = phase;
+                    times.add(nanoseconds);
+                }
+            }
+        }
+    }
+    let mut median = |(name, times): &mut (&str, Times)| {
+        times.sort();
+        ((*name).to_owned(), json!(times.median()))
+    };
+    spent.iter_mut().map(&mut median).collect::<Map<_, _>>().into()
 }
 
 /// Region focus to a gap of 1 % and to the end, and the same without focus.

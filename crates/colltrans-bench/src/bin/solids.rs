@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans::{Cast, Pose, Solid, SolidClearance, Workspace};
+use colltrans::{Cast, Clearance, Pose, Solid, Workspace};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{Placed, TriangleMesh};
 use colltrans_bench::report::{self, Times};
@@ -185,7 +185,7 @@ impl Pair {
             let (other, time) = stopwatch.time(|| placed.cast(&r, &s));
             theirs.add(time);
             let distance = match answer {
-                SolidClearance::Blocked { distance, .. } => Some(distance),
+                Clearance::Blocked { distance, .. } => Some(distance),
                 _ => None,
             };
             hits += usize::from(distance.is_some());
@@ -285,9 +285,9 @@ fn flat(arguments: &Arguments) -> Vec<Value> {
             }
             times.sort();
             let said = match answer {
-                SolidClearance::Free => "free".into(),
-                SolidClearance::Blocked { distance, .. } => format!("blocked at {distance}"),
-                SolidClearance::Overlapping { depth } => format!("overlapping {depth:?}"),
+                Clearance::Free(_) => "free".into(),
+                Clearance::Blocked { distance, .. } => format!("blocked at {distance}"),
+                Clearance::Overlapping(overlap) => format!("overlapping {:?}", overlap.depth),
             };
             println!("{:<28} {:>8.1} us   {said}", format!("{name}{turned}"), times.median() / 1e3);
             let mut row = times.to_json();

@@ -2,14 +2,15 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use colltrans_assembly::Fit;
 use colltrans_assembly::map;
 use colltrans_assembly::report::{Findings, facts, glb, html};
+use colltrans_assembly::{Assembly, Fit};
 
 use crate::args::AssemblyArguments;
 use crate::failure::{Failure, note};
+use crate::inputs::refuse_overwriting;
 
 pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), Failure> {
     for text in f.bodies.assembly().notes() {
@@ -45,14 +46,35 @@ fn files(
     put("assembly.json", json.to_string().as_bytes())?;
     put("matrix.csv", f.matrix.to_csv(f.bodies).as_bytes())?;
     for (name, map) in f.maps {
-        let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-        let file: String = name.chars().map(safe).collect();
         let title = format!("Room of {name} in all directions");
-        put(&format!("map-{file}.svg"), map::svg(map, &title).as_bytes())?;
-        put(&format!("map-{file}.png"), &map::png(map, 1_200))?;
-        put(&format!("map-{file}.json"), map.to_json(f.bodies).to_string().as_bytes())?;
+        let [svg, png, json] = map_names(name);
+        put(&svg, map::svg(map, &title).as_bytes())?;
+        put(&png, &map::png(map, 1_200))?;
+        put(&json, map.to_json(f.bodies).to_string().as_bytes())?;
     }
     Ok(())
+}
+
+/// None of the files that will be written must take the place of one that is read.
+pub(super) fn refuse_inputs(
+    arguments: &AssemblyArguments,
+    assembly: &Assembly,
+) -> Result<(), Failure> {
+    let Some(folder) = &arguments.output else { return Ok(()) };
+    let files = assembly.files().iter().chain(&arguments.directions);
+    let inputs: Vec<&Path> = files.map(PathBuf::as_path).collect();
+    let fixed = ["report.html", "disassembly.glb", "assembly.json", "matrix.csv"];
+    let maps = arguments.map.iter().flat_map(|name| map_names(name));
+    for name in fixed.into_iter().map(str::to_owned).chain(maps) {
+        refuse_overwriting(&folder.join(name), &inputs, "give another folder")?;
+    }
+    Ok(())
+}
+
+fn map_names(name: &str) -> [String; 3] {
+    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let file: String = name.chars().map(safe).collect();
+    ["svg", "png", "json"].map(|extension| format!("map-{file}.{extension}"))
 }
 
 /// A few lines for people.

@@ -6,12 +6,13 @@ use std::fs;
 use std::path::Path;
 
 use crate::args::ClearArguments;
+use crate::cast::{Directions, all_answered, directions};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
 use crate::picture::draw_solids;
 use crate::progress;
-use crate::record::Record;
-use crate::solid::{Answer, Body, Question};
+use crate::record::{Name, Record};
+use crate::solid::{Body, Question};
 
 pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
     let files = arguments.moving.iter().chain(&arguments.from);
@@ -21,29 +22,74 @@ pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
     let usage = |message| Failure::new(Code::Usage, message);
     let moving_pose = places.moving_pose.pose(places.moving_rpy, "--moving").map_err(usage)?;
     let fixed_pose = places.fixed_pose.pose(places.fixed_rpy, "--fixed").map_err(usage)?;
+    let directions = directions(arguments.direction, arguments.directions.as_deref())?;
     let [moving, fixed] = load(arguments, inputs.len())?;
-    let question = Question {
+    let question = |direction| Question {
         moving: &moving,
         moving_pose,
         fixed: &fixed,
         fixed_pose,
-        direction: arguments.direction,
+        direction,
         tolerance: arguments.tolerance,
         ignore_start_overlaps: arguments.ignore_start_overlaps,
     };
+    let placed = [places.moving_pose.note("--moving"), places.fixed_pose.note("--fixed")];
+    let told = moving.notes.iter().chain(&fixed.notes);
+    placed.iter().flatten().chain(told).for_each(|text| note(text));
+    match directions {
+        Directions::One(direction) => answer_one(arguments, &question(direction)),
+        Directions::Many(all) => scan(arguments.json, all.into_iter().map(question)),
+    }
+}
+
+fn answer_one(arguments: &ClearArguments, question: &Question<'_>) -> Result<(), Failure> {
     let bar = progress::steps(question.pairs(), "looking");
     let answer = question.ask(|| bar.inc(1));
     bar.finish_and_clear();
     let answer = answer?;
-    let placed = [places.moving_pose.note("--moving"), places.fixed_pose.note("--fixed")];
-    let told = moving.notes.iter().chain(&fixed.notes).chain(&answer.notes);
-    placed.iter().flatten().chain(told).for_each(|text| note(text));
-    tell(arguments, &answer)?;
+    answer.notes.iter().for_each(|text| note(text));
+    let is_default = arguments.tolerance.is_none();
+    let text = if arguments.json {
+        Record::of_solids(&answer).json()?
+    } else {
+        words::answer(&answer, question.direction, is_default)
+    };
+    print(&text)?;
     match &arguments.picture {
-        Some(path) => fs::write(path, draw_solids(&question, &answer))
+        Some(path) => fs::write(path, draw_solids(question, &answer))
             .map_err(|error| Failure::output(path.display(), &error)),
         None => Ok(()),
     }
+}
+
+/// One line for each direction, also for those without an answer.
+fn scan<'a>(
+    as_json: bool,
+    questions: impl ExactSizeIterator<Item = Question<'a>>,
+) -> Result<(), Failure> {
+    let (count, mut failed) = (questions.len(), 0);
+    if !as_json {
+        print(&words::scan_head())?;
+    }
+    let mut noted = false;
+    for question in questions {
+        let record = match question.ask(|| ()) {
+            Ok(answer) => {
+                // The same bodies and tolerance for all directions.
+                if !noted {
+                    answer.notes.iter().for_each(|text| note(text));
+                    noted = true;
+                }
+                Record::of_solids(&answer)
+            }
+            Err(error) => Record::of_error(Failure::from(error).into_message()),
+        };
+        failed += usize::from(record.outcome == Name::Error);
+        let record = Record { direction: Some(question.direction.to_array()), ..record };
+        let text = if as_json { record.json()? } else { words::scan_line(&record) };
+        print(&text)?;
+    }
+    all_answered(count, failed)
 }
 
 /// Both bodies.
@@ -55,13 +101,4 @@ fn load(arguments: &ClearArguments, files: usize) -> Result<[Body; 2], Failure> 
     let bodies = moving.and_then(|moving| Ok([moving, load(&arguments.from, fixed)?]));
     bar.finish_and_clear();
     bodies.map_err(|message| Failure::new(Code::Input, message))
-}
-
-fn tell(arguments: &ClearArguments, answer: &Answer<'_>) -> Result<(), Failure> {
-    let text = if arguments.json {
-        Record::of_solids(answer).json()?
-    } else {
-        words::answer(answer, arguments.direction, arguments.tolerance.is_none())
-    };
-    print(&text)
 }

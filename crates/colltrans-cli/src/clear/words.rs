@@ -4,6 +4,7 @@ use colltrans::Feature;
 use colltrans::glam::DVec3;
 
 use crate::numbers::{decade, known_vector, number, unit_vector};
+use crate::record::Record;
 use crate::report::{along, line, times};
 use crate::solid::{Answer, Kind, Overlap, Stop, Touch};
 
@@ -38,6 +39,32 @@ pub(super) fn answer(answer: &Answer<'_>, direction: DVec3, is_default: bool) ->
     };
     line(&mut text, "tolerance", &format!("{} ({source})", number(answer.tolerance)));
     text
+}
+
+/// The heads of the columns of [`scan_line`].
+pub(super) fn scan_head() -> String {
+    columns("direction", ["outcome", "nominal", "distance", "exit"].map(str::to_owned))
+}
+
+/// The answer for one of many directions.
+pub(super) fn scan_line(record: &Record) -> String {
+    let vector = |v: [f64; 3]| v.map(number).join(",");
+    let direction = record.direction.map_or_else(String::new, vector);
+    if let Some(message) = &record.message {
+        return columns(
+            &direction,
+            [record.outcome.text().into(), message.clone(), String::new(), String::new()],
+        );
+    }
+    let or_none = |t: Option<f64>| t.map_or_else(|| "-".into(), number);
+    let [nominal, distance, exit] = [record.nominal, record.distance, record.exit].map(or_none);
+    columns(&direction, [record.outcome.text().into(), nominal, distance, exit])
+}
+
+fn columns(direction: &str, others: [String; 4]) -> String {
+    let [outcome, nominal, distance, exit] = others;
+    let text = format!("{direction:<24} {outcome:<11} {nominal:<19} {distance:<19} {exit}");
+    text.trim_end().to_owned() + "\n"
 }
 
 fn blocked(text: &mut String, answer: &Answer<'_>, stop: &Stop<'_>, direction: DVec3) {

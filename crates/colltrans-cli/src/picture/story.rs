@@ -1,7 +1,7 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Clearance, Contact, ContactRange, Feature, Features, Separated};
+use colltrans::{Clearance, Contact, ContactRange, Feature, Features, Separated, WhyFree};
 
 use super::size::working_size;
 use super::{Cast, Scene, Solid};
@@ -74,10 +74,10 @@ impl Story {
             features: Some(features),
             margin: None,
             headline: match (ContactRange::Contact { first: *contact, last: *last }).clearance() {
-                Clearance::Overlapping { .. } => {
+                Clearance::Overlapping(_) => {
                     format!("{name}: the bodies overlap now, first contact at {way}")
                 }
-                Clearance::Behind(_) => format!("{name}: lies behind, at {way}"),
+                Clearance::Free(WhyFree::Behind(_)) => format!("{name}: lies behind, at {way}"),
                 _ => format!("{name} at {way}"),
             },
             way,

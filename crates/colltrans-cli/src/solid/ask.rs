@@ -4,8 +4,7 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Cast, Feature, Pose, QueryError, Solid, SolidClearance, SolidContact, SolidOptions,
-    StartOverlap,
+    Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOptions, StartOverlap,
 };
 
 use super::{Body, Piece};
@@ -90,11 +89,11 @@ impl<'a> Question<'a> {
         let tolerance = self.tolerance_used()?;
         let cast = self.cast(self.moving.solid(), self.fixed.solid(), tolerance)?;
         let kind = match cast.clearance() {
-            SolidClearance::Free => Kind::Free,
-            SolidClearance::Blocked { distance, nominal, contact } => {
-                Kind::Blocked(self.stop(distance, nominal, &contact))
+            Clearance::Free(_) => Kind::Free,
+            Clearance::Blocked { distance, contact } => {
+                Kind::Blocked(self.stop(distance, &contact))
             }
-            SolidClearance::Overlapping { .. } => Kind::Overlapping,
+            Clearance::Overlapping(_) => Kind::Overlapping,
         };
         let overlaps = if self.ignore_start_overlaps || matches!(kind, Kind::Overlapping) {
             self.overlaps(tolerance, done)?
@@ -137,11 +136,11 @@ impl<'a> Question<'a> {
         Ok(of_files.max(of_poses))
     }
 
-    fn stop(&self, distance: f64, nominal: f64, contact: &SolidContact) -> Stop<'a> {
+    fn stop(&self, distance: f64, contact: &SolidContact) -> Stop<'a> {
         let [moving, fixed] = contact.triangles;
         Stop {
             distance,
-            nominal,
+            nominal: contact.nominal,
             normal: contact.normal,
             point: contact.point_on_fixed,
             moving: self.moving.touch(moving, contact.moving_feature),

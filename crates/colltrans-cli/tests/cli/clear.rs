@@ -449,3 +449,35 @@ fn info_speaks_of_holes_and_defects() {
         assert!(text.contains(part), "{part:?} is not in {text}");
     }
 }
+
+#[test]
+fn many_directions_give_one_answer_a_line() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("d.txt"), "-z # down\nz\n0 0 -2\n0,0,0\n").unwrap();
+    let ask = |more: &[&str]| {
+        let first = ["clear", "block.off", "--from", "table.off", "--directions", "d.txt"];
+        let all = [&first[..], &["--moving-pose", "0,0,1"], more].concat();
+        colltrans(path).args(all).output().unwrap()
+    };
+    let output = ask(&[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(stderr(&output), "error: 1 of 4 directions have no answer\n");
+    let text = stdout(&output);
+    let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
+    assert_eq!(lines[0], ["direction", "outcome", "nominal", "distance", "exit"]);
+    assert_eq!(lines[1][..2], ["0,0,-1", "blocked"]);
+    assert_eq!(lines[2][..4], ["0,0,1", "free", "-", "-"]);
+    assert_eq!(lines[3][..2], ["0,0,-2", "blocked"]);
+    assert_eq!(lines[4][..2], ["0,0,0", "error"]);
+    assert_eq!(lines.len(), 5);
+
+    let records: Vec<Value> = stdout(&ask(&["--json"])).lines().map(json).collect();
+    assert_eq!(records.len(), 4);
+    assert!((number(&records[0], "nominal") - 1.0).abs() < 1e-9, "{}", records[0]);
+    assert!((number(&records[2], "nominal") - 0.5).abs() < 1e-9, "{}", records[2]);
+    assert_eq!(records[2]["direction"], serde_json::json!([0.0, 0.0, -2.0]));
+    assert_eq!(records[3]["outcome"], "error");
+    let both = ask(&["--direction", "x"]);
+    assert_eq!(both.status.code(), Some(2));
+}

@@ -1,6 +1,6 @@
 //! Convex bodies as solids, against the convex core and against the rule over all pairs of facets.
 
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Solid, SolidClearance, SolidOptions};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Solid, SolidOptions};
 
 use super::facets::{rule, triangles};
 use super::settings::Seen;
@@ -49,7 +49,7 @@ fn against_rule(
     setting: &Setting,
     a: &Solid,
     b: &Solid,
-    found: &SolidClearance,
+    found: &Clearance<Solid>,
 ) -> Result<(), String> {
     if a.triangles().len() * b.triangles().len() > MOST_PAIRS {
         return Ok(());
@@ -61,8 +61,8 @@ fn against_rule(
     let right = rule(&f, &g, setting.direction).stop;
     let tolerance = AGREEMENT * noise(setting, a, b);
     let agree = match (found, &right) {
-        (SolidClearance::Free, None) => true,
-        (SolidClearance::Blocked { distance, .. }, Some(right)) => {
+        (Clearance::Free(_), None) => true,
+        (Clearance::Blocked { distance, .. }, Some(right)) => {
             right.minus(&Ratio::from_f64(*distance)).is_within(tolerance)
         }
         _ => false,
@@ -75,11 +75,11 @@ fn against_rule(
 fn against_core(
     core: Outcome,
     overlaps: bool,
-    found: Option<&SolidClearance>,
+    found: Option<&Clearance<Solid>>,
     noise: f64,
 ) -> Result<Option<Seen>, String> {
     let distance = match found {
-        Some(SolidClearance::Blocked { distance, .. }) => Some(*distance),
+        Some(Clearance::Blocked { distance, .. }) => Some(*distance),
         _ => None,
     };
     let seen = match (overlaps, distance) {

@@ -6,12 +6,14 @@
 //! value, or 0. The common shadow is found by clipping one triangle with the sides of the other, its
 //! corners as quotients of exact numbers.
 
+use std::cmp::Ordering;
+
 use glam::{DMat3, DVec3};
 
 use crate::exact::{Dyadic, Ratio, Vector, place};
 
 /// A triangle in the world.
-type Triangle = [Vector; 3];
+pub type Triangle = [Vector; 3];
 
 /// A point of the shadow plane in homogeneous coordinates, the last one positive.
 type Point = [Dyadic; 3];
@@ -37,32 +39,82 @@ pub fn triangles(
 
 /// Applies the rule to bodies that do not overlap.
 pub fn rule(moving: &[Triangle], fixed: &[Triangle], direction: DVec3) -> Rule {
-    let direction = Vector::new(direction);
-    let plane = Plane::new(&direction);
-    let facing = |t: &Triangle| normal(t).dot(&direction);
+    let judge = Judge::new(direction);
     let mut rule = Rule::default();
     for f in moving {
         for g in fixed {
-            let (n, m) = (facing(f), facing(g));
-            let front = n.is_positive() && m.is_negative();
-            if !(front || n.is_negative() && m.is_positive()) {
+            let (n, m) = (judge.facing(f), judge.facing(g));
+            if n == m || n == Ordering::Equal || m == Ordering::Equal {
                 continue;
             }
-            let Some([least, largest]) = plane.gaps(f, g, &direction) else { continue };
-            let zero = Ratio::from_f64(0.0);
-            if !front {
-                if rule.exit.as_ref().is_none_or(|e| *e < largest) {
-                    rule.exit = Some(largest);
-                }
-            } else if largest > zero || least == largest && largest == zero {
-                let from = if least < zero { zero } else { least };
-                if rule.stop.as_ref().is_none_or(|s| from < *s) {
+            let gaps = judge.gaps(f, g);
+            if gaps.front {
+                if let Some(from) = gaps.contribution()
+                    && rule.stop.as_ref().is_none_or(|s| from < *s)
+                {
                     rule.stop = Some(from);
                 }
+            } else if let Some([_, largest]) = gaps.range
+                && rule.exit.as_ref().is_none_or(|e| *e < largest)
+            {
+                rule.exit = Some(largest);
             }
         }
     }
     rule
+}
+
+/// What one pair of facets does along a direction.
+pub struct Judge {
+    direction: Vector,
+    plane: Plane,
+}
+
+/// The range of the gap of two facets.
+#[derive(Debug, Clone)]
+pub struct Gaps {
+    /// Whether a front facet of the moving body is before a back facet of the fixed one.
+    pub front: bool,
+    /// Least and largest gap, if the interiors of the shadows overlap.
+    pub range: Option<[Ratio; 2]>,
+}
+
+impl Gaps {
+    /// What the pair contributes, if it counts.
+    pub fn contribution(&self) -> Option<Ratio> {
+        let [least, largest] = self.range.clone().filter(|_| self.front)?;
+        let zero = Ratio::from_f64(0.0);
+        let counts = largest > zero || least == largest && largest == zero;
+        counts.then(|| if least < zero { zero } else { least })
+    }
+}
+
+impl Judge {
+    /// For a direction.
+    pub fn new(direction: DVec3) -> Self {
+        let direction = Vector::new(direction);
+        Self { plane: Plane::new(&direction), direction }
+    }
+
+    /// Whether a facet looks along the direction (`Greater`) or against it.
+    pub fn facing(&self, triangle: &Triangle) -> Ordering {
+        let along = normal(triangle).dot(&self.direction);
+        if along.is_positive() {
+            Ordering::Greater
+        } else if along.is_negative() {
+            Ordering::Less
+        } else {
+            Ordering::Equal
+        }
+    }
+
+    /// The gap between a facet of the moving and one of the fixed body.
+    pub fn gaps(&self, f: &Triangle, g: &Triangle) -> Gaps {
+        let (n, m) = (self.facing(f), self.facing(g));
+        let sides = n != Ordering::Equal && m != Ordering::Equal;
+        let range = if sides { self.plane.gaps(f, g, &self.direction) } else { None };
+        Gaps { front: n == Ordering::Greater && m == Ordering::Less, range }
+    }
 }
 
 fn normal([a, b, c]: &Triangle) -> Vector {

@@ -1,9 +1,10 @@
 //! Settings of bodies made of cubes, most of them tied, and how an answer is judged.
 
-use colltrans::{Cast, Pose, Solid, SolidClearance, SolidOptions};
+use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::{Cells, Motion, motion};
+use super::proof::{MOST_PAIRS, approve};
 use crate::exact::{Ratio, Vector};
 use crate::settings::Rng;
 
@@ -96,8 +97,12 @@ impl Setting {
         }
         let surfaces = [0, 1].map(|k| cells[k].surface(shear, rng));
         let pose = |k: usize| {
-            let quarter = DQuat::from_mat3(&turns[k]);
-            Pose::new(rotation * quarter, translations[k]).expect("a rotation")
+            // Quarter turns as they are: their quaternions may round.
+            if turns[k] == DMat3::IDENTITY {
+                Pose::new(rotation, translations[k]).expect("a rotation")
+            } else {
+                Pose::from_matrix(turns[k], translations[k]).expect("a rotation")
+            }
         };
         let poses = [pose(0), pose(1)];
         Some(Self { cells, shear, surfaces, poses, direction, turns })
@@ -116,21 +121,11 @@ impl Setting {
         motion((&a, &b), [identity; 2], &offset, self.direction)
     }
 
-    /// Whether the poses' matrices are what the cubes are turned by: quaternions of quarter turns
-    /// may round.
-    fn is_faithful(&self) -> bool {
-        self.turns == [DMat3::IDENTITY; 2]
-            || (0..2).all(|k| self.poses[k].matrix() == self.turns[k])
-    }
-
-    /// Asks the library and compares.
+    /// Asks the library and compares; proofs of small bodies are judged in fractions if so said.
     ///
     /// # Errors
     /// What disagrees.
-    pub fn examine(&self) -> Result<Option<Seen>, String> {
-        if !self.is_faithful() {
-            return Ok(None);
-        }
+    pub fn examine(&self, in_fractions: bool) -> Result<Seen, String> {
         let solid = |k: usize| {
             let (vertices, facets) = &self.surfaces[k];
             Solid::from_mesh(vertices, facets).map_err(|e| format!("body {k}: {e}"))
@@ -153,15 +148,23 @@ impl Setting {
                 return Err(format!("exit {found:?}, not {:?}", right.as_ref().map(Ratio::to_f64)));
             }
         }
-        if expected.overlaps && cast.overlaps() {
-            return Ok(Some(Seen::Overlapping));
+        let (found, certificate) = cast.certified_clearance();
+        cast.verify(&certificate).map_err(|e| format!("{found:?}: {e}: {certificate:?}"))?;
+        let pairs = a.triangles().len() * b.triangles().len();
+        if in_fractions && pairs <= MOST_PAIRS {
+            approve(&cast, &certificate, tolerance)?;
         }
-        match (cast.clearance(), expected.overlaps, &expected.stop) {
-            (SolidClearance::Free, false, None) => Ok(Some(Seen::Free)),
-            (SolidClearance::Blocked { distance, .. }, false, Some(stop))
-                if near(distance, stop) =>
-            {
-                Ok(Some(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked }))
+        if expected.overlaps && cast.overlaps() {
+            let said = matches!(found, Clearance::Overlapping(_));
+            return if said { Ok(Seen::Overlapping) } else { Err(format!("{found:?}")) };
+        }
+        if let Clearance::Free(Some(separation)) = &found {
+            cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
+        }
+        match (found, expected.overlaps, &expected.stop) {
+            (Clearance::Free(_), false, None) => Ok(Seen::Free),
+            (Clearance::Blocked { distance, .. }, false, Some(stop)) if near(distance, stop) => {
+                Ok(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked })
             }
             (found, overlaps, stop) => Err(format!(
                 "{found:?}, but overlapping: {overlaps}, stop: {:?}",

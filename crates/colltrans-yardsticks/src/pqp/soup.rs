@@ -121,8 +121,8 @@ impl Soup {
         Ok(Self::build(vertices.to_vec(), triangles))
     }
 
-    /// The surface of a convex polyhedron, in its body frame: its faces as fans of triangles. A
-    /// flat polygon is taken once; a segment and a point are one degenerate triangle.
+    /// The surface of a convex polyhedron, in its body frame: its faces cut into triangles. A flat
+    /// polygon is taken once; a segment and a point are one degenerate triangle.
     ///
     /// The polyhedron must have at most 2^30 vertices.
     pub fn of_polyhedron(body: &ConvexPolyhedron) -> Self {
@@ -134,11 +134,8 @@ impl Soup {
         };
         let mut triangles = Vec::with_capacity(2 * body.vertices().len());
         for face in 0..faces {
-            let mut corners = body.face_vertices(face);
-            if let Some(apex) = corners.next() {
-                let next = corners.clone().skip(1);
-                triangles.extend(corners.zip(next).map(|(a, b)| [apex, a, b]));
-            }
+            let corners: Vec<u32> = body.face_vertices(face).collect();
+            cut(&corners, &mut triangles);
         }
         Self::build(body.vertices().to_vec(), &triangles)
     }
@@ -177,5 +174,18 @@ impl Soup {
     /// The largest distance of a triangle's corner from the origin.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
+    }
+}
+
+/// Cuts a convex polygon into triangles by halving it: in a fan every triangle reaches across the
+/// polygon, so that no volume around some of them is smaller than that around all.
+fn cut(corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
+    if let [first, .., last] = *corners
+        && corners.len() > 2
+    {
+        let middle = corners.len() / 2;
+        cut(&corners[..=middle], triangles);
+        triangles.push([first, corners[middle], last]);
+        cut(&corners[middle..], triangles);
     }
 }

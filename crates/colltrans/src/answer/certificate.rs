@@ -123,6 +123,31 @@ pub enum CertificateError {
         /// The largest that rounding explains.
         derived: f64,
     },
+    /// It is about bodies shrunk by another tolerance.
+    #[error("the proof is for a tolerance of {claimed}, not {asked}")]
+    OtherTolerance {
+        /// The one of the proof.
+        claimed: f64,
+        /// The one of the cast.
+        asked: f64,
+    },
+    /// The bodies do not do at the start what it says.
+    #[error("what is said of the bodies where they are does not hold")]
+    Start,
+    /// An entry of a cover does not hold, or does not fit the bodies.
+    #[error("entry {entry} of the cover does not hold, or does not fit the bodies")]
+    Cover {
+        /// Its number; the number of all if the cover ends too early.
+        entry: usize,
+    },
+    /// Two facets that do not stop the body.
+    #[error("facets {moving} and {fixed} do not stop the body")]
+    Facets {
+        /// Of the moving body, by position.
+        moving: u32,
+        /// Of the fixed body.
+        fixed: u32,
+    },
 }
 
 /// A proof to check: of a contact, or of a separation.

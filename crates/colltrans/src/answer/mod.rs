@@ -1,12 +1,14 @@
 //! What a query answers, and how anyone checks it.
 
 mod certificate;
+mod clearance;
 mod outcome;
 mod range;
 mod steps;
 
 pub(crate) use certificate::{Along, gap_tolerance};
 pub use certificate::{Certificate, CertificateError, Proof, Separation};
+pub use clearance::{Clearance, OverlapAhead, WhyFree};
 pub use outcome::{Contact, Grazing, Outcome, Separated};
-pub use range::{Clearance, ContactRange, DirectionalDepth, Intersection};
+pub use range::{ContactRange, DirectionalDepth, Intersection};
 pub use steps::{Solver, StartedFrom, Steps};

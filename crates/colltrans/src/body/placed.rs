@@ -1,12 +1,20 @@
 //! A body and where it stands.
 
+use std::fmt::Debug;
+
 use super::{ConvexPolyhedron, Pose};
 
 /// What queries can be asked about: a [`ConvexPolyhedron`] or a
 /// [`Solid`](crate::Solid). Sealed.
 pub trait Body: sealed::Sealed {
     /// The choices of a query about two such bodies.
-    type Options: Copy + Default + std::fmt::Debug;
+    type Options: Copy + Default + Debug;
+    /// What is said of the contact that stops it.
+    type Contact: Copy + Debug + PartialEq;
+    /// What is said where nothing stops it.
+    type Free: Copy + Debug + PartialEq;
+    /// What is said of an overlap.
+    type Overlap: Copy + Debug + PartialEq;
 }
 
 pub(crate) mod sealed {

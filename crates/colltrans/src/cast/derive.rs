@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::Cast;
 use crate::answer::{
     Clearance, Contact, ContactRange, DirectionalDepth, Grazing, Intersection, Outcome,
+    OverlapAhead, WhyFree,
 };
 use crate::error::QueryError;
 use crate::number::range::MIN_MAGNITUDE;
@@ -55,8 +56,8 @@ pub(crate) fn clearance_of<'a>(
 ) -> Result<Clearance, QueryError> {
     let contact = match run(cast)? {
         Outcome::Contact(contact) => contact,
-        Outcome::Grazing(grazing) => return Ok(Clearance::Slides(grazing)),
-        Outcome::Separated(separated) => return Ok(Clearance::Separated(separated)),
+        Outcome::Grazing(grazing) => return Ok(Clearance::Free(WhyFree::Slides(grazing))),
+        Outcome::Separated(separated) => return Ok(Clearance::Free(WhyFree::Separated(separated))),
     };
     if let Some(blocked) = Clearance::blocked(&contact) {
         return Ok(blocked);
@@ -64,8 +65,8 @@ pub(crate) fn clearance_of<'a>(
     Ok(match run(&cast.reversed())? {
         Outcome::Contact(last) => Clearance::past(contact, last),
         // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
-        Outcome::Grazing(grazing) => Clearance::Slides(grazing),
-        Outcome::Separated(separated) => Clearance::Separated(separated),
+        Outcome::Grazing(grazing) => Clearance::Free(WhyFree::Slides(grazing)),
+        Outcome::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
     })
 }
 
@@ -77,7 +78,7 @@ pub(crate) fn depth_of<'a>(
     let clearance = clearance_of(cast, run)?;
     let depth = match &clearance {
         // Safe is what is not less than the true depth.
-        Clearance::Overlapping { first, .. } => -first.certificate.lower,
+        Clearance::Overlapping(OverlapAhead { first, .. }) => -first.certificate.lower,
         _ => 0.0,
     };
     Ok(DirectionalDepth { depth, clearance })

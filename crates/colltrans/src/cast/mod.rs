@@ -38,7 +38,7 @@ pub use replay::{Case, CaseError};
 ///
 /// ```
 /// use colltrans::glam::DVec3;
-/// use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose};
+/// use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, WhyFree};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
@@ -56,7 +56,7 @@ pub use replay::{Case, CaseError};
 /// assert!(gap <= contact.certificate.tolerance);
 ///
 /// assert!(cast.contact_range()?.interval() == Some([2.0, 4.0]));
-/// assert!(matches!(cast.reversed().clearance()?, Clearance::Behind(_)));
+/// assert!(matches!(cast.reversed().clearance()?, Clearance::Free(WhyFree::Behind(_))));
 /// assert!(!cast.intersects()?.meets);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -254,13 +254,13 @@ impl Cast<'_> {
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose};
+    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, WhyFree};
     /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// // One cube upon another: it can go up, and aside, but not down.
     /// let (above, world) = (Pose::from_translation(DVec3::Z)?, Pose::IDENTITY);
     /// let toward = |direction| Cast::new(cube.at(above), cube.at(world), direction)?.clearance();
-    /// assert!(matches!(toward(DVec3::Z)?, Clearance::Behind(_)));
-    /// assert!(matches!(toward(DVec3::X)?, Clearance::Slides(_)));
+    /// assert!(matches!(toward(DVec3::Z)?, Clearance::Free(WhyFree::Behind(_))));
+    /// assert!(matches!(toward(DVec3::X)?, Clearance::Free(WhyFree::Slides(_))));
     /// assert_eq!(toward(DVec3::NEG_Z)?.distance(), Some(0.0));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -38,6 +38,12 @@ pub enum CaseError {
     /// A pose is none.
     #[error(transparent)]
     Pose(#[from] PoseError),
+    /// A letter that stands for nothing.
+    #[error("the letter {letter:?} stands for nothing in a cover")]
+    Letter {
+        /// The letter.
+        letter: char,
+    },
     /// The direction or a choice is refused.
     #[error(transparent)]
     Query(#[from] QueryError),

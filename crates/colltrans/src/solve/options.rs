@@ -1,6 +1,6 @@
 //! Choices of a query.
 
-use crate::answer::Solver;
+use crate::answer::{Contact, OverlapAhead, Solver, WhyFree};
 use crate::body::{Body, ConvexPolyhedron};
 use crate::error::QueryError;
 
@@ -19,6 +19,9 @@ pub struct Options {
 
 impl Body for ConvexPolyhedron {
     type Options = Options;
+    type Contact = Contact;
+    type Free = WhyFree;
+    type Overlap = OverlapAhead;
 }
 
 impl Options {
@@ -37,14 +40,17 @@ impl Options {
 }
 
 /// From where, and how far, the collision translation algorithm narrows the search before portal
-/// refinement takes over; the defaults were measured to be fastest. Answers do not depend on it.
+/// refinement takes over; the defaults do least work. Answers do not depend on it.
+///
+/// However wide the gap, planar problems end where the features that touch are seen to solve the
+/// problem (the paper's exit test); portal refinement then only proves them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Narrowing {
     /// Where the minimisation starts, if not in the region of a [`Tracker`](crate::Tracker)'s last
     /// solution.
     pub start: NarrowFrom,
-    /// It ends when its upper and lower bound are apart by no more than this share of the extent of
-    /// both bodies along the direction.
+    /// It ends at the latest when its upper and lower bound are apart by no more than this share of
+    /// the extent of both bodies along the direction; at `0` it goes on to the contact itself.
     pub gap: f64,
 }
 

@@ -11,9 +11,12 @@ mod support;
 #[cfg(test)]
 pub(crate) mod tests;
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
 use crate::body::Inertia;
+use crate::body::solid::{Solid, SolidError};
 use crate::body::topology::Topology;
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, convexity_defect};
@@ -41,6 +44,8 @@ pub struct ConvexPolyhedron {
     inertia: Inertia,
     support: SupportIndex,
     sections: SectionIndex,
+    /// The same body as a solid, made when it is first asked for.
+    pub(crate) solid: OnceLock<Box<Result<Solid, SolidError>>>,
 }
 
 impl ConvexPolyhedron {

@@ -21,6 +21,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use crate::body::ConvexPolyhedron;
+use crate::body::placed::sealed;
 pub(crate) use door::Surface;
 pub use error::SolidError;
 pub use report::{Shell, SolidReport};
@@ -77,6 +78,29 @@ pub struct Solid {
     shrinking: OnceLock<Shrinking>,
 }
 
+/// What a [`Solid`] can be asked against, and made of. Sealed.
+pub trait AsSolid: sealed::Sealed {
+    /// The body as a solid: itself, or a convex polyhedron's surface, made when it is first asked for
+    /// and kept.
+    ///
+    /// # Errors
+    /// A polyhedron without a volume.
+    fn as_solid(&self) -> Result<&Solid, SolidError>;
+}
+
+impl AsSolid for Solid {
+    fn as_solid(&self) -> Result<&Solid, SolidError> {
+        Ok(self)
+    }
+}
+
+impl AsSolid for ConvexPolyhedron {
+    fn as_solid(&self) -> Result<&Solid, SolidError> {
+        let made = self.solid.get_or_init(|| Box::new(Solid::from_convex(self)));
+        made.as_ref().as_ref().map_err(Clone::clone)
+    }
+}
+
 /// Where a shell is.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Span {
@@ -120,11 +144,14 @@ impl Solid {
         Ok(Self::assemble(surface, report, false))
     }
 
-    /// The union of several solids, which may overlap. Vertices and facets are numbered through.
+    /// The union of several solids or convex polyhedra, which may overlap. Vertices and facets are
+    /// numbered through.
     ///
     /// # Errors
-    /// No pieces, or more facets than 32-bit indices can number.
-    pub fn from_pieces<'a>(pieces: impl IntoIterator<Item = &'a Self>) -> Result<Self, SolidError> {
+    /// No pieces, more facets than 32-bit indices can number, or a polyhedron without a volume.
+    pub fn from_pieces<'a, B: AsSolid + 'a>(
+        pieces: impl IntoIterator<Item = &'a B>,
+    ) -> Result<Self, SolidError> {
         let mut all = Surface {
             vertices: Vec::new(),
             vertex_index: Vec::new(),
@@ -136,6 +163,7 @@ impl Solid {
         let mut closed = true;
         let (mut vertex_base, mut facet_base) = (0, 0);
         for piece in pieces {
+            let piece = piece.as_solid()?;
             let (v, t) = (all.vertices.len() as u32, all.triangles.len() as u32);
             all.vertices.extend_from_slice(&piece.vertices);
             all.vertex_index.extend(piece.vertex_index.iter().map(|i| i + vertex_base));

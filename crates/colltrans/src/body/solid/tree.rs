@@ -24,7 +24,7 @@ const FORK: usize = 1 << 14;
 pub(crate) const ANY: f64 = 2.0;
 
 /// What bounds consecutive facets.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Node {
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
@@ -100,13 +100,17 @@ pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
 
 /// The tree's nodes, and the order in which it lists the facets.
 pub(super) fn build(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    build_on(threads, vertices, triangles)
+}
+
+fn build_on(threads: usize, vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
     let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
     let mut items: Vec<Item> = triangles
         .iter()
         .enumerate()
         .map(|(facet, t)| Item::new(facet as u32, corners(t)))
         .collect();
-    let threads = thread::available_parallelism().map_or(1, usize::from);
     let builder = Builder { vertices, triangles };
     let mut nodes = Vec::with_capacity(items.len());
     builder.grow(&mut items, 0, threads, &mut nodes);
@@ -328,4 +332,29 @@ fn cheapest(items: &[Item], low: DVec3, high: DVec3) -> Option<(usize, usize)> {
         }
     }
     best.map(|(_, axis, bin)| (axis, bin))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tree_is_the_same_on_any_number_of_threads() {
+        // Facets of a wavy sheet, several times as many as are worth a thread.
+        let side = 220_u32;
+        let at = |i: u32, j: u32| {
+            let (x, y) = (f64::from(i), f64::from(j));
+            DVec3::new(x, y, 8.0 * (0.1 * x).sin() * (0.07 * y).cos())
+        };
+        let vertices: Vec<DVec3> = (0..side * side).map(|k| at(k % side, k / side)).collect();
+        let triangles: Vec<[u32; 3]> = (0..side * side)
+            .filter(|k| k % side + 1 < side && k / side + 1 < side)
+            .flat_map(|k| [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]])
+            .collect();
+        assert!(triangles.len() > 5 * FORK);
+        let alone = build_on(1, &vertices, &triangles);
+        for threads in [2, 3, 8, 64] {
+            assert!(build_on(threads, &vertices, &triangles) == alone, "{threads} threads");
+        }
+    }
 }

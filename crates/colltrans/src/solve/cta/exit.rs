@@ -22,8 +22,13 @@ use crate::body::topology::Topology;
 use crate::setting::{Setting, VertexPair};
 
 /// The height of a supporting plane is that of the best point if they differ by less than this
-/// share of the extent along the direction: sections have lost about six digits of sixteen where
-/// faces are as thin as they get.
+/// share of the extent along the direction.
+///
+/// Section coordinates are off by [`noise::SECTION`](crate::number::noise::SECTION), `1.4e-14` of
+/// the extent. The best point is found by crossing two lines, of section edges and then of a cell's
+/// sides, of which each divides that error by the sine between them: the share leaves room for
+/// sines that multiply to `1.4e-4`. Where they are smaller the test misses, which costs a step. A
+/// plane so near that does not touch is no error either: the finish looks for what lies below it.
 const SAME_HEIGHT: f64 = 1e-10;
 
 /// Ways out of the features that are compared; vertices with more are not decided.
@@ -35,7 +40,7 @@ const STEEPEST: f64 = 1e3;
 /// Two edges with a smaller sine between them count as parallel.
 const PARALLEL: f64 = 1e-8;
 
-/// Corners of a face of the difference of the bodies, in order.
+/// Three or four corners of a face of the difference of the bodies, in order; of three the last twice.
 pub(crate) type Corners = [VertexPair; 4];
 
 /// The contact, as the features that touch prove it.
@@ -45,7 +50,7 @@ pub(super) struct Solved {
     pub(super) normal: DVec3,
     /// The features of each body, as two pairs of vertices.
     pub(super) vertices: [[u32; 4]; 2],
-    /// The face of the difference that the line passes, if it has three or four corners.
+    /// A part of the face of the difference that the line passes.
     pub(super) corners: Option<Corners>,
 }
 
@@ -275,36 +280,55 @@ impl ExitTest<'_, '_> {
         }
     }
 
-    /// The corners of the features' difference, if it is a triangle or a quadrilateral.
+    /// Corners of the features' difference around the line: all of them if they are at most four.
     fn corners(&self, features: [Feature; 2]) -> Option<Corners> {
-        let ends = |body: usize, h: u32| {
-            let topology = self.sides[body].topology;
-            [topology.half_edge(h).origin, topology.target(h)]
-        };
-        let on_face = |body: usize, h: u32, pair: &dyn Fn(u32) -> VertexPair| {
-            let topology = self.sides[body].topology;
-            let boundary = topology.face(topology.half_edge(h).face);
-            let corner = |i: usize| topology.half_edge(boundary.start + i as u32).origin;
-            match boundary.len() {
-                3 => Some([corner(0), corner(1), corner(2), corner(2)].map(pair)),
-                4 => Some([corner(0), corner(1), corner(2), corner(3)].map(pair)),
-                _ => None,
-            }
-        };
         match features {
             [Feature::Edge(e), Feature::Edge(f)] => {
+                let ends = |body: usize, h: u32| {
+                    let topology = self.sides[body].topology;
+                    [topology.half_edge(h).origin, topology.target(h)]
+                };
                 let (p, q) = (ends(0, e), ends(1, f));
                 let pair = |i: usize, j: usize| VertexPair { moving: p[i], fixed: q[j] };
                 Some([pair(0, 0), pair(1, 0), pair(1, 1), pair(0, 1)])
             }
             [Feature::Vertex(moving), Feature::Face(h)] => {
-                on_face(1, h, &|fixed| VertexPair { moving, fixed })
+                let at = self.at(0, moving) - self.setting.offset;
+                Some(self.around(1, h, at).map(|fixed| VertexPair { moving, fixed }))
             }
             [Feature::Face(h), Feature::Vertex(fixed)] => {
-                on_face(0, h, &|moving| VertexPair { moving, fixed })
+                let at = self.at(1, fixed) + self.setting.offset;
+                Some(self.around(0, h, at).map(|moving| VertexPair { moving, fixed }))
             }
             _ => None,
         }
+    }
+
+    /// Three or four corners of a face, in order, around where the line through a point passes it:
+    /// the first and two or three in succession, found by halving. Only up to rounding.
+    fn around(&self, body: usize, half_edge: u32, point: DVec3) -> [u32; 4] {
+        let topology = self.sides[body].topology;
+        let boundary = topology.face(topology.half_edge(half_edge).face);
+        let corner = |i: u32| topology.half_edge(boundary.start + i).origin;
+        let count = boundary.len() as u32;
+        if count == 3 {
+            return [corner(0), corner(1), corner(2), corner(2)];
+        }
+        // The faces that touch look along the direction on P and against it on Q.
+        let outward = if body == 0 { self.setting.unit } else { -self.setting.unit };
+        let first = self.at(body, corner(0));
+        let is_left = |i: u32| {
+            let along = self.at(body, corner(i)) - first;
+            along.cross(point - first).dot(outward) > 0.0
+        };
+        // The point is to the left of the diagonal to `low` and not of that to `high`.
+        let (mut low, mut high) = (1, count - 1);
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            (low, high) = if is_left(middle) { (middle, high) } else { (low, middle) };
+        }
+        let low = low.min(count - 3);
+        [corner(0), corner(low), corner(low + 1), corner(low + 2)]
     }
 }
 

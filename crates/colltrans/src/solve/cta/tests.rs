@@ -1,15 +1,22 @@
 //! The minimisation against brute force.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
+use super::crossing::{Chain, Crossing};
 use super::minimise::{Narrowed, minimise};
+use super::pair::SectionPair;
+use super::planar::{self, Hint, Planar};
+use super::section::Section;
+use super::side::Side;
 use super::{CtaOptions, Guess, Origin};
 use crate::answer::Steps;
 use crate::body::ConvexPolyhedron;
 use crate::body::Pose;
 use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism, thin_ellipsoid};
 use crate::setting::Setting;
+use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::{Nobody, Observer, Watch};
+use crate::solve::portal;
 
 /// Exit tests, and how many of them ended a search.
 #[derive(Debug, Default)]
@@ -288,6 +295,34 @@ fn the_exit_test_ends_nearly_every_search_at_the_contact() {
 }
 
 #[test]
+fn a_hit_on_a_large_face_names_the_portal() {
+    let mut random = Random(37);
+    let point = ellipsoid(200, DVec3::splat(0.2));
+    let mut hits = 0;
+    for round in 0..600 {
+        let face = prism(4 + random.index(60), DVec3::ONE);
+        // Onto a cap, from either side and as either body.
+        let along = DVec3::new(0.3 * random.signed(), 0.3 * random.signed(), 1.0);
+        let cap = if random.index(2) == 0 { -along } else { along };
+        let aside = DVec3::new(random.signed(), random.signed(), 0.0) * 0.6;
+        let [rest, start] =
+            [DVec3::ZERO, aside - cap * 4.0].map(|at| Pose::new(DQuat::IDENTITY, at).unwrap());
+        let setting = if random.index(2) == 0 {
+            Setting::new(point.at(start), face.at(rest), cap).unwrap()
+        } else {
+            Setting::new(face.at(rest), point.at(start), -cap).unwrap()
+        };
+        let mut exits = Exits::default();
+        let narrowed = minimise(&setting, &EXACT, &mut Watch::new(&mut exits));
+        let Some(corners) = narrowed.corners else { continue };
+        hits += exits.hits;
+        let difference = MinkowskiDifference::new(&setting);
+        assert!(portal::around(&difference, &corners).is_some(), "round {round}: {corners:?}");
+    }
+    assert!(hits > 550, "{hits}");
+}
+
+#[test]
 fn steps_do_not_grow_with_the_bodies() {
     for count in [8, 128, 2000, 20_000] {
         let mut random = Random(19);
@@ -325,12 +360,12 @@ fn colliding(random: &mut Random) -> Example {
 }
 
 /// All vertices of a section in order, from the bottom up the left chain.
-fn polygon(side: &super::side::Side, x: f64) -> Vec<super::crossing::Crossing> {
-    let section = super::section::Section::new(side, x);
+fn polygon(side: &Side, x: f64) -> Vec<Crossing> {
+    let section = Section::new(side, x);
     let first = section.bottom().unwrap().vertex;
     let mut all = vec![first];
     loop {
-        let next = section.up(super::crossing::Chain::Left, &all[all.len() - 1]);
+        let next = section.up(Chain::Left, &all[all.len() - 1]);
         if next.up == first.up {
             return all;
         }
@@ -355,25 +390,15 @@ fn planar_problems_agree_with_brute_force() {
     }
 }
 
-fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
-    use super::planar::{Hint, Planar, solve};
-    let query = super::pair::SectionPair::new(setting);
-    let levels = [0, 1].map(|i| {
-        let [low, high] = query.sides[i].range();
-        random.within(low, high)
-    });
-    let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
-    for (i, polygon) in polygons.iter().enumerate() {
-        let least = polygon.iter().map(super::crossing::Crossing::h).fold(f64::INFINITY, f64::min);
-        assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
-    }
+/// The least height common to two polygons, by all vertices and all pairs of edges; infinite if
+/// they have nothing in common.
+fn least_common_height(polygons: &[Vec<Crossing>; 2]) -> f64 {
     let edges = |i: usize| {
-        let of: &Vec<super::crossing::Crossing> = &polygons[i];
+        let of: &Vec<Crossing> = &polygons[i];
         (0..of.len()).map(move |k| (of[k].w, of[(k + 1) % of.len()].w))
     };
     // Clockwise with g to the right and h upwards.
-    let inside =
-        |i: usize, w: glam::DVec2| edges(i).all(|(s, t)| (t - s).perp_dot(w - s) >= -1e-12);
+    let inside = |i: usize, w: DVec2| edges(i).all(|(s, t)| (t - s).perp_dot(w - s) >= -1e-12);
     let mut least = f64::INFINITY;
     for (i, polygon) in polygons.iter().enumerate() {
         for c in polygon {
@@ -395,7 +420,22 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             }
         }
     }
-    let height = |hint: &Hint| match solve(&query.sides, levels, hint).unwrap() {
+    least
+}
+
+fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
+    let query = SectionPair::new(setting);
+    let levels = [0, 1].map(|i| {
+        let [low, high] = query.sides[i].range();
+        random.within(low, high)
+    });
+    let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
+    for (i, polygon) in polygons.iter().enumerate() {
+        let least = polygon.iter().map(Crossing::h).fold(f64::INFINITY, f64::min);
+        assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
+    }
+    let least = least_common_height(&polygons);
+    let height = |hint: &Hint| match planar::solve(&query.sides, levels, hint).unwrap() {
         Planar::Vertex { vertex, .. } => vertex.h(),
         Planar::Edges { contact, .. } => contact.x,
         Planar::Separated { .. } => f64::INFINITY,
@@ -409,8 +449,7 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             assert!(same, "{name}: {found} {unguided}");
         }
     }
-    let answer = solve(&query.sides, levels, &Hint::NONE).unwrap();
-    match answer {
+    match planar::solve(&query.sides, levels, &Hint::NONE).unwrap() {
         Planar::Vertex { vertex, .. } => {
             assert!((vertex.h() - least).abs() < 1e-9, "{name}: {least} {}", vertex.h());
         }
@@ -421,12 +460,9 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
             // Sections that touch each other may be taken for either.
             let apart = u.dot(supports[1].w - supports[0].w);
             assert!(apart >= -1e-12 && (least == f64::INFINITY || apart < 1e-12), "{name}");
-            for c in &polygons[0] {
-                assert!(u.dot(c.w - supports[0].w) < 1e-9, "{name}");
-            }
-            for c in &polygons[1] {
-                assert!(u.dot(c.w - supports[1].w) > -1e-9, "{name}");
-            }
+            let beyond = |c: &Crossing, body: usize| u.dot(c.w - supports[body].w);
+            assert!(polygons[0].iter().all(|c| beyond(c, 0) < 1e-9), "{name}");
+            assert!(polygons[1].iter().all(|c| beyond(c, 1) > -1e-9), "{name}");
         }
     }
 }

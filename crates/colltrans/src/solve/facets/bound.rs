@@ -15,19 +15,25 @@ const STEEP: f64 = 1e-3;
 /// Slabs less steep than this say little about shadows.
 const LEVEL: f64 = 0.1;
 
-/// Why a pair of nodes needs no further look.
+/// Why no two facets of a pair of nodes need a further look: what a proof says of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Reason {
-    /// The moving node has no facet that looks along the direction.
+pub enum Reason {
+    /// No facet of the moving body looks along the direction.
     MovingFacesAway,
-    /// The fixed node has no facet that looks against the direction.
+    /// No facet of the fixed body looks against the direction.
     FixedFacesAway,
-    /// The interiors of the shadows are disjoint.
+    /// The interiors of their shadows are disjoint.
     ShadowsApart,
-    /// The largest gap is negative.
+    /// The largest gap is negative: they part.
     Parting,
     /// The least gap is not smaller than the answer.
     NotBefore,
+    /// Two leaves: each pair of facets was looked at by itself.
+    Examined,
+    /// They have no point in common where they are.
+    Disjoint,
+    /// They lie in one plane and look at each other, so they show no overlap.
+    FaceToFace,
 }
 
 /// A node in the query frame.
@@ -202,9 +208,19 @@ pub(super) fn least_gap(
     if parting && b.high.z < a.low.z {
         return Err(Reason::Parting);
     }
+    let swept = swept(scene, a, b);
+    if swept[0] > swept[1] {
+        return Err(Reason::ShadowsApart);
+    }
+    if swept[0] >= limit {
+        return Err(Reason::NotBefore);
+    }
+    if parting && swept[1] < 0.0 {
+        return Err(Reason::Parting);
+    }
     let region = Region { middle: (low + high).xy() * 0.5, half: (high - low).xy() * 0.5 };
     let (p, q) = (Heights::new(scene, a), Heights::new(scene, b));
-    let [least, largest] = gaps(&region, (a, p.as_ref()), (b, q.as_ref()));
+    let [least, largest] = gaps(&region, (a, p.as_ref()), (b, q.as_ref()), swept);
     if least >= limit {
         return Err(Reason::NotBefore);
     }
@@ -219,6 +235,39 @@ pub(super) fn least_gap(
         }
     }
     Ok(least)
+}
+
+/// The range of gaps that boxes of bodies with the same axes leave.
+fn swept(scene: &Scene, a: &Shade, b: &Shade) -> [f64; 2] {
+    let all = [f64::NEG_INFINITY, f64::INFINITY];
+    scene.sweep.as_ref().map_or(all, |sweep| sweep.gaps(&a.local, &b.local, scene.blur))
+}
+
+/// Whether a reason to cut a pair of nodes holds, checked by itself; `limit` as for [`least_gap`].
+pub(super) fn holds(scene: &Scene, a: &Shade, b: &Shade, reason: Reason, limit: f64) -> bool {
+    let (low, high) = (a.low.max(b.low), a.high.min(b.high));
+    let swept = swept(scene, a, b);
+    let gaps = || {
+        let region = Region { middle: (low + high).xy() * 0.5, half: (high - low).xy() * 0.5 };
+        let (p, q) = (Heights::new(scene, a), Heights::new(scene, b));
+        gaps(&region, (a, p.as_ref()), (b, q.as_ref()), swept)
+    };
+    match reason {
+        Reason::MovingFacesAway => a.looks_back(),
+        Reason::FixedFacesAway => b.looks_ahead(),
+        Reason::ShadowsApart => {
+            low.x >= high.x
+                || low.y >= high.y
+                || swept[0] > swept[1]
+                || sides_apart(scene, (&scene.moving, a), (&scene.fixed, b))
+                || sides_apart(scene, (&scene.fixed, b), (&scene.moving, a))
+        }
+        Reason::Parting => gaps()[1] < 0.0,
+        Reason::NotBefore => gaps()[0] >= limit,
+        Reason::Disjoint => apart(scene, a, b),
+        Reason::FaceToFace => a.is_face_to_face(b),
+        Reason::Examined => false,
+    }
 }
 
 /// A rectangle of the shadow plane.
@@ -253,13 +302,15 @@ impl Heights {
     }
 }
 
-/// Bounds of all gaps over a region, the best of boxes and slabs.
+/// Bounds of all gaps over a region, the best of boxes, slabs and what is known already.
 fn gaps(
     region: &Region,
     (a, p): (&Shade, Option<&Heights>),
     (b, q): (&Shade, Option<&Heights>),
+    swept: [f64; 2],
 ) -> [f64; 2] {
-    let [mut least, mut largest] = [b.low.z - a.high.z, b.high.z - a.low.z];
+    let mut least = swept[0].max(b.low.z - a.high.z);
+    let mut largest = swept[1].min(b.high.z - a.low.z);
     if let Some(p) = p {
         let [low, high] = region.range(p.slope);
         least = least.max(b.low.z - (p.base[1] + high));

@@ -4,12 +4,16 @@
 //! overlap, and the depth is the least tolerance with which they do not, from above: doubled until
 //! there is one, then halved between the two.
 
+use glam::DVec3;
+
 use super::contact::{SolidContact, contact};
 use super::overlap;
 use super::scene::Scene;
-use super::search::{Aim, Cut, Found, Search, Workspace};
+use super::search::{Aim, Found, Search, Workspace};
+use super::separate::separation;
+use crate::answer::{Clearance, Separation};
 use crate::body::placed::sealed;
-use crate::body::solid::Solid;
+use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
 use crate::cast::Cast;
 use crate::error::QueryError;
@@ -29,11 +33,6 @@ pub enum StartOverlap {
     Refuse,
     /// Facets that cross now do not block; contacts that begin later do.
     Ignore,
-    /// There is none: the caller has asked before, for the same bodies, poses and tolerance. Whoever
-    /// asks one pair along many directions asks once whether it overlaps.
-    Apart,
-    /// There is one, and it is ignored: the caller has asked before, as for [`Self::Apart`].
-    KnownIgnore,
 }
 
 /// Choices of a query between solids.
@@ -47,34 +46,28 @@ pub struct SolidOptions {
     /// Contacts at this translation or beyond are of no interest: the best answer so far, where one
     /// body is asked against many.
     pub before: Option<f64>,
+    /// Whether the bodies overlap where they are: what [`Cast::overlaps`] has said of the same
+    /// bodies, poses and tolerance. Whoever asks one pair along many directions asks once. `None`:
+    /// it is looked at.
+    pub overlapping: Option<bool>,
 }
 
-/// How far a solid can move.
+/// The overlap of two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SolidClearance {
-    /// As far as it likes, or as far as was asked.
-    Free,
-    /// Until it touches.
-    Blocked {
-        /// How far the bodies, shrunk by half the tolerance, can move, in multiples of the direction;
-        /// never negative.
-        distance: f64,
-        /// Where the facets that stop the shrunk bodies meet in their true place.
-        nominal: f64,
-        /// What stops it.
-        contact: SolidContact,
-    },
-    /// The bodies overlap where they are.
-    Overlapping {
-        /// The least tolerance with which they would not; `None` if there is none.
-        depth: Option<f64>,
-    },
+pub struct SolidOverlap {
+    /// The least tolerance with which they would not overlap, from above; `None` if there is none.
+    pub depth: Option<f64>,
 }
 
 impl sealed::Sealed for Solid {}
 
 impl Body for Solid {
     type Options = SolidOptions;
+    type Contact = SolidContact;
+    /// A plane between the bodies, parallel to the direction, where there is one that rounding can
+    /// tell; not looked for where a query ends at [`SolidOptions::before`].
+    type Free = Option<Separation>;
+    type Overlap = SolidOverlap;
 }
 
 impl Solid {
@@ -86,6 +79,32 @@ impl Solid {
 
 /// Queries between solids.
 impl<'a> Cast<'a, Solid> {
+    /// Between bodies of either kind, as solids: a solid against a convex polyhedron, say.
+    ///
+    /// # Errors
+    /// A direction that is zero, not finite or out of range; a polyhedron without a volume.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let post = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 4.0))?;
+    /// let step = Solid::from_pieces([&cube, &post])?;
+    /// let above = Pose::from_translation(DVec3::new(0.5, 0.5, 6.0))?;
+    /// let down = Cast::between(cube.at(above), step.at(Pose::IDENTITY), DVec3::NEG_Z)?;
+    /// assert_eq!(down.clearance().distance(), Some(2.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn between<A: AsSolid, B: AsSolid>(
+        moving: Placed<'a, A>,
+        fixed: Placed<'a, B>,
+        direction: DVec3,
+    ) -> Result<Self, QueryError> {
+        let (a, b) = (moving.body.as_solid()?, fixed.body.as_solid()?);
+        Cast::new(a.at(moving.pose), b.at(fixed.pose), direction)
+    }
+
     /// The same with other choices.
     ///
     /// # Errors
@@ -141,30 +160,40 @@ impl<'a> Cast<'a, Solid> {
     }
 
     /// How far the moving body can move from where it is.
-    pub fn clearance(&self) -> SolidClearance {
+    ///
+    /// Free says without telling them apart that it slides along, moves away from or never meets the
+    /// other body; where a plane lies between the two, it comes with it.
+    pub fn clearance(&self) -> Clearance<Solid> {
         self.clearance_in(&mut Workspace::default())
     }
 
     /// The same with a queue that is kept.
-    pub fn clearance_in(&self, workspace: &mut Workspace) -> SolidClearance {
+    pub fn clearance_in(&self, workspace: &mut Workspace) -> Clearance<Solid> {
         let scene = self.asked();
-        let overlapping = || overlap::find(&scene).is_some();
-        let aim = match self.options.start_overlap {
-            StartOverlap::Refuse if overlapping() => {
-                return SolidClearance::Overlapping { depth: self.depth() };
-            }
-            StartOverlap::KnownIgnore => Aim::LaterStop,
-            StartOverlap::Ignore if overlapping() => Aim::LaterStop,
-            StartOverlap::Refuse | StartOverlap::Ignore | StartOverlap::Apart => Aim::Stop,
+        let known = self.options.overlapping;
+        let aim = match known.unwrap_or_else(|| overlap::find(&scene).is_some()) {
+            false => Aim::Stop,
+            true if self.options.start_overlap == StartOverlap::Ignore => Aim::LaterStop,
+            true => return Clearance::Overlapping(SolidOverlap { depth: self.depth() }),
         };
-        let limit = self.options.before.map_or(f64::INFINITY, |t| t * scene.length);
-        match first(&scene, aim, limit, workspace, |_| ()) {
-            None => SolidClearance::Free,
+        let found = first(&scene, aim, self.limit(&scene), workspace);
+        self.answer(&scene, found.as_ref())
+    }
+
+    /// Gaps from here on are of no interest, a length.
+    pub(super) fn limit(&self, scene: &Scene) -> f64 {
+        self.options.before.map_or(f64::INFINITY, |t| t * scene.length)
+    }
+
+    /// What a search has found, as an answer.
+    pub(super) fn answer(&self, scene: &Scene, found: Option<&Found>) -> Clearance<Solid> {
+        match found {
+            None if self.options.before.is_none() => Clearance::Free(separation(scene)),
+            None => Clearance::Free(None),
             Some(found) => {
                 let distance = found.gap / scene.length;
                 let origin = self.moving_pose().translation();
-                let (contact, nominal) = contact(&scene, &found, distance, origin);
-                SolidClearance::Blocked { distance, nominal, contact }
+                Clearance::Blocked { distance, contact: contact(scene, found, distance, origin) }
             }
         }
     }
@@ -214,7 +243,7 @@ impl<'a> Cast<'a, Solid> {
     /// The same with a queue that is kept.
     pub fn exit_in(&self, workspace: &mut Workspace) -> Option<f64> {
         let scene = self.scene(0.0).reversed();
-        let found = first(&scene, Aim::Least, f64::INFINITY, workspace, |_| ())?;
+        let found = first(&scene, Aim::Least, f64::INFINITY, workspace)?;
         Some((-found.gap / scene.length).max(0.0))
     }
 
@@ -226,7 +255,7 @@ impl<'a> Cast<'a, Solid> {
             aim: Aim::Stop,
             limit: f64::INFINITY,
             found: None,
-            cut: |_| (),
+            cut: |_, _| (),
             steps: [0; 2],
         };
         search.run(&mut Workspace::default());
@@ -235,12 +264,6 @@ impl<'a> Cast<'a, Solid> {
 }
 
 /// The least gap below a limit.
-pub(super) fn first(
-    scene: &Scene,
-    aim: Aim,
-    limit: f64,
-    workspace: &mut Workspace,
-    cut: impl FnMut(Cut),
-) -> Option<Found> {
-    Search { scene, aim, limit, found: None, cut, steps: [0; 2] }.run(workspace)
+fn first(scene: &Scene, aim: Aim, limit: f64, workspace: &mut Workspace) -> Option<Found> {
+    Search { scene, aim, limit, found: None, cut: |_, _| (), steps: [0; 2] }.run(workspace)
 }

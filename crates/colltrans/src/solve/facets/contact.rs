@@ -9,14 +9,21 @@ use super::search::Found;
 use crate::body::Feature;
 
 /// Where a solid is stopped.
+///
+/// Points are those of the bodies as they are, not shrunk: the same shares of the facets' corners as
+/// where the shrunk bodies touch. Without a tolerance they come together at the distance; with one,
+/// at [`Self::nominal`] along the normal, and sideways to within what shrinking has moved them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidContact {
+    /// Where the facets that stop the shrunk bodies meet in their true place, in multiples of the
+    /// direction: what a person expects to read. May be negative where the bodies as they are overlap.
+    pub nominal: f64,
     /// Unit contact normal in the world, from the moving body to the fixed one;
     /// `normal . direction > 0`. Where corners meet, or parallel edges, it is one of several.
     pub normal: DVec3,
-    /// Contact point on the moving body, in the world, at its start pose.
+    /// Contact point on the moving body as it is, in the world, at its start pose.
     pub point_on_moving: DVec3,
-    /// Contact point on the fixed body, in the world; one of many where edges or facets meet.
+    /// Contact point on the fixed body as it is, in the world; one of many where edges or facets meet.
     pub point_on_fixed: DVec3,
     /// What of the moving body meets there, by the numbers of its input.
     pub moving_feature: Feature,
@@ -33,9 +40,9 @@ struct Foot {
 }
 
 impl Foot {
-    /// The point in the setting frame.
+    /// The point of the body as it is, in the setting frame.
     fn point(&self, side: &Side) -> DVec3 {
-        let local = self.mean(|v| side.vertex(v));
+        let local = self.mean(|v| side.solid.vertices()[v as usize]);
         side.matrix * local + side.offset[0]
     }
 
@@ -51,13 +58,8 @@ impl Foot {
     }
 }
 
-/// The contact and its nominal distance, for a gap given in multiples of the direction.
-pub(super) fn contact(
-    scene: &Scene,
-    found: &Found,
-    distance: f64,
-    origin: DVec3,
-) -> (SolidContact, f64) {
+/// The contact, for a gap given in multiples of the direction.
+pub(super) fn contact(scene: &Scene, found: &Found, distance: f64, origin: DVec3) -> SolidContact {
     let (moving, fixed) = (&scene.moving, &scene.fixed);
     let f = moving.solid.triangles()[found.moving as usize];
     let mut g = fixed.solid.triangles()[found.fixed as usize];
@@ -83,15 +85,15 @@ pub(super) fn contact(
     let shift = on_f.displacement(moving) - on_g.displacement(fixed);
     let slope = normal.dot(scene.direction);
     let nominal = if slope > 0.0 { distance + normal.dot(shift) / slope } else { distance };
-    let contact = SolidContact {
+    SolidContact {
+        nominal,
         normal,
         point_on_moving: on_f.point(moving) + origin,
         point_on_fixed: on_g.point(fixed) + origin,
         moving_feature: feature(moving, found.moving, &on_f),
         fixed_feature: feature(fixed, found.fixed, &on_g),
         triangles: [found.moving, found.fixed],
-    };
-    (contact, nominal)
+    }
 }
 
 fn corner(k: u8) -> DVec3 {

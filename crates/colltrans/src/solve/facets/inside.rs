@@ -48,11 +48,16 @@ pub(super) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
     None
 }
 
-/// Whether the shell with this triangle is inside.
+/// Whether the shell of a body with this triangle is inside the other body.
+pub(super) fn is_inside(scene: &Scene, moving: bool, triangle: u32) -> bool {
+    decide(scene, scene.side(moving), scene.side(!moving), triangle)
+}
+
 fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
-    let mut seen = vec![triangle];
-    let mut next = 0;
-    while let Some(&t) = seen.get(next) {
+    let mut seen = [triangle; MOST_TRIANGLES];
+    let (mut count, mut next) = (1, 0);
+    while next < count {
+        let t = seen[next];
         next += 1;
         let corners = own.corners(t as usize);
         for corner in &corners {
@@ -67,8 +72,9 @@ fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
             }
         }
         for &n in &own.solid.neighbours()[t as usize] {
-            if n != NONE && seen.len() < MOST_TRIANGLES && !seen.contains(&n) {
-                seen.push(n);
+            if n != NONE && count < MOST_TRIANGLES && !seen[..count].contains(&n) {
+                seen[count] = n;
+                count += 1;
             }
         }
     }
@@ -104,36 +110,38 @@ impl Spot for Mean {
         None
     }
 
-    fn wide(&self, scene: &Scene) -> [Wide; 3] {
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3] {
         place_exactly(scene.side(self.moving), &self.terms)
     }
 }
 
 /// How many pieces of a solid a point lies in; `None` if it lies on its surface.
 fn winding(scene: &Scene, side: &Side, spot: &impl Spot) -> Option<i32> {
+    winding_below(scene, side, spot, 0)
+}
+
+/// The part of it from the facets of one node.
+fn winding_below(scene: &Scene, side: &Side, spot: &impl Spot, at: u32) -> Option<i32> {
+    let (p, blur) = (spot.at(), 4.0 * scene.blur);
+    let node = &side.solid.nodes()[at as usize];
+    let shade = Shade::new(scene, side, at as usize);
+    let beside = (0..2).any(|k| p[k] < shade.low[k] - blur || p[k] > shade.high[k] + blur);
+    if beside || p.z > shade.high.z + blur {
+        return Some(0);
+    }
+    if !node.is_leaf() {
+        let [first, second] = children(node, at);
+        return Some(
+            winding_below(scene, side, spot, first)? + winding_below(scene, side, spot, second)?,
+        );
+    }
     let axes = sideways(scene);
-    let blur = 4.0 * scene.blur;
-    let p = spot.at();
-    let mut stack = vec![0_u32];
     let mut winding = 0;
-    while let Some(at) = stack.pop() {
-        let node = &side.solid.nodes()[at as usize];
-        let shade = Shade::new(scene, side, at as usize);
-        let beside = (0..2).any(|k| p[k] < shade.low[k] - blur || p[k] > shade.high[k] + blur);
-        if beside || p.z > shade.high.z + blur {
-            continue;
+    for t in node.facets() {
+        if lies_on(scene, spot, &Plate::new(side, t)) {
+            return None;
         }
-        if !node.is_leaf() {
-            stack.extend(children(node, at));
-            continue;
-        }
-        for t in node.facets() {
-            let plate = Plate::new(side, t);
-            if lies_on(scene, spot, &plate) {
-                return None;
-            }
-            winding += crossing(scene, side.corners(t), spot, axes);
-        }
+        winding += crossing(scene, side.corners(t), spot, axes);
     }
     Some(winding)
 }

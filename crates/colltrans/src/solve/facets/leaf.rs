@@ -17,10 +17,11 @@ use glam::DVec3;
 
 use super::scene::{Corner, Scene};
 use super::sign::rough_turn;
+use super::wide::{LARGE, SMALL, Wide};
 
 /// Rounded gaps are used while their error is below so many times the blur of coordinates, `2e-10 S`;
 /// the one that decides is taken again exactly if its error is not below [`FINE`] times the blur.
-const SHARP: f64 = 65_536.0;
+pub(super) const SHARP: f64 = 65_536.0;
 pub(super) const FINE: f64 = 256.0;
 
 /// A facet, its shadow running counter-clockwise.
@@ -143,9 +144,19 @@ impl Turns {
     }
 }
 
-/// Whether the interiors of the shadows overlap, and if so the gap over them; `limit` is what a pair
-/// has to stay below to be of interest. The sign of the least gap is only right if it is `needed`.
-pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, needed: bool) -> Option<Gap> {
+/// Which pairs are of interest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wanted {
+    All,
+    /// The largest gap is not negative; the sign of the least one is not needed.
+    NotParting,
+    /// Nor is the least.
+    NotCrossing,
+}
+
+/// The gap where the interiors of the shadows overlap and the pair is of interest; `limit` is what it
+/// has to stay below.
+pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
     let blur = 4.0 * scene.blur;
     let apart = |k: usize| g.low[k] - f.high[k] > blur || f.low[k] - g.high[k] > blur;
     if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {
@@ -166,7 +177,13 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, needed: bool)
     }
     of_f.resolve(scene, f, g);
     of_g.resolve(scene, g, f);
-    match rounded(scene, f, g, &of_f, &of_g).judge(SHARP * scene.blur, needed) {
+    let range = rounded(scene, f, g, &of_f, &of_g);
+    // Certain whatever the other corners are: nothing more needs to be known of slivers that cross.
+    let parting = wanted != Wanted::All && range.bound[1] < 0.0;
+    if parting || wanted == Wanted::NotCrossing && range.negative {
+        return None;
+    }
+    match range.judge(SHARP * scene.blur, wanted == Wanted::NotCrossing) {
         Rounded::Known(gap) => Some(gap),
         Rounded::Beyond(least) if least >= limit => None,
         Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g)),
@@ -352,51 +369,86 @@ impl Slope {
 /// The gap from exact signs at all corners of the common shadow, its values exact but for their last
 /// roundings.
 fn exact(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> Gap {
+    let small = exact_in::<SMALL>(scene, f, g, of_f, of_g);
+    let gap = small.or_else(|| exact_in::<LARGE>(scene, f, g, of_f, of_g));
+    // Large numbers have room for all there are.
+    gap.unwrap_or(NO_GAP)
+}
+
+/// Before any corner is looked at.
+const NO_GAP: Gap = Gap {
+    least: f64::INFINITY,
+    largest: f64::NEG_INFINITY,
+    signs: [Ordering::Greater, Ordering::Less],
+    at: Meeting::Corner(0),
+    error: 0.0,
+};
+
+/// The same in numbers of a size; `None` if one does not fit.
+fn exact_in<const N: usize>(
+    scene: &Scene,
+    f: &Facet,
+    g: &Facet,
+    of_f: &Turns,
+    of_g: &Turns,
+) -> Option<Gap> {
     let [p, q, r] = &f.corners;
     let [b, c, e] = &g.corners;
-    let mut gap = Gap {
-        least: f64::INFINITY,
-        largest: f64::NEG_INFINITY,
-        signs: [Ordering::Greater, Ordering::Less],
-        at: Meeting::Corner(0),
-        error: 0.0,
-    };
-    let length = scene.length;
-    let mut add = |sign: Ordering, ratio: f64, at: Meeting| {
-        let value = if sign == Ordering::Equal { 0.0 } else { ratio * length };
-        if value < gap.least {
-            (gap.least, gap.at) = (value, at);
-        }
-        gap.largest = gap.largest.max(value);
-        gap.signs = [gap.signs[0].min(sign), gap.signs[1].max(sign)];
-    };
+    let mut gap = NO_GAP;
     for k in 0..3 {
         if of_g.contain(k) {
             // `g` runs backwards here: its normal points along the direction.
-            let volume = scene.outside_wide(b, e, c, &f.corners[k]);
-            let ratio = volume.ratio(&scene.turn_wide(b, c, e));
-            add(volume.sign(), ratio, Meeting::Corner(k as u8));
+            let volume = scene.outside_wide::<N>(b, e, c, &f.corners[k]);
+            let above = Above::new(&volume, &scene.turn_wide(b, c, e))?;
+            gap.add(scene, above, Meeting::Corner(k as u8));
         }
         if of_f.contain(k) {
-            let volume = scene.outside_wide(p, q, r, &g.corners[k]);
-            let ratio = volume.ratio(&scene.turn_wide(p, q, r));
-            add(volume.sign(), ratio, Meeting::Under(k as u8));
+            let volume = scene.outside_wide::<N>(p, q, r, &g.corners[k]);
+            let above = Above::new(&volume, &scene.turn_wide(p, q, r))?;
+            gap.add(scene, above, Meeting::Under(k as u8));
         }
     }
     for k in 0..3 {
         for j in 0..3 {
             if cross(of_f, of_g, [k, j]) {
                 let ([a, b], [c, e]) = (f.side(k), g.side(j));
-                let volume = scene.outside_wide(a, b, c, e).negate();
-                let plane = scene.turn_wide(a, b, e).subtract(&scene.turn_wide(a, b, c));
-                let ratio = volume.ratio(&plane);
-                let sign = match plane.sign() {
-                    Ordering::Less => volume.sign().reverse(),
-                    _ => volume.sign(),
-                };
-                add(sign, ratio, Meeting::Sides(k as u8, j as u8));
+                let volume = scene.outside_wide::<N>(a, b, c, e).negate();
+                let plane = scene.turn_wide::<N>(a, b, e).subtract(&scene.turn_wide(a, b, c));
+                let above = Above::new(&volume, &plane)?;
+                gap.add(scene, above, Meeting::Sides(k as u8, j as u8));
             }
         }
     }
-    gap
+    Some(gap)
+}
+
+/// A quotient of two numbers: its sign, and its value to within a few roundings.
+#[derive(Clone, Copy)]
+struct Above {
+    sign: Ordering,
+    value: f64,
+}
+
+impl Above {
+    /// `None` if one of them did not fit.
+    fn new<const N: usize>(volume: &Wide<N>, plane: &Wide<N>) -> Option<Self> {
+        let sign = match plane.sign()? {
+            Ordering::Less => volume.sign()?.reverse(),
+            _ => volume.sign()?,
+        };
+        Some(Self { sign, value: volume.ratio(plane)? })
+    }
+}
+
+impl Gap {
+    /// With one more corner of the common shadow, in multiples of the direction.
+    fn add(&mut self, scene: &Scene, above: Above, at: Meeting) {
+        let Above { sign, value } = above;
+        let value = if sign == Ordering::Equal { 0.0 } else { value * scene.length };
+        if value < self.least {
+            (self.least, self.at) = (value, at);
+        }
+        self.largest = self.largest.max(value);
+        self.signs = [self.signs[0].min(sign), self.signs[1].max(sign)];
+    }
 }

@@ -2,7 +2,8 @@
 //!
 //! The data's way: [`scene`] (two placed solids and a direction) -> [`overlap`] (do they overlap where
 //! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
-//! [`leaf`] for pairs of facets) -> an answer. [`sign`] and [`wide`] decide what rounding cannot.
+//! [`leaf`] for pairs of facets) -> an answer, with a plane between the bodies ([`separate`]) where
+//! there is one, and on request with its [`proof`], which [`verify`] checks. [`sign`] and [`wide`] decide what rounding cannot.
 
 mod bound;
 mod clearance;
@@ -10,11 +11,21 @@ mod contact;
 mod inside;
 mod leaf;
 mod overlap;
+mod proof;
+#[cfg(feature = "json")]
+mod saved;
 mod scene;
 mod search;
+mod separate;
 mod sign;
+mod sweep;
+mod verify;
 mod wide;
 
-pub use clearance::{SolidClearance, SolidOptions, StartOverlap};
+pub use bound::Reason;
+pub use clearance::{SolidOptions, SolidOverlap, StartOverlap};
 pub use contact::SolidContact;
+pub use overlap::Overlap;
+pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
 pub use search::Workspace;
+pub use verify::SolidProof;

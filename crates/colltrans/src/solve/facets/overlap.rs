@@ -20,7 +20,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::bound::{Shade, apart, beyond};
+use super::bound::{Reason, Shade, apart, beyond};
 use super::inside;
 use super::scene::{Corner, Scene, Side, Spot};
 use super::search::{children, splits_moving};
@@ -30,7 +30,7 @@ use crate::body::solid::wedge::{Axis, Ray, Wedge};
 
 /// Where the solids overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Overlap {
+pub enum Overlap {
     /// Around these two triangles.
     Facets(u32, u32),
     /// The shell of the moving body with this triangle lies inside the fixed one.
@@ -41,20 +41,59 @@ pub(super) enum Overlap {
 
 /// Whether the interiors have a point in common, and where; never for an open surface.
 pub(super) fn find(scene: &Scene) -> Option<Overlap> {
-    if !scene.moving.solid.is_closed() || !scene.fixed.solid.is_closed() {
-        return None;
-    }
+    find_with(scene, &mut |_| ())
+}
+
+/// The same, telling of every pair of nodes in the order of the descent whether it was split (`None`)
+/// or why it was not.
+pub(super) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
     let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
-    let (p, q) = (&scene.moving, &scene.fixed);
-    let disjoint = beyond(scene, (p, &a), (q, &b)) || beyond(scene, (q, &b), (p, &a));
-    if disjoint || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k]) {
+    if never_overlap(scene, &a, &b) {
         return None;
     }
-    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, Judge::OVERLAP) {
+    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, Judge::OVERLAP, cut) {
         return Some(Overlap::Facets(f, g));
     }
+    nested(scene)
+}
+
+/// Whether the interiors of two whole bodies are disjoint by their boxes and slabs alone, or because a
+/// surface is open.
+pub(super) fn never_overlap(scene: &Scene, a: &Shade, b: &Shade) -> bool {
+    let (p, q) = (&scene.moving, &scene.fixed);
+    !(p.solid.is_closed() && q.solid.is_closed())
+        || beyond(scene, (p, a), (q, b))
+        || beyond(scene, (q, b), (p, a))
+        || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k])
+}
+
+/// Whether a shell of one body lies inside the other, of bodies whose surfaces do not cross.
+pub(super) fn nested(scene: &Scene) -> Option<Overlap> {
     let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
     moving.or_else(|| inside::shell_inside(scene, false).map(Overlap::FixedInside))
+}
+
+/// Whether an overlap is one.
+pub(super) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
+    let count = |side: &Side| side.solid.triangles().len() as u32;
+    if !scene.moving.solid.is_closed() || !scene.fixed.solid.is_closed() {
+        return false;
+    }
+    match overlap {
+        Overlap::Facets(f, g) => {
+            f < count(&scene.moving) && g < count(&scene.fixed) && {
+                let f = Plate::new(&scene.moving, f as usize);
+                meet(scene, &f, &Plate::new(&scene.fixed, g as usize))
+            }
+        }
+        Overlap::MovingInside(t) => t < count(&scene.moving) && inside::is_inside(scene, true, t),
+        Overlap::FixedInside(t) => t < count(&scene.fixed) && inside::is_inside(scene, false, t),
+    }
+}
+
+/// Whether no two facets of two leaves show an overlap.
+pub(super) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
+    leaves(scene, a, b, Judge::OVERLAP).is_none()
 }
 
 /// Whether the solids, as closed sets, have a point in common.
@@ -63,7 +102,7 @@ pub(super) fn touches(scene: &Scene) -> bool {
     if apart(scene, &a, &b) {
         return false;
     }
-    if descend(scene, [0, 0], &a, &b, Judge::TOUCH).is_some() {
+    if descend(scene, [0, 0], &a, &b, Judge::TOUCH, &mut |_| ()).is_some() {
         return true;
     }
     let closed = |side: &Side| side.solid.is_closed();
@@ -85,8 +124,11 @@ impl Judge {
     /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show
     /// no overlap: at their edges one half-space of material touches another, or else the wedge's
     /// other facet is in a node of its own, and shows it.
-    fn dismisses(self, scene: &Scene, a: &Shade, b: &Shade) -> bool {
-        apart(scene, a, b) || !self.faces && a.is_face_to_face(b)
+    fn dismisses(self, scene: &Scene, a: &Shade, b: &Shade) -> Option<Reason> {
+        if apart(scene, a, b) {
+            return Some(Reason::Disjoint);
+        }
+        (!self.faces && a.is_face_to_face(b)).then_some(Reason::FaceToFace)
     }
 }
 
@@ -97,29 +139,36 @@ fn descend(
     a: &Shade,
     b: &Shade,
     judge: Judge,
+    cut: &mut impl FnMut(Option<Reason>),
 ) -> Option<(u32, u32)> {
     let (m, n) = (&scene.moving.solid.nodes()[nodes[0]], &scene.fixed.solid.nodes()[nodes[1]]);
     if m.is_leaf() && n.is_leaf() {
+        cut(Some(Reason::Examined));
         return leaves(scene, m, n, judge);
     }
+    cut(None);
     if splits_moving(m, n) {
         for part in children(m, nodes[0] as u32).map(|c| c as usize) {
             let shade = Shade::new(scene, &scene.moving, part);
-            if !judge.dismisses(scene, &shade, b) {
-                let found = descend(scene, [part, nodes[1]], &shade, b, judge);
-                if found.is_some() {
-                    return found;
-                }
+            if let Some(reason) = judge.dismisses(scene, &shade, b) {
+                cut(Some(reason));
+                continue;
+            }
+            let found = descend(scene, [part, nodes[1]], &shade, b, judge, cut);
+            if found.is_some() {
+                return found;
             }
         }
     } else {
         for part in children(n, nodes[1] as u32).map(|c| c as usize) {
             let shade = Shade::new(scene, &scene.fixed, part);
-            if !judge.dismisses(scene, a, &shade) {
-                let found = descend(scene, [nodes[0], part], a, &shade, judge);
-                if found.is_some() {
-                    return found;
-                }
+            if let Some(reason) = judge.dismisses(scene, a, &shade) {
+                cut(Some(reason));
+                continue;
+            }
+            let found = descend(scene, [nodes[0], part], a, &shade, judge, cut);
+            if found.is_some() {
+                return found;
             }
         }
     }

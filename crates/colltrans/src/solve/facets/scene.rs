@@ -13,6 +13,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::sweep::Sweep;
 use super::wide::Wide;
 use crate::body::Pose;
 use crate::body::solid::{Shrinking, Solid, displace};
@@ -52,6 +53,8 @@ pub(crate) struct Scene<'a> {
     pub(super) frame: DMat3,
     /// Bound of the rounding error of a coordinate in the query frame.
     pub(super) blur: f64,
+    /// The axes that both bodies have, if they do.
+    pub(super) sweep: Option<Sweep>,
 }
 
 impl<'a> Scene<'a> {
@@ -73,6 +76,7 @@ impl<'a> Scene<'a> {
         let fixed = place(fixed, false, fixed_amount, fixed_pose.matrix(), [offset, lost]);
         let size = moving.reach() + fixed.reach() + offset.length();
         Self {
+            sweep: Sweep::new(&moving, &fixed),
             moving,
             fixed,
             direction,
@@ -89,9 +93,11 @@ impl<'a> Scene<'a> {
             let Side { solid, moving, amount, matrix, offset, .. } = *side;
             Side::new(solid, moving, amount, matrix, offset, frame)
         };
+        let (moving, fixed) = (turn(&self.moving), turn(&self.fixed));
         Self {
-            moving: turn(&self.moving),
-            fixed: turn(&self.fixed),
+            sweep: Sweep::new(&moving, &fixed),
+            moving,
+            fixed,
             direction: -self.direction,
             length: self.length,
             frame,
@@ -199,7 +205,7 @@ pub(super) trait Spot {
     /// In the setting frame, if that has an exact value in `f64`.
     fn world(&self, scene: &Scene) -> Option<DVec3>;
     /// In the setting frame.
-    fn wide(&self, scene: &Scene) -> [Wide; 3];
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3];
 }
 
 impl Spot for Corner {
@@ -222,14 +228,14 @@ impl Spot for Corner {
         (exact && lost == DVec3::ZERO).then(|| turned + offset)
     }
 
-    fn wide(&self, scene: &Scene) -> [Wide; 3] {
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3] {
         place_exactly(scene.side(self.moving), &[(1.0, self.local)])
     }
 }
 
 /// A weighted mean of vertices of one body in the setting frame; the weights are powers of two, from
 /// `1/64`, and add up to 1.
-pub(super) fn place_exactly(side: &Side, terms: &[(f64, DVec3)]) -> [Wide; 3] {
+pub(super) fn place_exactly<const N: usize>(side: &Side, terms: &[(f64, DVec3)]) -> [Wide<N>; 3] {
     let [offset, lost] = side.offset;
     std::array::from_fn(|row| {
         let mut sum = Wide::number(offset[row]).add(&Wide::number(lost[row]));

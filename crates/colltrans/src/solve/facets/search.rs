@@ -10,13 +10,13 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::bound::{Reason, Shade, least_gap};
-use super::leaf::{self, Facet, Gap, Meeting};
+use super::leaf::{self, Facet, Gap, Meeting, Wanted};
 use super::scene::Scene;
 use crate::body::solid::tree::{LEAF, Node};
 
 /// An answer may be larger than the least gap by so many times the blur of coordinates: bounds of
 /// nodes are rounded by a third of that.
-const SLACK: f64 = 12.0;
+pub(super) const SLACK: f64 = 12.0;
 
 /// What is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,8 +30,16 @@ pub(super) enum Aim {
 }
 
 impl Aim {
-    fn clamp(self, gap: f64) -> f64 {
+    pub(super) fn clamp(self, gap: f64) -> f64 {
         if self == Self::Least { gap } else { gap.max(0.0) }
+    }
+
+    pub(super) fn wanted(self) -> Wanted {
+        match self {
+            Self::Least => Wanted::All,
+            Self::Stop => Wanted::NotParting,
+            Self::LaterStop => Wanted::NotCrossing,
+        }
     }
 
     /// What a pair contributes, if it counts.
@@ -53,7 +61,7 @@ pub(super) struct Found {
     pub(super) moving: u32,
     pub(super) fixed: u32,
     pub(super) at: Meeting,
-    error: f64,
+    pub(super) error: f64,
 }
 
 impl Found {
@@ -68,13 +76,6 @@ impl Found {
         let gap = leaf::sharpened(scene, &f, &g);
         Self { gap: aim.clamp(gap.least), at: gap.at, error: gap.error, ..self }
     }
-}
-
-/// A pair of nodes that was not split.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cut {
-    pub(super) nodes: [u32; 2],
-    pub(super) reason: Option<Reason>,
 }
 
 /// The queue of a search, which can be kept from one query to the next: then a query allocates
@@ -123,19 +124,19 @@ pub(super) fn children(node: &Node, at: u32) -> [u32; 2] {
 }
 
 /// One search under way.
-pub(super) struct Search<'s, 'a, F: FnMut(Cut)> {
+pub(super) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) aim: Aim,
     /// What a gap has to stay below to be of interest.
     pub(super) limit: f64,
     pub(super) found: Option<Found>,
-    /// Told of every pair of nodes that is not split.
+    /// Told of every pair of nodes that is not split, and why.
     pub(super) cut: F,
     /// Pairs of nodes looked at, and pairs of leaves.
     pub(super) steps: [u32; 2],
 }
 
-impl<F: FnMut(Cut)> Search<'_, '_, F> {
+impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
     pub(super) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
         let queue = &mut workspace.queue;
         queue.clear();
@@ -145,7 +146,7 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
         let mut number = 0;
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
-                self.dismiss(entry);
+                (self.cut)(entry.nodes, Reason::NotBefore);
                 continue;
             }
             let nodes = entry.nodes.map(|n| n as usize);
@@ -155,7 +156,7 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
             );
             if a.is_leaf() && b.is_leaf() {
                 self.leaves(a, b);
-                (self.cut)(Cut { nodes: entry.nodes, reason: None });
+                (self.cut)(entry.nodes, Reason::Examined);
                 continue;
             }
             for bound in self.split(entry.nodes, a, b).into_iter().flatten() {
@@ -181,10 +182,6 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
         self.found.map(|found| found.sharpened(self.scene, self.aim))
     }
 
-    fn dismiss(&mut self, entry: Entry) {
-        (self.cut)(Cut { nodes: entry.nodes, reason: Some(Reason::NotBefore) });
-    }
-
     fn shade(&self, moving: bool, at: u32) -> Shade {
         Shade::new(self.scene, self.scene.side(moving), at as usize)
     }
@@ -195,7 +192,7 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
         match least_gap(self.scene, a, b, self.limit, self.aim != Aim::Least) {
             Ok(bound) => Some(self.aim.clamp(bound)),
             Err(reason) => {
-                (self.cut)(Cut { nodes, reason: Some(reason) });
+                (self.cut)(nodes, reason);
                 None
             }
         }
@@ -231,8 +228,8 @@ impl<F: FnMut(Cut)> Search<'_, '_, F> {
         for triangle in a.facets() {
             let Some(f) = Facet::facing(scene, true, triangle, Ordering::Greater) else { continue };
             for g in back.iter().flatten() {
-                let needed = self.aim == Aim::LaterStop;
-                let Some(gap) = leaf::gap(scene, &f, g, self.limit, needed) else { continue };
+                let wanted = self.aim.wanted();
+                let Some(gap) = leaf::gap(scene, &f, g, self.limit, wanted) else { continue };
                 let Some(value) = self.aim.value(&gap) else { continue };
                 if value < self.limit {
                     // What could be better by less is not worth a look: rounding is as much.

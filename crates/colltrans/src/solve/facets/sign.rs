@@ -14,12 +14,17 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::scene::{Scene, Spot};
-use super::wide::{Wide, determinant, difference};
+use super::wide::{LARGE, SMALL, Wide, determinant, difference};
 
 const U: f64 = f64::EPSILON / 2.0;
 
 fn sign(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+}
+
+/// The sign of a number that has room for all there are.
+fn decided(number: &Wide<LARGE>) -> Ordering {
+    number.sign().unwrap_or(Ordering::Equal)
 }
 
 fn plane_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
@@ -51,9 +56,8 @@ impl Scene<'_> {
         if a.is_exact() && b.is_exact() && c.is_exact() {
             return plane_sign(a.at().xy(), b.at().xy(), c.at().xy());
         }
-        let (p, d) = (a.wide(self), self.direction.to_array().map(Wide::number));
-        let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
-        determinant(&x, &y, &d).sign()
+        let small = self.turn_wide::<SMALL>(a, b, c).sign();
+        small.unwrap_or_else(|| decided(&self.turn_wide::<LARGE>(a, b, c)))
     }
 
     /// Sign of `det[b - a, c - a, e - a]`: whether `e` is on the outer side of the facet `a b c`.
@@ -82,24 +86,30 @@ impl Scene<'_> {
         {
             return space_sign([a, b, c, e]);
         }
-        self.outside_wide(a, b, c, e).sign()
+        let small = self.outside_wide::<SMALL>(a, b, c, e).sign();
+        small.unwrap_or_else(|| decided(&self.outside_wide::<LARGE>(a, b, c, e)))
     }
 
     /// `det[b - a, c - a, e - a]` itself.
-    pub(super) fn outside_wide(
+    pub(super) fn outside_wide<const N: usize>(
         &self,
         a: &impl Spot,
         b: &impl Spot,
         c: &impl Spot,
         e: &impl Spot,
-    ) -> Wide {
+    ) -> Wide<N> {
         let p = a.wide(self);
         let [x, y, z] = [b.wide(self), c.wide(self), e.wide(self)].map(|q| difference(&q, &p));
         determinant(&x, &y, &z)
     }
 
     /// `det[b - a, c - a, d]` itself.
-    pub(super) fn turn_wide(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Wide {
+    pub(super) fn turn_wide<const N: usize>(
+        &self,
+        a: &impl Spot,
+        b: &impl Spot,
+        c: &impl Spot,
+    ) -> Wide<N> {
         let (p, d) = (a.wide(self), self.direction.to_array().map(Wide::number));
         let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
         determinant(&x, &y, &d)
@@ -117,20 +127,31 @@ impl Scene<'_> {
             let drop = |p: DVec3| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
             return plane_sign(drop(a), drop(b), drop(c));
         }
+        let small = self.turn_about_wide::<SMALL>(axis, a, b, c).sign();
+        small.unwrap_or_else(|| decided(&self.turn_about_wide::<LARGE>(axis, a, b, c)))
+    }
+
+    fn turn_about_wide<const N: usize>(
+        &self,
+        axis: usize,
+        a: &impl Spot,
+        b: &impl Spot,
+        c: &impl Spot,
+    ) -> Wide<N> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let p = a.wide(self);
         let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
-        x[i].multiply(&y[j]).subtract(&x[j].multiply(&y[i])).sign()
+        x[i].multiply(&y[j]).subtract(&x[j].multiply(&y[i]))
     }
 
     /// Sign of `(b - a).(e x d)` with `e` the unit vector of an axis of the world: how
     /// `det[b - a, c - a, d]` changes when `c` moves along that axis.
     pub(super) fn drift(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let x = difference(&b.wide(self), &a.wide(self));
+        let x = difference::<LARGE>(&b.wide(self), &a.wide(self));
         let d = self.direction.to_array().map(Wide::number);
         // det[x, e, d] with e along `axis`: x_j d_i - x_i d_j, up to the order of axes.
-        x[j].multiply(&d[i]).subtract(&x[i].multiply(&d[j])).sign()
+        decided(&x[j].multiply(&d[i]).subtract(&x[i].multiply(&d[j])))
     }
 
     /// How `a` and `b` are ordered along an axis of the world.
@@ -138,6 +159,6 @@ impl Scene<'_> {
         if let (Some(a), Some(b)) = (a.world(self), b.world(self)) {
             return sign(a[axis] - b[axis]);
         }
-        a.wide(self)[axis].subtract(&b.wide(self)[axis]).sign()
+        decided(&a.wide::<LARGE>(self)[axis].subtract(&b.wide(self)[axis]))
     }
 }

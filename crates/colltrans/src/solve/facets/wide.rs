@@ -1,131 +1,170 @@
 //! Whole numbers of fixed capacity, for the signs that rounding cannot tell.
 //!
-//! Coordinates are dyadic rationals: an integer times `2^UNIT` each. The door admits magnitudes
-//! from `2^-200` to `2^200` with 53 significant bits, so a product of two spans `2^-505..2^400`,
-//! and with barycentric weights that are multiples of `1/64` the unit `2^-512` is fine enough. A
-//! coordinate (eight terms) stays below `2^404`: 917 bits. A determinant of three differences has at
-//! most `3 * 918 + 3 = 2757` bits, 44 limbs. Nothing is allocated; only the limbs between the lowest
-//! and the highest that are not zero are worked on, few for numbers of ordinary size.
+//! A number is `limbs 2^(64 base)`: coordinates are dyadic rationals. The door admits magnitudes from
+//! `2^-200` to `2^200` with 53 significant bits, so a product of two spans `2^-505..2^400`, and with
+//! barycentric weights that are multiples of `1/64`, a coordinate (eight terms) has at most 917 bits. A
+//! determinant of three differences has at most `3 * 918 + 3 = 2757` bits: 46 limbs, wherever limbs
+//! begin. So [`LARGE`] ones never overflow. Almost all coordinates need a few limbs only, and moving
+//! numbers costs more than multiplying them: [`SMALL`] ones are tried first, which say so if they
+//! overflow. Nothing is allocated.
 
 use std::cmp::Ordering;
 
-const LIMBS: usize = 48;
+/// Limbs of numbers of ordinary size.
+pub(super) const SMALL: usize = 15;
+/// Limbs that suffice for all.
+pub(super) const LARGE: usize = 48;
 
-/// Exponent of the unit of a coordinate.
-const UNIT: i32 = -512;
-
-/// An integer with a sign. Limbs outside `low..high` are zero.
+/// An integer with a sign, times a power of `2^64`.
 #[derive(Clone, Copy)]
-pub(super) struct Wide {
+pub(super) struct Wide<const N: usize> {
     negative: bool,
-    low: usize,
-    high: usize,
-    limbs: [u64; LIMBS],
+    /// Whether it did not fit; nothing else holds then.
+    overflown: bool,
+    /// The exponent of the lowest limb.
+    base: i16,
+    /// Limbs in use; the highest and the lowest are not zero.
+    len: u16,
+    limbs: [u64; N],
 }
 
-impl Wide {
-    pub(super) const ZERO: Self = Self { negative: false, low: 0, high: 0, limbs: [0; LIMBS] };
+impl<const N: usize> Wide<N> {
+    pub(super) const ZERO: Self =
+        Self { negative: false, overflown: false, base: 0, len: 0, limbs: [0; N] };
+    const OVERFLOWN: Self = Self { overflown: true, ..Self::ZERO };
 
-    /// `a b / 2^UNIT`, exactly.
+    /// `a b`, exactly.
     pub(super) fn product(a: f64, b: f64) -> Self {
         if a == 0.0 || b == 0.0 {
             return Self::ZERO;
         }
         let ((m, e), (n, f)) = (decode(a), decode(b));
         let negative = a.is_sign_negative() != b.is_sign_negative();
-        Self::shifted(u128::from(m) * u128::from(n), e + f - UNIT, negative)
-    }
-
-    /// `a / 2^UNIT`, exactly.
-    pub(super) fn number(a: f64) -> Self {
-        Self::product(a, 1.0)
-    }
-
-    /// `bits 2^shift`; a negative shift only takes zeros away, by the range of admitted numbers.
-    fn shifted(bits: u128, shift: i32, negative: bool) -> Self {
-        let (bits, shift) = if shift < 0 { (bits >> -shift, 0) } else { (bits, shift) };
-        let mut result = Self { negative, ..Self::ZERO };
-        let (limb, bit) = (shift as usize / 64, shift as usize % 64);
-        for (k, part) in [bits as u64, (bits >> 64) as u64].into_iter().enumerate() {
-            let wide = u128::from(part) << bit;
-            result.limbs[limb + k] |= wide as u64;
-            result.limbs[limb + k + 1] |= (wide >> 64) as u64;
-        }
-        (result.low, result.high) = (limb, limb + 3);
+        let bits = u128::from(m) * u128::from(n);
+        let exponent = e + f;
+        let mut result =
+            Self { negative, base: exponent.div_euclid(64) as i16, len: 3, ..Self::ZERO };
+        let bit = exponent.rem_euclid(64);
+        let low = u128::from(bits as u64) << bit;
+        let high = (u128::from((bits >> 64) as u64) << bit) + (low >> 64);
+        (result.limbs[0], result.limbs[1], result.limbs[2]) =
+            (low as u64, high as u64, (high >> 64) as u64);
         result.trim();
         result
     }
 
+    /// `a`, exactly.
+    pub(super) fn number(a: f64) -> Self {
+        Self::product(a, 1.0)
+    }
+
     fn trim(&mut self) {
-        while self.high > self.low && self.limbs[self.high - 1] == 0 {
-            self.high -= 1;
+        while self.len > 0 && self.limbs[usize::from(self.len) - 1] == 0 {
+            self.len -= 1;
         }
-        while self.low < self.high && self.limbs[self.low] == 0 {
-            self.low += 1;
+        let used = usize::from(self.len);
+        let zeros = self.limbs[..used].iter().take_while(|&&l| l == 0).count();
+        if zeros > 0 {
+            self.limbs.copy_within(zeros..used, 0);
+            self.limbs[used - zeros..used].fill(0);
+            self.len -= zeros as u16;
+            self.base += zeros as i16;
         }
-        if self.low == self.high {
-            (self.low, self.high, self.negative) = (0, 0, false);
+        if self.len == 0 {
+            (self.base, self.negative) = (0, false);
         }
     }
 
     pub(super) fn negate(mut self) -> Self {
-        self.negative = !self.negative && self.high > 0;
+        self.negative = !self.negative && self.len > 0;
         self
     }
 
+    /// One past the exponent of the highest limb.
+    fn top(&self) -> i16 {
+        self.base + self.len as i16
+    }
+
+    /// The limb of an exponent.
+    fn limb(&self, exponent: i16) -> u64 {
+        let k = exponent - self.base;
+        if k >= 0 && k < self.len as i16 { self.limbs[k as usize] } else { 0 }
+    }
+
     fn compare_magnitude(&self, other: &Self) -> Ordering {
-        let low = self.low.min(other.low);
-        self.high.cmp(&other.high).then_with(|| {
-            let (a, b) = (&self.limbs[low..self.high], &other.limbs[low..other.high]);
-            a.iter().rev().cmp(b.iter().rev())
+        let low = self.base.min(other.base);
+        self.top().cmp(&other.top()).then_with(|| {
+            let exponents = (low..self.top()).rev();
+            exponents
+                .map(|e| self.limb(e).cmp(&other.limb(e)))
+                .find(|o| o.is_ne())
+                .unwrap_or(Ordering::Equal)
         })
     }
 
     pub(super) fn add(&self, other: &Self) -> Self {
-        if self.high == 0 {
-            return *other;
-        }
-        if other.high == 0 {
-            return *self;
-        }
-        if self.negative == other.negative {
-            return self.add_magnitude(other);
-        }
-        match self.compare_magnitude(other) {
-            Ordering::Less => other.subtract_magnitude(self),
-            Ordering::Equal => Self::ZERO,
-            Ordering::Greater => self.subtract_magnitude(other),
-        }
+        self.sum(other, other.negative)
     }
 
     pub(super) fn subtract(&self, other: &Self) -> Self {
-        self.add(&other.negate())
+        self.sum(other, !other.negative)
+    }
+
+    /// `self` and the magnitude of `other` with a sign.
+    fn sum(&self, other: &Self, negative: bool) -> Self {
+        if self.overflown || other.overflown {
+            return Self::OVERFLOWN;
+        }
+        if other.len == 0 {
+            return *self;
+        }
+        if self.len == 0 {
+            return Self { negative, ..*other };
+        }
+        if self.negative == negative {
+            return self.add_magnitude(other);
+        }
+        match self.compare_magnitude(other) {
+            Ordering::Less => other.subtract_magnitude(self, negative),
+            Ordering::Equal => Self::ZERO,
+            Ordering::Greater => self.subtract_magnitude(other, self.negative),
+        }
     }
 
     fn add_magnitude(&self, other: &Self) -> Self {
-        let mut sum = *self;
-        sum.low = self.low.min(other.low);
-        sum.high = self.high.max(other.high) + 1;
+        let base = self.base.min(other.base);
+        let count = (self.top().max(other.top()) - base) as usize;
+        if count + 1 > N {
+            return Self::OVERFLOWN;
+        }
+        let mut sum = Self { negative: self.negative, base, len: count as u16 + 1, ..Self::ZERO };
         let mut carry = false;
-        for k in sum.low..sum.high {
-            let (s, c) = self.limbs[k].overflowing_add(other.limbs[k]);
+        for (k, limb) in sum.limbs[..count].iter_mut().enumerate() {
+            let e = base + k as i16;
+            let (s, c) = self.limb(e).overflowing_add(other.limb(e));
             let (s, d) = s.overflowing_add(u64::from(carry));
-            sum.limbs[k] = s;
+            *limb = s;
             carry = c || d;
         }
+        sum.limbs[count] = u64::from(carry);
         sum.trim();
         sum
     }
 
-    /// The larger magnitude minus the smaller one, with the sign of the larger.
-    fn subtract_magnitude(&self, smaller: &Self) -> Self {
-        let mut rest = *self;
-        rest.low = self.low.min(smaller.low);
+    /// The larger magnitude minus the smaller one.
+    fn subtract_magnitude(&self, smaller: &Self, negative: bool) -> Self {
+        let base = self.base.min(smaller.base);
+        let count = (self.top() - base) as usize;
+        if count > N {
+            return Self::OVERFLOWN;
+        }
+        let mut rest = Self { negative, base, len: count as u16, ..Self::ZERO };
         let mut borrow = false;
-        for k in rest.low..rest.high {
-            let (s, c) = self.limbs[k].overflowing_sub(smaller.limbs[k]);
+        for (k, limb) in rest.limbs[..count].iter_mut().enumerate() {
+            let e = base + k as i16;
+            let (s, c) = self.limb(e).overflowing_sub(smaller.limb(e));
             let (s, d) = s.overflowing_sub(u64::from(borrow));
-            rest.limbs[k] = s;
+            *limb = s;
             borrow = c || d;
         }
         rest.trim();
@@ -133,53 +172,67 @@ impl Wide {
     }
 
     pub(super) fn multiply(&self, other: &Self) -> Self {
-        let mut result = Self::ZERO;
-        if self.high == 0 || other.high == 0 {
-            return result;
+        if self.overflown || other.overflown {
+            return Self::OVERFLOWN;
         }
-        result.negative = self.negative != other.negative;
-        for i in self.low..self.high {
+        let (m, n) = (usize::from(self.len), usize::from(other.len));
+        if m == 0 || n == 0 {
+            return Self::ZERO;
+        }
+        if m + n > N {
+            return Self::OVERFLOWN;
+        }
+        let mut result = Self {
+            negative: self.negative != other.negative,
+            base: self.base + other.base,
+            len: (m + n) as u16,
+            ..Self::ZERO
+        };
+        for i in 0..m {
             let mut carry = 0_u128;
-            for j in other.low..other.high {
+            for j in 0..n {
                 let wide = u128::from(self.limbs[i]) * u128::from(other.limbs[j])
                     + u128::from(result.limbs[i + j])
                     + carry;
                 result.limbs[i + j] = wide as u64;
                 carry = wide >> 64;
             }
-            result.limbs[i + other.high] = carry as u64;
+            result.limbs[i + n] = carry as u64;
         }
-        (result.low, result.high) = (self.low + other.low, self.high + other.high);
         result.trim();
         result
     }
 
-    pub(super) fn sign(&self) -> Ordering {
-        match (self.high, self.negative) {
-            (0, _) => Ordering::Equal,
-            (_, true) => Ordering::Less,
-            (_, false) => Ordering::Greater,
+    /// `None` if it did not fit.
+    pub(super) fn sign(&self) -> Option<Ordering> {
+        match (self.overflown, self.len, self.negative) {
+            (true, ..) => None,
+            (_, 0, _) => Some(Ordering::Equal),
+            (_, _, true) => Some(Ordering::Less),
+            (_, _, false) => Some(Ordering::Greater),
         }
     }
 
     /// `m 2^e` to within `2^-52` of itself.
     fn leading(&self) -> (f64, i32) {
-        if self.high == 0 {
+        if self.len == 0 {
             return (0.0, 0);
         }
-        let top = self.high - 1;
-        let below = if top > 0 { self.limbs[top - 1] } else { 0 };
-        let bits = u128::from(self.limbs[top]) << 64 | u128::from(below);
+        let top = self.top() - 1;
+        let bits = u128::from(self.limb(top)) << 64 | u128::from(self.limb(top - 1));
         let magnitude = bits as f64;
-        (if self.negative { -magnitude } else { magnitude }, 64 * (top as i32 - 1))
+        (if self.negative { -magnitude } else { magnitude }, 64 * (i32::from(top) - 1))
     }
 
-    /// `self / other`, to within a few roundings of itself, for numbers in the same unit.
-    pub(super) fn ratio(&self, other: &Self) -> f64 {
+    /// `self / other`, to within a few roundings of itself; `None` if one of them did not fit.
+    pub(super) fn ratio(&self, other: &Self) -> Option<f64> {
+        if self.overflown || other.overflown {
+            return None;
+        }
         let ((n, i), (d, j)) = (self.leading(), other.leading());
         let (quotient, exponent) = (n / d, i - j);
         let half = exponent / 2;
-        quotient * 2.0_f64.powi(half) * 2.0_f64.powi(exponent - half)
+        Some(quotient * 2.0_f64.powi(half) * 2.0_f64.powi(exponent - half))
     }
 }
 
@@ -191,8 +244,12 @@ fn decode(x: f64) -> (u64, i32) {
     if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
 }
 
-/// `det[a, b, c]`, in the cube of the unit.
-pub(super) fn determinant(a: &[Wide; 3], b: &[Wide; 3], c: &[Wide; 3]) -> Wide {
+/// `det[a, b, c]`.
+pub(super) fn determinant<const N: usize>(
+    a: &[Wide<N>; 3],
+    b: &[Wide<N>; 3],
+    c: &[Wide<N>; 3],
+) -> Wide<N> {
     let mut sum = Wide::ZERO;
     for (k, component) in a.iter().enumerate() {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -203,7 +260,7 @@ pub(super) fn determinant(a: &[Wide; 3], b: &[Wide; 3], c: &[Wide; 3]) -> Wide {
 }
 
 /// `a - b`.
-pub(super) fn difference(a: &[Wide; 3], b: &[Wide; 3]) -> [Wide; 3] {
+pub(super) fn difference<const N: usize>(a: &[Wide<N>; 3], b: &[Wide<N>; 3]) -> [Wide<N>; 3] {
     std::array::from_fn(|k| a[k].subtract(&b[k]))
 }
 
@@ -230,24 +287,32 @@ mod tests {
     proptest! {
         #[test]
         fn sums_of_products_agree_with_rationals(a in number(), b in number(), c in number(), d in number()) {
-            let sum = Wide::product(a, b).add(&Wide::product(c, d));
             let expected = rational(a) * rational(b) + rational(c) * rational(d);
-            prop_assert_eq!(sum.sign(), expected.cmp(&RBig::ZERO));
+            let sign = Some(expected.cmp(&RBig::ZERO));
+            let large = Wide::<LARGE>::product(a, b).add(&Wide::product(c, d));
+            prop_assert_eq!(large.sign(), sign);
+            let small = Wide::<SMALL>::product(a, b).add(&Wide::product(c, d)).sign();
+            prop_assert!(small.is_none() || small == sign);
         }
 
         #[test]
         fn determinants_and_ratios_agree_with_rationals(numbers in prop::array::uniform9(number()), w in number(), z in number()) {
-            let coordinate = |k: usize| Wide::product(numbers[k], w).add(&Wide::number(z));
+            let coordinate = |k: usize| Wide::<LARGE>::product(numbers[k], w).add(&Wide::number(z));
+            let small = |k: usize| Wide::<SMALL>::product(numbers[k], w).add(&Wide::number(z));
             let exact = |k: usize| rational(numbers[k]) * rational(w) + rational(z);
             let row = |r: usize| [coordinate(r), coordinate(r + 1), coordinate(r + 2)];
             let det = determinant(&row(0), &row(3), &row(6));
             let minor = |a: usize, b: usize| exact(3 + a) * exact(6 + b) - exact(3 + b) * exact(6 + a);
             let expected = exact(0) * minor(1, 2) + exact(1) * minor(2, 0) + exact(2) * minor(0, 1);
-            prop_assert_eq!(det.sign(), expected.cmp(&RBig::ZERO));
+            let sign = Some(expected.cmp(&RBig::ZERO));
+            prop_assert_eq!(det.sign(), sign);
+            let row = |r: usize| [small(r), small(r + 1), small(r + 2)];
+            let small = determinant(&row(0), &row(3), &row(6)).sign();
+            prop_assert!(small.is_none() || small == sign);
             let cube = coordinate(0).multiply(&coordinate(0)).multiply(&coordinate(0));
             let cubed = exact(0) * exact(0) * exact(0);
             if cubed != RBig::ZERO {
-                let (found, right) = (det.ratio(&cube), (expected / cubed).to_f64().value());
+                let (found, right) = (det.ratio(&cube).unwrap(), (expected / cubed).to_f64().value());
                 let far = !(1e-290..1e290).contains(&right.abs()) && right != 0.0;
                 prop_assert!(far || (found - right).abs() <= 1e-14 * right.abs(), "{found} {right}");
             }

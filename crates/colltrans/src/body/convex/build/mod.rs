@@ -3,6 +3,8 @@
 mod hull;
 mod mesh;
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
@@ -154,6 +156,7 @@ impl ConvexPolyhedron {
             inertia,
             support,
             sections,
+            solid: OnceLock::new(),
         };
         body.measure_faces();
         body

@@ -1,9 +1,11 @@
 //! `record`: from the dated runs in `docs/measurements/` to what people read.
 //!
-//! The runs are the JSON files that `table`, `coherence` and `solids` write, and the text that
+//! The runs are the JSON files that `table`, `paper`, `coherence` and `solids` write, and the text that
 //! `campaign` prints, named `YYYY-MM-DD-WHAT.json` or `.txt`. Of each kind the newest one goes into
 //! `docs/measurements.md`, the picture `docs/speed.svg` and the table of the README, so that no
 //! number there is typed by hand.
+
+mod algorithm;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -89,6 +91,9 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
     );
     general(&mut page, &table)?;
     ties(&mut page, &table)?;
+    if let Some(run) = parsed("paper")? {
+        algorithm::write(&mut page, &run)?;
+    }
     if let Some(run) = parsed("coherence")? {
         coherence(&mut page, &run)?;
     }

@@ -1,0 +1,84 @@
+//! Real assemblies, where the collection of meshes is beside the checkout.
+
+use std::path::{Path, PathBuf};
+
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::map::{MapOptions, RemovalMap};
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
+
+fn collection() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    folder.is_dir().then(|| folder.canonicalize().unwrap())
+}
+
+fn planned(bodies: &Bodies) -> Plan {
+    let watch = Watch::default();
+    let touching = liaisons(bodies, watch).unwrap();
+    let found = candidates(bodies, &touching, &Choice::default()).unwrap();
+    let (all, options) = (vec![true; bodies.len()], PlanOptions::default());
+    let matrix = Matrix::new(bodies, &found.directions(), &all, options.start, watch).unwrap();
+    disassemble(bodies, &matrix, &found.finer, options, watch).unwrap()
+}
+
+#[test]
+fn the_gearbox_comes_apart_with_its_bearings_as_groups() {
+    let Some(folder) = collection() else { return };
+    let assembly = read(folder.join("gearbox"), &ReadOptions::default()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(0.06)).unwrap();
+    let plan = planned(&bodies);
+    assert!(plan.left.is_empty());
+    let steps: Vec<Vec<&str>> = plan.steps.iter().map(|s| assembly.names(&s.parts)).collect();
+    let at = |name: &str| steps.iter().position(|s| s.contains(&name)).unwrap();
+    for side in ["front", "rear"] {
+        let bearing = &steps[at(&format!("{side}_inner"))];
+        assert_eq!(bearing.len(), 9);
+        assert!(bearing.iter().all(|name| name.starts_with(side)), "{bearing:?}");
+    }
+    assert!(steps.iter().all(|s| s.len() == 1 || s.len() == 9), "{steps:?}");
+    assert!((0..4).all(|k| at(&format!("bolt_{k}")) < at("cover")));
+    assert!(at("cover") < at("front_inner") && at("front_inner") < at("spacer"));
+    assert!(at("spacer") < at("gear") && at("gear") < at("key"));
+    let key = plan.steps[at("key")].direction;
+    assert!(key.z > 0.999, "{key}");
+    assert_eq!(plan.stuck.len(), 2, "translations cannot take the bearings apart");
+}
+
+/// The seat where somebody sits with the back to the bonnet, 0.3 aside.
+fn seat_in_car(folder: &Path) -> Assembly {
+    let files = |name: &str, count: usize| -> Vec<PathBuf> {
+        (1..=count).map(|k| folder.join(format!("car_seat/{name}_{k}.stl"))).collect()
+    };
+    let manifest = serde_json::json!({"unit": "m", "parts": [
+        {"name": "car", "file": files("car", 24)},
+        {"name": "seat", "file": files("seat", 10), "scale": 0.9, "translation": [-1.0, 0.3, 0.42],
+         "rotation": {"rpy_degrees": [0, 0, 180]}},
+    ]});
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("seat.json");
+    std::fs::write(&file, manifest.to_string()).unwrap();
+    read(&file, &ReadOptions::default()).unwrap()
+}
+
+#[test]
+fn the_seat_leaves_the_car_along_a_thin_band_of_directions() {
+    let Some(folder) = collection() else { return };
+    let assembly = seat_in_car(&folder);
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    assert!(!bodies.overlaps(0, 1));
+    let plan = planned(&bodies);
+    assert_eq!(plan.steps.iter().map(|s| &s.parts[..]).collect::<Vec<_>>(), [[1], [0]]);
+    let options = MapOptions { samples: 642, border: 0.02, ..MapOptions::default() };
+    let map = RemovalMap::new(&bodies, &[1], &[], options, Watch::default()).unwrap();
+    assert!((0.002..0.008).contains(&map.free_share()), "{}", map.free_share());
+    assert_eq!(map.regions.len(), 1);
+    // Long and thin: much longer than a disc of its size is wide.
+    let region = &map.regions[0];
+    let far = |d: &glam::DVec3| d.angle_between(region.center);
+    let reach = region.border.iter().map(far).fold(0.0, f64::max);
+    let disc = (region.solid_angle / std::f64::consts::PI).sqrt();
+    assert!(reach > 2.0 * disc, "{reach} against {disc}");
+}

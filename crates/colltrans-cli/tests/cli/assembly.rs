@@ -1,0 +1,286 @@
+//! `colltrans assembly`: the small gearbox of `data/`, and small files that the tests write.
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::{colltrans, data, folder, json, stderr, stdout};
+
+/// A cube from 0 to 1, one upon it, and what places them: as URDF and as manifests.
+fn stacked() -> TempDir {
+    let folder = folder();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write(
+        "two.toml",
+        "unit = 'mm'\n[[part]]\nfile = 'cube.off'\nname = 'low'\n[[part]]\nfile = 'cube.off'\n\
+         name = 'high'\ntranslation = [0, 0, 1]\n",
+    );
+    let link = |name: &str, file: &str, z: i32| {
+        format!(
+            "<link name='{name}'><collision><origin xyz='0 0 {z}' rpy='0 0 0'/><geometry>\
+             <mesh filename='package://kit/{file}'/></geometry></collision></link>"
+        )
+    };
+    let links = link("low", "cube.off", 0) + &link("high", "cube.off", 1);
+    let lost = link("lost", "gone.stl", 5);
+    write("two.urdf", &format!("<robot name='r'>{links}</robot>"));
+    write("lost.urdf", &format!("<robot name='r'>{links}{lost}</robot>"));
+    folder
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    colltrans(folder).arg("assembly").args(arguments).output().unwrap()
+}
+
+fn answered(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    stdout(&output)
+}
+
+fn facts(folder: &Path, arguments: &[&str]) -> Value {
+    let arguments: Vec<&str> = arguments.iter().copied().chain(["--json"]).collect();
+    json(&answered(folder, &arguments))
+}
+
+fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    let output = run(folder, arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
+    assert!(stdout(&output).is_empty());
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in {message}");
+    }
+}
+
+fn names(value: &Value) -> Vec<&str> {
+    value.as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect()
+}
+
+#[test]
+fn the_small_gearbox_comes_apart() {
+    let found = facts(&data(), &["gearbox_small"]);
+    assert_eq!(found["parts"].as_array().unwrap().len(), 16);
+    let steps = found["plan"].as_array().unwrap();
+    let outer: Vec<&Value> = steps.iter().filter(|s| s["within"].is_null()).collect();
+    let at = |part: &str| outer.iter().position(|s| names(&s["parts"]).contains(&part)).unwrap();
+    let bolts = ["bolt_0", "bolt_1", "bolt_2", "bolt_3"];
+    assert!(bolts.iter().all(|bolt| at(bolt) < at("cover")), "{steps:?}");
+    assert!(at("cover") < at("gear"));
+    let bearing = names(&outer[at("bearing_inner")]["parts"]);
+    assert_eq!(bearing.len(), 6, "the rings and the balls move as one");
+    let sizes: usize = outer.iter().map(|s| names(&s["parts"]).len()).sum();
+    assert_eq!(sizes, 16);
+    assert!(names(&found["left"]).is_empty());
+    let stuck = found["stuck"].as_array().unwrap();
+    assert_eq!(stuck.len(), 1);
+    assert_eq!(names(&stuck[0]["parts"]), bearing);
+    assert!(stuck[0]["because"].as_str().unwrap().contains("they hold each other"));
+}
+
+#[test]
+fn rooms_say_how_far_and_who() {
+    let folder = stacked();
+    let arguments = ["two.toml", "--direction", "0,0,-2", "--direction", "z", "--only"];
+    let found = facts(folder.path(), &arguments);
+    assert_eq!(found["unit"], "mm");
+    let room = |part: &str, z: f64| {
+        let wanted = |r: &&Value| r["part"] == part && r["direction"][2] == z;
+        found["rooms"].as_array().unwrap().iter().find(wanted).unwrap().clone()
+    };
+    let down = room("high", -1.0);
+    assert_eq!((&down["outcome"], &down["by"]), (&"blocked".into(), &"low".into()));
+    assert!(down["nominal"].as_f64().unwrap() < 1e-12);
+    assert_eq!(room("high", 1.0)["outcome"], "free");
+    assert_eq!(room("low", 1.0)["by"], "high");
+    // Grown by a margin they overlap.
+    let tight = facts(folder.path(), &["two.toml", "--margin", "0.1", "--direction", "z"]);
+    assert_eq!(tight["rooms"][0]["outcome"], "overlapping");
+    let listed = ["two.toml", "--margin", "0.1", "--ignore", "low,high"];
+    assert_eq!(facts(folder.path(), &listed)["rooms"][0]["outcome"], "free");
+    let fixed = facts(folder.path(), &["two.toml", "--fixed", "low"]);
+    assert_eq!(names(&fixed["left"]), ["low"]);
+}
+
+#[test]
+fn many_directions_come_from_a_file_or_the_sphere() {
+    let folder = stacked();
+    let file = folder.path().join("ways.txt");
+    std::fs::write(&file, "# up\nz\n\n0.6, 0, 0.8 # aside\n").unwrap();
+    let count =
+        |arguments: &[&str]| facts(folder.path(), arguments)["rooms"].as_array().unwrap().len();
+    assert_eq!(count(&["two.toml", "--only", "--directions", "ways.txt"]), 4);
+    assert_eq!(count(&["two.toml", "--only", "--samples", "30"]), 2 * 42);
+    std::fs::write(&file, "z\n0,0,0\n").unwrap();
+    refused(folder.path(), &["two.toml", "--directions", "ways.txt"], 3, &["ways.txt: line 2"]);
+    std::fs::write(&file, "1,2\n").unwrap();
+    refused(folder.path(), &["two.toml", "--directions", "ways.txt"], 3, &["ways.txt: line 1"]);
+    refused(folder.path(), &["two.toml", "--directions", "none.txt"], 3, &["none.txt"]);
+}
+
+#[test]
+fn the_answer_is_the_same_on_any_number_of_threads() {
+    let (small, out) = (stacked(), tempfile::tempdir().unwrap());
+    let ask = |source: &Path, arguments: &[&str], threads: &str| {
+        let folder = out.path().join(threads);
+        let place = ["--json", "--threads", threads, "-o", folder.to_str().unwrap()];
+        let text = answered(source, &[arguments, &place].concat());
+        let mut files: Vec<_> =
+            std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
+        files.sort();
+        let name = |f: &PathBuf| f.file_name().unwrap().to_string_lossy().into_owned();
+        let names: Vec<String> = files.iter().map(name).collect();
+        let bytes: Vec<Vec<u8>> = files.iter().map(|f| std::fs::read(f).unwrap()).collect();
+        (text, names, bytes)
+    };
+    let once = ask(&data(), &["gearbox_small"], "1");
+    assert_eq!(once.1, ["assembly.json", "disassembly.glb", "matrix.csv", "report.html"]);
+    assert!(once == ask(&data(), &["gearbox_small"], "3"), "three threads");
+    let mapped = ["two.toml", "--map", "low", "--samples", "100"];
+    let once = ask(small.path(), &mapped, "1");
+    assert_eq!(once.1[2..5], ["map-low.json", "map-low.png", "map-low.svg"]);
+    assert!(once == ask(small.path(), &mapped, "3"), "three threads, with a map");
+}
+
+#[test]
+fn the_files_stand_for_themselves() {
+    let folder = stacked();
+    answered(folder.path(), &["two.toml", "-o", "out", "--map", "low"]);
+    let out = folder.path().join("out");
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.starts_with("<!doctype html>") || page.starts_with("<!DOCTYPE html>"));
+    // Nothing is fetched, nothing has to run.
+    for word in ["<script", "src=\"http", "href=\"http", "@import", "url("] {
+        assert!(!page.contains(word), "{word}");
+    }
+    assert!(page.contains("<svg") && page.contains("high"));
+    // The animation is an assembly too: its nodes are the parts.
+    let back = facts(&out, &["disassembly.glb"]);
+    let found: Vec<&str> =
+        back["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
+    assert_eq!(found, ["low", "high"]);
+    let table = std::fs::read_to_string(out.join("matrix.csv")).unwrap();
+    assert!(
+        table.starts_with("direction_x,direction_y,direction_z,moving,fixed,outcome,distance\n")
+    );
+    assert!(table.lines().any(|l| l.starts_with("0,0,1,low,high,blocked,")), "{table}");
+    let written = json(&std::fs::read_to_string(out.join("assembly.json")).unwrap());
+    assert_eq!(written["plan"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn outputs_never_take_the_place_of_inputs() {
+    let folder = stacked();
+    let place = folder.path();
+    let text = r#"{"parts": [{"file": "report.html.off", "name": "a"}]}"#;
+    std::fs::copy(place.join("cube.off"), place.join("report.html.off")).unwrap();
+    std::fs::write(place.join("assembly.json"), text).unwrap();
+    let words = ["assembly.json: is the same file as assembly.json", "another folder"];
+    refused(place, &["assembly.json", "-o", "."], 3, &words);
+    assert_eq!(std::fs::read_to_string(place.join("assembly.json")).unwrap(), text);
+    assert!(!place.join("report.html").exists(), "nothing is written before");
+    std::fs::write(place.join("matrix.csv"), "z\n").unwrap();
+    let arguments = ["two.toml", "--directions", "matrix.csv", "-o", "."];
+    refused(place, &arguments, 3, &["matrix.csv: is the same file as matrix.csv"]);
+    // A mesh may be reached by any name.
+    #[cfg(unix)]
+    {
+        std::fs::create_dir(place.join("out")).unwrap();
+        std::fs::hard_link(place.join("cube.off"), place.join("out/report.html")).unwrap();
+        refused(place, &["two.toml", "-o", "out"], 3, &["is the same file as cube.off"]);
+    }
+    // Where a file stands no folder can be made.
+    refused(place, &["two.toml", "-o", "open.off"], 5, &["open.off"]);
+}
+
+#[test]
+fn sources_that_are_wrong_are_named() {
+    let folder = stacked();
+    let place = folder.path();
+    let write = |name: &str, text: &str| std::fs::write(place.join(name), text).unwrap();
+    refused(place, &["nowhere"], 3, &["nowhere: cannot be read"]);
+    write("notes.txt", "no parts");
+    refused(place, &["notes.txt"], 3, &["notes.txt: neither a folder of meshes", ".urdf"]);
+    refused(place, &["."], 3, &["broken.off"]);
+    refused(place, &["broken.off"], 3, &["broken.off", "line"]);
+    write("bad.toml", "[[part]]\nfile = 'cube.off'\nscale = 'big'\n");
+    refused(place, &["bad.toml"], 3, &["bad.toml: line 3"]);
+    write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = [0, 0, 0, 2]\n");
+    refused(place, &["bad.toml"], 3, &["bad.toml: part 1 (cube)", "length 2, not 1"]);
+    write("bad.json", "{\"parts\": [\n{\"file\": \"cube.off\", \"turned\": 3}]}");
+    refused(place, &["bad.json"], 3, &["bad.json: line 2", "turned"]);
+    write("bad.json", "{\"parts\": [{\"file\": \"gone.off\"}, {\"file\": \"cube.off\"}]}");
+    refused(place, &["bad.json"], 3, &["bad.json", "gone.off"]);
+    write("bad.glb", "glTF but not really");
+    refused(place, &["bad.glb"], 3, &["bad.glb: glTF"]);
+    write("bad.3mf", "no package");
+    refused(place, &["bad.3mf"], 3, &["bad.3mf"]);
+    write("bad.urdf", "<robot name='r'><link></robot>");
+    refused(place, &["bad.urdf"], 3, &["bad.urdf: URDF"]);
+    std::fs::create_dir(place.join("empty")).unwrap();
+    let output = run(place, &["empty"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stderr(&output).contains("no STL, OBJ, PLY or OFF file is in this folder"));
+    assert!(stdout(&output).starts_with("0 parts"));
+}
+
+#[test]
+fn meshes_that_a_urdf_file_misses_are_named_or_skipped() {
+    let folder = stacked();
+    let place = folder.path();
+    let root = ["--package", "."];
+    let found = facts(place, &[&["two.urdf"], &root[..]].concat());
+    assert_eq!(found["unit"], "m");
+    assert_eq!(found["plan"].as_array().unwrap().len(), 2);
+    let words = ["lost.urdf: 1 of the meshes", "package://kit/gone.stl", "skip"];
+    refused(place, &[&["lost.urdf"], &root[..]].concat(), 3, &words);
+    refused(place, &["lost.urdf"], 3, &["3 of the meshes", "package://kit/cube.off"]);
+    let output = run(place, &[&["lost.urdf", "--skip-missing", "--json"], &root[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("package://kit/gone.stl cannot be found and is left out"));
+    assert_eq!(json(&stdout(&output))["parts"].as_array().unwrap().len(), 2);
+    let joint = [&["two.urdf", "--joint", "elbow=1"], &root[..]].concat();
+    refused(place, &joint, 3, &["there is no joint elbow"]);
+}
+
+#[test]
+fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
+    let folder = stacked();
+    let cases: [(&[&str], &[&str]); 10] = [
+        (&["--tolerance", "-1"], &["--tolerance", "-1"]),
+        (&["--tolerance", "wide"], &["--tolerance", "wide"]),
+        (&["--tolerance", "1", "--margin", "1"], &["--tolerance", "--margin"]),
+        (&["--direction", "0,0"], &["--direction"]),
+        (&["--map", "hig"], &["no part is named hig; is it high?"]),
+        (&["--map", "q*"], &["no part is named q*"]),
+        (&["--fixed", "lo"], &["no part is named lo; is it low?"]),
+        (&["--ignore", "low"], &["--ignore low: not two names"]),
+        (&["--joint", "elbow"], &["--joint elbow: not NAME=VALUE"]),
+        (&["--threads", "0"], &["--threads"]),
+    ];
+    for (flags, words) in cases {
+        refused(folder.path(), &[&["two.toml"], flags].concat(), 2, words);
+    }
+    refused(folder.path(), &["two.toml", "--direction", "0,0,0"], 2, &["0"]);
+}
+
+#[test]
+fn overlaps_are_told_with_what_to_try() {
+    let folder = stacked();
+    let text = "[[part]]\nfile = 'cube.off'\nname = 'low'\n[[part]]\nfile = 'cube.off'\n\
+                name = 'high'\ntranslation = [0, 0, 0.98]\n";
+    std::fs::write(folder.path().join("deep.toml"), text).unwrap();
+    let told = answered(folder.path(), &["deep.toml"]);
+    assert!(told.contains("low, high by 0.02") && told.contains("try --tolerance 0.02"), "{told}");
+    let found = facts(folder.path(), &["deep.toml"]);
+    let tolerance = found["suggested_tolerance"].as_f64().unwrap().to_string();
+    let depth = found["overlaps"][0]["depth"].as_f64().unwrap();
+    assert!((depth - 0.02).abs() < 1e-9, "{depth}");
+    assert_eq!(names(&found["left"]), ["low", "high"]);
+    let tried = facts(folder.path(), &["deep.toml", "--tolerance", &tolerance]);
+    assert!(names(&tried["left"]).is_empty());
+    let ignoring = facts(folder.path(), &["deep.toml", "--ignore-overlaps"]);
+    assert!(names(&ignoring["left"]).is_empty());
+}

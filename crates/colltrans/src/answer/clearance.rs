@@ -1,0 +1,125 @@
+//! How far a body can move from where it is: three cases, told apart for all bodies in the same way.
+
+use std::fmt;
+
+use super::outcome::{Contact, Grazing, Separated};
+use crate::body::{Body, ConvexPolyhedron};
+
+/// The answer of [`Cast::clearance`](crate::Cast::clearance): how far the moving body can move *from
+/// where it is* along the direction. One definition for all bodies; what is known of each case, its
+/// proof included, is the body's.
+///
+/// | | [`ConvexPolyhedron`] | [`Solid`](crate::Solid) |
+/// |---|---|---|
+/// | `Blocked` | [`Contact`] | [`SolidContact`](crate::SolidContact) |
+/// | `Free` | [`WhyFree`] | a separating plane, where one was found |
+/// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::SolidOverlap) |
+pub enum Clearance<B: Body = ConvexPolyhedron> {
+    /// Until it touches.
+    Blocked {
+        /// How far it may safely move, in multiples of the direction: never negative. Between convex
+        /// bodies never more than the true distance, so less than [`Contact::translation`] by the
+        /// rounding error; between solids that of the bodies shrunk by half the tolerance each.
+        distance: f64,
+        /// The contact that stops it.
+        contact: B::Contact,
+    },
+    /// As far as it likes.
+    Free(B::Free),
+    /// The bodies overlap now, by more than is tolerated.
+    Overlapping(B::Overlap),
+}
+
+/// Why nothing stops a convex body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WhyFree {
+    /// It slides along the other body or past it within the graze tolerance.
+    Slides(Grazing),
+    /// The last contact, that of the [reversed](crate::Cast::reversed) cast, lies behind, or is where
+    /// it is now and it moves away from it.
+    Behind(Contact),
+    /// It never meets the other body along this direction.
+    Separated(Separated),
+}
+
+/// The overlap of two convex bodies, by the contacts at its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OverlapAhead {
+    /// The first contact, behind.
+    pub first: Contact,
+    /// The last contact, ahead: that of the reversed cast.
+    pub last: Contact,
+}
+
+impl Clearance {
+    /// That of a first contact which is ahead, or here to within rounding.
+    #[inline]
+    pub(crate) fn blocked(first: &Contact) -> Option<Self> {
+        let is_ahead = first.translation >= -first.certificate.tolerance;
+        let distance = first.certificate.lower.max(0.0);
+        is_ahead.then_some(Self::Blocked { distance, contact: *first })
+    }
+
+    /// That of a first contact which is not.
+    #[inline]
+    pub(crate) fn past(first: Contact, last: Contact) -> Self {
+        if last.translation < -last.certificate.tolerance {
+            Self::Overlapping(OverlapAhead { first, last })
+        } else {
+            Self::Free(WhyFree::Behind(last))
+        }
+    }
+}
+
+impl<B: Body> Clearance<B> {
+    /// How far the moving body may safely move, in multiples of the direction: infinite where
+    /// nothing stops it, `None` if the bodies overlap now.
+    pub fn distance(&self) -> Option<f64> {
+        match self {
+            Self::Blocked { distance, .. } => Some(*distance),
+            Self::Free(_) => Some(f64::INFINITY),
+            Self::Overlapping(_) => None,
+        }
+    }
+
+    /// Whether nothing stops the moving body.
+    pub const fn is_free(&self) -> bool {
+        matches!(self, Self::Free(_))
+    }
+}
+
+// Derived ones would ask the same of the body.
+impl<B: Body> Clone for Clearance<B> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<B: Body> Copy for Clearance<B> {}
+
+impl<B: Body> PartialEq for Clearance<B> {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Blocked { distance, contact }, Self::Blocked { distance: d, contact: c }) => {
+                distance == d && contact == c
+            }
+            (Self::Free(a), Self::Free(b)) => a == b,
+            (Self::Overlapping(a), Self::Overlapping(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+impl<B: Body> fmt::Debug for Clearance<B> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Blocked { distance, contact } => f
+                .debug_struct("Blocked")
+                .field("distance", distance)
+                .field("contact", contact)
+                .finish(),
+            Self::Free(free) => f.debug_tuple("Free").field(free).finish(),
+            Self::Overlapping(overlap) => f.debug_tuple("Overlapping").field(overlap).finish(),
+        }
+    }
+}

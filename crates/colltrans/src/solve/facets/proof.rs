@@ -1,0 +1,304 @@
+//! What a proof of a clearance is, and how a search makes one.
+//!
+//! Above, the pair of facets that attains the answer. Below, the antichain of pairs of nodes at which
+//! the descent through both trees stopped, each with its reason. Which node of a pair is split is a
+//! rule of its own, so the antichain needs no indices: a [`Cover`] lists in preorder whether a pair
+//! was split or why it was not, and covers all pairs of facets by being read to its end. A second one
+//! shows that the interiors are disjoint where the bodies are.
+//!
+//! The lower bound is what the parts of a cover prove with their rounding taken off: bounds of nodes
+//! are off by less than a third of the search's slack, gaps of facets by what they say themselves.
+
+use std::collections::HashMap;
+
+use super::bound::{Reason, Shade, holds};
+use super::clearance::{SolidOptions, StartOverlap};
+use super::leaf::{self, Facet, Gap};
+use super::overlap::{self, Overlap};
+use super::scene::Scene;
+use super::search::{Aim, SLACK, Search, Workspace, children, splits_moving};
+use crate::answer::Clearance;
+use crate::body::solid::Solid;
+use crate::cast::Cast;
+use crate::solve::facets::SolidOverlap;
+
+/// A proof of the answer of [`Cast::clearance`] between solids, checked by [`Cast::verify`] without a
+/// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
+/// itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolidCertificate {
+    /// The tolerance: both bodies are shrunk by half of it.
+    pub tolerance: f64,
+    /// Whether the bodies overlap where they are.
+    pub start: StartProof,
+    /// No pair of facets stops the body before, in multiples of the direction; infinite if none ever
+    /// does, 0 for an overlap that is the answer.
+    pub lower: f64,
+    /// What stops it.
+    pub stop: Option<StopProof>,
+    /// Why nothing stops it before.
+    pub cover: Cover,
+}
+
+/// The proof of what the bodies do where they are.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StartProof {
+    /// The caller has said it: [`SolidOptions::overlapping`].
+    Assumed,
+    /// Their surfaces do not cross; that no shell is inside the other body is checked anew.
+    Apart(Cover),
+    /// They overlap.
+    Overlapping(Overlap),
+}
+
+/// The pair of facets that stops the moving body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StopProof {
+    /// Their least gap, in multiples of the direction, or 0.
+    pub distance: f64,
+    /// Positions in [`Solid::triangles`] of the moving and of the fixed body.
+    pub triangles: [u32; 2],
+}
+
+/// For each pair of nodes, in preorder from both roots: `None` if one of them was split, or why not.
+///
+/// Split is the node with the longer diagonal of its box, the moving one if they are equal, and never
+/// a leaf.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Cover(pub(super) Vec<Option<Reason>>);
+
+impl From<Vec<Option<Reason>>> for Cover {
+    fn from(entries: Vec<Option<Reason>>) -> Self {
+        Self(entries)
+    }
+}
+
+/// One entry of a cover: what is said of all pairs of some facets.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Claim {
+    /// Positions in [`Solid::triangles`] of the moving body.
+    pub moving: std::ops::Range<usize>,
+    /// The same of the fixed body.
+    pub fixed: std::ops::Range<usize>,
+    /// Why none of the pairs matters.
+    pub reason: Reason,
+}
+
+impl Cover {
+    /// Entries, splits included.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The entries.
+    pub fn entries(&self) -> &[Option<Reason>] {
+        &self.0
+    }
+
+    /// Walks down both trees as the entries say; `check` is asked about every pair that is not split,
+    /// with the entry's number. Stops at the first that it refuses.
+    ///
+    /// # Errors
+    /// The number of the entry that is refused, or at which the cover does not fit the trees.
+    pub(super) fn walk(
+        &self,
+        bodies: [&Solid; 2],
+        mut check: impl FnMut(usize, [u32; 2], Reason) -> bool,
+    ) -> Result<(), usize> {
+        let mut stack = vec![[0, 0]];
+        for (number, entry) in self.0.iter().enumerate() {
+            let Some(nodes) = stack.pop() else { return Err(number) };
+            let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
+            match entry {
+                Some(reason) if check(number, nodes, *reason) => {}
+                Some(_) => return Err(number),
+                None if a.is_leaf() && b.is_leaf() => return Err(number),
+                None if splits_moving(a, b) => {
+                    let [first, second] = children(a, nodes[0]);
+                    stack.extend([[second, nodes[1]], [first, nodes[1]]]);
+                }
+                None => {
+                    let [first, second] = children(b, nodes[1]);
+                    stack.extend([[nodes[0], second], [nodes[0], first]]);
+                }
+            }
+        }
+        if stack.is_empty() { Ok(()) } else { Err(self.0.len()) }
+    }
+
+    /// What the cover says of which facets; `None` if it does not fit the bodies.
+    pub fn claims(&self, cast: &Cast<'_, Solid>) -> Option<Vec<Claim>> {
+        let bodies = [cast.moving(), cast.fixed()];
+        let mut claims = Vec::new();
+        let walked = self.walk(bodies, |_, nodes, reason| {
+            let [moving, fixed] = [0, 1].map(|k| bodies[k].nodes()[nodes[k] as usize].facets());
+            claims.push(Claim { moving, fixed, reason });
+            true
+        });
+        walked.is_ok().then_some(claims)
+    }
+
+    /// In preorder, from the pairs of nodes that were not split.
+    fn new(bodies: [&Solid; 2], cuts: &HashMap<[u32; 2], Reason>) -> Self {
+        let mut entries = Vec::new();
+        let mut stack = vec![[0_u32, 0]];
+        while let Some(nodes) = stack.pop() {
+            let cut = cuts.get(&nodes).copied();
+            entries.push(cut);
+            if cut.is_some() {
+                continue;
+            }
+            let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
+            if splits_moving(a, b) {
+                let [first, second] = children(a, nodes[0]);
+                stack.extend([[second, nodes[1]], [first, nodes[1]]]);
+            } else {
+                let [first, second] = children(b, nodes[1]);
+                stack.extend([[nodes[0], second], [nodes[0], first]]);
+            }
+        }
+        Self(entries)
+    }
+}
+
+impl Cast<'_, Solid> {
+    /// How far the moving body can move from where it is, as [`Self::clearance`] says, and the proof
+    /// of it. Allocates what the proof takes: a byte for each pair of nodes.
+    pub fn certified_clearance(&self) -> (Clearance<Solid>, SolidCertificate) {
+        let scene = self.asked();
+        let bodies = [self.moving(), self.fixed()];
+        let start = self.prove_start(&scene);
+        let mut certificate = SolidCertificate {
+            tolerance: self.tolerance(),
+            start,
+            lower: 0.0,
+            stop: None,
+            cover: Cover::default(),
+        };
+        let Some(aim) = certificate.aim(self.options()) else {
+            let depth = self.depth();
+            return (Clearance::Overlapping(SolidOverlap { depth }), certificate);
+        };
+        let mut cuts = HashMap::new();
+        let limit = self.limit(&scene);
+        let cut = |nodes, reason| {
+            cuts.insert(nodes, reason);
+        };
+        let mut search = Search { scene: &scene, aim, limit, found: None, cut, steps: [0; 2] };
+        let found = search.run(&mut Workspace::default());
+        let end = search.limit;
+        certificate.cover = Cover::new(bodies, &cuts);
+        certificate.stop = found.map(|found| StopProof {
+            distance: found.gap / scene.length,
+            triangles: [found.moving, found.fixed],
+        });
+        certificate.lower = proven(&scene, aim, end, &certificate.cover) / scene.length;
+        if certificate.lower <= 0.0 {
+            // Nothing contributes less than 0.
+            certificate.lower = 0.0;
+            certificate.cover = Cover(vec![Some(Reason::NotBefore)]);
+        }
+        (self.answer(&scene, found.as_ref()), certificate)
+    }
+
+    fn prove_start(&self, scene: &Scene) -> StartProof {
+        if self.options().overlapping.is_some() {
+            return StartProof::Assumed;
+        }
+        let mut entries = Vec::new();
+        match overlap::find_with(scene, &mut |entry| entries.push(entry)) {
+            Some(overlap) => StartProof::Overlapping(overlap),
+            None if entries.is_empty() => StartProof::Apart(Cover(vec![Some(Reason::Disjoint)])),
+            None => StartProof::Apart(Cover(entries)),
+        }
+    }
+}
+
+impl SolidCertificate {
+    /// What the search was for; `None` if an overlap is the answer.
+    pub(super) fn aim(&self, asked: SolidOptions) -> Option<Aim> {
+        let overlapping = match self.start {
+            StartProof::Assumed => asked.overlapping == Some(true),
+            StartProof::Overlapping(_) => true,
+            StartProof::Apart(_) => false,
+        };
+        match (overlapping, asked.start_overlap) {
+            (false, _) => Some(Aim::Stop),
+            (true, StartOverlap::Ignore) => Some(Aim::LaterStop),
+            (true, StartOverlap::Refuse) => None,
+        }
+    }
+}
+
+/// What bounds of nodes may be off by.
+pub(super) fn node_rounding(scene: &Scene) -> f64 {
+    SLACK / 3.0 * scene.blur
+}
+
+/// The least gap that the parts of a cover prove, their rounding taken off, of a search that has ended
+/// with a limit.
+fn proven(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
+    // A little more, for the roundings of the bound on its way into the proof and out of it.
+    let mut lower = limit - 1.0625 * node_rounding(scene);
+    if lower <= 0.0 {
+        return 0.0;
+    }
+    let bodies = [scene.moving.solid, scene.fixed.solid];
+    let fits = cover.walk(bodies, |_, nodes, reason| {
+        if reason == Reason::Examined {
+            lower = lower.min(least_of_leaves(scene, aim, nodes, limit));
+        }
+        true
+    });
+    if fits.is_ok() { lower } else { 0.0 }
+}
+
+/// The least gap of pairs of facets of two leaves that count, less its error; what is not below
+/// `limit` may be left out.
+pub(super) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
+    use std::cmp::Ordering::{Greater, Less};
+    let of = |moving: bool, at: u32| scene.side(moving).solid.nodes()[at as usize].facets();
+    let mut least = f64::INFINITY;
+    for s in of(true, nodes[0]) {
+        let Some(f) = Facet::facing(scene, true, s, Greater) else { continue };
+        for t in of(false, nodes[1]) {
+            let Some(g) = Facet::facing(scene, false, t, Less) else { continue };
+            // A gap is wanted whatever its size, so that its own error can be taken off.
+            let end = limit + leaf::SHARP * scene.blur;
+            let gap = leaf::gap(scene, &f, &g, end, aim.wanted());
+            let sharp = |gap: Gap| {
+                let blunt = gap.error > leaf::FINE * scene.blur;
+                if blunt { leaf::sharpened(scene, &f, &g) } else { gap }
+            };
+            let value = gap.map(sharp);
+            let value = value.and_then(|gap| Some(aim.value(&gap)? - gap.error - scene.blur));
+            least = least.min(value.unwrap_or(f64::INFINITY));
+        }
+    }
+    least
+}
+
+/// Whether an entry of the cover that is no pair of leaves holds.
+pub(super) fn cut_holds(
+    scene: &Scene,
+    aim: Aim,
+    nodes: [u32; 2],
+    reason: Reason,
+    lower: f64,
+) -> bool {
+    let [a, b] = [
+        Shade::new(scene, &scene.moving, nodes[0] as usize),
+        Shade::new(scene, &scene.fixed, nodes[1] as usize),
+    ];
+    match reason {
+        Reason::NotBefore if lower <= 0.0 => aim != Aim::Least,
+        Reason::Disjoint | Reason::FaceToFace | Reason::Examined => false,
+        Reason::Parting if aim == Aim::Least => false,
+        _ => holds(scene, &a, &b, reason, lower + node_rounding(scene)),
+    }
+}

@@ -1,0 +1,164 @@
+//! A plane between two solids, parallel to the direction.
+//!
+//! The shadows of both bodies' convex hulls are apart if and only if the origin lies outside
+//! `D = hull(shadow Q) - hull(shadow P)`. The point of `D` nearest to the origin is narrowed down as
+//! Gilbert, Johnson and Keerthi do (IEEE J. Robotics and Automation 4(2), 1988), in the plane: a
+//! simplex of points of `D`, its point `v` nearest to the origin, the lowest point of `D` along `v`.
+//! It ends as soon as that point is above the origin by more than rounding: then `v` is a normal, and
+//! nothing of the search is needed to check it. Lowest points come from the bodies' trees.
+
+use glam::{DVec2, DVec3};
+
+use super::scene::{Scene, Side};
+use super::search::children;
+use crate::answer::{CertificateError, Separation};
+use crate::number::noise::UNIT_VECTOR;
+
+/// Each round ends or comes closer; rounding alone could make it last.
+const MOST_ROUNDS: usize = 32;
+/// Rounding of a gap, in multiples of the blur of coordinates: half of it for each of two points that
+/// are taken for the farthest, and what computing them takes.
+const ROUNDING: f64 = 4.0;
+
+/// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one.
+pub(super) fn separation(scene: &Scene) -> Option<Separation> {
+    let middle = |side: &Side| {
+        let [low, high] = side.solid.bounds();
+        (side.view * ((low + high) * 0.5) + side.view_offset).truncate()
+    };
+    let mut v = middle(&scene.fixed) - middle(&scene.moving);
+    let mut simplex: Simplex = (0, [DVec2::ZERO; 3]);
+    for _ in 0..MOST_ROUNDS {
+        let axis = v.try_normalize()?;
+        let (normal, margin) = gap(scene, axis);
+        if margin > 0.0 {
+            return Some(Separation { normal, margin });
+        }
+        let lowest = lowest(scene, axis);
+        let closer = simplex.0 == 0 || axis.dot(lowest) < v.dot(axis) - ROUNDING * scene.blur;
+        if !closer {
+            return None;
+        }
+        simplex.1[simplex.0] = lowest;
+        simplex.0 += 1;
+        (simplex, v) = nearest(simplex)?;
+    }
+    None
+}
+
+/// Checks a separating plane; the margin that is proven.
+///
+/// # Errors
+/// It is none.
+pub(super) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, CertificateError> {
+    let normal = separation.normal;
+    let unit = (normal.length() - 1.0).abs() <= UNIT_VECTOR;
+    if !unit || (normal.dot(scene.direction) / scene.length).abs() > UNIT_VECTOR {
+        return Err(CertificateError::Normal { normal });
+    }
+    let proven = margin_along(scene, normal);
+    let claimed = separation.margin;
+    if claimed > 0.0 && claimed <= proven {
+        Ok(proven)
+    } else {
+        Err(CertificateError::Bound { proven, claimed })
+    }
+}
+
+/// Points of `D`, the first so many.
+type Simplex = (usize, [DVec2; 3]);
+
+/// The unit normal of an axis of the shadow plane, and the margin that it proves.
+fn gap(scene: &Scene, axis: DVec2) -> (DVec3, f64) {
+    let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
+    (normal, margin_along(scene, normal))
+}
+
+fn margin_along(scene: &Scene, normal: DVec3) -> f64 {
+    let (p, q) = (&scene.moving, &scene.fixed);
+    let fixed = height(q, normal, support(q, -normal)) + normal.dot(q.offset[0]);
+    // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
+    let closing = (normal.dot(scene.direction) / scene.length).abs() * scene.size();
+    fixed - height(p, normal, support(p, normal)) - ROUNDING * scene.blur - closing
+}
+
+fn height(side: &Side, normal: DVec3, vertex: u32) -> f64 {
+    normal.dot(side.matrix * side.vertex(vertex))
+}
+
+/// The lowest point of `D` along an axis.
+fn lowest(scene: &Scene, axis: DVec2) -> DVec2 {
+    let normal = scene.frame.transpose() * axis.extend(0.0);
+    let at = |side: &Side, normal: DVec3| side.corner(support(side, normal)).at.truncate();
+    at(&scene.fixed, -normal) - at(&scene.moving, normal)
+}
+
+/// The vertex farthest along a normal of the world, from the tree.
+fn support(side: &Side, normal: DVec3) -> u32 {
+    let local = side.matrix.transpose() * normal;
+    let swell = side.shrinking.map_or(0.0, |s| s.farthest * side.amount.abs());
+    let mut best = (f64::NEG_INFINITY, side.solid.triangles()[0][0]);
+    search(side, local, swell, 0, &mut best);
+    best.1
+}
+
+fn search(side: &Side, local: DVec3, swell: f64, at: u32, best: &mut (f64, u32)) {
+    let nodes = side.solid.nodes();
+    let node = &nodes[at as usize];
+    if node.is_leaf() {
+        for v in node.facets().flat_map(|t| side.solid.triangles()[t]) {
+            let height = local.dot(side.vertex(v));
+            if height > best.0 {
+                *best = (height, v);
+            }
+        }
+        return;
+    }
+    let bound = |k: u32| {
+        let node = &nodes[k as usize];
+        let far = DVec3::select(local.cmpgt(DVec3::ZERO), node.high, node.low);
+        local.dot(far) + swell
+    };
+    let mut parts = children(node, at).map(|k| (bound(k), k));
+    if parts[1].0 > parts[0].0 {
+        parts.swap(0, 1);
+    }
+    // Of a flat face that the normal looks along all vertices are farthest: one of them will do.
+    let tie = 8.0 * f64::EPSILON * side.solid.reach();
+    for (bound, k) in parts {
+        if bound > best.0 + tie {
+            search(side, local, swell, k, best);
+        }
+    }
+}
+
+/// The point of a simplex nearest to the origin and the part of the simplex that it lies on; `None`
+/// if the origin is in it.
+fn nearest((count, points): Simplex) -> Option<(Simplex, DVec2)> {
+    let [a, b, c] = points;
+    match count {
+        1 => Some(((1, points), a)),
+        2 => Some(on_side(a, b)),
+        _ => {
+            let area = (b - a).perp_dot(c - a);
+            let inside = |p: DVec2, q: DVec2| p.perp_dot(q) * area >= 0.0;
+            if area != 0.0 && inside(a, b) && inside(b, c) && inside(c, a) {
+                return None;
+            }
+            let sides = [on_side(a, b), on_side(b, c), on_side(c, a)];
+            sides.into_iter().min_by(|x, y| x.1.length_squared().total_cmp(&y.1.length_squared()))
+        }
+    }
+}
+
+fn on_side(a: DVec2, b: DVec2) -> (Simplex, DVec2) {
+    let along = b - a;
+    let share = -a.dot(along) / along.length_squared();
+    if share > 0.0 && share < 1.0 {
+        ((2, [a, b, DVec2::ZERO]), a + along * share)
+    } else if share >= 1.0 {
+        ((1, [b, DVec2::ZERO, DVec2::ZERO]), b)
+    } else {
+        ((1, [a, DVec2::ZERO, DVec2::ZERO]), a)
+    }
+}

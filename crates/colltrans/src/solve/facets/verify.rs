@@ -1,0 +1,170 @@
+//! Proofs between solids checked: each entry by itself, without a search.
+
+use std::cmp::Ordering;
+
+use super::bound::{Reason, Shade, holds};
+use super::leaf::{self, Facet};
+use super::overlap::{is_overlap, leaves_apart, nested, never_overlap};
+use super::proof::{
+    Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves, node_rounding,
+};
+use super::scene::Scene;
+use super::search::{Aim, SLACK};
+use super::separate;
+use crate::answer::{CertificateError, Separation};
+use crate::body::solid::Solid;
+use crate::cast::Cast;
+
+/// A proof between solids: of a clearance, or of a plane between the bodies.
+#[derive(Debug, Clone, Copy)]
+pub enum SolidProof<'a> {
+    /// Of an answer.
+    Clearance(&'a SolidCertificate),
+    /// Of the bodies never meeting.
+    Separation(&'a Separation),
+}
+
+impl<'a> From<&'a SolidCertificate> for SolidProof<'a> {
+    fn from(certificate: &'a SolidCertificate) -> Self {
+        Self::Clearance(certificate)
+    }
+}
+
+impl<'a> From<&'a Separation> for SolidProof<'a> {
+    fn from(separation: &'a Separation) -> Self {
+        Self::Separation(separation)
+    }
+}
+
+impl Cast<'_, Solid> {
+    /// Checks a [`SolidCertificate`] or a [`Separation`] against the two bodies, and returns how far
+    /// the two bounds of the distance are apart, in multiples of the direction (0 where nothing stops
+    /// the body), or the margin, in world units.
+    ///
+    /// The cast must be the one that was answered, with its options. Every entry of a cover is checked
+    /// by the boxes, slabs and normals of its two nodes, or by its facets; what a search does to find
+    /// them plays no part.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify<'p>(&self, proof: impl Into<SolidProof<'p>>) -> Result<f64, CertificateError> {
+        match proof.into() {
+            SolidProof::Clearance(certificate) => self.verify_clearance(certificate),
+            SolidProof::Separation(separation) => separate::verify(&self.asked(), separation),
+        }
+    }
+
+    fn verify_clearance(&self, certificate: &SolidCertificate) -> Result<f64, CertificateError> {
+        let SolidCertificate { tolerance, start, lower, stop, cover } = certificate;
+        let (claimed, asked) = (*tolerance, self.tolerance());
+        if claimed != asked {
+            return Err(CertificateError::OtherTolerance { claimed, asked });
+        }
+        let scene = self.asked();
+        let options = self.options();
+        self.verify_start(&scene, start)?;
+        let Some(aim) = certificate.aim(options) else {
+            let plain = *lower == 0.0 && stop.is_none() && cover.is_empty();
+            return if plain { Ok(0.0) } else { Err(CertificateError::Cover { entry: 0 }) };
+        };
+        verify_cover(&scene, aim, cover, *lower)?;
+        let end = options.before.unwrap_or(f64::INFINITY);
+        let Some(stop) = stop else {
+            // Nothing before the end, to within rounding.
+            let tolerance = node_rounding(&scene) / scene.length + 4.0 * f64::EPSILON * end;
+            let reached = *lower >= end || *lower >= end - 2.0 * tolerance;
+            let (proven, claimed) = (*lower, end);
+            let unproven = CertificateError::Bound { proven, claimed };
+            return if reached { Ok(0.0) } else { Err(unproven) };
+        };
+        verify_stop(&scene, aim, stop)?;
+        let gap = stop.distance - *lower;
+        let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.blur / scene.length;
+        if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
+            Ok(gap.max(0.0))
+        } else {
+            Err(CertificateError::Bound { proven: *lower, claimed: stop.distance })
+        }
+    }
+
+    fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
+        let assumed = self.options().overlapping.is_some();
+        let holds = match start {
+            StartProof::Assumed => assumed,
+            StartProof::Overlapping(overlap) => !assumed && is_overlap(scene, *overlap),
+            StartProof::Apart(cover) => return verify_apart(scene, cover),
+        };
+        if holds { Ok(()) } else { Err(CertificateError::Start) }
+    }
+}
+
+/// Checks that the interiors are disjoint where the bodies are.
+fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
+    let bodies = [scene.moving.solid, scene.fixed.solid];
+    let shade = |moving: bool, at: u32| Shade::new(scene, scene.side(moving), at as usize);
+    let whole = never_overlap(scene, &shade(true, 0), &shade(false, 0));
+    let walked = cover.walk(bodies, |_, nodes, reason| match reason {
+        Reason::Disjoint if nodes == [0, 0] && whole => true,
+        Reason::Disjoint | Reason::FaceToFace => {
+            holds(scene, &shade(true, nodes[0]), &shade(false, nodes[1]), reason, 0.0)
+        }
+        Reason::Examined => {
+            let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
+            a.is_leaf() && b.is_leaf() && leaves_apart(scene, a, b)
+        }
+        _ => false,
+    });
+    walked.map_err(|entry| CertificateError::Cover { entry })?;
+    if !whole && nested(scene).is_some() {
+        return Err(CertificateError::Start);
+    }
+    Ok(())
+}
+
+/// Checks that no pair of facets contributes less than a translation.
+fn verify_cover(
+    scene: &Scene,
+    aim: Aim,
+    cover: &Cover,
+    lower: f64,
+) -> Result<(), CertificateError> {
+    if lower.is_nan() || lower < 0.0 {
+        return Err(CertificateError::Cover { entry: 0 });
+    }
+    let bodies = [scene.moving.solid, scene.fixed.solid];
+    // One rounding of the division, and one of this product.
+    let least = (lower * scene.length) * (1.0 - 2.0 * f64::EPSILON);
+    let walked = cover.walk(bodies, |_, nodes, reason| {
+        if reason != Reason::Examined {
+            return cut_holds(scene, aim, nodes, reason, least);
+        }
+        let leaf = |k: usize| bodies[k].nodes()[nodes[k] as usize].is_leaf();
+        leaf(0) && leaf(1) && (least <= 0.0 || least_of_leaves(scene, aim, nodes, least) >= least)
+    });
+    walked.map_err(|entry| CertificateError::Cover { entry })
+}
+
+/// Checks that two facets stop the body where it is said.
+fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), CertificateError> {
+    let [s, t] = stop.triangles;
+    let refused = CertificateError::Facets { moving: s, fixed: t };
+    let within = |side: bool, k: u32| (k as usize) < scene.side(side).solid.triangles().len();
+    if !within(true, s) || !within(false, t) {
+        return Err(refused);
+    }
+    let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
+    let g = Facet::facing(scene, false, t as usize, Ordering::Less);
+    let (Some(f), Some(g)) = (f, g) else { return Err(refused) };
+    let facing = leaf::gap(scene, &f, &g, f64::INFINITY, aim.wanted());
+    if facing.and_then(|gap| aim.value(&gap)).is_none() {
+        return Err(refused);
+    }
+    let gap = leaf::sharpened(scene, &f, &g);
+    let proven = aim.clamp(gap.least) / scene.length;
+    let tolerance = (gap.error + leaf::FINE * scene.blur) / scene.length;
+    if (stop.distance - proven).abs() <= tolerance {
+        Ok(())
+    } else {
+        Err(CertificateError::Bound { proven, claimed: stop.distance })
+    }
+}

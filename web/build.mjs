@@ -9,6 +9,7 @@ import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } 
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
+import { shaders } from "./shaders.mjs";
 import { serve } from "./serve.mjs";
 import { Missing, toolchain } from "./toolchain.mjs";
 
@@ -48,6 +49,7 @@ await build({
   format: "esm",
   target: "es2022",
   legalComments: "none",
+  plugins: [shaders],
   outdir: out,
   logLevel: "warning",
 });

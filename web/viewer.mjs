@@ -5,6 +5,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
+import { shaders } from "./shaders.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const kept = join(here, "../crates/colltrans-assembly/assets/viewer.js");
@@ -16,6 +17,7 @@ const { outputFiles } = await build({
   format: "iife",
   target: "es2022",
   legalComments: "none",
+  plugins: [shaders],
   write: false,
   logLevel: "warning",
 });

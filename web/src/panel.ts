@@ -252,7 +252,7 @@ export class AnswerPanel {
     const { check } = this;
     const judged = verdict && h("span", { class: `verdict ${verdict.holds ? "yes" : "no"}`, role: "status" }, verdict.text);
     if (answer.kind === "solid") {
-      this.proof.replaceChildren(h("p", { class: "proof" }, "Answers for parts that are not convex are decided exactly, but carry no certificate yet."));
+      this.proof.replaceChildren(h("p", { class: "proof" }, "Decided exactly. The library also makes a certificate of such an answer, a list of claims that covers all pairs of facets (Cast::certified_clearance); this page does not show it."));
       return;
     }
     if (answer.outcome === "separated") {

@@ -49,20 +49,17 @@ export function drawn(body: Body): Drawn {
   const middle = times(add(body.facts.low, body.facts.high), 0.5);
   const radius = Math.max(length(sub(body.facts.high, body.facts.low)) / 2, Number.MIN_VALUE);
   const { vertices, triangles } = body;
+  const relative = (indices: Uint32Array): BufferAttribute => {
+    const points = new Float32Array(3 * indices.length);
+    for (let k = 0; k < indices.length; k++) {
+      const v = 3 * indices[k]!;
+      for (let c = 0; c < 3; c++) points[3 * k + c] = vertices[v + c]! - middle[c]!;
+    }
+    return new BufferAttribute(points, 3);
+  };
   // Corners are not shared: every facet has its own shade.
-  const corners = new Float32Array(3 * triangles.length);
-  triangles.forEach((v, k) => {
-    for (let c = 0; c < 3; c++) corners[3 * k + c] = vertices[3 * v + c]! - middle[c]!;
-  });
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(corners, 3));
-  geometry.computeVertexNormals();
-  const ends = new Float32Array(3 * body.edges.length);
-  body.edges.forEach((v, k) => {
-    for (let c = 0; c < 3; c++) ends[3 * k + c] = vertices[3 * v + c]! - middle[c]!;
-  });
-  const edges = new BufferGeometry();
-  edges.setAttribute("position", new BufferAttribute(ends, 3));
+  const geometry = new BufferGeometry().setAttribute("position", relative(triangles));
+  const edges = new BufferGeometry().setAttribute("position", relative(body.edges));
   return { body, middle, radius, geometry, edges };
 }
 

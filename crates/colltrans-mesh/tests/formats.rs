@@ -110,7 +110,8 @@ fn obj_keeps_order_polygons_and_negative_indices() {
     assert_eq!(mesh.faces, [vec![4, 3, 2, 1], vec![1, 2, 3]]);
     let points = read(Format::Obj, "v 0 0 0\nv 1 0 0\n").unwrap();
     assert_eq!((points.vertices.len(), points.faces.len()), (2, 0));
-    assert_eq!(read(Format::Obj, "").unwrap(), Mesh::default());
+    assert_eq!(read(Format::Obj, "# nothing\n").unwrap(), Mesh::default());
+    assert!(read(Format::Obj, "").unwrap_err().to_string().contains("the file is empty"));
 }
 
 #[test]

@@ -20,7 +20,8 @@ const MOST_ROUNDS: usize = 32;
 /// are taken for the farthest, and what computing them takes.
 const ROUNDING: f64 = 4.0;
 
-/// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one.
+/// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one; not
+/// always where large faces are apart by no more than they were shrunk.
 pub(super) fn separation(scene: &Scene) -> Option<Separation> {
     let middle = |side: &Side| {
         let [low, high] = side.solid.bounds();
@@ -76,58 +77,92 @@ fn gap(scene: &Scene, axis: DVec2) -> (DVec3, f64) {
 
 fn margin_along(scene: &Scene, normal: DVec3) -> f64 {
     let (p, q) = (&scene.moving, &scene.fixed);
-    let fixed = height(q, normal, support(q, -normal)) + normal.dot(q.offset[0]);
+    let fixed = normal.dot(q.offset[0]) - Farthest::new(q, -normal).reach();
     // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
     let closing = (normal.dot(scene.direction) / scene.length).abs() * scene.size();
-    fixed - height(p, normal, support(p, normal)) - ROUNDING * scene.blur - closing
-}
-
-fn height(side: &Side, normal: DVec3, vertex: u32) -> f64 {
-    normal.dot(side.matrix * side.vertex(vertex))
+    fixed - Farthest::new(p, normal).reach() - ROUNDING * scene.blur - closing
 }
 
 /// The lowest point of `D` along an axis.
 fn lowest(scene: &Scene, axis: DVec2) -> DVec2 {
     let normal = scene.frame.transpose() * axis.extend(0.0);
-    let at = |side: &Side, normal: DVec3| side.corner(support(side, normal)).at.truncate();
+    let at =
+        |side: &Side, normal: DVec3| side.corner(Farthest::new(side, normal).vertex).at.truncate();
     at(&scene.fixed, -normal) - at(&scene.moving, normal)
 }
 
-/// The vertex farthest along a normal of the world, from the tree.
-fn support(side: &Side, normal: DVec3) -> u32 {
-    let local = side.matrix.transpose() * normal;
-    let swell = side.shrinking.map_or(0.0, |s| s.farthest * side.amount.abs());
-    let mut best = (f64::NEG_INFINITY, side.solid.triangles()[0][0]);
-    search(side, local, swell, 0, &mut best);
-    best.1
+/// Leaves that are looked into for one farthest vertex. More are needed where a large flat face is
+/// tied with itself and shrinking has made its vertices differ.
+const MOST_LEAVES: u32 = 64;
+
+/// The vertex of a body farthest along a normal of the world, from the tree.
+struct Farthest<'s, 'a> {
+    side: &'s Side<'a>,
+    /// The normal in the body's frame.
+    local: DVec3,
+    /// How far shrinking may have moved a vertex out of its node.
+    swell: f64,
+    /// Of what was looked at, the farthest; its height along the normal from the body's origin.
+    vertex: u32,
+    height: f64,
+    /// Bound on the heights of what was not looked at.
+    beyond: f64,
+    leaves: u32,
 }
 
-fn search(side: &Side, local: DVec3, swell: f64, at: u32, best: &mut (f64, u32)) {
-    let nodes = side.solid.nodes();
-    let node = &nodes[at as usize];
-    if node.is_leaf() {
-        for v in node.facets().flat_map(|t| side.solid.triangles()[t]) {
-            let height = local.dot(side.vertex(v));
-            if height > best.0 {
-                *best = (height, v);
+impl<'s, 'a> Farthest<'s, 'a> {
+    fn new(side: &'s Side<'a>, normal: DVec3) -> Self {
+        let mut search = Self {
+            side,
+            local: side.matrix.transpose() * normal,
+            swell: side.shrinking.map_or(0.0, |s| s.farthest * side.amount.abs()),
+            vertex: side.solid.triangles()[0][0],
+            height: f64::NEG_INFINITY,
+            beyond: f64::NEG_INFINITY,
+            leaves: 0,
+        };
+        search.visit(0);
+        search
+    }
+
+    /// No vertex is farther along the normal, up to rounding.
+    fn reach(&self) -> f64 {
+        self.height.max(self.beyond)
+    }
+
+    fn visit(&mut self, at: u32) {
+        let nodes = self.side.solid.nodes();
+        let node = &nodes[at as usize];
+        if node.is_leaf() {
+            self.leaves += 1;
+            for v in node.facets().flat_map(|t| self.side.solid.triangles()[t]) {
+                let height = self.local.dot(self.side.vertex(v));
+                if height > self.height {
+                    (self.height, self.vertex) = (height, v);
+                }
             }
+            return;
         }
-        return;
-    }
-    let bound = |k: u32| {
-        let node = &nodes[k as usize];
-        let far = DVec3::select(local.cmpgt(DVec3::ZERO), node.high, node.low);
-        local.dot(far) + swell
-    };
-    let mut parts = children(node, at).map(|k| (bound(k), k));
-    if parts[1].0 > parts[0].0 {
-        parts.swap(0, 1);
-    }
-    // Of a flat face that the normal looks along all vertices are farthest: one of them will do.
-    let tie = 8.0 * f64::EPSILON * side.solid.reach();
-    for (bound, k) in parts {
-        if bound > best.0 + tie {
-            search(side, local, swell, k, best);
+        let bound = |k: u32| {
+            let node = &nodes[k as usize];
+            let far = DVec3::select(self.local.cmpgt(DVec3::ZERO), node.high, node.low);
+            self.local.dot(far) + self.swell
+        };
+        let mut parts = children(node, at).map(|k| (bound(k), k));
+        if parts[1].0 > parts[0].0 {
+            parts.swap(0, 1);
+        }
+        // Of a flat face that the normal looks along all vertices are farthest: one of them will do.
+        let tie = 8.0 * f64::EPSILON * self.side.solid.reach();
+        for (bound, k) in parts {
+            if bound <= self.height + tie {
+                continue;
+            }
+            if self.leaves < MOST_LEAVES {
+                self.visit(k);
+            } else {
+                self.beyond = self.beyond.max(bound);
+            }
         }
     }
 }

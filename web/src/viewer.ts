@@ -66,7 +66,7 @@ class Viewer {
     sun.target.position.set(0, 0, -1);
     this.scene.add(this.camera, new AmbientLight(0xffffff, 1.25));
     this.camera.up.set(0, 0, 1);
-    const far = (1.15 * data.size) / 2 / Math.sin((this.camera.fov * Math.PI) / 360);
+    const far = (1.6 * data.size) / 2 / Math.sin((this.camera.fov * Math.PI) / 360);
     this.camera.position.set(0.62, -0.68, 0.45).normalize().multiplyScalar(far);
     [this.camera.near, this.camera.far] = [far / 1e3, far * 1e3];
     const orbit = new OrbitControls(this.camera, canvas);

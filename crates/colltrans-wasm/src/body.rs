@@ -24,6 +24,7 @@ const MOST_BYTES: usize = 400 << 20;
 
 /// A body in use.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "there are two, and they stay where they are")]
 pub(crate) enum Part {
     Convex(Hull),
     Solid(Facets),
@@ -131,9 +132,10 @@ pub(crate) fn build(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, Answer
 
 fn refused_hull(name: &str, error: &BuildError) -> Refusal {
     let instead = match error {
-        BuildError::NotConvex { .. } | BuildError::InsideOut { .. } => vec!["solid", "hull"],
         BuildError::Topology(colltrans::TopologyError::OpenEdge { .. }) => vec!["hull", "open"],
-        BuildError::Topology(_) => vec!["solid", "hull"],
+        BuildError::NotConvex { .. } | BuildError::InsideOut { .. } | BuildError::Topology(_) => {
+            vec!["solid", "hull"]
+        }
         _ => Vec::new(),
     };
     Refusal { error: format!("{name}: {error}"), instead }

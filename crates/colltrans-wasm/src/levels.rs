@@ -21,7 +21,7 @@ use crate::question::Levels;
 const MOST_PAIRS: usize = 1 << 14;
 
 pub(crate) fn levels(bodies: [&Hull; 2], asked: &Levels) -> Result<Answer, Refusal> {
-    if asked.levels[0].len().saturating_mul(asked.levels[1].len()) > MOST_PAIRS {
+    if asked.at[0].len().saturating_mul(asked.at[1].len()) > MOST_PAIRS {
         return Err(format!("more than {MOST_PAIRS} pairs of levels").into());
     }
     let whole = query(bodies, &asked.pair)?;
@@ -30,8 +30,8 @@ pub(crate) fn levels(bodies: [&Hull; 2], asked: &Levels) -> Result<Answer, Refus
         let axis = pose.matrix().transpose() * DVec3::from_array(axis);
         levels.iter().map(|level| Section::new(body, &pose, axis, *level)).collect::<Vec<_>>()
     };
-    let moving = cut(whole.moving(), whole.moving_pose(), asked.axes[0], &asked.levels[0]);
-    let fixed = cut(whole.fixed(), whole.fixed_pose(), asked.axes[1], &asked.levels[1]);
+    let moving = cut(whole.moving(), whole.moving_pose(), asked.axes[0], &asked.at[0]);
+    let fixed = cut(whole.fixed(), whole.fixed_pose(), asked.axes[1], &asked.at[1]);
     let mut values = Vec::with_capacity(moving.len() * fixed.len());
     for p in &moving {
         for q in &fixed {
@@ -41,7 +41,7 @@ pub(crate) fn levels(bodies: [&Hull; 2], asked: &Levels) -> Result<Answer, Refus
     let counts =
         |sections: &[Section]| sections.iter().map(|s| s.corners.len()).collect::<Vec<_>>();
     let mut answer = Answer::of(&json!({ "moving": counts(&moving), "fixed": counts(&fixed) }));
-    let corners = moving.iter().chain(&fixed).flat_map(|s| &s.corners).flat_map(|c| c.to_array());
+    let corners = moving.iter().chain(&fixed).flat_map(|s| &s.corners).flat_map(DVec3::to_array);
     values.into_iter().chain(corners).for_each(|x| answer.numbers.extend(x.to_le_bytes()));
     Ok(answer)
 }

@@ -106,7 +106,7 @@ pub(crate) struct Levels {
     /// Section axes in the world.
     pub(crate) axes: [[f64; 3]; 2],
     /// Levels of the moving and of the fixed body's sections, each in its own frame.
-    pub(crate) levels: [Vec<f64>; 2],
+    pub(crate) at: [Vec<f64>; 2],
 }
 
 impl Question {
@@ -226,7 +226,7 @@ impl<'a> Fields<'a> {
         Ok(Levels {
             pair: self.pair()?,
             axes: [self.array("moving_axis")?, self.array("fixed_axis")?],
-            levels: [self.list("moving_levels")?, self.list("fixed_levels")?],
+            at: [self.list("moving_levels")?, self.list("fixed_levels")?],
         })
     }
 }

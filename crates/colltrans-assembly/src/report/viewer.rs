@@ -65,11 +65,8 @@ fn data(f: &Findings) -> Value {
 /// Vertices relative to the middle of the assembly, in single precision.
 fn part(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
     let solid = part.solid();
-    let mut vertices = Vec::with_capacity(12 * solid.vertices().len());
-    for v in solid.vertices() {
-        let at = (*v - middle).as_vec3().to_array();
-        at.iter().for_each(|c| vertices.extend(c.to_le_bytes()));
-    }
+    let places = solid.vertices().iter().flat_map(|v| (*v - middle).as_vec3().to_array());
+    let vertices: Vec<u8> = places.flat_map(f32::to_le_bytes).collect();
     let corners = solid.triangles().iter().flatten();
     let triangles: Vec<u8> = corners.flat_map(|v| v.to_le_bytes()).collect();
     json!({

@@ -417,6 +417,6 @@ fn files_that_hold_nothing_are_named_as_such() {
     for (format, _) in texts() {
         assert!(message(format, Vec::new()).ends_with("end of file: the file is empty"));
     }
-    let header = message(Format::Ply, b"ply\nformat ascii 1.0\nend_header\n".to_vec());
+    let header = message(Format::Ply, b"ply\nformat ascii 1.0\nend_header\n");
     assert!(header.ends_with("header: there is no element `vertex`"), "{header}");
 }

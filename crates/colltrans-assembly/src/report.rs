@@ -6,6 +6,7 @@ pub mod glb;
 pub mod graph;
 pub mod html;
 pub mod scene;
+mod viewer;
 
 use glam::DVec3;
 

@@ -23,7 +23,8 @@ use crate::text::{quoted, without_mark};
 pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let bytes = with_line_feeds(without_mark(bytes)?);
     let mut reader = Reader::new(&*bytes);
-    let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|e| fault(&e, true))?;
+    // Any kind of element will do for the header.
+    let header = Parser::<Vertex>::new().read_header(&mut reader).map_err(|e| fault(&e, true))?;
     let text = header.encoding == Encoding::Ascii;
     let fault = |e| fault(&e, text);
     check_counts(&header, reader.get_ref().len())?;

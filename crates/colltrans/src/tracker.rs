@@ -15,7 +15,7 @@ use crate::answer::{
 use crate::body::ConvexPolyhedron;
 use crate::cast::{Cast, clearance_of, depth_of, intersection_of, range_of};
 use crate::error::QueryError;
-use crate::solve::observe::Nobody;
+use crate::solve::observe::{Nobody, Observer};
 use crate::solve::options::{Focus, Region};
 use crate::solve::{WarmStart, search};
 
@@ -101,8 +101,20 @@ impl<'a> Tracker<'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn first_contact(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
+        self.first_contact_observed(cast, &mut Nobody)
+    }
+
+    /// The same, with somebody who looks on, as for [`Cast::first_contact_observed`].
+    ///
+    /// # Errors
+    /// As [`Cast::first_contact`].
+    pub fn first_contact_observed<O: Observer>(
+        &mut self,
+        cast: &Cast<'a>,
+        observer: &mut O,
+    ) -> Result<Outcome, QueryError> {
         self.begin(cast);
-        self.run(cast, 0)
+        self.run(cast, 0, observer)
     }
 
     /// [`Cast::contact_range`], starting from the last answer.
@@ -138,7 +150,7 @@ impl<'a> Tracker<'a> {
     /// As [`Cast::first_contact`].
     pub fn intersects(&mut self, cast: &Cast<'a>) -> Result<Intersection, QueryError> {
         self.begin(cast);
-        intersection_of(cast, |cast| self.run(cast, BETWEEN_CENTERS))
+        intersection_of(cast, |cast| self.run(cast, BETWEEN_CENTERS, &mut Nobody))
     }
 
     /// A query begins: the warm starts change places if it looks the other way, and are of no use
@@ -162,15 +174,20 @@ impl<'a> Tracker<'a> {
 
     /// A cast along the direction of the query, or against it.
     fn run_either_way(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
-        self.run(cast, usize::from(cast.direction().dot(self.direction) < 0.0))
+        self.run(cast, usize::from(cast.direction().dot(self.direction) < 0.0), &mut Nobody)
     }
 
     /// One cast of a query.
     #[inline]
-    fn run(&mut self, cast: &Cast<'a>, which: usize) -> Result<Outcome, QueryError> {
+    fn run<O: Observer>(
+        &mut self,
+        cast: &Cast<'a>,
+        which: usize,
+        observer: &mut O,
+    ) -> Result<Outcome, QueryError> {
         let warm_start = &mut self.warm_starts[which];
         // Matched in place: an outcome is large, and moving it costs a tenth of a coherent query.
-        let outcome = search(&cast.setting, &cast.options, &self.focus, warm_start, &mut Nobody);
+        let outcome = search(&cast.setting, &cast.options, &self.focus, warm_start, observer);
         if let Ok(outcome) = &outcome {
             self.steps.add(&outcome.steps());
         }

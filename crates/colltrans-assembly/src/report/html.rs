@@ -1,11 +1,11 @@
-//! One HTML file: offline, without scripts, its pictures drawn into it.
+//! One HTML file: offline, its pictures drawn into it; without scripts only the viewer is missing.
 
 use std::fmt::Write;
 
 use glam::DVec3;
 
 use super::scene::{self, Arrow, Shown};
-use super::{Findings, arrow, escaped, graph, short};
+use super::{Findings, arrow, escaped, graph, short, viewer};
 use crate::blocking::Blocking;
 use crate::map;
 use crate::rooms::PartRoom;
@@ -33,6 +33,7 @@ pub fn page(f: &Findings, title: &str) -> String {
         escaped(title)
     );
     overview(&mut text, f);
+    text.push_str(&viewer::section(f));
     overlaps(&mut text, f);
     steps(&mut text, f);
     stuck(&mut text, f);

@@ -233,6 +233,17 @@ impl Cast<'_> {
         range_of(self, Self::first_contact)
     }
 
+    /// The same, with somebody who looks on, as for [`Self::first_contact_observed`].
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    pub fn contact_range_observed<O: Observer>(
+        &self,
+        observer: &mut O,
+    ) -> Result<ContactRange, QueryError> {
+        range_of(self, |cast| cast.first_contact_observed(observer))
+    }
+
     /// How far the moving body can move from where it is.
     ///
     /// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding,
@@ -255,6 +266,17 @@ impl Cast<'_> {
     /// ```
     pub fn clearance(&self) -> Result<Clearance, QueryError> {
         clearance_of(self, Self::first_contact)
+    }
+
+    /// The same, with somebody who looks on, as for [`Self::first_contact_observed`].
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    pub fn clearance_observed<O: Observer>(
+        &self,
+        observer: &mut O,
+    ) -> Result<Clearance, QueryError> {
+        clearance_of(self, |cast| cast.first_contact_observed(observer))
     }
 
     /// How far the moving body, where it overlaps the fixed one, has to go back against the

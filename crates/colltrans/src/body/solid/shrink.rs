@@ -173,18 +173,24 @@ impl Shrinking {
         let mut field = vec![DVec3::ZERO; solid.vertices.len()];
         let threads = thread::available_parallelism().map_or(1, usize::from);
         let chunk = field.len().div_ceil(threads).max(4_096);
-        thread::scope(|scope| {
-            for (n, part) in field.chunks_mut(chunk).enumerate() {
-                let planes = &planes;
-                scope.spawn(move || {
-                    let mut normals = Vec::new();
-                    for (k, x) in part.iter_mut().enumerate() {
-                        planes.around(n * chunk + k, &mut normals);
-                        *x = shortest(&normals).unwrap_or(DVec3::ZERO);
-                    }
-                });
+        let fill = |first: usize, part: &mut [DVec3]| {
+            let mut normals = Vec::new();
+            for (k, x) in part.iter_mut().enumerate() {
+                planes.around(first + k, &mut normals);
+                *x = shortest(&normals).unwrap_or(DVec3::ZERO);
             }
-        });
+        };
+        if field.len() <= chunk {
+            // Also where there are no threads, as in a browser.
+            fill(0, &mut field);
+        } else {
+            thread::scope(|scope| {
+                for (n, part) in field.chunks_mut(chunk).enumerate() {
+                    let fill = &fill;
+                    scope.spawn(move || fill(n * chunk, part));
+                }
+            });
+        }
         let stuck = (0..field.len() as u32).filter(|&v| field[v as usize] == DVec3::ZERO).collect();
         let most = MOST * solid.reach;
         let nodes = (0..solid.nodes.len()).map(|k| bound_node(solid, &field, most, k)).collect();

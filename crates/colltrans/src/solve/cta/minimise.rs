@@ -81,6 +81,7 @@ pub(crate) fn minimise<O: Observer>(
     watch: &mut Watch<O>,
 ) -> Narrowed {
     let sections = SectionPair::new(setting);
+    watch.sections(|| sections.told());
     watch.ended(Phase::Setup);
     let narrowed = sections.minimise(options, watch);
     let inner = sections.sides.each_ref().map(|side| side.iterations.get());

@@ -7,6 +7,7 @@ use super::side::Side;
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::sections::AxisPair;
 use crate::setting::Setting;
+use crate::solve::observe::Sections;
 
 /// Two placed bodies across the section axes that suit the direction.
 pub(super) struct SectionPair<'a> {
@@ -53,6 +54,15 @@ impl<'a> SectionPair<'a> {
             origin: DVec2::from_array(ranges.map(|r| f64::midpoint(r[0], r[1]))),
             half,
             extent: 2.0 * (half.x / along[0].abs() + half.y / along[1].abs()),
+        }
+    }
+
+    /// For those who look on.
+    pub(super) fn told(&self) -> Sections {
+        let frame = &self.frame;
+        Sections {
+            axes: [0, 1].map(|body| frame.axes[body] * frame.along[body]),
+            ranges: [0, 1].map(|body| self.sides[body].range()),
         }
     }
 }

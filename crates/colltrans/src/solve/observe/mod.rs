@@ -60,6 +60,16 @@ impl Support {
     }
 }
 
+/// The sections of a minimisation: planes across an axis of each body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sections {
+    /// The section axes of P and of Q, in the world. A point `v` of a body, in its own frame, has the
+    /// level `axis . (R v)`.
+    pub axes: [DVec3; 2],
+    /// Lowest and highest level of either body.
+    pub ranges: [[f64; 2]; 2],
+}
+
 /// One planar problem: two sections at a pair of levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarProblem {
@@ -120,6 +130,11 @@ pub trait Observer {
     /// frame).
     fn portal(&mut self, corners: impl FnOnce() -> [DVec3; 3]) {
         let _ = corners;
+    }
+
+    /// A minimisation over pairs of sections begins.
+    fn sections(&mut self, sections: impl FnOnce() -> Sections) {
+        let _ = sections;
     }
 
     /// A planar problem was solved.
@@ -186,6 +201,12 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.1.portal(|| corners);
     }
 
+    fn sections(&mut self, sections: impl FnOnce() -> Sections) {
+        let sections = sections();
+        self.0.sections(|| sections);
+        self.1.sections(|| sections);
+    }
+
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
         let problem = problem();
         self.0.planar_problem(|| problem);
@@ -241,6 +262,11 @@ impl<O: Observer> Observer for Watch<'_, O> {
     fn portal(&mut self, corners: impl FnOnce() -> [DVec3; 3]) {
         self.steps.pivots += 1;
         self.observer.portal(corners);
+    }
+
+    #[inline]
+    fn sections(&mut self, sections: impl FnOnce() -> Sections) {
+        self.observer.sections(sections);
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Cut, Observer, Phase, PlanarProblem, ShadowFrame, Support};
+use super::{Cut, Observer, Phase, PlanarProblem, Sections, ShadowFrame, Support};
 
 /// One thing that happened.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +14,8 @@ pub enum Event {
     Support(Support),
     /// A portal was reached: its corners, in the shadow frame.
     Portal([DVec3; 3]),
+    /// A minimisation over pairs of sections began.
+    Sections(Sections),
     /// A planar problem was solved.
     PlanarProblem(PlanarProblem),
     /// The region of levels was cut.
@@ -65,6 +67,10 @@ impl Observer for Recording {
 
     fn portal(&mut self, corners: impl FnOnce() -> [DVec3; 3]) {
         self.events.push(Event::Portal(corners()));
+    }
+
+    fn sections(&mut self, sections: impl FnOnce() -> Sections) {
+        self.events.push(Event::Sections(sections()));
     }
 
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {

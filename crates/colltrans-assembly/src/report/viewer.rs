@@ -1,0 +1,79 @@
+//! The plan to look at from all sides, in the report: the parts as JSON and a script that draws them.
+//!
+//! The script, `assets/viewer.js`, is built from `web/src/viewer.ts` (`npm run viewer` in `web/`),
+//! which also checks that it is what its source makes. It reads nothing but the page it is in.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use super::{Findings, arrow, tint};
+use crate::part::Part;
+
+const SCRIPT: &str = include_str!("../../assets/viewer.js");
+/// With more triangles the page would be large; the animation has them all.
+const MOST_TRIANGLES: usize = 400_000;
+
+/// A section of the report; empty without parts.
+pub(super) fn section(f: &Findings) -> String {
+    let parts = f.bodies.assembly().parts();
+    if parts.is_empty() {
+        return String::new();
+    }
+    let triangles: usize = parts.iter().map(Part::facets).sum();
+    if triangles > MOST_TRIANGLES {
+        return format!(
+            "<p>With {triangles} triangles the assembly is too large to be turned in this page: \
+             disassembly.glb shows the plan.</p>\n"
+        );
+    }
+    // Nothing in it can end the element that holds it.
+    let data = data(f).to_string().replace('<', "\\u003c");
+    format!(
+        "<div id=\"viewer\"></div>\n<script type=\"application/json\" id=\"viewer-data\">{data}\
+         </script>\n<script>{SCRIPT}</script>\n"
+    )
+}
+
+fn data(f: &Findings) -> Value {
+    let assembly = f.bodies.assembly();
+    let [low, high] = assembly.bounds();
+    let (middle, size) = ((low + high) / 2.0, (high - low).length());
+    let parts: Vec<Value> =
+        assembly.parts().iter().enumerate().map(|(k, p)| part(p, tint(k), middle)).collect();
+    let count = f.plan.steps.len();
+    let steps = f.plan.steps.iter().enumerate().map(|(k, step)| {
+        // As in the animation: the last part stays, for there is nothing to take it out of.
+        let stays = k + 1 == count && step.travel == 0.0;
+        let way = if stays { 0.0 } else { step.travel + 0.35 * size };
+        json!({
+            "parts": step.parts,
+            "way": (step.direction * way).to_array(),
+            "along": arrow(step.direction),
+            "travel": step.travel,
+        })
+    });
+    json!({
+        "unit": assembly.unit().unwrap_or_default(),
+        "size": size,
+        "parts": parts,
+        "steps": steps.collect::<Vec<_>>(),
+    })
+}
+
+/// Vertices relative to the middle of the assembly, in single precision.
+fn part(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
+    let solid = part.solid();
+    let places = solid.vertices().iter().flat_map(|v| (*v - middle).as_vec3().to_array());
+    let vertices: Vec<u8> = places.flat_map(f32::to_le_bytes).collect();
+    let corners = solid.triangles().iter().flatten();
+    let triangles: Vec<u8> = corners.flat_map(|v| v.to_le_bytes()).collect();
+    json!({
+        "name": part.name(),
+        "colour": colour,
+        "fixed": part.fixed(),
+        "vertices": STANDARD.encode(vertices),
+        "triangles": STANDARD.encode(triangles),
+    })
+}

@@ -1,0 +1,135 @@
+//! Casts between convex bodies, and the check of their proofs.
+
+use colltrans::observe::Recording;
+use colltrans::{
+    Cast, Certificate, Clearance, Contact, ContactRange, Options, Solver, Steps, VertexPair,
+    WhyFree,
+};
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use crate::body::{Hull, Lit};
+use crate::desk::{Answer, Refusal};
+use crate::pose::pose;
+use crate::question::{self, Pair, Proof};
+
+/// The query that a question asks.
+pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
+    let moving = moving.body.at(pose(pair.moving_pose, "moving")?);
+    let fixed = fixed.body.at(pose(pair.fixed_pose, "fixed")?);
+    let solver = match pair.solver {
+        question::Solver::Auto => Solver::Auto,
+        question::Solver::Cta => Solver::Cta,
+        question::Solver::Portal => Solver::Portal,
+    };
+    let options = Options { solver, graze_tolerance: pair.graze, ..Options::default() };
+    let cast = Cast::new(moving, fixed, DVec3::from_array(pair.direction));
+    Ok(cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())?)
+}
+
+pub(crate) fn work(solver: Solver, steps: &Steps) -> Value {
+    json!({
+        "solver": if solver == Solver::Cta { "cta" } else { "portal" },
+        "planar_problems": steps.planar_problems,
+        "supports": steps.supports,
+        "pivots": steps.pivots,
+        "iterations": steps.iterations,
+    })
+}
+
+/// A contact, with its proof.
+fn touch(contact: &Contact, cast: &Cast) -> Value {
+    let (points, features) = (contact.points(cast), contact.features(cast));
+    let proof = &contact.certificate;
+    json!({
+        "t": contact.translation,
+        "normal": contact.normal.to_array(),
+        "on_moving": points.on_moving.to_array(),
+        "on_fixed": points.on_fixed.to_array(),
+        "moving": Lit::of_hull(features.moving, cast.moving()).told(),
+        "fixed": Lit::of_hull(features.fixed, cast.fixed()).told(),
+        "proof": {
+            "normal": proof.normal.to_array(),
+            "lower": proof.lower,
+            // Infinite where there is none, which JSON writes as null.
+            "upper": proof.upper,
+            "pairs": proof.pairs.map(|pair| [pair.moving, pair.fixed]),
+            "weights": proof.weights,
+            "tolerance": proof.tolerance,
+        },
+    })
+}
+
+pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
+    let cast = query(bodies, pair)?;
+    // Everything here is asked with a recording, so that each solver is in the page once.
+    let seen = &mut Recording::default();
+    let range = cast.contact_range_observed(seen).map_err(|error| error.to_string())?;
+    seen.clear();
+    let clearance = cast.clearance_observed(seen).map_err(|error| error.to_string())?;
+    let exit = range.interval().map(|[_, exit]| exit);
+    let free = free(&clearance);
+    let told = match range {
+        ContactRange::Contact { first, .. } => json!({
+            "kind": "convex",
+            "outcome": "contact",
+            "first": touch(&first, &cast),
+            "exit": exit,
+            "clearance": free,
+            "steps": work(first.solver, &first.steps),
+        }),
+        ContactRange::Grazing { first, .. } => json!({
+            "kind": "convex",
+            "outcome": "grazing",
+            "first": touch(&first.contact, &cast),
+            "exit": exit,
+            "overlap": first.overlap,
+            "sideways": first.separating_direction.to_array(),
+            "clearance": free,
+            "steps": work(first.contact.solver, &first.contact.steps),
+        }),
+        ContactRange::Separated(separated) => json!({
+            "kind": "convex",
+            "outcome": "separated",
+            "sideways": separated.certificate.normal.to_array(),
+            "margin": separated.certificate.margin,
+            "clearance": free,
+            "steps": work(separated.solver, &separated.steps),
+        }),
+    };
+    Ok(Answer::of(&told))
+}
+
+/// How far the moving body can go from where it is; no distance where nothing stops it.
+fn free(clearance: &Clearance) -> Value {
+    let kind = match clearance {
+        Clearance::Blocked { .. } => "blocked",
+        Clearance::Free(WhyFree::Slides(_)) => "slides",
+        Clearance::Free(WhyFree::Behind(_)) => "behind",
+        Clearance::Free(WhyFree::Separated(_)) => "separated",
+        Clearance::Overlapping(_) => "overlapping",
+    };
+    json!({ "kind": kind, "distance": clearance.distance().filter(|d| d.is_finite()) })
+}
+
+/// Checks a proof as it was written, against the two bodies alone.
+pub(crate) fn verify(bodies: [&Hull; 2], pair: &Pair, proof: &Proof) -> Result<Answer, Refusal> {
+    let cast = query(bodies, pair)?;
+    let checked = match proof {
+        Proof::Contact(given) => cast.verify(&Certificate {
+            normal: DVec3::from_array(given.normal),
+            lower: given.lower,
+            upper: given.upper.unwrap_or(f64::INFINITY),
+            pairs: given.pairs.map(|[moving, fixed]| VertexPair { moving, fixed }),
+            weights: given.weights,
+            tolerance: given.tolerance,
+        }),
+        Proof::Separation { normal, margin } => cast
+            .verify(&colltrans::Separation { normal: DVec3::from_array(*normal), margin: *margin }),
+    };
+    let told: Value = match checked {
+        Ok(proven) => json!({ "holds": true, "proven": proven }),
+        Err(error) => json!({ "holds": false, "because": error.to_string() }),
+    };
+    Ok(Answer::of(&told))
+}

@@ -1,0 +1,246 @@
+//! The questions, as the page writes them: objects with a field `do`.
+//!
+//! Read by hand: what derived readers add would be a third of the download.
+
+use serde_json::{Map, Value};
+
+/// One question.
+#[derive(Debug)]
+pub(crate) enum Question {
+    /// The file that comes with the question becomes a body.
+    Load(Load),
+    /// When do they meet, and how far can the moving one go?
+    Cast(Pair),
+    /// Is this proof, as an answer had it, one?
+    Verify(Pair, Proof),
+    /// What does a search do?
+    Search(Search),
+    /// The collision translation of pairs of sections.
+    Levels(Levels),
+}
+
+/// Which of the two bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Slot {
+    Moving,
+    Fixed,
+}
+
+/// How a mesh becomes a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Take {
+    /// It must be convex.
+    Convex,
+    /// The convex hull of its vertices.
+    Hull,
+    /// It need not be convex, but closed.
+    Solid,
+    /// A surface that may be open.
+    Open,
+}
+
+#[derive(Debug)]
+pub(crate) struct Load {
+    pub(crate) slot: Slot,
+    /// The file's name; its extension tells the format.
+    pub(crate) name: String,
+    pub(crate) take: Take,
+}
+
+/// Two placed bodies and a direction. Poses are `x,y,z,qx,qy,qz,qw`.
+#[derive(Debug, Clone)]
+pub(crate) struct Pair {
+    pub(crate) moving_pose: [f64; 7],
+    pub(crate) fixed_pose: [f64; 7],
+    pub(crate) direction: [f64; 3],
+    /// Between convex bodies: sideways overlap that counts as grazing.
+    pub(crate) graze: f64,
+    /// Between convex bodies.
+    pub(crate) solver: Solver,
+    /// Between solids: by how much they are shrunk; what the files' precision asks for by default.
+    pub(crate) tolerance: Option<f64>,
+    /// Between solids: facets that cross at the start do not block.
+    pub(crate) ignore_overlaps: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Solver {
+    Auto,
+    Cta,
+    Portal,
+}
+
+/// A proof to check.
+#[derive(Debug)]
+pub(crate) enum Proof {
+    Contact(Certificate),
+    Separation { normal: [f64; 3], margin: f64 },
+}
+
+#[derive(Debug)]
+pub(crate) struct Certificate {
+    pub(crate) normal: [f64; 3],
+    pub(crate) lower: f64,
+    /// `None` where there is none.
+    pub(crate) upper: Option<f64>,
+    pub(crate) pairs: [[u32; 2]; 3],
+    pub(crate) weights: [f64; 3],
+    pub(crate) tolerance: f64,
+}
+
+/// A search to look at.
+#[derive(Debug)]
+pub(crate) struct Search {
+    pub(crate) pair: Pair,
+    /// The minimisation starts at the centre of all levels, as in the paper, and ends when its bounds
+    /// are this close, as a share of the bodies' extent; else as the library does by default.
+    pub(crate) from_center: Option<f64>,
+    /// A query asked before, whose answer a tracker starts from.
+    pub(crate) after: Option<Pair>,
+}
+
+/// A grid of pairs of levels.
+#[derive(Debug)]
+pub(crate) struct Levels {
+    pub(crate) pair: Pair,
+    /// Section axes in the world.
+    pub(crate) axes: [[f64; 3]; 2],
+    /// Levels of the moving and of the fixed body's sections, each in its own frame.
+    pub(crate) at: [Vec<f64>; 2],
+}
+
+impl Question {
+    /// From JSON.
+    pub(crate) fn read(text: &[u8]) -> Result<Self, String> {
+        let value: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        let Value::Object(map) = &value else { return Err("it is no object".into()) };
+        let fields = Fields(map);
+        match fields.text("do")? {
+            "load" => fields.load().map(Self::Load),
+            "cast" => fields.pair().map(Self::Cast),
+            "verify" => Ok(Self::Verify(fields.pair()?, fields.object("proof")?.proof()?)),
+            "search" => fields.search().map(Self::Search),
+            "levels" => fields.levels().map(Self::Levels),
+            other => Err(format!("nothing is known to do for {other}")),
+        }
+    }
+}
+
+/// The fields of an object.
+struct Fields<'a>(&'a Map<String, Value>);
+
+impl<'a> Fields<'a> {
+    /// `None` for what is missing or null.
+    fn get(&self, key: &str) -> Option<&'a Value> {
+        self.0.get(key).filter(|value| !value.is_null())
+    }
+
+    fn need(&self, key: &str) -> Result<&'a Value, String> {
+        self.get(key).ok_or_else(|| format!("{key} is missing"))
+    }
+
+    fn object(&self, key: &str) -> Result<Self, String> {
+        let map = self.need(key)?.as_object().ok_or_else(|| format!("{key} is no object"))?;
+        Ok(Self(map))
+    }
+
+    fn text(&self, key: &str) -> Result<&'a str, String> {
+        self.need(key)?.as_str().ok_or_else(|| format!("{key} is no text"))
+    }
+
+    fn flag(&self, key: &str) -> bool {
+        self.get(key).and_then(Value::as_bool).unwrap_or(false)
+    }
+
+    fn number(&self, key: &str) -> Result<Option<f64>, String> {
+        let number = |value: &Value| value.as_f64().ok_or_else(|| format!("{key} is no number"));
+        self.get(key).map(number).transpose()
+    }
+
+    fn list(&self, key: &str) -> Result<Vec<f64>, String> {
+        numbers(self.need(key)?).ok_or_else(|| format!("{key} is no list of numbers"))
+    }
+
+    fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], String> {
+        self.list(key)?.try_into().map_err(|_| format!("{key} does not hold {N} numbers"))
+    }
+
+    fn load(&self) -> Result<Load, String> {
+        let slot = match self.text("slot")? {
+            "moving" => Slot::Moving,
+            "fixed" => Slot::Fixed,
+            other => return Err(format!("there is no body {other}")),
+        };
+        let take = match self.text("take")? {
+            "convex" => Take::Convex,
+            "hull" => Take::Hull,
+            "solid" => Take::Solid,
+            "open" => Take::Open,
+            other => return Err(format!("a mesh cannot be taken as {other}")),
+        };
+        Ok(Load { slot, name: self.text("name")?.to_owned(), take })
+    }
+
+    fn pair(&self) -> Result<Pair, String> {
+        let solver = match self.get("solver").and_then(Value::as_str) {
+            None | Some("auto") => Solver::Auto,
+            Some("cta") => Solver::Cta,
+            Some("portal") => Solver::Portal,
+            Some(other) => return Err(format!("there is no solver {other}")),
+        };
+        Ok(Pair {
+            moving_pose: self.array("moving_pose")?,
+            fixed_pose: self.array("fixed_pose")?,
+            direction: self.array("direction")?,
+            graze: self.number("graze")?.unwrap_or(0.0),
+            solver,
+            tolerance: self.number("tolerance")?,
+            ignore_overlaps: self.flag("ignore_overlaps"),
+        })
+    }
+
+    fn proof(&self) -> Result<Proof, String> {
+        if let Ok(given) = self.object("separation") {
+            let margin = given.number("margin")?.ok_or("margin is missing")?;
+            return Ok(Proof::Separation { normal: given.array("normal")?, margin });
+        }
+        let given = self.object("contact")?;
+        let number = |key: &str| given.number(key)?.ok_or_else(|| format!("{key} is missing"));
+        Ok(Proof::Contact(Certificate {
+            normal: given.array("normal")?,
+            lower: number("lower")?,
+            upper: given.number("upper")?,
+            pairs: pairs(given.need("pairs")?).ok_or("pairs are not three pairs of vertices")?,
+            weights: given.array("weights")?,
+            tolerance: number("tolerance")?,
+        }))
+    }
+
+    fn search(&self) -> Result<Search, String> {
+        let after =
+            self.get("after").is_some().then(|| self.object("after")?.pair()).transpose()?;
+        Ok(Search { pair: self.pair()?, from_center: self.number("from_center")?, after })
+    }
+
+    fn levels(&self) -> Result<Levels, String> {
+        Ok(Levels {
+            pair: self.pair()?,
+            axes: [self.array("moving_axis")?, self.array("fixed_axis")?],
+            at: [self.list("moving_levels")?, self.list("fixed_levels")?],
+        })
+    }
+}
+
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    value.as_array()?.iter().map(Value::as_f64).collect()
+}
+
+fn pairs(value: &Value) -> Option<[[u32; 2]; 3]> {
+    let pair = |value: &Value| -> Option<[u32; 2]> {
+        let [moving, fixed] = value.as_array()?.as_slice() else { return None };
+        let vertex = |v: &Value| u32::try_from(v.as_u64()?).ok();
+        Some([vertex(moving)?, vertex(fixed)?])
+    };
+    let [a, b, c] = value.as_array()?.as_slice() else { return None };
+    Some([pair(a)?, pair(b)?, pair(c)?])
+}

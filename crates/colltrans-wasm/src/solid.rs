@@ -1,0 +1,73 @@
+//! Casts between bodies of which at least one need not be convex.
+
+use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions, StartOverlap};
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use crate::body::{Facets, Lit, Part};
+use crate::desk::{Answer, Refusal};
+use crate::pose::pose;
+use crate::question::Pair;
+
+/// Default tolerance, in multiples of the precisions of both files together: as on the command line.
+const PRECISIONS: f64 = 2.0;
+
+pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
+    let poses = [pose(pair.moving_pose, "moving")?, pose(pair.fixed_pose, "fixed")?];
+    let (moving, fixed) = (moving.facets()?, fixed.facets()?);
+    let cast = query([moving, fixed], poses, pair)?;
+    let clearance = cast.clearance();
+    let exit = cast.exit();
+    let mut told = json!({
+        "kind": "solid",
+        "exit": exit,
+        "tolerance": cast.options().tolerance,
+        "precision": moving.precision + fixed.precision,
+    });
+    let more: Value = match clearance {
+        Clearance::Free(plane) => json!({
+            "outcome": "free",
+            "sideways": plane.map(|plane| plane.normal.to_array()),
+            "margin": plane.map(|plane| plane.margin),
+        }),
+        Clearance::Overlapping(overlap) => {
+            json!({ "outcome": "overlapping", "depth": overlap.depth })
+        }
+        Clearance::Blocked { distance, contact } => {
+            let [on_moving, on_fixed] = contact.triangles;
+            json!({
+                "outcome": "blocked",
+                "distance": distance,
+                "first": {
+                    "t": contact.nominal,
+                    "normal": contact.normal.to_array(),
+                    "on_moving": contact.point_on_moving.to_array(),
+                    "on_fixed": contact.point_on_fixed.to_array(),
+                    "moving": Lit::of_solid(contact.moving_feature, on_moving, &moving.body).told(),
+                    "fixed": Lit::of_solid(contact.fixed_feature, on_fixed, &fixed.body).told(),
+                },
+            })
+        }
+    };
+    if let (Value::Object(told), Value::Object(more)) = (&mut told, more) {
+        told.extend(more);
+    }
+    Ok(Answer::of(&told))
+}
+
+fn query<'a>(
+    [moving, fixed]: [&'a Facets; 2],
+    [moving_pose, fixed_pose]: [Pose; 2],
+    pair: &Pair,
+) -> Result<Cast<'a, Solid>, Refusal> {
+    let direction = DVec3::from_array(pair.direction);
+    let placed = [moving.body.at(moving_pose), fixed.body.at(fixed_pose)];
+    let cast = Cast::new(placed[0], placed[1], direction).map_err(|error| error.to_string())?;
+    let of_files = PRECISIONS * (moving.precision + fixed.precision);
+    let tolerance = pair.tolerance.unwrap_or_else(|| of_files.max(cast.tolerance()));
+    let start_overlap =
+        if pair.ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+    let options =
+        SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() };
+    Ok(cast.with_options(options).map_err(|error| error.to_string())?)
+}

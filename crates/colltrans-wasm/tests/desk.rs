@@ -1,0 +1,141 @@
+//! The door's answers against the library itself, and the grid of `phi` against the minimisation.
+
+use colltrans_wasm::{Answer, Desk};
+use serde_json::{Value, json};
+
+const TILTED: [f64; 7] = [6.0, 1.0, 9.0, 0.2, 0.3, 0.1, 0.927_361_849_549_570_4];
+const HOME: [f64; 7] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+
+fn ask(desk: &mut Desk, question: &Value, file: Vec<u8>) -> (Value, Vec<f64>) {
+    let Answer { text, numbers } = desk.ask(question.to_string().as_bytes(), file);
+    let numbers = numbers.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
+    (serde_json::from_slice(&text).unwrap(), numbers.collect())
+}
+
+fn data(name: &str) -> Vec<u8> {
+    std::fs::read(format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+fn loaded(moving: &str, fixed: &str, take: &str) -> Desk {
+    let mut desk = Desk::default();
+    for (slot, name) in [("moving", moving), ("fixed", fixed)] {
+        let question = json!({ "do": "load", "slot": slot, "name": name, "take": take });
+        let (answer, _) = ask(&mut desk, &question, data(name));
+        assert!(answer["body"]["vertices"].as_u64().unwrap() > 0, "{answer}");
+    }
+    desk
+}
+
+fn pair(what: &str, direction: [f64; 3]) -> Value {
+    json!({ "do": what, "moving_pose": TILTED, "fixed_pose": HOME, "direction": direction })
+}
+
+#[test]
+fn a_cast_is_the_library_s() {
+    use colltrans::glam::{DQuat, DVec3};
+    use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
+
+    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let (answer, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+    let body = |name: &str| {
+        let path = format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"));
+        let mesh = colltrans_mesh::read(path).unwrap();
+        ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 1e-5 * mesh.extent()).unwrap()
+    };
+    let (moving, fixed) = (body("dodecahedron.off"), body("bracket.obj"));
+    let [x, y, z, a, b, c, w] = TILTED;
+    let start = Pose::new(DQuat::from_xyzw(a, b, c, w), DVec3::new(x, y, z)).unwrap();
+    let cast = Cast::new(moving.at(start), fixed.at(Pose::IDENTITY), DVec3::new(-0.3, 0.1, -1.0));
+    let Outcome::Contact(contact) = cast.unwrap().first_contact().unwrap() else { panic!() };
+    let first = &answer["first"];
+    assert_eq!(first["t"].as_f64().unwrap().to_bits(), contact.translation.to_bits());
+    assert_eq!(first["proof"]["lower"], json!(contact.certificate.lower));
+    assert_eq!(first["normal"], json!(contact.normal.to_array()));
+    assert_eq!(answer["clearance"]["kind"], "blocked");
+}
+
+/// The minimisation's value at a pair of levels is the collision translation of the two sections,
+/// cut out and cast as bodies of their own.
+#[test]
+fn phi_is_what_the_minimisation_says() {
+    let settings = [
+        ("dodecahedron.off", "bracket.obj", [-0.3, 0.1, -1.0]),
+        ("ellipsoid_a.obj", "ellipsoid_b.off", [-0.6, -0.1, -0.9]),
+    ];
+    for (moving, fixed, direction) in settings {
+        let mut desk = loaded(moving, fixed, "convex");
+        let length = direction.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
+        let mut question = pair("search", direction);
+        question["solver"] = json!("cta");
+        question["from_center"] = json!(1e-9);
+        let (answer, _) = ask(&mut desk, &question, Vec::new());
+        let events = answer["events"].as_array().unwrap();
+        let sections = events.iter().find(|e| e.get("sections").is_some()).unwrap();
+        let mut problems = 0;
+        for problem in events.iter().filter(|e| e["meets"] == true) {
+            let mut grid = pair("levels", direction);
+            grid["moving_axis"] = sections["sections"][0].clone();
+            grid["fixed_axis"] = sections["sections"][1].clone();
+            grid["moving_levels"] = json!([problem["planar"][0]]);
+            grid["fixed_levels"] = json!([problem["planar"][1]]);
+            let (_, numbers) = ask(&mut desk, &grid, Vec::new());
+            let value = problem["value"].as_f64().unwrap();
+            let phi = numbers[0] * length;
+            assert!((phi - value).abs() < 1e-12 * (1.0 + value.abs()), "{phi} {value}");
+            problems += 1;
+        }
+        assert!(problems > 1, "{problems}");
+    }
+}
+
+#[test]
+fn what_cannot_be_answered_is_said() {
+    let mut desk = Desk::default();
+    let mut refused = |question: Value, file: Vec<u8>, part: &str| {
+        let (answer, _) = ask(&mut desk, &question, file);
+        let error = answer["error"].as_str().unwrap().to_owned();
+        assert!(error.contains(part), "{error}");
+        answer["instead"].clone()
+    };
+    let load =
+        |name: &str| json!({ "do": "load", "slot": "moving", "name": name, "take": "convex" });
+    refused(json!([1]), Vec::new(), "no object");
+    refused(json!({ "do": "dance" }), Vec::new(), "dance");
+    refused(json!({ "do": "cast" }), Vec::new(), "moving_pose is missing");
+    refused(pair("cast", [0.0, 0.0, 1.0]), Vec::new(), "two bodies are needed");
+    refused(load("a.txt"), b"x".to_vec(), "a.txt");
+    refused(load("a.off"), b"OFF\n1 0 0\n0 0".to_vec(), "a.off");
+    let instead = refused(load("plate.off"), data("plate.off"), "plate.off");
+    assert!(instead.as_array().unwrap().contains(&json!("solid")));
+    // The file is kept: it can be taken in another way.
+    let again = json!({ "do": "load", "slot": "moving", "name": "plate.off", "take": "solid" });
+    let (answer, _) = ask(&mut desk, &again, Vec::new());
+    assert_eq!(answer["body"]["kind"], "solid");
+
+    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let (answer, _) = ask(&mut desk, &pair("cast", [0.0, 0.0, 0.0]), Vec::new());
+    assert!(answer["error"].as_str().unwrap().contains("direction"), "{answer}");
+}
+
+#[test]
+fn a_lie_is_no_proof() {
+    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let (answer, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+    let mut question = pair("verify", [-0.3, 0.1, -1.0]);
+    question["proof"] = json!({ "contact": answer["first"]["proof"] });
+    let (checked, _) = ask(&mut desk, &question, Vec::new());
+    assert_eq!(checked["holds"], true, "{checked}");
+    let lower = &mut question["proof"]["contact"]["lower"];
+    *lower = json!(lower.as_f64().unwrap() + 1e-6);
+    let (checked, _) = ask(&mut desk, &question, Vec::new());
+    assert_eq!(checked["holds"], false, "{checked}");
+}
+
+#[test]
+fn a_tracker_starts_from_the_last_answer() {
+    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let mut question = pair("search", [-0.3, 0.1, -1.0]);
+    question["after"] = pair("cast", [-0.3, 0.101, -1.0]);
+    let (answer, _) = ask(&mut desk, &question, Vec::new());
+    assert_eq!(answer["tracked"]["from"], "features");
+}

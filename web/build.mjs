@@ -1,0 +1,66 @@
+// Builds the page into `dist/`: the library for WebAssembly by cargo, the scripts by esbuild.
+//
+//   node build.mjs            once
+//   node build.mjs --serve    and serves it on this machine
+//   node build.mjs --no-wasm  only the scripts; the library as it was built last
+
+import { execFileSync } from "node:child_process";
+import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+import { shaders } from "./shaders.mjs";
+import { serve } from "./serve.mjs";
+import { Missing, toolchain } from "./toolchain.mjs";
+
+/** Without a compiler for the target it ends with 3, to be told from a failure. */
+function found() {
+  try {
+    return toolchain();
+  } catch (error) {
+    console.error(error.message);
+    process.exit(error instanceof Missing || error.code === "ENOENT" ? 3 : 1);
+  }
+}
+
+const here = dirname(fileURLToPath(import.meta.url));
+const crate = join(here, "../crates/colltrans-wasm");
+const data = join(here, "../data");
+const out = join(here, "dist");
+
+if (!process.argv.includes("--no-wasm")) {
+  const { args, env } = found();
+  execFileSync("cargo", ["build", "--profile", "page", "--lib", "--target", "wasm32-unknown-unknown", ...args], {
+    cwd: crate,
+    env: { ...process.env, ...env },
+    stdio: "inherit",
+  });
+}
+
+rmSync(out, { recursive: true, force: true });
+mkdirSync(out, { recursive: true });
+copyFileSync(join(crate, "target/wasm32-unknown-unknown/page/colltrans_wasm.wasm"), join(out, "colltrans.wasm"));
+for (const file of ["index.html", "style.css"]) copyFileSync(join(here, "src", file), join(out, file));
+cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
+await build({
+  entryPoints: [join(here, "src/main.ts"), join(here, "src/worker.ts")],
+  bundle: true,
+  minify: true,
+  format: "esm",
+  target: "es2022",
+  legalComments: "none",
+  plugins: [shaders],
+  outdir: out,
+  logLevel: "warning",
+});
+const notices = ["three"].map((name) => {
+  const folder = join(here, "node_modules", name);
+  const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+  return `${name} ${version}\n\n${readFileSync(join(folder, "LICENSE"), "utf8")}`;
+});
+writeFileSync(join(out, "LICENSES.txt"), notices.join("\n"));
+
+if (process.argv.includes("--serve")) {
+  const server = await serve(out, Number(process.env.PORT ?? 8000));
+  console.log(`http://127.0.0.1:${server.address().port}/`);
+}

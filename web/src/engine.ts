@@ -1,0 +1,193 @@
+// The library, in a worker: questions go in, answers come out, in order.
+
+import type { Pose, Vec } from "./math";
+
+export type Slot = "moving" | "fixed";
+export type Take = "convex" | "hull" | "solid" | "open";
+
+/** What is said of a body. */
+export interface BodyFacts {
+  kind: "convex" | "solid";
+  vertices: number;
+  triangles: number;
+  faces: number;
+  edges: number;
+  dimension: number;
+  closed: boolean;
+  volume: number;
+  low: Vec;
+  high: Vec;
+  notes: string[];
+}
+
+/** A body as it is drawn, in its own frame. */
+export interface Body {
+  facts: BodyFacts;
+  vertices: Float64Array;
+  triangles: Uint32Array;
+  /** The face of each triangle. */
+  faces: Uint32Array;
+  edges: Uint32Array;
+}
+
+export interface Feature {
+  kind: "vertex" | "edge" | "face";
+  /** Of the body as drawn. */
+  vertices: number[];
+  face?: number;
+  /** By the numbers of the file. */
+  file: number[];
+}
+
+export interface Certificate {
+  normal: Vec;
+  lower: number;
+  upper: number | null;
+  pairs: [number, number][];
+  weights: Vec;
+  tolerance: number;
+}
+
+export interface Touch {
+  t: number;
+  normal: Vec;
+  on_moving: Vec;
+  on_fixed: Vec;
+  moving: Feature;
+  fixed: Feature;
+  proof?: Certificate;
+}
+
+export interface Steps {
+  solver: "cta" | "portal";
+  planar_problems: number;
+  supports: number;
+  pivots: number;
+  iterations: number;
+}
+
+export interface ConvexAnswer {
+  kind: "convex";
+  outcome: "contact" | "grazing" | "separated";
+  first?: Touch;
+  exit?: number | null;
+  overlap?: number;
+  sideways?: Vec;
+  margin?: number;
+  clearance: { kind: "blocked" | "slides" | "behind" | "separated" | "overlapping"; distance?: number };
+  steps: Steps;
+}
+
+export interface SolidAnswer {
+  kind: "solid";
+  outcome: "free" | "blocked" | "overlapping";
+  first?: Touch;
+  exit: number | null;
+  distance?: number;
+  depth?: number | null;
+  tolerance: number;
+  precision: number;
+  /** Of a plane between bodies that never meet, where there is one. */
+  sideways?: Vec | null;
+  margin?: number | null;
+}
+
+export type Answer = ConvexAnswer | SolidAnswer;
+
+/** Two placed bodies and a direction. */
+export interface Pair {
+  moving_pose: Pose;
+  fixed_pose: Pose;
+  direction: Vec;
+  graze?: number;
+  solver?: "auto" | "cta" | "portal";
+  tolerance?: number | null;
+  ignore_overlaps?: boolean;
+}
+
+/** Why there is no answer, and what the same file could be taken as instead. */
+export class Refused extends Error {
+  constructor(
+    message: string,
+    readonly instead: Take[] = [],
+  ) {
+    super(message);
+  }
+}
+
+/** An answer as the worker sends it. */
+export interface Reply {
+  id: number;
+  text: string;
+  numbers: ArrayBuffer;
+  /** Milliseconds that the library took. */
+  took: number;
+}
+
+interface Waiting {
+  resolve(reply: Reply): void;
+  reject(error: Error): void;
+}
+
+export class Engine {
+  private worker: Worker | undefined;
+  private readonly waiting = new Map<number, Waiting>();
+  private next = 1;
+
+  /** The worker starts at once: the library is read while the page is still being made. */
+  constructor(private readonly script: URL) {
+    this.running();
+  }
+
+  /** A question, and the bytes of a file with it. */
+  async ask(question: object, file?: ArrayBuffer): Promise<{ facts: any; text: string; numbers: ArrayBuffer; took: number }> {
+    const id = this.next++;
+    const reply = await new Promise<Reply>((resolve, reject) => {
+      this.waiting.set(id, { resolve, reject });
+      const text = JSON.stringify(question);
+      this.running().postMessage({ id, text, file }, file ? [file] : []);
+    });
+    const facts = JSON.parse(reply.text);
+    if (facts.error !== undefined) throw new Refused(facts.error, facts.instead);
+    return { facts, text: reply.text, numbers: reply.numbers, took: reply.took };
+  }
+
+  async load(slot: Slot, name: string, take: Take, file?: ArrayBuffer): Promise<Body> {
+    const { facts, numbers } = await this.ask({ do: "load", slot, name, take }, file);
+    const body: BodyFacts = facts.body;
+    let at = 0;
+    const take64 = (count: number) => new Float64Array(numbers, (at += 8 * count) - 8 * count, count);
+    const take32 = (count: number) => new Uint32Array(numbers, (at += 4 * count) - 4 * count, count);
+    return {
+      facts: body,
+      vertices: take64(3 * body.vertices),
+      triangles: take32(3 * body.triangles),
+      faces: take32(body.triangles),
+      edges: take32(2 * facts.edges),
+    };
+  }
+
+  async cast(pair: Pair): Promise<{ answer: Answer; took: number }> {
+    const { facts, took } = await this.ask({ do: "cast", ...pair });
+    return { answer: facts, took };
+  }
+
+  private running(): Worker {
+    if (this.worker) return this.worker;
+    const worker = new Worker(this.script, { type: "module" });
+    worker.onmessage = ({ data }: MessageEvent<Reply>) => {
+      this.waiting.get(data.id)?.resolve(data);
+      this.waiting.delete(data.id);
+    };
+    worker.onerror = (event) => {
+      // What it held is lost; the next question starts another one.
+      worker.terminate();
+      this.worker = undefined;
+      const error = new Error(event.message || "the worker could not be started");
+      for (const waiting of this.waiting.values()) waiting.reject(error);
+      this.waiting.clear();
+    };
+    this.worker = worker;
+    return worker;
+  }
+}

@@ -1,0 +1,419 @@
+// The page: a question, its answer, and what is seen of it.
+//
+// The data's way: `State` (what is asked; kept in the address) -> `Engine` (the library, in a worker)
+// -> the answer -> `View`, `Shadow`, `Timeline` and the panel. One question is on its way at a time;
+// of those that come meanwhile only the last is asked.
+
+import { onChange } from "./colours";
+import { h, named, soon } from "./dom";
+import { type Answer, type ConvexAnswer, Engine, type Pair, Refused, type Slot, type Take } from "./engine";
+import { EXAMPLES, SLOTS } from "./examples";
+import { dot, length, placed, sub } from "./math";
+import { Found } from "./found";
+import { AnswerPanel, type Refusal, type Shown } from "./panel";
+import { Shadow } from "./shadow";
+import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
+import { Timeline } from "./time";
+import { type Bodies, type Tool, View, drawn, forget } from "./view";
+
+const TABS: Tab[] = ["answer", "found"];
+const engine = new Engine(new URL("worker.js", import.meta.url));
+
+class Page {
+  private state: State = fromHash(location.hash);
+  private answer: Answer | undefined;
+  private error: string | undefined;
+  private took = 0;
+  /** Milliseconds from the page's beginning. */
+  private firstAnswer: number | undefined;
+  private verdict: Shown["verdict"];
+  private readonly refusals: Partial<Record<Slot, Refusal>> = {};
+  private readonly engine = engine;
+  private readonly bodies: Bodies = {};
+  /** Made after the first answer, because graphics may take a while to begin. */
+  private view: View | undefined;
+  private readonly shadow = new Shadow();
+  private readonly panel: AnswerPanel;
+  private found: Found | undefined;
+  private readonly time: Timeline;
+  private asking = false;
+  private again = false;
+  private loading = 0;
+  private tool: Tool = "look";
+  private held: Slot = "moving";
+
+  constructor() {
+    named("inset").append(this.shadow.element);
+    this.panel = new AnswerPanel({
+      change: (change) => this.change(change),
+      choose: (slot) => this.choose(slot),
+      take: (slot, take) => void this.take(slot, take),
+      dismiss: (slot) => {
+        delete this.refusals[slot];
+        this.show();
+      },
+      verify: () => void this.verify(),
+      copy: (text, what) => void this.copy(text, what),
+      save: (how) => void this.save(how),
+    });
+    named("panel").append(this.panel.element);
+    this.time = new Timeline(named("time"), (t) => this.change((state) => (state.t = t), false));
+    this.controls();
+    this.drops();
+  }
+
+  async start() {
+    await this.loadBoth();
+    // The answer is read while the view is being made.
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+    const view = this.makeView();
+    if (!view) return;
+    view.onDirection = (d) => this.change((state) => (state.direction = d));
+    view.onPose = (slot, pose) => this.change((state) => (state.poses[slot] = pose));
+    this.view = view;
+    this.found = new Found(this.engine, view, () => this.pair());
+    named("panel").append(this.found.element);
+    this.found.changed(this.answer);
+    this.tools(view);
+    this.fit();
+    this.show();
+  }
+
+  /** The answer and the shadows do without. */
+  private makeView(): View | undefined {
+    try {
+      return new View(named("view"), this.bodies);
+    } catch (error) {
+      const why = error instanceof Error ? error.message : String(error);
+      named("view").append(h("p", { class: "lone", role: "alert" },
+        `The view in three dimensions draws with WebGL 2, which this browser does not have, or has switched off (${why}). The answer, its proof and the shadows need none.`));
+      return undefined;
+    }
+  }
+
+  private fit(along = false) {
+    this.view?.fit(this.state, this.answer, along);
+  }
+
+  // --- what is asked
+
+  private pair(): Pair {
+    const { poses, direction, graze, solver, tolerance, ignore } = this.state;
+    return { moving_pose: poses.moving, fixed_pose: poses.fixed, direction, graze, solver, tolerance, ignore_overlaps: ignore };
+  }
+
+  private change(change: (state: State) => void, asks = true) {
+    change(this.state);
+    if (asks) {
+      this.verdict = undefined;
+      void this.ask();
+    }
+    this.show();
+    this.remember();
+  }
+
+  private readonly remember = (() => {
+    let timer = 0;
+    return () => {
+      clearTimeout(timer);
+      timer = window.setTimeout(() => history.replaceState(null, "", toHash(this.state)), 250);
+    };
+  })();
+
+  private async ask(): Promise<void> {
+    if (this.asking) {
+      this.again = true;
+      return;
+    }
+    if (!this.bodies.moving || !this.bodies.fixed) return;
+    this.asking = true;
+    try {
+      const { answer, took } = await this.engine.cast(this.pair());
+      this.firstAnswer ??= performance.now();
+      [this.answer, this.took, this.error] = [answer, took, undefined];
+    } catch (error) {
+      [this.answer, this.error] = [undefined, String(error instanceof Error ? error.message : error)];
+    }
+    this.asking = false;
+    if (this.again) {
+      this.again = false;
+      void this.ask();
+    }
+    this.show();
+    this.found?.changed(this.answer);
+  }
+
+  private async verify() {
+    const answer = this.answer as ConvexAnswer | undefined;
+    if (!answer) return;
+    const proof = answer.outcome === "separated"
+      ? { separation: { normal: answer.sideways, margin: answer.margin } }
+      : { contact: answer.first!.proof };
+    try {
+      const { facts } = await this.engine.ask({ do: "verify", ...this.pair(), proof });
+      const proven = answer.outcome === "separated" ? "margin" : "gap";
+      this.verdict = facts.holds
+        ? { holds: true, text: `✓ it holds: ${proven} proven ${Number(facts.proven).toExponential(1)}` }
+        : { holds: false, text: `✗ ${facts.because}` };
+    } catch (error) {
+      this.verdict = { holds: false, text: String(error) };
+    }
+    this.show();
+  }
+
+  // --- bodies
+
+  private async loadBoth() {
+    await Promise.all(SLOTS.map((slot) => this.loadExample(slot)));
+    await this.ask();
+  }
+
+  /** A file of `data/`, as the state names it. */
+  private async loadExample(slot: Slot) {
+    const { file, take } = this.state.parts[slot];
+    try {
+      const url = new URL(`data/${file}`, document.baseURI);
+      const known = Object.values(EXAMPLES).some((e) => e.moving.file === file || e.fixed.file === file);
+      const response = known ? await fetch(url) : undefined;
+      if (!response?.ok) throw new Refused(`${file} is not among the examples: choose or drop it again`);
+      await this.load(slot, file, take, await response.arrayBuffer());
+    } catch (error) {
+      this.refuse(slot, file, error);
+    }
+  }
+
+  private async load(slot: Slot, name: string, take: Take, bytes?: ArrayBuffer) {
+    this.waiting(+1);
+    try {
+      const body = await this.engine.load(slot, name, take, bytes);
+      forget(this.bodies[slot]);
+      this.bodies[slot] = drawn(body);
+      this.state.parts[slot] = { file: name, take };
+      delete this.refusals[slot];
+    } finally {
+      this.waiting(-1);
+    }
+  }
+
+  private refuse(slot: Slot, name: string, error: unknown) {
+    const instead = error instanceof Refused ? error.instead : [];
+    this.refusals[slot] = { name, message: error instanceof Error ? error.message : String(error), instead };
+    this.show();
+  }
+
+  /** A file that somebody chose or dropped. */
+  private async open(slot: Slot, file: File) {
+    try {
+      await this.load(slot, file.name, "convex", await file.arrayBuffer());
+      await this.changedBody();
+    } catch (error) {
+      this.refuse(slot, file.name, error);
+    }
+  }
+
+  /** The file that was refused, or is there, in another way. */
+  private async take(slot: Slot, take: Take) {
+    const name = this.refusals[slot]?.name ?? this.state.parts[slot].file;
+    try {
+      await this.load(slot, name, take);
+      await this.changedBody();
+    } catch (error) {
+      this.refuse(slot, name, error);
+    }
+  }
+
+  private async changedBody() {
+    this.verdict = undefined;
+    this.state.t = null;
+    await this.ask();
+    this.fit();
+    this.remember();
+  }
+
+  private choose(slot: Slot) {
+    const input = h("input", { type: "file", accept: ".stl,.obj,.ply,.off" });
+    input.addEventListener("change", () => {
+      const file = input.files?.[0];
+      if (file) void this.open(slot, file);
+    });
+    input.click();
+  }
+
+  private waiting(change: number) {
+    this.loading += change;
+    const wait = named("wait");
+    // What is quick is not worth saying.
+    clearTimeout(Number(wait.dataset.timer));
+    if (!this.loading) wait.hidden = true;
+    else wait.dataset.timer = String(setTimeout(() => {
+      wait.textContent = "Reading the mesh";
+      wait.hidden = false;
+    }, 150));
+  }
+
+  // --- what is shown
+
+  private readonly show = soon(() => {
+    const { state, answer, view } = this;
+    const { moving, fixed } = this.bodies;
+    document.body.dataset.tab = state.tab;
+    for (const tab of TABS) named(`tab-${tab}`).setAttribute("aria-selected", String(state.tab === tab));
+    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, verdict: this.verdict };
+    this.panel.show(shown);
+    this.found?.show(state, state.tab === "found");
+    this.time.show(state, answer, this.pass());
+    view?.setPlain(state.tab === "found");
+    view?.show(state, answer);
+    named("inset").hidden = !moving || !fixed || state.tab !== "answer";
+    if (moving && fixed) this.shadow.show(state, { moving, fixed }, answer);
+  });
+
+  /** The translation after which the bodies have passed each other. */
+  private pass(): number {
+    const { moving, fixed } = this.bodies;
+    const { poses, direction } = this.state;
+    if (!moving || !fixed || !length(direction)) return 1;
+    const apart = sub(placed(poses.fixed, fixed.middle), placed(poses.moving, moving.middle));
+    const ahead = dot(apart, direction) / length(direction);
+    return Math.max(ahead + moving.radius + fixed.radius, 2 * moving.radius) / length(direction);
+  }
+
+  // --- what can be done
+
+  private controls() {
+    const select = named<HTMLSelectElement>("example");
+    select.append(h("option", { value: "" }, "Choose an example"));
+    for (const [name, { title }] of Object.entries(EXAMPLES)) select.append(h("option", { value: name }, title));
+    const same = Object.entries(EXAMPLES).find(([name]) => toHash(fromExample(name)) === toHash({ ...this.state, t: null, tab: "answer" }));
+    select.value = same?.[0] ?? "";
+    select.addEventListener("change", async () => {
+      if (!select.value) return;
+      this.state = { ...fromExample(select.value), tab: this.state.tab };
+      this.answer = undefined;
+      await this.loadBoth();
+      this.fit();
+      this.remember();
+    });
+    for (const tab of TABS) named(`tab-${tab}`).addEventListener("click", () => this.change((s) => (s.tab = tab), false));
+    named("theme").addEventListener("click", () => {
+      const root = document.documentElement;
+      const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+      root.dataset.theme = dark ? "light" : "dark";
+      this.view?.themeChanged();
+      this.show();
+    });
+    onChange(() => {
+      this.view?.themeChanged();
+      this.show();
+    });
+    addEventListener("hashchange", () => {
+      if (location.hash === toHash(this.state)) return;
+      this.state = fromHash(location.hash);
+      void this.loadBoth().then(() => this.fit());
+    });
+  }
+
+  private tools(view: View) {
+    const button = (text: string, title: string, press: () => void) => h("button", { title, onclick: press }, text);
+    const tools: [Tool, Slot, HTMLButtonElement][] = [
+      ["look", "moving", button("Turn view", "Drag turns the view; drag the tip of d to aim", () => pick(0))],
+      ["move", "moving", button("Move", "Handles that move the body", () => pick(1))],
+      ["turn", "moving", button("Rotate", "Handles that turn the body", () => pick(2))],
+    ];
+    const who = button("moving", "Which body Move and Rotate act on", () => {
+      this.held = this.held === "moving" ? "fixed" : "moving";
+      pick(tools.findIndex(([tool]) => tool === this.tool));
+    });
+    const pick = (k: number) => {
+      this.tool = tools[k]![0];
+      tools.forEach(([, , element], other) => element.setAttribute("aria-pressed", String(other === k)));
+      who.textContent = this.held;
+      who.hidden = this.tool === "look";
+      view.setTool(this.tool, this.held);
+    };
+    named("tools").append(
+      h("div", { class: "group" }, ...tools.map(([, , element]) => element), who),
+      h("div", { class: "group" },
+        button("Fit", "Everything into the picture", () => this.fit()),
+        button("Along d", "Look along the direction", () => this.fit(true))),
+    );
+    pick(0);
+  }
+
+  private drops() {
+    const zone = named("drop");
+    const halves = [...zone.querySelectorAll<HTMLElement>("[data-slot]")];
+    const over = (target: EventTarget | null) => halves.find((half) => half === target);
+    addEventListener("dragenter", (event) => {
+      if (event.dataTransfer?.types.includes("Files")) zone.hidden = false;
+    });
+    addEventListener("dragover", (event) => {
+      event.preventDefault();
+      halves.forEach((half) => half.classList.toggle("over", half === over(event.target)));
+    });
+    addEventListener("dragleave", (event) => {
+      if (!event.relatedTarget) zone.hidden = true;
+    });
+    addEventListener("drop", (event) => {
+      event.preventDefault();
+      zone.hidden = true;
+      const files = [...(event.dataTransfer?.files ?? [])];
+      const first: Slot = (over(event.target)?.dataset.slot as Slot | undefined) ?? "moving";
+      const second: Slot = first === "moving" ? "fixed" : "moving";
+      void (async () => {
+        if (files[0]) await this.open(first, files[0]);
+        if (files[1]) await this.open(second, files[1]);
+      })();
+    });
+  }
+
+  private async copy(text: string, what: string) {
+    try {
+      history.replaceState(null, "", toHash(this.state));
+      await navigator.clipboard.writeText(what === "The link" ? location.href : text);
+      toast(`${what} is copied`);
+    } catch {
+      prompt(`${what}:`, text);
+    }
+  }
+
+  private async save(how: "png" | "svg") {
+    if (!this.view) return;
+    const blob = how === "png"
+      ? await this.view.picture()
+      : new Blob([this.shadow.source()], { type: "image/svg+xml" });
+    const link = h("a", { href: URL.createObjectURL(blob), download: how === "png" ? "contact.png" : "shadows.svg" });
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+
+  /** For tests. */
+  probe() {
+    return { engine: this.engine, view: this.view, state: this.state, answer: this.answer, firstAnswer: this.firstAnswer };
+  }
+}
+
+function toast(text: string) {
+  const shown = h("div", { class: "toast", role: "status" }, text);
+  document.body.append(shown);
+  setTimeout(() => shown.remove(), 1800);
+}
+
+function start() {
+  try {
+    const page = new Page();
+    (window as { colltrans?: object }).colltrans = { probe: () => page.probe() };
+    page.start().catch((error: unknown) => fail(error));
+  } catch (error) {
+    fail(error);
+  }
+}
+
+function fail(error: unknown) {
+  const why = error instanceof Error ? error.message : String(error);
+  document.querySelector("main")!.replaceChildren(
+    h("p", { class: "lone", role: "alert" }, `The page could not be started: ${why}`),
+  );
+}
+
+start();

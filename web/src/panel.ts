@@ -1,0 +1,296 @@
+// What is said and what can be set, beside the view.
+
+import { h, svg } from "./dom";
+import type { Answer, Certificate, Slot, Take } from "./engine";
+import { type Vec, length, short } from "./math";
+import { asCommand, asPython, asRust } from "./share";
+import type { Solver, State } from "./state";
+import type { Drawn } from "./view";
+import { say } from "./words";
+
+/** Why a file was not taken, and what it could be taken as. */
+export interface Refusal {
+  name: string;
+  message: string;
+  instead: Take[];
+}
+
+export interface Shown {
+  state: State;
+  answer: Answer | undefined;
+  /** Why there is no answer. */
+  error: string | undefined;
+  /** Milliseconds. */
+  took: number;
+  bodies: Partial<Record<Slot, Drawn>>;
+  refusals: Partial<Record<Slot, Refusal>>;
+  /** What came of the check of the proof. */
+  verdict: { holds: boolean; text: string } | undefined;
+}
+
+export interface Actions {
+  change(change: (state: State) => void): void;
+  choose(slot: Slot): void;
+  take(slot: Slot, take: Take): void;
+  dismiss(slot: Slot): void;
+  verify(): void;
+  copy(text: string, what: string): void;
+  save(how: "png" | "svg"): void;
+}
+
+const TAKEN: Record<Take, string> = {
+  convex: "as it is", hull: "its convex hull", solid: "as a solid", open: "as an open scan",
+};
+const OFFER: Record<Take, string> = {
+  convex: "As it is", hull: "Take the hull", solid: "As a solid", open: "As an open scan",
+};
+
+export class AnswerPanel {
+  readonly element = h("div", { class: "panel-parts", style: "display: contents" });
+  private readonly said = h("section", { class: "said" });
+  private readonly facts = h("dl");
+  private readonly proof = h("div");
+  private readonly proofCard: HTMLDetailsElement;
+  private readonly parts = h("div");
+  private readonly fields: { input: HTMLInputElement; read: (state: State) => number | null }[] = [];
+  private readonly solver = h("select", { "aria-label": "Solver" });
+  private readonly graze: HTMLElement;
+  private readonly solid: HTMLElement;
+  private readonly ignore = h("input", { type: "checkbox" });
+  private readonly check: HTMLButtonElement;
+  private readonly known = new Map<string, string>();
+  private now: Shown | undefined;
+
+  constructor(private readonly act: Actions) {
+    this.check = h("button", { class: "small main", onclick: () => act.verify() }, "Verify");
+    for (const [value, text] of [["auto", "auto"], ["portal", "portal refinement"], ["cta", "collision translation algorithm"]]) {
+      this.solver.append(h("option", { value: value! }, text!));
+    }
+    this.solver.addEventListener("change", () => act.change((s) => (s.solver = this.solver.value as Solver)));
+    this.ignore.addEventListener("change", () => act.change((s) => (s.ignore = this.ignore.checked)));
+    this.graze = h(
+      "div", { class: "fields", style: "grid-template-columns: 1fr 1fr 1fr" },
+      h("label", {}, "Graze tolerance", this.number("Graze tolerance", (s) => s.graze, (s, x) => (s.graze = Math.max(0, x)))),
+      h("label", { style: "grid-column: span 2" }, "Solver", this.solver),
+    );
+    this.solid = h(
+      "div", {},
+      h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr" },
+        h("label", {}, "Tolerance (empty: from the files)", this.number("Tolerance", (s) => s.tolerance, (s, x) => (s.tolerance = Math.max(0, x)), (s) => (s.tolerance = null)))),
+      h("label", { style: "display: flex; gap: 8px; align-items: center; margin-top: 8px" }, this.ignore, "What overlaps at the start does not block"),
+    );
+    this.proofCard = this.card("Proof", true, this.proof);
+    this.element.append(
+      this.said,
+      h("section", { class: "card" }, this.facts),
+      this.proofCard,
+      this.card("Bodies", true, this.parts),
+      this.card("Question", true, this.question()),
+      this.card("Share", false, this.share()),
+    );
+  }
+
+  private card(title: string, open: boolean, ...content: HTMLElement[]): HTMLDetailsElement {
+    return h("details", { class: "card", open }, h("summary", {}, title), h("div", {}, ...content));
+  }
+
+  private number(
+    name: string, read: (state: State) => number | null,
+    write: (state: State, x: number) => void, empty?: (state: State) => void,
+  ): HTMLInputElement {
+    const input = h("input", { type: "number", step: "any", "aria-label": name, inputmode: "decimal" });
+    input.addEventListener("input", () => {
+      if (input.value === "") {
+        if (empty) this.act.change(empty);
+        return;
+      }
+      const x = input.valueAsNumber;
+      if (Number.isFinite(x)) this.act.change((state) => write(state, x));
+    });
+    input.addEventListener("blur", () => this.now && this.show(this.now));
+    // Arrow keys move by a step that fits the number.
+    input.addEventListener("keydown", (event) => {
+      if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
+      event.preventDefault();
+      const x = input.valueAsNumber || 0;
+      const step = 10 ** Math.max(-3, Math.floor(Math.log10(Math.abs(x) || 1)) - 1) * (event.shiftKey ? 10 : 1);
+      const next = Number((x + (event.key === "ArrowUp" ? step : -step)).toPrecision(12));
+      input.value = String(next);
+      this.act.change((state) => write(state, next));
+    });
+    this.fields.push({ input, read });
+    return input;
+  }
+
+  private question(): HTMLElement {
+    const axis = (text: string, d: Vec) =>
+      h("button", { class: "small", onclick: () => this.act.change((s) => (s.direction = [...d])) }, text);
+    const direction = h("div", { class: "fields" }, h("span", {}, "d"),
+      ...["x", "y", "z"].map((name, k) => this.number(`Direction ${name}`, (s) => s.direction[k]!, (s, x) => (s.direction[k] = x))));
+    const pose = (slot: Slot) => [
+      h("div", { class: "fields" }, h("span", {}, slot === "moving" ? "Moving" : "Fixed"),
+        ...["x", "y", "z"].map((name, k) => this.number(`${slot} position ${name}`, (s) => s.poses[slot][k]!, (s, x) => (s.poses[slot][k] = x)))),
+      h("div", { class: "fields four" }, h("span", { title: "A unit quaternion, x y z w" }, "turn"),
+        ...["x", "y", "z", "w"].map((name, k) =>
+          this.number(`${slot} quaternion ${name}`, (s) => s.poses[slot][3 + k]!, (s, x) => {
+            s.poses[slot][3 + k] = x;
+            const q = s.poses[slot];
+            const l = Math.hypot(q[3], q[4], q[5], q[6]);
+            if (l > 0 && Math.abs(l - 1) > 1e-9) for (let i = 3; i < 7; i++) q[i]! /= l;
+            if (l === 0) q[6] = 1;
+          }))),
+    ];
+    return h("div", { style: "display: flex; flex-direction: column; gap: 10px" },
+      direction,
+      h("div", { class: "row" },
+        axis("+x", [1, 0, 0]), axis("−x", [-1, 0, 0]), axis("+y", [0, 1, 0]), axis("−y", [0, -1, 0]), axis("+z", [0, 0, 1]), axis("−z", [0, 0, -1]),
+        h("button", { class: "small", onclick: () => this.act.change((s) => (s.direction = s.direction.map((x) => -x || 0) as Vec)) }, "turn round"),
+        h("button", { class: "small", title: "Then t is a length", onclick: () => this.act.change((s) => {
+          const l = length(s.direction);
+          if (l > 0) s.direction = s.direction.map((x) => x / l) as Vec;
+        }) }, "length 1")),
+      ...pose("moving"), ...pose("fixed"), this.graze, this.solid,
+      h("small", { style: "color: var(--soft)" }, "Lengths are in the unit of the files; t counts in multiples of d."),
+    );
+  }
+
+  private share(): HTMLElement {
+    const copy = (text: () => string, what: string) => () => this.now && this.act.copy(text(), what);
+    const state = () => this.now!.state;
+    return h("div", { style: "display: flex; flex-direction: column; gap: 10px" },
+      h("div", { class: "row" },
+        h("button", { class: "small", onclick: copy(() => location.href, "The link") }, "Copy link"),
+        h("button", { class: "small", onclick: copy(() => asCommand(state()), "The command") }, "Copy as command line"),
+        h("button", { class: "small", onclick: copy(() => asRust(state()), "The program") }, "Copy as Rust"),
+        h("button", { class: "small", onclick: copy(() => asPython(state()), "The program") }, "Copy as Python")),
+      h("div", { class: "row" },
+        h("button", { class: "small", onclick: () => this.act.save("png") }, "Save the view (PNG)"),
+        h("button", { class: "small", onclick: () => this.act.save("svg") }, "Save the shadows (SVG)")),
+      h("small", { style: "color: var(--soft)" }, "Nothing is sent anywhere. A link holds the question; files that are not examples have to be given again."),
+    );
+  }
+
+  show(shown: Shown) {
+    this.now = shown;
+    const { state, answer, error } = shown;
+    this.showSaid(shown);
+    for (const { input, read } of this.fields) {
+      if (input === document.activeElement) continue;
+      const value = read(state);
+      input.value = value === null ? "" : String(value);
+    }
+    this.solver.value = state.solver;
+    this.ignore.checked = state.ignore;
+    const solids = Object.values(shown.bodies).some((body) => body?.body.facts.kind === "solid");
+    this.graze.hidden = solids;
+    this.solid.hidden = !solids;
+    this.showParts(shown);
+    this.facts.parentElement!.hidden = !answer || !!error;
+    this.proofCard.hidden = !answer || !!error;
+    if (answer && !error) {
+      this.facts.replaceChildren(...say(answer, state).rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+      this.showProof(answer, shown);
+    }
+  }
+
+  /** Whether something has changed: what has not is left alone, so that a click on it is not lost. */
+  private fresh(what: string, value: unknown): boolean {
+    const text = JSON.stringify(value);
+    const changed = this.known.get(what) !== text;
+    this.known.set(what, text);
+    return changed;
+  }
+
+  private showSaid({ state, answer, error, took }: Shown) {
+    if (error) {
+      this.said.className = "said care";
+      this.said.replaceChildren(h("h2", {}, "No answer"), h("p", {}, error));
+    } else if (!answer) {
+      this.said.className = "said";
+      this.said.replaceChildren(h("h2", {}, "…"), h("p", {}, "Reading."));
+    } else {
+      const { kind, headline, sentence } = say(answer, state);
+      const work = answer.kind === "convex"
+        ? `${counts([[answer.steps.planar_problems, "planar problem"], [answer.steps.supports, "supporting plane"], [answer.steps.pivots, "portal"]])}; `
+        : "";
+      this.said.className = `said ${kind}`;
+      this.said.replaceChildren(
+        h("h2", { id: "headline" }, headline), h("p", {}, sentence),
+        h("p", { class: "took" }, `${work}${took < 0.1 ? "less than 0.1" : short(took, 2)} ms in this browser`),
+      );
+      this.said.dataset.t = answer.first ? String(answer.first.t) : "";
+      this.said.dataset.outcome = answer.outcome;
+    }
+  }
+
+  private showParts({ state, bodies, refusals }: Shown) {
+    if (!this.fresh("parts", [state.parts, bodies.moving?.body.facts, bodies.fixed?.body.facts, refusals])) return;
+    const rows = (["moving", "fixed"] as const).map((slot) => {
+      const facts = bodies[slot]?.body.facts;
+      const refusal = refusals[slot];
+      const { file, take } = state.parts[slot];
+      const count = facts &&
+        `${facts.vertices.toLocaleString("en")} vertices, ${(facts.kind === "solid" ? facts.triangles : facts.faces).toLocaleString("en")} ${facts.kind === "solid" ? "triangles" : "faces"}, taken ${TAKEN[take]}`;
+      return h("div", { class: "body" },
+        h("span", { class: `swatch ${slot}` }),
+        h("strong", { title: file }, file.split("/").at(-1)!),
+        h("button", { class: "small", onclick: () => this.act.choose(slot), "aria-label": `Choose a file for the ${slot} body` }, "Choose…"),
+        h("small", {}, `${slot === "moving" ? "moves" : "stays"}${count ? `; ${count}` : ""}`),
+        ...(facts?.notes ?? []).map((note) => h("small", {}, note)),
+        refusal && h("div", { class: "refused", role: "alert" }, refusal.message,
+          h("div", { class: "row" },
+            ...refusal.instead.map((how) => h("button", { class: "small main", onclick: () => this.act.take(slot, how) }, OFFER[how])),
+            h("button", { class: "small", onclick: () => this.act.dismiss(slot) }, "Leave it"))),
+      );
+    });
+    this.parts.replaceChildren(...rows, h("small", { style: "color: var(--soft)" }, "STL, OBJ, PLY or OFF; or drop files on the view."));
+  }
+
+  private showProof(answer: Answer, shown: Shown) {
+    const { verdict } = shown;
+    if (!this.fresh("proof", [answer, verdict])) return;
+    const { check } = this;
+    const judged = verdict && h("span", { class: `verdict ${verdict.holds ? "yes" : "no"}`, role: "status" }, verdict.text);
+    if (answer.kind === "solid") {
+      this.proof.replaceChildren(h("p", { class: "proof" }, "Decided exactly. The library also makes a certificate of such an answer, a list of claims that covers all pairs of facets (Cast::certified_clearance); this page does not show it."));
+      return;
+    }
+    if (answer.outcome === "separated") {
+      this.proof.replaceChildren(
+        h("p", { class: "proof" }, "A plane along d lies between the bodies. All of the moving one is on one side, all of the fixed one on the other."),
+        h("div", { class: "row" }, check, judged));
+      return;
+    }
+    const proof = answer.first!.proof!;
+    const gap = proof.upper === null ? undefined : proof.upper - proof.lower;
+    this.proof.replaceChildren(
+      bounds(proof),
+      h("p", { class: "proof" },
+        "The green plane proves that nothing touches before ", h("b", {}, String(proof.lower)),
+        proof.upper === null ? "." : "; the two triangles meet in one point, which proves that something does by ",
+        proof.upper === null ? null : h("b", {}, String(proof.upper)),
+        gap === undefined ? "" : `. The gap of ${short(gap, 2)} is rounding.`),
+      h("div", { class: "row" }, check, judged));
+  }
+}
+
+/** Both bounds on a line that shows nothing but the gap, and what rounding alone can make of it. */
+function bounds(proof: Certificate): SVGSVGElement {
+  const upper = proof.upper ?? proof.lower + proof.tolerance;
+  const width = Math.max(upper - proof.lower, proof.tolerance, Number.MIN_VALUE);
+  const x = (t: number) => 8 + (300 * (t - proof.lower)) / width;
+  const picture = svg("svg", { class: "bounds", viewBox: "0 0 320 44", role: "img", "aria-label": "Lower and upper bound" });
+  picture.append(
+    svg("line", { x1: 8, x2: 308, y1: 22, y2: 22, stroke: "var(--line)", "stroke-width": 6, "stroke-linecap": "round" }),
+    svg("line", { x1: x(proof.lower), x2: x(upper), y1: 22, y2: 22, stroke: "var(--free)", "stroke-width": 6, "stroke-linecap": "round" }),
+    svg("text", { x: 8, y: 11 }, "lower"),
+    svg("text", { x: Math.max(60, x(upper)), y: 11, "text-anchor": "end" }, proof.upper === null ? "" : "upper"),
+    svg("text", { x: 308, y: 40, "text-anchor": "end" }, `rounding alone: ${short(proof.tolerance, 2)}`),
+  );
+  return picture;
+}
+
+
+/** What there is any of. */
+const counts = (all: [number, string][]) =>
+  all.filter(([n]) => n > 0).map(([n, what]) => `${n} ${what}${n === 1 ? "" : "s"}`).join(", ");

@@ -1,0 +1,88 @@
+// What is asked, as a value; and as the part of an address after `#`.
+
+import type { Slot, Take } from "./engine";
+import { EXAMPLES, FIRST, type Part } from "./examples";
+import type { Pose, Vec } from "./math";
+
+export type Solver = "auto" | "cta" | "portal";
+export type Tab = "answer" | "found" | "assembly";
+
+export interface State {
+  /** Files of `data/`, or names of files that somebody dropped. */
+  parts: Record<Slot, Part>;
+  poses: Record<Slot, Pose>;
+  direction: Vec;
+  graze: number;
+  /** `null`: what the files ask for. */
+  tolerance: number | null;
+  ignore: boolean;
+  solver: Solver;
+  /** Where the moving body is shown, in multiples of the direction; `null`: at its start. */
+  t: number | null;
+  tab: Tab;
+}
+
+export function fromExample(name: string): State {
+  const example = EXAMPLES[name] ?? EXAMPLES[FIRST]!;
+  return {
+    parts: { moving: { ...example.moving }, fixed: { ...example.fixed } },
+    poses: { moving: [...example.movingPose], fixed: [...example.fixedPose] },
+    direction: [...example.direction],
+    graze: 0,
+    tolerance: null,
+    ignore: false,
+    solver: example.solver ?? "auto",
+    t: null,
+    tab: "answer",
+  };
+}
+
+const TAKES: Take[] = ["convex", "hull", "solid", "open"];
+const SOLVERS: Solver[] = ["auto", "cta", "portal"];
+const TABS: Tab[] = ["answer", "found", "assembly"];
+
+/** The state as text for an address. Numbers are written so that the same bits are read. */
+export function toHash(state: State): string {
+  const fields: [string, string | undefined][] = [
+    ["m", `${state.parts.moving.file}:${state.parts.moving.take}`],
+    ["f", `${state.parts.fixed.file}:${state.parts.fixed.take}`],
+    ["mp", state.poses.moving.join(",")],
+    ["fp", state.poses.fixed.join(",")],
+    ["d", state.direction.join(",")],
+    ["graze", state.graze ? String(state.graze) : undefined],
+    ["tol", state.tolerance === null ? undefined : String(state.tolerance)],
+    ["ignore", state.ignore ? "1" : undefined],
+    ["solver", state.solver === "auto" ? undefined : state.solver],
+    ["t", state.t === null ? undefined : String(state.t)],
+    ["tab", state.tab === "answer" ? undefined : state.tab],
+  ];
+  const given = fields.filter((field): field is [string, string] => field[1] !== undefined);
+  return `#${given.map(([key, value]) => `${key}=${encodeURIComponent(value).replace(/%(2C|3A|2F)/g, decodeURIComponent)}`).join("&")}`;
+}
+
+/** The state that an address tells; what it leaves out, or says wrongly, is as in the first example. */
+export function fromHash(hash: string): State {
+  const fields = new URLSearchParams(hash.replace(/^#/, "").replaceAll("+", "%2B"));
+  const example = fields.get("example");
+  const state = fromExample(example ?? FIRST);
+  const numbers = (key: string, count: number): number[] | undefined => {
+    const read = fields.get(key)?.split(",").map(Number);
+    return read?.length === count && read.every(Number.isFinite) ? read : undefined;
+  };
+  const part = (key: string): Part | undefined => {
+    const [, file, take] = fields.get(key)?.match(/^(.+):([a-z]+)$/) ?? [];
+    return file && TAKES.includes(take as Take) ? { file, take: take as Take } : undefined;
+  };
+  state.parts.moving = part("m") ?? state.parts.moving;
+  state.parts.fixed = part("f") ?? state.parts.fixed;
+  state.poses.moving = (numbers("mp", 7) as Pose) ?? state.poses.moving;
+  state.poses.fixed = (numbers("fp", 7) as Pose) ?? state.poses.fixed;
+  state.direction = (numbers("d", 3) as Vec) ?? state.direction;
+  state.graze = numbers("graze", 1)?.[0] ?? 0;
+  state.tolerance = numbers("tol", 1)?.[0] ?? null;
+  state.ignore = fields.get("ignore") === "1";
+  state.solver = SOLVERS.find((s) => s === fields.get("solver")) ?? "auto";
+  state.t = numbers("t", 1)?.[0] ?? null;
+  state.tab = TABS.find((tab) => tab === fields.get("tab")) ?? "answer";
+  return state;
+}

@@ -1,0 +1,80 @@
+// The slider along `t`: from the start over the first contact to the last.
+
+import { h } from "./dom";
+import type { Answer } from "./engine";
+import { short } from "./math";
+import type { State } from "./state";
+
+export class Timeline {
+  private readonly slider = h("input", { type: "range", step: "any", "aria-label": "Where the moving body is shown, along t" });
+  private readonly marks = h("div", { class: "marks" });
+  private readonly value = h("output");
+  private readonly play = h("button", { class: "icon", title: "Play", "aria-label": "Play" }, "▶");
+  private range: [number, number] = [0, 1];
+  private running = 0;
+
+  constructor(host: HTMLElement, private readonly move: (t: number | null) => void) {
+    host.append(this.play, h("div", { class: "track" }, this.marks, this.slider), this.value);
+    this.slider.addEventListener("input", () => {
+      this.stop();
+      this.move(this.slider.valueAsNumber);
+    });
+    this.play.addEventListener("click", () => (this.running ? this.stop() : this.start()));
+  }
+
+  show(state: State, answer: Answer | undefined, pass: number) {
+    const first = answer?.first?.t;
+    const exit = answer?.exit ?? undefined;
+    const ends = [0, first ?? pass, exit ?? first ?? pass];
+    const [low, high] = [Math.min(...ends), Math.max(...ends)];
+    const more = (high - low || 1) * 0.06;
+    this.range = [low < 0 ? low - more : low, high + more];
+    this.slider.min = String(this.range[0]);
+    this.slider.max = String(this.range[1]);
+    const t = state.t ?? 0;
+    this.slider.value = String(t);
+    this.value.textContent = `t = ${short(t, 5)}`;
+    // A thumb's width lies outside of the way of its middle.
+    const place = (t: number) => {
+      const share = (t - this.range[0]) / (this.range[1] - this.range[0]);
+      return `calc(8px + (100% - 16px) * ${share.toFixed(5)})`;
+    };
+    const mark = (t: number, text: string, kind = "") => [
+      h("span", { class: kind, role: "button", tabindex: 0, style: `left: ${place(t)}`, onclick: () => this.jump(t), onkeydown: ((e: KeyboardEvent) => e.key === "Enter" && this.jump(t)) as EventListener }, text),
+      h("i", { class: kind, style: `left: ${place(t)}` }),
+    ];
+    const parts = [...mark(0, "start", "low")];
+    if (first !== undefined) parts.push(...mark(first, answer?.outcome === "grazing" ? "touches" : "first contact", "stop"));
+    if (first !== undefined && exit !== undefined && exit > first) {
+      parts.push(...mark(exit, answer?.kind === "solid" ? "out" : "last contact", "low"));
+      parts.push(h("b", { style: `left: ${place(first)}; right: calc(100% - ${place(exit).slice(5, -1)})` }));
+    }
+    this.marks.replaceChildren(...parts);
+  }
+
+  private jump(t: number) {
+    this.stop();
+    this.move(t);
+  }
+
+  private start() {
+    const [low, high] = this.range;
+    let from: number | undefined;
+    const began = this.slider.valueAsNumber >= high - (high - low) * 0.02 ? low : this.slider.valueAsNumber;
+    this.play.textContent = "❚❚";
+    const step = (now: number) => {
+      from ??= now;
+      const t = began + ((now - from) / 3500) * (high - low);
+      this.move(Math.min(t, high));
+      if (t < high) this.running = requestAnimationFrame(step);
+      else this.stop();
+    };
+    this.running = requestAnimationFrame(step);
+  }
+
+  private stop() {
+    cancelAnimationFrame(this.running);
+    this.running = 0;
+    this.play.textContent = "▶";
+  }
+}

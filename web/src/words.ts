@@ -1,0 +1,131 @@
+// An answer in words.
+
+import type { Answer, ConvexAnswer, Feature, SolidAnswer } from "./engine";
+import { length, short, shown } from "./math";
+import type { State } from "./state";
+
+export interface Said {
+  /** How it is to be taken: by a colour and a sign. */
+  kind: "stop" | "free" | "care";
+  headline: string;
+  sentence: string;
+  rows: [string, string][];
+}
+
+/** A feature, by the numbers of its file. */
+export function feature(of: Feature, solid: boolean): string {
+  const list = of.file.length > 8 ? `${of.file.slice(0, 8).join(" ")} …` : of.file.join(" ");
+  if (of.kind === "vertex") return `vertex ${list}`;
+  if (of.kind === "edge") return `edge ${of.file.join("–")}`;
+  return solid ? `face ${list}` : `face of vertices ${list}`;
+}
+
+/** A translation, and as a length where that is another number. */
+function way(t: number, state: State): string {
+  const l = length(state.direction);
+  return Math.abs(l - 1) < 1e-12 ? `${short(t)}` : `${short(t)} d, a length of ${short(t * l)}`;
+}
+
+export function say(answer: Answer, state: State): Said {
+  return answer.kind === "convex" ? convex(answer, state) : solid(answer, state);
+}
+
+function convex(answer: ConvexAnswer, state: State): Said {
+  const { first } = answer;
+  if (!first) {
+    return {
+      kind: "free",
+      headline: "They never meet",
+      sentence: `Along d the bodies pass each other; a plane lies between their ways, at least ${short(answer.margin ?? 0)} wide.`,
+      rows: [["margin", short(answer.margin ?? 0, 12)], ["plane's normal", shown(answer.sideways ?? [0, 0, 0])]],
+    };
+  }
+  const rows: [string, string][] = [
+    ["first contact t", short(first.t, 12)],
+    ["last contact t", short(answer.exit ?? first.t, 12)],
+    ["length", short(first.t * length(state.direction), 12)],
+    ["normal n", shown(first.normal)],
+    ["point", first.on_fixed.map((x) => short(x, 7)).join(", ")],
+    ["moving", feature(first.moving, false)],
+    ["fixed", feature(first.fixed, false)],
+  ];
+  const touch = `${kind(first.moving)} of the moving body meets ${kind(first.fixed)} of the fixed one`;
+  const { kind: free, distance } = answer.clearance;
+  if (answer.outcome === "grazing") {
+    return {
+      kind: "care",
+      headline: "They slide along each other",
+      sentence:
+        `Their shadows overlap by ${short(answer.overlap ?? 0)}, no more than the graze tolerance: nothing blocks. ` +
+        `If the overlap were real, they would touch at t = ${short(first.t)}.`,
+      rows: [["sideways overlap", short(answer.overlap ?? 0, 6)], ...rows],
+    };
+  }
+  if (free === "behind") {
+    return {
+      kind: "free",
+      headline: "The contact lies behind",
+      sentence: `Nothing stops the moving body ahead; the bodies meet from t = ${short(first.t)} to ${short(answer.exit ?? first.t)}.`,
+      rows,
+    };
+  }
+  if (free === "overlapping") {
+    return {
+      kind: "care",
+      headline: "They overlap now",
+      sentence: `The bodies meet from t = ${short(first.t)}, behind, to ${short(answer.exit ?? 0)}, ahead, where they part.`,
+      rows,
+    };
+  }
+  return {
+    kind: "stop",
+    headline: `Contact at t = ${short(first.t)}`,
+    sentence: `Free for ${way(distance ?? first.t, state)}; then ${touch}.`,
+    rows,
+  };
+}
+
+const kind = (of: Feature) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
+
+function solid(answer: SolidAnswer, state: State): Said {
+  const tolerance: [string, string] = ["tolerance", short(answer.tolerance, 3)];
+  const exit: [string, string][] = answer.exit === null || answer.exit <= 0 ? [] : [["parted for good after t", short(answer.exit, 9)]];
+  const { first } = answer;
+  if (answer.outcome === "free") {
+    return {
+      kind: "free",
+      headline: "Nothing stops it",
+      sentence: answer.margin
+        ? `The moving body can go as far as it likes: a plane along d lies between the bodies, with a gap of at least ${short(answer.margin)}.`
+        : "The moving body can go as far as it likes.",
+      rows: [...(answer.margin ? [["margin", short(answer.margin, 9)] as [string, string]] : []), ...exit, tolerance],
+    };
+  }
+  if (!first) {
+    const depth = answer.depth ?? null;
+    return {
+      kind: "care",
+      headline: "They overlap where they are",
+      sentence:
+        depth === null
+          ? "One body lies in the other, deeper than any tolerance reaches."
+          : `With a tolerance of ${short(depth)} they would not: that is how deep they are in each other.`,
+      rows: [...(depth === null ? [] : [["depth", short(depth, 9)] as [string, string]]), ...exit, tolerance],
+    };
+  }
+  return {
+    kind: "stop",
+    headline: `Blocked at t = ${short(first.t)}`,
+    sentence: `Free for ${way(first.t, state)}; then ${kind(first.moving)} of the moving body meets ${kind(first.fixed)} of the fixed one.`,
+    rows: [
+      ["t, bodies as they are", short(first.t, 12)],
+      ["t, bodies shrunk", short(answer.distance ?? first.t, 12)],
+      ...exit,
+      ["normal n", shown(first.normal)],
+      ["point", first.on_fixed.map((x) => short(x, 7)).join(", ")],
+      ["moving", feature(first.moving, true)],
+      ["fixed", feature(first.fixed, true)],
+      tolerance,
+    ],
+  };
+}

@@ -1,0 +1,263 @@
+// The page in a browser, held against the same code built natively. Needs `npm run build` before.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, extname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { brotliCompressSync } from "node:zlib";
+import { chromium } from "playwright-core";
+import { serve } from "../serve.mjs";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const dist = join(here, "../dist");
+const crate = join(here, "../../crates/colltrans-wasm");
+const data = join(here, "../../data");
+const executablePath = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => existsSync(path));
+const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+let server, browser, base, folder;
+before(async () => {
+  // Under a path of its own, as on a page among others.
+  server = await serve(dist, 0, "/some/where/");
+  base = `http://127.0.0.1:${server.address().port}/some/where/`;
+  browser = await chromium.launch({ executablePath, args });
+  folder = mkdtempSync(join(tmpdir(), "page-"));
+});
+after(async () => {
+  await browser?.close();
+  server?.close();
+  if (folder) rmSync(folder, { recursive: true });
+});
+
+/** A page that has answered; what it complains about is gathered. */
+async function opened(hash = "", options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1200, height: 800 }, ...options });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
+  page.on("pageerror", (error) => page.complaints.push(String(error)));
+  page.on("requestfailed", (request) => page.complaints.push(request.url()));
+  await page.goto(base + hash);
+  await page.waitForSelector("#headline");
+  await page.waitForSelector("#tools button");
+  return page;
+}
+
+const headline = (page) => page.textContent("#headline");
+const answered = (page) => page.evaluate(() => window.colltrans.probe().answer);
+
+/** The answers of the native program. */
+function native(lines) {
+  const program = join(crate, "target/release/examples/native");
+  return execFileSync(program, { input: lines.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
+}
+
+test("it opens solved, without a complaint, and is small", async () => {
+  const page = await opened();
+  assert.equal(await headline(page), "Contact at t = 4.31674");
+  assert.deepEqual(page.complaints, []);
+  const first = await page.evaluate(() => window.colltrans.probe().firstAnswer);
+  console.log(`first answer ${Math.round(first)} ms after the page began to load`);
+  const code = readdirSync(dist).filter((file) => [".js", ".wasm", ".css", ".html"].includes(extname(file)));
+  const bytes = code.map((file) => brotliCompressSync(readFileSync(join(dist, file))).length);
+  const total = bytes.reduce((sum, n) => sum + n, 0);
+  console.log(`${code.map((file, k) => `${file} ${bytes[k]}`).join(", ")}: ${total} bytes with brotli`);
+  // 409,417 when this was written; other compilers make a little more of it.
+  assert.ok(total < 420_000, `${total} bytes`);
+  await page.context().close();
+});
+
+test("1,000 answers are the native ones, bit for bit", async () => {
+  const pairs = [
+    ["dodecahedron.off", "convex", "bracket.obj", "convex", 8],
+    ["ellipsoid_a.obj", "convex", "ellipsoid_b.off", "convex", 8],
+    ["bracket.obj", "convex", "bracket.obj", "convex", 6],
+    ["bolt.stl", "solid", "plate.off", "solid", 8],
+    ["dodecahedron.off", "convex", "plate.off", "solid", 12],
+  ];
+  let state = 1n;
+  const random = () => {
+    state = (state * 6364136223846793005n + 1442695040888963407n) & ((1n << 64n) - 1n);
+    return Number(state >> 11n) / 2 ** 52 - 1;
+  };
+  const turn = () => {
+    const q = [random(), random(), random(), random()];
+    const l = Math.hypot(...q);
+    return q.map((x) => x / l);
+  };
+  const asked = [];
+  for (const [moving, takeMoving, fixed, takeFixed, far] of pairs) {
+    asked.push({ file: moving, question: { do: "load", slot: "moving", name: moving, take: takeMoving } });
+    asked.push({ file: fixed, question: { do: "load", slot: "fixed", name: fixed, take: takeFixed } });
+    for (let k = 0; k < 200; k++) {
+      // Every fourth one in round numbers: ties, slides, faces upon faces.
+      const round = k % 4 === 0;
+      const coordinate = () => (round ? Math.round(2 * random()) : random());
+      const direction = [coordinate(), coordinate(), round ? -1 : coordinate()];
+      const aside = () => (round ? Math.round(4 * random()) : 4 * random());
+      const at = direction.map((x) => (round ? Math.round(-far * x) : -far * x) + aside());
+      const turned = round ? [0, 0, 0, 1] : turn();
+      const question = {
+        do: "cast", moving_pose: [...at, ...turned], fixed_pose: [0, 0, 0, ...(round ? [0, 0, 0, 1] : turn())], direction,
+        solver: ["auto", "cta", "portal"][k % 3], ignore_overlaps: k % 2 === 1,
+      };
+      asked.push({ question });
+    }
+  }
+  const lines = asked.map(({ file, question }) => (file ? `${join(data, file)}\t` : "") + JSON.stringify(question));
+  const expected = native(lines);
+  const page = await opened();
+  const answers = await page.evaluate(async (asked) => {
+    const { engine } = window.colltrans.probe();
+    const answers = [];
+    for (const { file, question } of asked) {
+      const bytes = file && (await (await fetch(`data/${file}`)).arrayBuffer());
+      answers.push((await engine.ask(question, bytes || undefined)).text);
+    }
+    return answers;
+  }, asked);
+  assert.equal(answers.length, expected.length);
+  const outcomes = new Map();
+  answers.forEach((text, k) => {
+    if (asked[k].question.do !== "cast") return;
+    // Byte for byte: numbers are written with as many digits as it takes to read the same bits.
+    assert.equal(text, expected[k], JSON.stringify(asked[k].question));
+    const answer = JSON.parse(text);
+    const name = `${answer.kind} ${answer.outcome}`;
+    outcomes.set(name, (outcomes.get(name) ?? 0) + 1);
+  });
+  console.log([...outcomes].map(([name, n]) => `${n} ${name}`).join(", "));
+  for (const name of ["convex contact", "convex grazing", "convex separated", "solid blocked", "solid free"]) {
+    assert.ok(outcomes.get(name) > 0, `no answer was ${name}`);
+  }
+  await page.context().close();
+});
+
+test("how it was found: planar problems, portals, and what a tracker saves", async () => {
+  const page = await opened("", { viewport: { width: 1200, height: 900 } });
+  await page.click("#tab-found");
+  await page.waitForSelector(".stack .pick");
+  const steps = await page.locator(".found .steps").first().locator("button").count();
+  assert.ok(steps > 1, `${steps} planar problems`);
+  await page.locator(".found .steps").first().locator("button").nth(1).click();
+  await page.waitForFunction(() => /^At x = /.test(document.querySelectorAll(".found .card .proof")[1].textContent));
+  // The least value of the graph that is drawn is near the answer, and none is below it.
+  const { least, t } = await page.evaluate(async () => {
+    const { engine, answer, state } = window.colltrans.probe();
+    const pair = { moving_pose: state.poses.moving, fixed_pose: state.poses.fixed, direction: state.direction };
+    const { events } = (await engine.ask({ do: "search", ...pair, solver: "cta", from_center: 1e-9 })).facts;
+    const { sections, ranges } = events.find((event) => event.sections);
+    const levels = ([low, high]) => Array.from({ length: 60 }, (_, k) => low + ((k + 0.5) / 60) * (high - low));
+    const { numbers } = await engine.ask({
+      do: "levels", ...pair, moving_axis: sections[0], fixed_axis: sections[1],
+      moving_levels: levels(ranges[0]), fixed_levels: levels(ranges[1]),
+    });
+    const values = [...new Float64Array(numbers, 0, 3600)].filter((x) => !Number.isNaN(x));
+    return { least: Math.min(...values), t: answer.first.t };
+  });
+  assert.ok(least >= t - 1e-9 && least < t + 0.5, `${least} ${t}`);
+  await page.click("#tab-answer");
+  await page.fill('[aria-label="Direction y"]', "0.105");
+  await page.waitForFunction((t) => window.colltrans.probe().answer?.first?.t !== t, t);
+  await page.click("#tab-found");
+  await page.waitForSelector("text=a tracker starts from the features");
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("dragging the arrow's tip changes the answer", async () => {
+  const page = await opened();
+  await page.waitForTimeout(300);
+  const old = await answered(page);
+  const [x, y] = await page.evaluate(() => window.colltrans.probe().view.tipOnPage());
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 40, y + 10, { steps: 6 });
+  await page.mouse.up();
+  await page.waitForFunction((t) => window.colltrans.probe().answer?.first?.t !== t, old.first.t);
+  const direction = await page.evaluate(() => window.colltrans.probe().state.direction);
+  assert.notDeepEqual(direction, [-0.3, 0.1, -1]);
+  // The address tells it, and leads back to the same answer.
+  await page.waitForFunction((d) => decodeURIComponent(location.hash).includes(`d=${d.join(",")}`), direction);
+  const now = await answered(page);
+  const again = await opened(new URL(page.url()).hash);
+  assert.deepStrictEqual((await answered(again)).first, now.first);
+  assert.deepEqual([...page.complaints, ...again.complaints], []);
+  await page.context().close();
+  await again.context().close();
+});
+
+test("numbers can be typed, and the proof is checked", async () => {
+  const page = await opened();
+  await page.fill('[aria-label="moving position z"]', "12.5");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.first?.t > 7);
+  await page.click("text=Verify");
+  await page.waitForSelector(".verdict.yes");
+  const lie = await page.evaluate(async () => {
+    const { engine, answer, state } = window.colltrans.probe();
+    const proof = { ...answer.first.proof, lower: answer.first.proof.lower + 1 };
+    const pair = { moving_pose: state.poses.moving, fixed_pose: state.poses.fixed, direction: state.direction };
+    return (await engine.ask({ do: "verify", ...pair, proof: { contact: proof } })).facts;
+  });
+  assert.equal(lie.holds, false);
+  assert.match(lie.because, /above the upper bound/);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a bad file gives its message, one that is not convex two ways on", async () => {
+  const page = await opened();
+  const choose = async (file) => {
+    const [chooser] = await Promise.all([
+      page.waitForEvent("filechooser"),
+      page.click('[aria-label="Choose a file for the moving body"]'),
+    ]);
+    await chooser.setFiles(file);
+  };
+  const bad = join(folder, "bad.off");
+  writeFileSync(bad, "OFF\n4 1 0\n0 0 0\n1 0 0\n1.000000000000000 1.000000000000000 zero\n");
+  await choose(bad);
+  await page.waitForSelector(".refused");
+  assert.match(await page.textContent(".refused"), /^bad\.off: line 5: /);
+  // What was there is still answered.
+  assert.equal(await headline(page), "Contact at t = 4.31674");
+  await choose(join(data, "plate.off"));
+  await page.waitForSelector("text=As a solid");
+  assert.match(await page.textContent(".refused"), /not convex|topolog|sphere|genus|hole/i);
+  await page.click("text=As a solid");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid");
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("what a direction cannot be is said", async () => {
+  const context = await browser.newContext();
+  const zero = await context.newPage();
+  await zero.goto(`${base}#d=0,0,0`);
+  await zero.waitForSelector("text=No answer");
+  assert.match(await zero.textContent(".said"), /direction/);
+  await context.close();
+});
+
+test("without WebGL it says so", async () => {
+  const without = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"] });
+  const page = await without.newPage();
+  await page.goto(base);
+  await page.waitForSelector("text=draws with WebGL 2");
+  assert.equal(await headline(page), "Contact at t = 4.31674");
+  await page.fill('[aria-label="moving position z"]', "12.5");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.first?.t > 7);
+  await without.close();
+});
+
+test("nothing is wider than a phone", async () => {
+  for (const [width, height] of [[360, 640], [390, 844], [844, 390], [768, 1024]]) {
+    const page = await opened("", { viewport: { width, height } });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `${wide} of ${width}`);
+    await page.context().close();
+  }
+});

@@ -1,0 +1,71 @@
+// With what Rust is compiled to WebAssembly: the installed toolchain, if it has the target; else
+// Debian's packages, unpacked into a folder of their own, because they conflict with an installed rustc.
+//
+// On an ordinary machine: rustup target add wasm32-unknown-unknown
+
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdirSync, readdirSync } from "node:fs";
+import { homedir } from "node:os";
+import { join } from "node:path";
+
+const TARGET = "wasm32-unknown-unknown";
+
+const run = (command, args, options = {}) => execFileSync(command, args, { encoding: "utf8", ...options });
+
+function installed() {
+  try {
+    return existsSync(run("rustc", ["--print", "target-libdir", "--target", TARGET]).trim());
+  } catch {
+    return false;
+  }
+}
+
+/** The newest name that a pattern matches. */
+function newest(names, pattern) {
+  return names.filter((name) => pattern.test(name)).sort((a, b) => a.localeCompare(b, "en", { numeric: true })).at(-1);
+}
+
+function unpacked(folder) {
+  const rustc = join(folder, "usr/bin/rustc");
+  const linker = newest(existsSync("/usr/bin") ? readdirSync("/usr/bin") : [], /^wasm-ld(-\d+)?$/);
+  if (!existsSync(rustc) || !linker) return undefined;
+  return {
+    args: ["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"],
+    env: {
+      LD_LIBRARY_PATH: join(folder, "usr/lib/x86_64-linux-gnu"),
+      RUSTC: rustc,
+      RUSTC_BOOTSTRAP: "1",
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER: join("/usr/bin", linker),
+    },
+  };
+}
+
+function unpack(folder) {
+  mkdirSync(folder, { recursive: true });
+  const quiet = { stdio: ["ignore", "ignore", "inherit"] };
+  run("apt-get", ["update", "-qq"], quiet);
+  const search = (words) => run("apt-cache", ["search", "--names-only", words]).split("\n").map((line) => line.split(" ")[0]);
+  const library = newest(search("^libstd-rust-web-[0-9.]+$"), /^libstd-rust-web-[\d.]+$/);
+  const linker = newest(search("^lld-[0-9]+$"), /^lld-\d+$/);
+  if (!library || !linker) throw new Error("Debian has no packages rustc-web and lld here");
+  run("apt-get", ["download", "-qq", "rustc-web", "libstd-rust-web-dev", library, "rust-web-src"], { ...quiet, cwd: folder });
+  for (const file of readdirSync(folder).filter((name) => name.endsWith(".deb"))) run("dpkg", ["-x", join(folder, file), folder]);
+  run("apt-get", ["install", "-qq", "-y", "--no-install-recommends", linker], quiet);
+}
+
+/** There is no compiler for the target: nothing is wrong with the page. */
+export class Missing extends Error {}
+
+/** Arguments and environment for cargo; installs what can be installed if `install` is given. */
+export function toolchain(install = process.argv.includes("--install")) {
+  if (installed()) return { args: [], env: {} };
+  const folder = process.env.COLLTRANS_WASM_TOOLCHAIN ?? join(homedir(), ".cache/colltrans-wasm-toolchain");
+  const found = unpacked(folder);
+  if (found) return found;
+  if (install) {
+    unpack(folder);
+    const now = unpacked(folder);
+    if (now) return now;
+  }
+  throw new Missing(`rustc has no target ${TARGET}: rustup target add ${TARGET} (or --install, from Debian's packages)`);
+}

@@ -62,21 +62,25 @@ impl Edge {
     }
 
     /// From the edge away from the triangle, as long as the edge.
+    #[inline]
     pub(super) fn outward(&self) -> DVec2 {
         -(self.to.shadow() - self.from.shadow()).perp()
     }
 
     /// How wide the triangle is over the edge, times the edge's length.
+    #[inline]
     pub(super) fn width(&self) -> f64 {
         self.outward().dot(self.from.shadow() - self.third.shadow())
     }
 
     /// How far the line is beyond the edge, times the edge's length.
+    #[inline]
     pub(super) fn distance(&self) -> f64 {
         -self.outward().dot(self.from.shadow())
     }
 
     /// The turn of the triangle's plane about the edge; `None` if the plane stands upright.
+    #[inline]
     pub(super) fn tilt(&self) -> Option<Tilt> {
         let normal = triangle_normal([self.from.at, self.to.at, self.third.at]);
         (normal.z > 0.0).then_some(Tilt { normal, outward: self.outward() })

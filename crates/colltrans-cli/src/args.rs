@@ -8,10 +8,11 @@ mod help;
 mod values;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use colltrans::Solver;
 use colltrans::glam::DVec3;
+use colltrans::{Pose, Solver};
 
 use crate::body::Recipe;
+use crate::failure::{Code, Failure};
 use crate::solid;
 pub(crate) use assembly::AssemblyArguments;
 use help::{
@@ -79,18 +80,8 @@ pub(crate) struct PairArguments {
     pub(crate) moving: PathBuf,
     /// The mesh that stays
     pub(crate) fixed: PathBuf,
-    /// Where to: three numbers, not all zero, or an axis: x, -x, y, -y, z, -z
-    ///
-    /// The answer is in multiples of this vector: a length, in the unit of the meshes, if it has
-    /// length 1, as the axes have.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction, required_unless_present = "directions")]
-    pub(crate) direction: Option<DVec3>,
-    /// Many directions: a file with one a line, `-` for standard input; one answer a line
-    ///
-    /// Written as for --direction; blank lines and what follows a `#` mean nothing. All answers are
-    /// given even if some directions have none (exit code 1).
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["direction", "picture"])]
-    pub(crate) directions: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) directions: DirectionArguments,
     /// How the search is narrowed; the answer is the same
     #[arg(long, value_enum, default_value_t = SolverName::Auto)]
     pub(crate) solver: SolverName,
@@ -121,17 +112,8 @@ pub(crate) struct ClearArguments {
     /// The meshes that stay
     #[arg(long, required = true, num_args = 1.., value_name = "FIXED")]
     pub(crate) from: Vec<PathBuf>,
-    /// Where to: three numbers, not all zero, or an axis: x, -x, y, -y, z, -z
-    ///
-    /// The answer is in multiples of this vector: a length, in the unit of the meshes, if it has
-    /// length 1, as the axes have.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction, required_unless_present = "directions")]
-    pub(crate) direction: Option<DVec3>,
-    /// Many directions: a file with one a line, `-` for standard input; one answer a line
-    ///
-    /// As for `cast`.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["direction", "picture"])]
-    pub(crate) directions: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) directions: DirectionArguments,
     /// How deep bodies may enter each other [default: from the files' precision]
     ///
     /// In the unit of the meshes. Both bodies are shrunk by half of it. A curved fit of tessellated
@@ -179,6 +161,23 @@ impl ClearArguments {
     }
 }
 
+/// Along which direction, or which ones.
+#[derive(Debug, Args)]
+pub(crate) struct DirectionArguments {
+    /// Where to: three numbers, not all zero, or an axis: x, -x, y, -y, z, -z
+    ///
+    /// The answer is in multiples of this vector: a length, in the unit of the meshes, if it has
+    /// length 1, as the axes have.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction, required_unless_present = "directions")]
+    pub(crate) direction: Option<DVec3>,
+    /// Many directions: a file with one a line, `-` for standard input; one answer a line
+    ///
+    /// Written as for --direction; blank lines and what follows a `#` mean nothing. All answers are
+    /// given even if some directions have none (exit code 1).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["direction", "picture"])]
+    pub(crate) directions: Option<PathBuf>,
+}
+
 /// Where the bodies are.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Where the meshes are")]
@@ -208,6 +207,21 @@ pub(crate) struct PlaceArguments {
     /// Multiply the fixed mesh by this before it is placed
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = factor, default_value = "1")]
     pub(crate) fixed_scale: f64,
+}
+
+impl PlaceArguments {
+    /// The poses of the moving and of the fixed mesh.
+    pub(crate) fn poses(&self) -> Result<[Pose; 2], Failure> {
+        let usage = |message| Failure::new(Code::Usage, message);
+        let moving = self.moving_pose.pose(self.moving_rpy, "--moving").map_err(usage)?;
+        let fixed = self.fixed_pose.pose(self.fixed_rpy, "--fixed").map_err(usage)?;
+        Ok([moving, fixed])
+    }
+
+    /// What was changed about them.
+    pub(crate) fn notes(&self) -> [Option<String>; 2] {
+        [self.moving_pose.note("--moving"), self.fixed_pose.note("--fixed")]
+    }
 }
 
 /// Whose convex hull is to be taken.

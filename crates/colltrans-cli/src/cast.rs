@@ -7,7 +7,7 @@ use std::path::Path;
 use colltrans::glam::DVec3;
 use colltrans::{Cast, Clearance, ContactRange, Options, QueryError};
 
-use crate::args::{self, PairArguments};
+use crate::args::{self, DirectionArguments, PairArguments};
 use crate::body::{self, Part};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
@@ -34,14 +34,12 @@ enum Answer {
 pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure> {
     refuse_picture(arguments.picture.as_deref(), &[&arguments.moving, &arguments.fixed])?;
     let places = &arguments.places;
-    let usage = |message| Failure::new(Code::Usage, message);
-    let moving_pose = places.moving_pose.pose(places.moving_rpy, "--moving").map_err(usage)?;
-    let fixed_pose = places.fixed_pose.pose(places.fixed_rpy, "--fixed").map_err(usage)?;
-    let directions = directions(arguments.direction, arguments.directions.as_deref())?;
+    let [moving_pose, fixed_pose] = places.poses()?;
+    let directions = directions(&arguments.directions)?;
     let [moving_recipe, fixed_recipe] = arguments.recipes();
     let moving = body::load_or_fail(&arguments.moving, moving_recipe)?;
     let fixed = body::load_or_fail(&arguments.fixed, fixed_recipe)?;
-    let notes = [places.moving_pose.note("--moving"), places.fixed_pose.note("--fixed")];
+    let notes = places.notes();
     let merged = [&moving.note, &fixed.note].map(Clone::clone);
     notes.into_iter().chain(merged).flatten().for_each(|text| note(&text));
     let options = Options {
@@ -68,8 +66,8 @@ pub(crate) enum Directions {
 }
 
 /// What `--direction` and `--directions` say.
-pub(crate) fn directions(one: Option<DVec3>, many: Option<&Path>) -> Result<Directions, Failure> {
-    match (one, many) {
+pub(crate) fn directions(asked: &DirectionArguments) -> Result<Directions, Failure> {
+    match (asked.direction, asked.directions.as_deref()) {
         (_, Some(file)) => read_directions(file).map(Directions::Many),
         (Some(direction), None) => Ok(Directions::One(direction)),
         (None, None) => Err(Failure::new(Code::Usage, "give --direction or --directions")),

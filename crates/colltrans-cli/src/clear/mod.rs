@@ -19,10 +19,8 @@ pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
     let inputs: Vec<&Path> = files.map(AsRef::as_ref).collect();
     refuse_picture(arguments.picture.as_deref(), &inputs)?;
     let places = &arguments.places;
-    let usage = |message| Failure::new(Code::Usage, message);
-    let moving_pose = places.moving_pose.pose(places.moving_rpy, "--moving").map_err(usage)?;
-    let fixed_pose = places.fixed_pose.pose(places.fixed_rpy, "--fixed").map_err(usage)?;
-    let directions = directions(arguments.direction, arguments.directions.as_deref())?;
+    let [moving_pose, fixed_pose] = places.poses()?;
+    let directions = directions(&arguments.directions)?;
     let [moving, fixed] = load(arguments, inputs.len())?;
     let question = |direction| Question {
         moving: &moving,
@@ -33,7 +31,7 @@ pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
         tolerance: arguments.tolerance,
         ignore_start_overlaps: arguments.ignore_start_overlaps,
     };
-    let placed = [places.moving_pose.note("--moving"), places.fixed_pose.note("--fixed")];
+    let placed = places.notes();
     let told = moving.notes.iter().chain(&fixed.notes);
     placed.iter().flatten().chain(told).for_each(|text| note(text));
     match directions {

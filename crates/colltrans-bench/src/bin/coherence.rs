@@ -12,7 +12,7 @@ use colltrans::{
     Tracker,
 };
 use colltrans_bench::arguments::Arguments;
-use colltrans_bench::parry::{self, ParrySetting};
+use colltrans_bench::parry::Scale;
 use colltrans_bench::report::{self, Times};
 use colltrans_bench::shapes::{Shape, body};
 use colltrans_kit::random::Random;
@@ -99,7 +99,7 @@ fn measure_size(
     let spheres = [Bodies::new([sphere.clone(), sphere])];
     let small = pair(8)?;
     let count = if arguments.quick { 12 } else { 60 };
-    let mut table = Table { n, scale: Scale::new(&small, &mut random), rows };
+    let mut table = Table { n, scale: Scale::new(&small, LENGTH, &mut random), rows };
     print_header();
     for (name, meeting) in
         [("colliding", Meeting::Colliding), ("separated", Meeting::PassingWithin(0.2))]
@@ -131,31 +131,6 @@ fn in_turn(
     mut draw: impl FnMut(&Bodies) -> Vec<Setting>,
 ) -> Vec<(&Bodies, Vec<Setting>)> {
     bodies.iter().cycle().take(count).map(|bodies| (bodies, draw(bodies))).collect()
-}
-
-/// Parry's casts of bodies of 8 vertices, measured along with every row: a unit that the machine's
-/// mood changes as much as ours.
-struct Scale {
-    bodies: [parry3d_f64::shape::ConvexPolyhedron; 2],
-    settings: Vec<ParrySetting>,
-}
-
-impl Scale {
-    fn new(small: &Bodies, random: &mut Random) -> Self {
-        let settings = (0..LENGTH)
-            .map(|_| ParrySetting::new(&Setting::draw(small, Meeting::Colliding, random)))
-            .collect();
-        let convert = |body| parry::body(body).expect("an ellipsoid is solid");
-        Self { bodies: small.pair.each_ref().map(convert), settings }
-    }
-
-    fn measure(&self, times: &mut Times) {
-        let stopwatch = Stopwatch::new();
-        let [moving, fixed] = &self.bodies;
-        for setting in &self.settings {
-            times.add(stopwatch.time(|| setting.cast(moving, fixed)).1);
-        }
-    }
 }
 
 /// Measurements of one contestant in one row.

@@ -15,7 +15,7 @@ use colltrans::{
     Tracker, observe,
 };
 use colltrans_bench::arguments::Arguments;
-use colltrans_bench::parry::{self, ParrySetting};
+use colltrans_bench::parry::Scale;
 use colltrans_bench::report::{self, Times};
 use colltrans_bench::shapes::{Shape, body};
 use colltrans_kit::random::Random;
@@ -118,7 +118,9 @@ fn measure_size(
     rows: &mut Vec<Value>,
 ) -> Result<(), BuildError> {
     let mut random = Random::new(arguments.seed, &[n as u64]);
-    let scale = Scale::new(&mut random)?;
+    let mut one = || Shape::Ellipsoid.draw(8, &mut random);
+    let small = Bodies::new([one()?, one()?]);
+    let scale = Scale::new(&small, BLOCK, &mut random);
     let count = if arguments.quick { 200 } else { 1000 };
     println!(
         "\nmedian ns over portal's on the colliding settings; planar problems and exchanges on \
@@ -175,31 +177,6 @@ fn sequences<'a>(
     let in_turn = bodies.iter().cycle().take(count.max(2));
     let mut draw = |b| Setting::sequence(b, Meeting::Colliding, change, LENGTH, random);
     in_turn.map(|bodies| (bodies, draw(bodies))).collect()
-}
-
-/// Parry's cast of two bodies of 8 vertices.
-struct Scale {
-    bodies: [parry3d_f64::shape::ConvexPolyhedron; 2],
-    settings: Vec<ParrySetting>,
-}
-
-impl Scale {
-    fn new(random: &mut Random) -> Result<Self, BuildError> {
-        let mut one = || Shape::Ellipsoid.draw(8, random);
-        let small = Bodies::new([one()?, one()?]);
-        let mut draw = || ParrySetting::new(&Setting::draw(&small, Meeting::Colliding, random));
-        let settings = (0..BLOCK).map(|_| draw()).collect();
-        let convert = |body| parry::body(body).expect("an ellipsoid is solid");
-        Ok(Self { bodies: small.pair.each_ref().map(convert), settings })
-    }
-
-    fn measure(&self, times: &mut Times) {
-        let stopwatch = Stopwatch::new();
-        let [moving, fixed] = &self.bodies;
-        for setting in &self.settings {
-            times.add(stopwatch.time(|| setting.cast(moving, fixed)).1);
-        }
-    }
 }
 
 /// Measurements of one contestant in one row.

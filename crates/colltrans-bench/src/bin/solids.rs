@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use colltrans::{Cast, Clearance, Pose, Solid, Workspace};
 use colltrans_bench::arguments::Arguments;
-use colltrans_bench::parry::{Placed, TriangleMesh};
+use colltrans_bench::parry::{ParrySetting, triangle_mesh};
 use colltrans_bench::report::{self, Times};
 use colltrans_kit::random::Random;
 use colltrans_kit::shapes::Mesh;
@@ -163,8 +163,8 @@ impl Pair {
         let [a, b] = &self.bodies;
         let (Some(p), Some(q)) = (solid(a), solid(b)) else { return Value::Null };
         let (r, s) = (
-            TriangleMesh::new(p.vertices(), p.triangles()),
-            TriangleMesh::new(q.vertices(), q.triangles()),
+            triangle_mesh(p.vertices(), p.triangles()),
+            triangle_mesh(q.vertices(), q.triangles()),
         );
         let radii = [radius(a), radius(b)];
         let mut random =
@@ -181,7 +181,7 @@ impl Pair {
             };
             let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
             ours.add(time);
-            let placed = Placed::new([&poses[0], &poses[1]], direction);
+            let placed = ParrySetting::placed([&poses[0], &poses[1]], direction);
             let (other, time) = stopwatch.time(|| placed.cast(&r, &s));
             theirs.add(time);
             let distance = match answer {

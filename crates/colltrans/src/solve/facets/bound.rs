@@ -246,11 +246,14 @@ fn swept(scene: &Scene, a: &Shade, b: &Shade) -> [f64; 2] {
 /// Whether a reason to cut a pair of nodes holds, checked by itself; `limit` as for [`least_gap`].
 pub(super) fn holds(scene: &Scene, a: &Shade, b: &Shade, reason: Reason, limit: f64) -> bool {
     let (low, high) = (a.low.max(b.low), a.high.min(b.high));
-    let swept = swept(scene, a, b);
     let gaps = || {
         let region = Region { middle: (low + high).xy() * 0.5, half: (high - low).xy() * 0.5 };
         let (p, q) = (Heights::new(scene, a), Heights::new(scene, b));
-        gaps(&region, (a, p.as_ref()), (b, q.as_ref()), swept)
+        gaps(&region, (a, p.as_ref()), (b, q.as_ref()), swept(scene, a, b))
+    };
+    let swept_apart = || {
+        let [least, largest] = swept(scene, a, b);
+        least > largest
     };
     match reason {
         Reason::MovingFacesAway => a.looks_back(),
@@ -258,7 +261,7 @@ pub(super) fn holds(scene: &Scene, a: &Shade, b: &Shade, reason: Reason, limit: 
         Reason::ShadowsApart => {
             low.x >= high.x
                 || low.y >= high.y
-                || swept[0] > swept[1]
+                || swept_apart()
                 || sides_apart(scene, (&scene.moving, a), (&scene.fixed, b))
                 || sides_apart(scene, (&scene.fixed, b), (&scene.moving, a))
         }

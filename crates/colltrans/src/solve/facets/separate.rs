@@ -31,11 +31,14 @@ pub(super) fn separation(scene: &Scene) -> Option<Separation> {
     let mut simplex: Simplex = (0, [DVec2::ZERO; 3]);
     for _ in 0..MOST_ROUNDS {
         let axis = v.try_normalize()?;
-        let (normal, margin) = gap(scene, axis);
+        let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
+        let sides = facing_sides(scene, normal);
+        let margin = margin_along(scene, normal, &sides);
         if margin > 0.0 {
             return Some(Separation { normal, margin });
         }
-        let lowest = lowest(scene, axis);
+        let [p, q] = &sides;
+        let lowest = q.at() - p.at();
         let closer = simplex.0 == 0 || axis.dot(lowest) < v.dot(axis) - ROUNDING * scene.blur;
         if !closer {
             return None;
@@ -57,7 +60,7 @@ pub(super) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
     if !unit || (normal.dot(scene.direction) / scene.length).abs() > UNIT_VECTOR {
         return Err(CertificateError::Normal { normal });
     }
-    let proven = margin_along(scene, normal);
+    let proven = margin_along(scene, normal, &facing_sides(scene, normal));
     let claimed = separation.margin;
     if claimed > 0.0 && claimed <= proven {
         Ok(proven)
@@ -69,26 +72,17 @@ pub(super) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
 /// Points of `D`, the first so many.
 type Simplex = (usize, [DVec2; 3]);
 
-/// The unit normal of an axis of the shadow plane, and the margin that it proves.
-fn gap(scene: &Scene, axis: DVec2) -> (DVec3, f64) {
-    let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
-    (normal, margin_along(scene, normal))
+/// What of the moving body is farthest along a normal of the world, and of the fixed one against it.
+fn facing_sides<'s, 'a>(scene: &'s Scene<'a>, normal: DVec3) -> [Farthest<'s, 'a>; 2] {
+    [Farthest::new(&scene.moving, normal), Farthest::new(&scene.fixed, -normal)]
 }
 
-fn margin_along(scene: &Scene, normal: DVec3) -> f64 {
-    let (p, q) = (&scene.moving, &scene.fixed);
-    let fixed = normal.dot(q.offset[0]) - Farthest::new(q, -normal).reach();
+/// The margin that the two prove.
+fn margin_along(scene: &Scene, normal: DVec3, [p, q]: &[Farthest; 2]) -> f64 {
+    let fixed = normal.dot(scene.fixed.offset[0]) - q.reach();
     // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
     let closing = (normal.dot(scene.direction) / scene.length).abs() * scene.size();
-    fixed - Farthest::new(p, normal).reach() - ROUNDING * scene.blur - closing
-}
-
-/// The lowest point of `D` along an axis.
-fn lowest(scene: &Scene, axis: DVec2) -> DVec2 {
-    let normal = scene.frame.transpose() * axis.extend(0.0);
-    let at =
-        |side: &Side, normal: DVec3| side.corner(Farthest::new(side, normal).vertex).at.truncate();
-    at(&scene.fixed, -normal) - at(&scene.moving, normal)
+    fixed - p.reach() - ROUNDING * scene.blur - closing
 }
 
 /// Leaves that are looked into for one farthest vertex. More are needed where a large flat face is
@@ -128,6 +122,11 @@ impl<'s, 'a> Farthest<'s, 'a> {
     /// No vertex is farther along the normal, up to rounding.
     fn reach(&self) -> f64 {
         self.height.max(self.beyond)
+    }
+
+    /// The shadow of the vertex.
+    fn at(&self) -> DVec2 {
+        self.side.corner(self.vertex).at.truncate()
     }
 
     fn visit(&mut self, at: u32) {

@@ -137,7 +137,7 @@ fn answer_one(
     let answered = ask(asked, cast, parts);
     let (answer, record) = answered.map_err(|error| replay::failure(error, cast))?;
     let text = if arguments.json {
-        record.json()?
+        record.json()
     } else {
         match &answer {
             Answer::Contact(answer) => report::cast(answer, &record, cast.direction()),
@@ -182,7 +182,7 @@ fn scan<'a>(
         failed += usize::from(record.outcome == Name::Error);
         let record = Record { direction: Some(direction.to_array()), ..record };
         let text =
-            if as_json { record.json()? } else { report::scan_line(&record, asked, direction) };
+            if as_json { record.json() } else { report::scan_line(&record, asked, direction) };
         print(&text)?;
     }
     all_answered(count, failed)

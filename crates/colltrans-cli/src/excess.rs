@@ -10,7 +10,6 @@ use std::collections::{HashMap, VecDeque};
 use colltrans::ConvexPolyhedron;
 use colltrans::glam::DVec3;
 use colltrans_mesh::Mesh;
-use serde::Serialize;
 
 /// Planes that are compared before the search for the deepest point is given up: some seconds.
 const MOST_COMPARISONS: u64 = 4_000_000_000;
@@ -19,16 +18,14 @@ const MOST_COMPARISONS: u64 = 4_000_000_000;
 const RECENT: usize = 8;
 
 /// What a hull has and its part has not.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Excess {
     /// Volume of the hull.
     pub(crate) hull_volume: f64,
     /// Volume of the part; `None` if its surface is open or oriented inwards.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) part_volume: Option<f64>,
     /// How deep the part's surface lies below the hull's; `None` without a surface, or if there is
     /// more of it than can be looked at.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) depth: Option<f64>,
 }
 

@@ -1,5 +1,7 @@
 //! What is said about an answer, in the fields that `batch --help` documents.
 
+mod line;
+
 use std::path::Path;
 
 use colltrans::glam::DVec3;
@@ -8,73 +10,46 @@ use colltrans::{
     Separated, Solver, Steps, WhyFree,
 };
 use serde::Serialize;
-use serde_json::value::RawValue;
 
 use crate::excess::Excess;
-use crate::failure::{Code, Failure};
 use crate::numbers::{six_digits, unit_vector};
 use crate::solid::{Answer, Kind};
 
 /// One result; fields that do not apply are left out.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub(crate) struct Record {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) id: Option<Box<RawValue>>,
     pub(crate) outcome: Name,
     /// Of a scan.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) direction: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) distance: Option<f64>,
     /// Of solids.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) nominal: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) back: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) on: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) translation: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) exit: Option<f64>,
     /// The file that touches, of a body of several.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) moving: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fixed: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) normal: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) point: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) lower: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) upper: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) tolerance: Option<f64>,
     /// Of solids.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) start_overlaps: Vec<StartOverlap>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) features: Option<Features>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) margin: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) hull: Option<Hulls>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) solver: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) steps: Option<StepCounts>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) message: Option<String>,
     /// What was done to the meshes, in a batch; other commands say it on standard error.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) notes: Vec<String>,
 }
 
 /// How a query ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Name {
     Contact,
     Grazing,
@@ -117,11 +92,9 @@ pub(crate) struct StartOverlap {
 }
 
 /// What the hulls have that their parts have not.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Hulls {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) moving: Option<Excess>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fixed: Option<Excess>,
 }
 
@@ -139,21 +112,21 @@ impl Hulls {
 }
 
 /// The features of both bodies in the contact plane.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(crate) struct Features {
     pub(crate) moving: FeatureRecord,
     pub(crate) fixed: FeatureRecord,
 }
 
 /// A feature by the indices of the input.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(crate) struct FeatureRecord {
     pub(crate) kind: &'static str,
     pub(crate) vertices: Vec<u32>,
 }
 
 /// The library's [`Steps`].
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(crate) struct StepCounts {
     planar_problems: u32,
     supports: u32,
@@ -248,13 +221,6 @@ impl Record {
             (overlap.moving, overlap.fixed) = (None, None);
         }
         self
-    }
-
-    /// One line.
-    pub(crate) fn json(&self) -> Result<String, Failure> {
-        let text =
-            serde_json::to_string(self).map_err(|e| Failure::new(Code::Output, e.to_string()))?;
-        Ok(text + "\n")
     }
 
     fn of_separated(separated: &Separated) -> Self {

@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
     let answer = cast.contact_range()?;
     let record = Record::of_answer(&answer, &cast);
     let text = if arguments.json {
-        record.json()?
+        record.json()
     } else {
         report::cast(&answer, &record, cast.direction())
     };

@@ -1,14 +1,17 @@
 //! `colltrans batch`: a query per line in, a result per line out, in the same order.
 //!
 //! The data's way: [`pipeline`] hands chunks of lines to threads and puts their results back in
-//! order, holding only a bounded number of chunks; [`query`] reads and answers one line;
-//! [`cache`] builds bodies that occur again once; [`results`] keeps what is read from being
-//! overwritten.
+//! order, holding only a bounded number of chunks; [`query`] reads and answers one line, with
+//! [`usual`] for lines of the usual form;
+//! [`cache`] builds bodies that occur again once, [`recent`] finds them by their words; [`results`]
+//! keeps what is read from being overwritten.
 
 mod cache;
 mod pipeline;
 mod query;
+mod recent;
 mod results;
+mod usual;
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -22,8 +25,9 @@ use crate::failure::{Code, Failure};
 use crate::inputs::{FilesRead, overwritten};
 use crate::progress;
 use cache::Cache;
-use pipeline::Pipeline;
+use pipeline::{Line, Pipeline};
 use query::Desk;
+use recent::Recent;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     refuse_own_input(&arguments.queries, arguments.output.as_deref())?;
@@ -42,7 +46,13 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     };
     let bar = progress_bar(size);
     let pipeline = Pipeline::new(queries, writer, threads);
-    let work = || pipeline.work(|number, line| desk.answer(number, line), &bar);
+    let work = || {
+        let mut recent = Recent::default();
+        let answer = |number, line: Line<'_>, results: &mut Vec<u8>| {
+            desk.answer(number, line, &mut recent, results)
+        };
+        pipeline.work(answer, &bar);
+    };
     std::thread::scope(|scope| {
         for _ in 1..threads {
             scope.spawn(work);

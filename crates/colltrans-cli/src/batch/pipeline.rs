@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Read, Write};
+use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use indicatif::ProgressBar;
@@ -22,9 +23,10 @@ const CHUNK_BYTES: usize = 1 << 20;
 const CHUNKS_PER_THREAD: u64 = 4;
 
 /// A line of the input.
-pub(crate) enum Line {
+#[derive(Clone, Copy)]
+pub(crate) enum Line<'a> {
     /// Without its end.
-    Text(Vec<u8>),
+    Text(&'a [u8]),
     /// It was longer than the limit and was skipped.
     TooLong,
 }
@@ -75,10 +77,16 @@ struct Answers {
 
 struct Chunk {
     number: u64,
-    lines: Vec<(u64, Line)>,
+    /// The lines, one behind the other.
+    text: Vec<u8>,
+    /// The number of each, and where it is; `None` if it was too long.
+    lines: Vec<(u64, Option<Range<usize>>)>,
     flush: bool,
     bytes_read: u64,
 }
+
+/// Bytes that are set aside for a result; most take fewer.
+const RESULT_BYTES: usize = 768;
 
 impl Pipeline {
     pub(crate) fn new(queries: Queries, results: Writer, threads: usize) -> Self {
@@ -104,18 +112,24 @@ impl Pipeline {
         }
     }
 
-    /// Answers chunk after chunk until the input ends. `answer` gets a line with its number and
-    /// returns the result and whether it is one.
-    pub(crate) fn work(&self, answer: impl Fn(u64, Line) -> (String, bool), bar: &ProgressBar) {
-        while let Some(chunk) = self.next_chunk() {
-            let mut answers = Answers { flush: chunk.flush, ..Answers::default() };
-            for (number, line) in chunk.lines {
-                let (text, good) = answer(number, line);
-                answers.text.extend_from_slice(text.as_bytes());
-                answers.text.push(b'\n');
+    /// Answers chunk after chunk until the input ends. `answer` gets a line with its number, appends
+    /// the result and returns whether it is an answer.
+    pub(crate) fn work(
+        &self,
+        mut answer: impl FnMut(u64, Line<'_>, &mut Vec<u8>) -> bool,
+        bar: &ProgressBar,
+    ) {
+        let mut spent = Vec::new();
+        while let Some(chunk) = self.next_chunk(spent) {
+            let text = Vec::with_capacity(chunk.lines.len() * RESULT_BYTES);
+            let mut answers = Answers { text, flush: chunk.flush, ..Answers::default() };
+            for (number, range) in chunk.lines {
+                let line = range.map_or(Line::TooLong, |range| Line::Text(&chunk.text[range]));
+                let good = answer(number, line, &mut answers.text);
                 answers.answered += 1;
                 answers.failed += u64::from(!good);
             }
+            spent = chunk.text;
             let answered = self.deliver(chunk.number, answers);
             bar.set_position(chunk.bytes_read);
             bar.set_message(answered.to_string());
@@ -134,7 +148,8 @@ impl Pipeline {
         }
     }
 
-    fn next_chunk(&self) -> Option<Chunk> {
+    /// The next lines, in the memory of those that are done with.
+    fn next_chunk(&self, spent: Vec<u8>) -> Option<Chunk> {
         let mut input = lock(&self.input);
         let mut output = lock(&self.output);
         while output.error.is_none() && input.chunk_number >= output.next + self.window {
@@ -144,7 +159,7 @@ impl Pipeline {
             return None;
         }
         drop(output);
-        input.next_chunk()
+        input.next_chunk(spent)
     }
 
     /// Writes what can be written in order; returns how many queries are answered.
@@ -158,22 +173,23 @@ impl Pipeline {
 }
 
 impl Input {
-    fn next_chunk(&mut self) -> Option<Chunk> {
-        let mut lines = Vec::new();
-        let mut bytes = 0;
+    fn next_chunk(&mut self, mut text: Vec<u8>) -> Option<Chunk> {
+        text.clear();
+        let mut lines = Vec::with_capacity(CHUNK_LINES);
         // Never wait for a second line while the first could be answered.
         while !self.ended
             && lines.len() < CHUNK_LINES
-            && bytes < CHUNK_BYTES
-            && (lines.is_empty() || self.queries.buffer().contains(&b'\n'))
+            && text.len() < CHUNK_BYTES
+            && (lines.is_empty() || self.has_line())
         {
-            match self.next_line() {
-                Ok(Some(line)) => {
-                    bytes += if let Line::Text(text) = &line { text.len() } else { 0 };
-                    if !matches!(&line, Line::Text(text) if text.trim_ascii().is_empty()) {
-                        lines.push((self.line_number, line));
+            match self.next_line(&mut text) {
+                Ok(Some(line)) => match line.clone() {
+                    // Nothing of a blank line is kept, however many there are.
+                    Some(line) if text[line.clone()].trim_ascii().is_empty() => {
+                        text.truncate(line.start);
                     }
-                }
+                    _ => lines.push((self.line_number, line)),
+                },
                 Ok(None) => self.ended = true,
                 Err(error) => {
                     self.ended = true;
@@ -186,28 +202,32 @@ impl Input {
         }
         let number = self.chunk_number;
         self.chunk_number += 1;
-        let flush = !self.queries.buffer().contains(&b'\n');
-        Some(Chunk { number, lines, flush, bytes_read: self.bytes })
+        let flush = !self.has_line();
+        Some(Chunk { number, text, lines, flush, bytes_read: self.bytes })
     }
 
-    fn next_line(&mut self) -> io::Result<Option<Line>> {
-        let mut text = Vec::new();
-        let read = (&mut self.queries).take(LINE_LIMIT).read_until(b'\n', &mut text)?;
+    /// Whether a whole line has been read ahead.
+    fn has_line(&self) -> bool {
+        memchr::memchr(b'\n', self.queries.buffer()).is_some()
+    }
+
+    /// Appends a line to the text; where it is, or `Some(None)` if it is too long and was skipped.
+    #[expect(clippy::option_option, reason = "the input may end, and a line may be too long")]
+    fn next_line(&mut self, text: &mut Vec<u8>) -> io::Result<Option<Option<Range<usize>>>> {
+        let start = text.len();
+        let read = (&mut self.queries).take(LINE_LIMIT).read_until(b'\n', text)?;
         if read == 0 {
             return Ok(None);
         }
         self.bytes += read as u64;
         self.line_number += 1;
-        if text.last() == Some(&b'\n') {
-            text.pop();
-            return Ok(Some(Line::Text(text)));
+        let ends = text.last() == Some(&b'\n');
+        if ends || (read as u64) < LINE_LIMIT {
+            return Ok(Some(Some(start..text.len() - usize::from(ends))));
         }
-        if (read as u64) < LINE_LIMIT {
-            return Ok(Some(Line::Text(text)));
-        }
-        drop(text);
+        text.truncate(start);
         self.bytes += self.queries.skip_until(b'\n')? as u64;
-        Ok(Some(Line::TooLong))
+        Ok(Some(None))
     }
 }
 

@@ -11,6 +11,8 @@ use serde_json::value::RawValue;
 
 use super::cache::{Built, Cache, Key, Shape};
 use super::pipeline::Line;
+use super::recent::Recent;
+use super::usual;
 use crate::args::{BodyArguments, SolverName};
 use crate::body::{self, Part};
 use crate::inputs::FilesRead;
@@ -30,37 +32,39 @@ pub(crate) struct Desk {
     pub(crate) read: FilesRead,
 }
 
+/// A line. Its bodies are read, or what is written of them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that holds a query")]
-struct Query {
-    id: Option<Box<RawValue>>,
-    moving: BodySource,
-    fixed: BodySource,
+pub(super) struct Query<'a, Body> {
+    #[serde(borrow)]
+    pub(super) id: Option<&'a RawValue>,
+    pub(super) moving: Body,
+    pub(super) fixed: Body,
     #[serde(default)]
-    moving_pose: PoseSource,
+    pub(super) moving_pose: PoseSource,
     #[serde(default)]
-    fixed_pose: PoseSource,
-    direction: [f64; 3],
+    pub(super) fixed_pose: PoseSource,
+    pub(super) direction: [f64; 3],
     #[serde(rename = "query")]
-    asked: Option<Asked>,
-    graze_tolerance: Option<f64>,
+    pub(super) asked: Option<Asked>,
+    pub(super) graze_tolerance: Option<f64>,
     #[serde(default)]
-    solver: SolverName,
-    tolerance: Option<f64>,
-    ignore_start_overlaps: Option<bool>,
+    pub(super) solver: SolverName,
+    pub(super) tolerance: Option<f64>,
+    pub(super) ignore_start_overlaps: Option<bool>,
 }
 
 /// Which question is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum Asked {
+pub(super) enum Asked {
     Contact,
     Clearance,
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that holds a body")]
-struct BodySource {
+pub(super) struct BodySource {
     points: Option<Vec<[f64; 3]>>,
     mesh: Option<PathBuf>,
     solid: Option<PathBuf>,
@@ -70,9 +74,9 @@ struct BodySource {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "an object that holds a pose")]
-struct PoseSource {
-    translation: [f64; 3],
-    rotation: [f64; 4],
+pub(super) struct PoseSource {
+    pub(super) translation: [f64; 3],
+    pub(super) rotation: [f64; 4],
 }
 
 impl Default for PoseSource {
@@ -83,60 +87,81 @@ impl Default for PoseSource {
 
 /// Reads the id of a query that is otherwise wrong.
 #[derive(Deserialize)]
-struct IdOnly {
-    id: Option<Box<RawValue>>,
+struct IdOnly<'a> {
+    #[serde(borrow)]
+    id: Option<&'a RawValue>,
 }
 
 impl Desk {
-    /// The result of a line as JSON, and whether it is an answer.
-    pub(crate) fn answer(&self, number: u64, line: Line) -> (String, bool) {
-        let (id, record) = match line {
-            Line::Text(text) => self.answer_text(number, &text),
-            Line::TooLong => (None, Record::of_error(format!("line {number}: longer than 64 MiB"))),
+    /// Appends the result of a line as JSON; whether it is an answer.
+    pub(crate) fn answer(
+        &self,
+        number: u64,
+        line: Line<'_>,
+        recent: &mut Recent,
+        results: &mut Vec<u8>,
+    ) -> bool {
+        let (id, answer) = match line {
+            Line::Text(text) => self.answer_text(number, text, recent),
+            Line::TooLong => (None, Err(format!("line {number}: longer than 64 MiB"))),
         };
-        let good = record.outcome != Name::Error;
-        let record = Record { id: id.or_else(null), ..record };
-        let text = serde_json::to_string(&record).unwrap_or_else(|error| {
-            // Nothing in a record can fail to be written; if it does, the line is not lost.
-            format!(r#"{{"id":null,"outcome":"error","message":"line {number}: {error}"}}"#)
-        });
-        (text, good)
+        let record = answer.unwrap_or_else(Record::of_error);
+        record.write_line(Some(id.map_or("null", RawValue::get)), results);
+        record.outcome != Name::Error
     }
 
-    fn answer_text(&self, number: u64, text: &[u8]) -> (Option<Box<RawValue>>, Record) {
+    /// The id of a line, if it has one, and its answer.
+    fn answer_text<'a>(
+        &self,
+        number: u64,
+        text: &'a [u8],
+        recent: &mut Recent,
+    ) -> (Option<&'a RawValue>, Result<Record, String>) {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-        let query: Query = match serde_json::from_slice(text) {
-            Ok(query) => query,
-            Err(error) => {
-                let id = serde_json::from_slice::<IdOnly>(text).ok().and_then(|only| only.id);
-                return (id, Record::of_error(syntax_message(number, &error)));
+        let usual = str::from_utf8(text).ok().and_then(usual::read);
+        if let Some(query) = usual
+            && let Some(answer) = self.answer_by_words(number, &query, recent)
+        {
+            return (query.id, answer);
+        }
+        match serde_json::from_slice::<Query<'_, BodySource>>(text) {
+            Ok(query) => {
+                let bodies = || [&query.moving, &query.fixed].map(|source| self.body(source));
+                (query.id, guarded(number, || solve(&query, bodies())))
             }
-        };
-        let Query { id, .. } = &query;
-        let id = id.clone();
-        // A bug must not take the other lines with it.
-        let solved = catch_unwind(AssertUnwindSafe(|| self.solve(&query)));
-        let record = match solved {
-            Ok(Ok(record)) => record,
-            Ok(Err(message)) => Record::of_error(format!("line {number}: {message}")),
-            Err(_) => Record::of_error(format!("line {number}: internal error; please report it")),
-        };
-        (id, record)
+            Err(error) => {
+                let id = serde_json::from_slice::<IdOnly<'_>>(text).ok().and_then(|only| only.id);
+                (id, Err(syntax_message(number, &error)))
+            }
+        }
     }
 
-    fn solve(&self, query: &Query) -> Result<Record, String> {
-        let moving = self.body(&query.moving).map_err(|e| format!("moving: {e}"))?;
-        let fixed = self.body(&query.fixed).map_err(|e| format!("fixed: {e}"))?;
-        let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
-        let fixed_pose = query.fixed_pose.pose().map_err(|e| format!("fixed_pose: {e}"))?;
-        let poses = [moving_pose, fixed_pose];
-        match (&*moving, &*fixed) {
-            (Shape::Convex(moving), Shape::Convex(fixed)) => {
-                query.of_convex([moving, fixed], poses)
-            }
-            (moving, fixed) => query.of_solids([moving, fixed], poses),
+    /// Unless what is said of a body is not right: the whole line tells the place.
+    fn answer_by_words(
+        &self,
+        number: u64,
+        query: &Query<'_, &str>,
+        recent: &mut Recent,
+    ) -> Option<Result<Record, String>> {
+        let answer = guarded(number, || {
+            let moving = self.body_by_words(query.moving, recent);
+            let fixed = self.body_by_words(query.fixed, recent);
+            let (Some(moving), Some(fixed)) = (moving, fixed) else { return Ok(None) };
+            solve(query, [moving, fixed]).map(Some)
+        });
+        answer.transpose()
+    }
+
+    fn body_by_words(&self, words: &str, recent: &mut Recent) -> Option<Built> {
+        if let Some(shape) = recent.find(words) {
+            return Some(Ok(shape));
         }
+        let built = self.body(&serde_json::from_str(words).ok()?);
+        if let Ok(shape) = &built {
+            recent.keep(words, shape);
+        }
+        Some(built)
     }
 
     fn body(&self, source: &BodySource) -> Built {
@@ -192,7 +217,29 @@ fn hull_of(points: &[[f64; 3]]) -> Built {
     Ok(Arc::new(Shape::Convex(Part { body, excess: None, note: None })))
 }
 
-impl Query {
+/// A bug must not take the other lines with it.
+fn guarded<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    let what = match catch_unwind(AssertUnwindSafe(answer)) {
+        Ok(Ok(answer)) => return Ok(answer),
+        Ok(Err(message)) => message,
+        Err(_) => "internal error; please report it".into(),
+    };
+    Err(format!("line {number}: {what}"))
+}
+
+fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Record, String> {
+    let moving = moving.map_err(|e| format!("moving: {e}"))?;
+    let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
+    let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
+    let fixed_pose = query.fixed_pose.pose().map_err(|e| format!("fixed_pose: {e}"))?;
+    let poses = [moving_pose, fixed_pose];
+    match (&*moving, &*fixed) {
+        (Shape::Convex(moving), Shape::Convex(fixed)) => query.of_convex([moving, fixed], poses),
+        (moving, fixed) => query.of_solids([moving, fixed], poses),
+    }
+}
+
+impl<B> Query<'_, B> {
     fn of_convex(&self, [moving, fixed]: [&Part; 2], poses: [Pose; 2]) -> Result<Record, String> {
         if self.tolerance.is_some() || self.ignore_start_overlaps.is_some() {
             let fields = "`tolerance` and `ignore_start_overlaps`";
@@ -272,10 +319,6 @@ impl PoseSource {
         Pose::new(DQuat::from_xyzw(x, y, z, w), DVec3::from_array(self.translation))
             .map_err(|e| e.to_string())
     }
-}
-
-fn null() -> Option<Box<RawValue>> {
-    RawValue::from_string("null".into()).ok()
 }
 
 /// The parser sees one line and calls it line 1.

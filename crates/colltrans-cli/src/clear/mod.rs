@@ -48,7 +48,7 @@ fn answer_one(arguments: &ClearArguments, question: &Question<'_>) -> Result<(),
     answer.notes.iter().for_each(|text| note(text));
     let is_default = arguments.tolerance.is_none();
     let text = if arguments.json {
-        Record::of_solids(&answer).json()?
+        Record::of_solids(&answer).json()
     } else {
         words::answer(&answer, question.direction, is_default)
     };
@@ -84,7 +84,7 @@ fn scan<'a>(
         };
         failed += usize::from(record.outcome == Name::Error);
         let record = Record { direction: Some(question.direction.to_array()), ..record };
-        let text = if as_json { record.json()? } else { words::scan_line(&record) };
+        let text = if as_json { record.json() } else { words::scan_line(&record) };
         print(&text)?;
     }
     all_answered(count, failed)

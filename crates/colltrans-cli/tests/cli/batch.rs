@@ -105,6 +105,15 @@ fn a_bad_line_costs_one_result() {
 }
 
 #[test]
+fn blank_lines_do_not_end_a_batch() {
+    // More of them than fit in what is read at once.
+    let text = format!("{}{}", " \n".repeat(2 << 20), queries(2));
+    let (output, results) = run(&text, &["--threads", "2"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(results.len(), 2);
+}
+
+#[test]
 fn any_id_comes_back_as_it_was_written() {
     let ids = [r#""a \u0062""#, "12345678901234567890123", "1.50", "null", "[1, {\"x\": 2}]"];
     let mut text = String::from("\u{feff}");

@@ -12,37 +12,40 @@ use crate::certificate::{Certificate, Separation};
 use crate::errors::OrRaise;
 use crate::pose::Pose;
 use crate::query::{Cast, Query, solver_name};
+use crate::saved::{Saved, proof_parts, saved, started_name, step_parts};
+use crate::show::{Options, Shown, show};
 
 /// Work done for one answer.
 #[pyclass(frozen, get_all, module = "colltrans")]
 pub(crate) struct Steps {
     /// int: Planar problems solved.
-    planar_problems: u32,
+    pub(crate) planar_problems: u32,
     /// int: Supporting planes computed.
-    supports: u32,
+    pub(crate) supports: u32,
     /// int: Portals visited.
-    pivots: u32,
+    pub(crate) pivots: u32,
     /// int: Iterations of inner loops.
-    iterations: u32,
+    pub(crate) iterations: u32,
     /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
-    started_from: &'static str,
+    pub(crate) started_from: &'static str,
 }
 
 impl Steps {
     pub(crate) fn of(steps: colltrans::Steps) -> Self {
         let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
             steps;
-        let started_from = match started_from {
-            colltrans::StartedFrom::Features => "features",
-            colltrans::StartedFrom::Region => "region",
-            colltrans::StartedFrom::Scratch => "scratch",
-        };
+        let started_from = started_name(started_from);
         Self { planar_problems, supports, pivots, iterations, started_from }
     }
 }
 
 #[pymethods]
 impl Steps {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let Self { planar_problems, supports, pivots, iterations, started_from } = *self;
+        saved(py, "Steps", ([planar_problems, supports, pivots, iterations], started_from))
+    }
+
     fn __repr__(&self) -> String {
         let Self { planar_problems, supports, pivots, iterations, started_from } = self;
         format!(
@@ -77,6 +80,10 @@ impl Feature {
         PyArray1::from_slice(py, &self.vertices)
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Feature", (self.kind, self.vertices.clone()))
+    }
+
     fn __repr__(&self) -> String {
         format!("Feature('{}', {:?})", self.kind, self.vertices)
     }
@@ -98,9 +105,9 @@ fn feature(feature: colltrans::Feature, body: &colltrans::ConvexPolyhedron) -> F
 #[pyclass(frozen, get_all, module = "colltrans")]
 pub(crate) struct Features {
     /// Feature: Of the moving body.
-    moving: Py<Feature>,
+    pub(crate) moving: Py<Feature>,
     /// Feature: Of the fixed body.
-    fixed: Py<Feature>,
+    pub(crate) fixed: Py<Feature>,
 }
 
 #[pymethods]
@@ -108,6 +115,10 @@ impl Features {
     #[classattr]
     #[pyo3(name = "__match_args__")]
     const MATCH_ARGS: (&'static str, &'static str) = ("moving", "fixed");
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Features", (self.moving.clone_ref(py), self.fixed.clone_ref(py)))
+    }
 
     fn __repr__(&self) -> String {
         let [moving, fixed] = [&self.moving, &self.fixed].map(|f| f.get().__repr__());
@@ -118,8 +129,8 @@ impl Features {
 /// Where the bodies first meet along the direction.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Contact {
-    contact: colltrans::Contact,
-    query: Query,
+    pub(crate) contact: colltrans::Contact,
+    pub(crate) query: Query,
 }
 
 impl Contact {
@@ -204,6 +215,20 @@ impl Contact {
         Cast(self.query.copy(py))
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let (query, c) = (Cast(self.query.copy(py)), &self.contact);
+        let (counts, started_from) = step_parts(c.steps);
+        let numbers = (c.translation, c.normal.to_array(), proof_parts(&c.certificate));
+        let pair = [c.support.moving, c.support.fixed];
+        saved(py, "Contact", (query, numbers, pair, solver_name(c.solver), counts, started_from))
+    }
+
     fn __repr__(&self) -> String {
         let (t, n) = (self.contact.translation, coordinates(self.contact.normal));
         format!("Contact(translation={t:?}, normal={n:?})")
@@ -213,8 +238,8 @@ impl Contact {
 /// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Grazing {
-    grazing: colltrans::Grazing,
-    contact: Py<Contact>,
+    pub(crate) grazing: colltrans::Grazing,
+    pub(crate) contact: Py<Contact>,
 }
 
 #[pymethods]
@@ -243,6 +268,17 @@ impl Grazing {
         self.contact.clone_ref(py)
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let (contact, g) = (self.contact.clone_ref(py), &self.grazing);
+        saved(py, "Grazing", (contact, g.overlap, g.separating_direction.to_array()))
+    }
+
     fn __repr__(&self) -> String {
         let contact = self.contact.get().__repr__();
         format!("Grazing(overlap={:?}, contact={contact})", self.grazing.overlap)
@@ -252,8 +288,8 @@ impl Grazing {
 /// The bodies never meet along the direction.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Separated {
-    separated: colltrans::Separated,
-    query: Query,
+    pub(crate) separated: colltrans::Separated,
+    pub(crate) query: Query,
 }
 
 #[pymethods]
@@ -304,6 +340,19 @@ impl Separated {
         Cast(self.query.copy(py))
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let (query, s) = (Cast(self.query.copy(py)), &self.separated);
+        let (counts, started_from) = step_parts(s.steps);
+        let proof = (s.certificate.normal.to_array(), s.certificate.margin);
+        saved(py, "Separated", (query, proof, solver_name(s.solver), counts, started_from))
+    }
+
     fn __repr__(&self) -> String {
         format!("Separated(margin={:?})", self.separated.certificate.margin)
     }
@@ -312,9 +361,9 @@ impl Separated {
 /// All translations at which the bodies meet, with what touches at either end.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct ContactRange {
-    interval: (f64, f64),
-    first: Py<PyAny>,
-    last: Py<PyAny>,
+    pub(crate) interval: (f64, f64),
+    pub(crate) first: Py<PyAny>,
+    pub(crate) last: Py<PyAny>,
 }
 
 #[pymethods]
@@ -341,6 +390,17 @@ impl ContactRange {
         self.last.clone_ref(py)
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let (first, last) = (self.first.clone_ref(py), self.last.clone_ref(py));
+        saved(py, "ContactRange", (self.interval, first, last))
+    }
+
     fn __repr__(&self) -> String {
         format!("ContactRange(interval={:?})", self.interval)
     }
@@ -349,8 +409,8 @@ impl ContactRange {
 /// The moving body can move until it touches.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Blocked {
-    distance: f64,
-    contact: Py<Contact>,
+    pub(crate) distance: f64,
+    pub(crate) contact: Py<Contact>,
 }
 
 #[pymethods]
@@ -371,6 +431,16 @@ impl Blocked {
         self.contact.clone_ref(py)
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Blocked", (self.distance, self.contact.clone_ref(py)))
+    }
+
     fn __repr__(&self) -> String {
         format!("Blocked(distance={:?})", self.distance)
     }
@@ -379,7 +449,7 @@ impl Blocked {
 /// The moving body slides along the other one, as far as it likes.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Slides {
-    grazing: Py<Grazing>,
+    pub(crate) grazing: Py<Grazing>,
 }
 
 #[pymethods]
@@ -400,6 +470,16 @@ impl Slides {
         self.grazing.clone_ref(py)
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Slides", (self.grazing.clone_ref(py),))
+    }
+
     fn __repr__(&self) -> String {
         format!("Slides(grazing={})", self.grazing.get().__repr__())
     }
@@ -408,7 +488,7 @@ impl Slides {
 /// The last contact lies behind, or is here and the moving body leaves it.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Behind {
-    contact: Py<Contact>,
+    pub(crate) contact: Py<Contact>,
 }
 
 #[pymethods]
@@ -429,6 +509,16 @@ impl Behind {
         self.contact.clone_ref(py)
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Behind", (self.contact.clone_ref(py),))
+    }
+
     fn __repr__(&self) -> String {
         format!("Behind(contact={})", self.contact.get().__repr__())
     }
@@ -437,8 +527,8 @@ impl Behind {
 /// The bodies overlap where they are, by more than rounding error.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Overlapping {
-    first: Py<Contact>,
-    last: Py<Contact>,
+    pub(crate) first: Py<Contact>,
+    pub(crate) last: Py<Contact>,
 }
 
 #[pymethods]
@@ -465,6 +555,16 @@ impl Overlapping {
         self.last.clone_ref(py)
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Overlapping", (self.first.clone_ref(py), self.last.clone_ref(py)))
+    }
+
     fn __repr__(&self) -> String {
         let [first, last] = [&self.first, &self.last].map(|c| c.get().__repr__());
         format!("Overlapping(first={first}, last={last})")
@@ -474,8 +574,8 @@ impl Overlapping {
 /// How far the moving body has to go back until the overlap has ended.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct DirectionalDepth {
-    depth: f64,
-    clearance: Py<PyAny>,
+    pub(crate) depth: f64,
+    pub(crate) clearance: Py<PyAny>,
 }
 
 #[pymethods]
@@ -496,6 +596,16 @@ impl DirectionalDepth {
         self.clearance.clone_ref(py)
     }
 
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "DirectionalDepth", (self.depth, self.clearance.clone_ref(py)))
+    }
+
     fn __repr__(&self) -> String {
         format!("DirectionalDepth(depth={:?})", self.depth)
     }
@@ -504,9 +614,9 @@ impl DirectionalDepth {
 /// Whether the bodies meet where they are: true or false in a condition.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Intersection {
-    meets: bool,
-    direction: [f64; 3],
-    outcome: Py<PyAny>,
+    pub(crate) meets: bool,
+    pub(crate) direction: [f64; 3],
+    pub(crate) outcome: Py<PyAny>,
 }
 
 #[pymethods]
@@ -535,6 +645,16 @@ impl Intersection {
 
     fn __bool__(&self) -> bool {
         self.meets
+    }
+
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Intersection", (self.meets, self.direction, self.outcome.clone_ref(py)))
     }
 
     fn __repr__(&self) -> String {

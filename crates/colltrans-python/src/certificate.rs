@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use crate::arrays::{row, table};
 use crate::errors::OrRaise;
 use crate::query::{Cast, Query};
+use crate::saved::{Saved, proof_parts, saved};
 
 /// The proof of a contact: both bounds of the collision translation, rounded outwards.
 ///
@@ -87,6 +88,10 @@ impl Certificate {
         query.ask(|cast| Ok(cast.verify(&self.proof)))?.or_raise()
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "Certificate", (Cast(self.query.copy(py)), proof_parts(&self.proof)))
+    }
+
     fn __repr__(&self) -> String {
         let colltrans::Certificate { lower, upper, .. } = self.proof;
         format!("Certificate(lower={lower:?}, upper={upper:?})")
@@ -139,6 +144,11 @@ impl Separation {
     fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
         let query = query.map_or(&self.query, |cast| &cast.get().0);
         query.ask(|cast| Ok(cast.verify(&self.proof)))?.or_raise()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let proof = (self.proof.normal.to_array(), self.proof.margin);
+        saved(py, "Separation", (Cast(self.query.copy(py)), proof))
     }
 
     fn __repr__(&self) -> String {

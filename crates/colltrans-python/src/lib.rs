@@ -2,8 +2,8 @@
 //!
 //! The way: `arrays` (numbers in and out) and `errors` (the library's errors as exceptions) ->
 //! `body`, `pose` -> `query` (two placed bodies and a direction; the functions of the package) ->
-//! `answer`, `certificate` (what comes back) -> `solid` (the same for parts that are not convex),
-//! `tracker` and `many` (queries in sequence and in bulk), `assembly` (many parts). The package itself
+//! `answer`, `certificate` (what comes back) -> `solid`, `solid_cast`, `solid_answer` (the same for parts
+//! that are not convex), `saved` (answers as bytes), `show` (as pictures), `tracker` and `many` (queries in sequence and in bulk), `assembly` (many parts). The package itself
 //! is in `python/`; its stub `_colltrans.pyi` has the types.
 
 mod answer;
@@ -15,7 +15,11 @@ mod errors;
 mod many;
 mod pose;
 mod query;
+mod saved;
+mod show;
 mod solid;
+mod solid_answer;
+mod solid_cast;
 mod tracker;
 
 /// The module.
@@ -39,9 +43,15 @@ mod _colltrans {
     #[pymodule_export]
     use crate::query::{Cast, cast, clearance, contact_range, directional_depth, intersects};
     #[pymodule_export]
-    use crate::solid::{
-        Solid, SolidBlocked, SolidCast, SolidCertificate, SolidContact, SolidFree, SolidOverlapping,
+    use crate::saved::restore;
+    #[pymodule_export]
+    use crate::solid::Solid;
+    #[pymodule_export]
+    use crate::solid_answer::{
+        SolidBlocked, SolidCertificate, SolidContact, SolidFree, SolidOverlapping,
     };
+    #[pymodule_export]
+    use crate::solid_cast::SolidCast;
     #[pymodule_export]
     use crate::tracker::Tracker;
 }

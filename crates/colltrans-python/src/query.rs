@@ -8,7 +8,7 @@ use colltrans::glam::DVec3;
 use colltrans::{Options, Solver};
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::types::{PyBool, PyString};
 
 use crate::answer;
 use crate::arrays::{row, vector};
@@ -16,6 +16,8 @@ use crate::body::ConvexPolyhedron;
 use crate::certificate::{Certificate, Separation};
 use crate::errors::{OrRaise, error, query_error};
 use crate::pose::{Pose, pose};
+use crate::show::{Options as Shows, Shown, show};
+use crate::solid_cast::SolidCast;
 
 /// What was asked, or is about to be.
 pub(crate) struct Query {
@@ -84,15 +86,17 @@ impl Query {
     }
 }
 
-/// A solver by its name.
+/// A solver by its name; `auto` without.
 pub(crate) fn solver_called(name: Option<&Bound<'_, PyString>>) -> PyResult<Solver> {
-    match name.map(|name| name.to_str()).transpose()? {
-        None | Some("auto") => Ok(Solver::Auto),
-        Some("cta") => Ok(Solver::Cta),
-        Some("portal") => Ok(Solver::Portal),
-        Some(other) => {
-            Err(error("QueryError", format_args!("no solver {other:?}: auto, cta or portal")))
-        }
+    name.map_or(Ok(Solver::Auto), |name| solver_called_by(name.to_str()?))
+}
+
+pub(crate) fn solver_called_by(name: &str) -> PyResult<Solver> {
+    match name {
+        "auto" => Ok(Solver::Auto),
+        "cta" => Ok(Solver::Cta),
+        "portal" => Ok(Solver::Portal),
+        other => Err(error("QueryError", format_args!("no solver {other:?}: auto, cta or portal"))),
     }
 }
 
@@ -277,6 +281,12 @@ impl Cast {
         solver_name(self.0.options.solver)
     }
 
+    /// A picture of the bodies and of the first contact: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Shows<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
         Ok((py.get_type::<Self>().getattr("from_json")?, (self.to_json()?,)))
     }
@@ -311,6 +321,10 @@ fn meet(py: Python<'_>, query: Query) -> PyResult<Bound<'_, PyAny>> {
     answer::intersection(py, query, meeting)
 }
 
+fn solids_meet<'py>(query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
+    Ok(PyBool::new(query.py(), SolidCast::intersects(query)?).to_owned().into_any())
+}
+
 /// A function of Python that asks one question.
 macro_rules! question {
     ($(#[$doc:meta])* $name:ident => $ask:path) => {
@@ -335,6 +349,61 @@ macro_rules! question {
         }
     };
 }
+
+/// A function of Python that asks one question of bodies of any kind.
+macro_rules! question_of_any {
+    ($(#[$doc:meta])* $name:ident => $ask:path, $ask_solids:expr) => {
+        $(#[$doc])*
+        #[pyfunction]
+        #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
+            graze_tolerance=None, solver=None, tolerance=None, ignore_start_overlaps=false),
+            text_signature = "(moving, fixed, direction, *, moving_pose=None, fixed_pose=None, \
+            graze_tolerance=None, solver='auto', tolerance=None, ignore_start_overlaps=False)")]
+        #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+        pub(crate) fn $name<'py>(
+            py: Python<'py>,
+            moving: &Bound<'py, PyAny>,
+            fixed: &Bound<'py, PyAny>,
+            direction: &Bound<'py, PyAny>,
+            moving_pose: Option<&Bound<'py, PyAny>>,
+            fixed_pose: Option<&Bound<'py, PyAny>>,
+            graze_tolerance: Option<f64>,
+            solver: Option<&Bound<'py, PyString>>,
+            tolerance: Option<f64>,
+            ignore_start_overlaps: bool,
+        ) -> PyResult<Bound<'py, PyAny>> {
+            let poses = [moving_pose, fixed_pose];
+            if let (Ok(moving), Ok(fixed)) = (moving.cast(), fixed.cast()) {
+                if tolerance.is_some() || ignore_start_overlaps {
+                    return Err(error("QueryError", FOR_SOLIDS));
+                }
+                let graze_tolerance = graze_tolerance.unwrap_or_default();
+                let arguments =
+                    Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
+                return $ask(py, Query::new(arguments)?);
+            }
+            if graze_tolerance.is_some() {
+                return Err(error("QueryError", FOR_CONVEX));
+            }
+            solver_called(solver)?;
+            let query = SolidCast::new(
+                py,
+                moving,
+                fixed,
+                direction,
+                moving_pose,
+                fixed_pose,
+                tolerance,
+                ignore_start_overlaps,
+            )?;
+            $ask_solids(&Bound::new(py, query)?)
+        }
+    };
+}
+
+const FOR_SOLIDS: &str =
+    "tolerance and ignore_start_overlaps are for solids; convex bodies have graze_tolerance";
+const FOR_CONVEX: &str = "graze_tolerance is for convex bodies; solids have tolerance";
 
 question! {
     /// At which translation along a direction do two bodies first meet?
@@ -396,7 +465,7 @@ question! {
     contact_range => range
 }
 
-question! {
+question_of_any! {
     /// How far can the moving body move from where it is, and what stops it?
     ///
     /// Contacts behind and grazing slides do not block. Bodies that touch block each other if the
@@ -404,13 +473,21 @@ question! {
     ///
     /// Parameters
     /// ----------
-    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, solver
+    /// moving, fixed : ConvexPolyhedron or Solid
+    ///     The body that moves, and the one that does not.
+    /// direction, moving_pose, fixed_pose
     ///     As for :func:`cast`.
+    /// graze_tolerance, solver
+    ///     As for :func:`cast`; between convex bodies.
+    /// tolerance, ignore_start_overlaps
+    ///     As for :class:`SolidCast`; if one of the bodies is a solid.
     ///
     /// Returns
     /// -------
     /// Blocked or Slides or Behind or Separated or Overlapping
     ///     All have a ``distance``: infinite where nothing blocks, None where the bodies overlap.
+    /// SolidBlocked or SolidFree or SolidOverlapping
+    ///     The same, if one of the bodies is a solid.
     ///
     /// Examples
     /// --------
@@ -422,7 +499,7 @@ question! {
     /// Blocked 0.0
     /// Slides inf
     /// Behind inf
-    clearance => clear
+    clearance => clear, SolidCast::clearance
 }
 
 question! {
@@ -446,18 +523,21 @@ question! {
     directional_depth => depth
 }
 
-question! {
+question_of_any! {
     /// Do the bodies, as closed sets and to within rounding error, meet where they are?
     ///
     /// Parameters
     /// ----------
-    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, solver
-    ///     As for :func:`cast`. The direction plays no part.
+    /// moving, fixed : ConvexPolyhedron or Solid
+    /// direction, moving_pose, fixed_pose, graze_tolerance, solver, tolerance, ignore_start_overlaps
+    ///     As for :func:`clearance`. The direction and the tolerances play no part.
     ///
     /// Returns
     /// -------
     /// Intersection
     ///     True or false in a condition, with the proof.
+    /// bool
+    ///     If one of the bodies is a solid.
     ///
     /// Examples
     /// --------
@@ -465,5 +545,5 @@ question! {
     /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     /// >>> bool(intersects(cube, cube, [1, 0, 0], moving_pose=[0.5, 0, 0]))
     /// True
-    intersects => meet
+    intersects => meet, solids_meet
 }

@@ -1,23 +1,22 @@
-//! Solids, and queries about them.
+//! Solids.
 //!
 //! A solid keeps what it was made of, so that it can be pickled: made of the same again, it is the
-//! same. Queries run without the interpreter's lock: one may take milliseconds.
+//! same.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use colltrans::AsSolid;
 use colltrans::glam::DVec3;
-use colltrans::{AsSolid, Clearance, SolidOptions, StartOverlap};
 use colltrans_mesh::ReadOptions;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::answer::Feature;
-use crate::arrays::{coordinates, faces, points, row, table, vector};
+use crate::arrays::{faces, points, table};
 use crate::body::ConvexPolyhedron;
-use crate::errors::{OrRaise, error};
-use crate::pose::{Pose, pose};
+use crate::errors::OrRaise;
 
 /// What a solid was made of.
 enum Source {
@@ -26,34 +25,48 @@ enum Source {
 }
 
 /// A body that stands for a solid.
-enum Piece {
+pub(crate) enum Piece {
     Convex(Py<ConvexPolyhedron>),
     Solid(Py<Solid>),
 }
 
 impl Piece {
-    fn of(thing: &Bound<'_, PyAny>) -> PyResult<Self> {
+    /// The body of the argument called `name`.
+    pub(crate) fn of(thing: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
         if let Ok(body) = thing.cast::<ConvexPolyhedron>() {
             return Ok(Self::Convex(body.clone().unbind()));
         }
-        Ok(Self::Solid(thing.cast::<Solid>()?.clone().unbind()))
+        if let Ok(solid) = thing.cast::<Solid>() {
+            return Ok(Self::Solid(solid.clone().unbind()));
+        }
+        let what = thing.get_type().name()?;
+        let message = format!("{name}: neither a ConvexPolyhedron nor a Solid, but {what}");
+        Err(PyTypeError::new_err(message))
     }
 
-    fn solid(&self) -> Result<&colltrans::Solid, colltrans::SolidError> {
+    pub(crate) fn solid(&self) -> Result<&colltrans::Solid, colltrans::SolidError> {
         match self {
             Self::Convex(body) => body.get().0.as_solid(),
             Self::Solid(solid) => solid.get().solid.as_solid(),
         }
     }
 
-    fn object(&self, py: Python<'_>) -> Py<PyAny> {
+    /// Of a convex body, about as many as it has as a solid.
+    pub(crate) fn triangle_count(&self) -> usize {
+        match self {
+            Self::Convex(body) => 2 * body.get().0.vertices().len(),
+            Self::Solid(solid) => solid.get().solid.triangles().len(),
+        }
+    }
+
+    pub(crate) fn object(&self, py: Python<'_>) -> Py<PyAny> {
         match self {
             Self::Convex(body) => body.clone_ref(py).into_any(),
             Self::Solid(solid) => solid.clone_ref(py).into_any(),
         }
     }
 
-    fn copy(&self, py: Python<'_>) -> Self {
+    pub(crate) fn copy(&self, py: Python<'_>) -> Self {
         match self {
             Self::Convex(body) => Self::Convex(body.clone_ref(py)),
             Self::Solid(solid) => Self::Solid(solid.clone_ref(py)),
@@ -136,7 +149,8 @@ impl Solid {
     /// Solid(16 vertices, 24 triangles)
     #[staticmethod]
     fn from_pieces(pieces: Vec<Bound<'_, PyAny>>) -> PyResult<Self> {
-        let pieces: Vec<Piece> = pieces.iter().map(Piece::of).collect::<PyResult<_>>()?;
+        let pieces: Vec<Piece> =
+            pieces.iter().map(|piece| Piece::of(piece, "pieces")).collect::<PyResult<_>>()?;
         let solids: Result<Vec<_>, _> = pieces.iter().map(Piece::solid).collect();
         let solid = colltrans::Solid::from_pieces(solids.or_raise()?).or_raise()?;
         Ok(Self { solid, source: Arc::new(Source::Pieces(pieces)) })
@@ -290,418 +304,4 @@ impl Solid {
         let (v, t) = (self.solid.vertices().len(), self.solid.triangles().len());
         format!("Solid({v} vertices, {t} triangles)")
     }
-}
-
-/// A query about solids as a value: two placed bodies and a direction.
-///
-/// Parameters
-/// ----------
-/// moving, fixed : Solid or ConvexPolyhedron
-///     The body that moves, and the one that does not.
-/// direction : array_like of shape (3,)
-///     Of the world, of any length; translations count in multiples of it.
-/// moving_pose, fixed_pose : array_like or Pose, optional
-///     Where the bodies are; see :class:`Pose`.
-/// tolerance : float, optional
-///     Both bodies are shrunk by half of this length, so that parts that fit do not jam. By default
-///     what rounding can do to a fit, 0 where both poses turn by quarter turns. (The command line
-///     adds what the files' precision can do.)
-/// ignore_start_overlaps : bool
-///     Whether facets that cross now do not block, but contacts that begin later do.
-///
-/// Examples
-/// --------
-/// >>> from colltrans import Solid, SolidCast
-/// >>> bolt, plate = Solid.read("data/bolt.stl"), Solid.read("data/plate.off")
-/// >>> query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
-/// >>> query.clearance()
-/// SolidBlocked(distance=7.0)
-/// >>> query.exit()
-/// 12.0
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidCast {
-    bodies: [Piece; 2],
-    poses: [colltrans::Pose; 2],
-    direction: DVec3,
-    options: SolidOptions,
-}
-
-impl SolidCast {
-    /// Asks the library, without the interpreter's lock.
-    fn ask<T: Send>(
-        &self,
-        py: Python<'_>,
-        question: impl FnOnce(&colltrans::Cast<'_, colltrans::Solid>) -> T + Send,
-    ) -> PyResult<T> {
-        let solids = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
-        py.detach(|| {
-            colltrans::Cast::new(
-                solids[0].at(self.poses[0]),
-                solids[1].at(self.poses[1]),
-                self.direction,
-            )
-            .and_then(|cast| cast.with_options(self.options))
-            .map(|cast| question(&cast))
-        })
-        .map_err(|what| error("QueryError", what))
-    }
-}
-
-#[pymethods]
-impl SolidCast {
-    #[new]
-    #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-        tolerance=None, ignore_start_overlaps=false))]
-    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
-    fn new(
-        py: Python<'_>,
-        moving: &Bound<'_, PyAny>,
-        fixed: &Bound<'_, PyAny>,
-        direction: &Bound<'_, PyAny>,
-        moving_pose: Option<&Bound<'_, PyAny>>,
-        fixed_pose: Option<&Bound<'_, PyAny>>,
-        tolerance: Option<f64>,
-        ignore_start_overlaps: bool,
-    ) -> PyResult<Self> {
-        let start_overlap =
-            if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
-        let cast = Self {
-            bodies: [Piece::of(moving)?, Piece::of(fixed)?],
-            poses: [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?],
-            direction: vector(direction, "direction")?,
-            options: SolidOptions { tolerance, start_overlap, ..SolidOptions::default() },
-        };
-        cast.ask(py, |_| ())?;
-        Ok(cast)
-    }
-
-    /// How far can the moving body move from where it is, and what stops it?
-    ///
-    /// Returns
-    /// -------
-    /// SolidBlocked or SolidFree or SolidOverlapping
-    fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let py = slf.py();
-        let answer = slf.get().ask(py, |cast| cast.clearance())?;
-        solid_answer(slf, &answer)
-    }
-
-    /// The clearance, with a proof that :meth:`verify` checks.
-    ///
-    /// Returns
-    /// -------
-    /// tuple of (SolidBlocked or SolidFree or SolidOverlapping, SolidCertificate)
-    fn certified_clearance<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, SolidCertificate)> {
-        let (answer, proof) = slf.get().ask(slf.py(), |cast| cast.certified_clearance())?;
-        Ok((solid_answer(slf, &answer)?, SolidCertificate(proof)))
-    }
-
-    /// Checks a proof against the two bodies.
-    ///
-    /// Parameters
-    /// ----------
-    /// proof : SolidCertificate
-    ///
-    /// Returns
-    /// -------
-    /// float
-    ///     How far the bounds of the distance are apart, in multiples of the direction.
-    ///
-    /// Raises
-    /// ------
-    /// CertificateError
-    ///     What is not proven.
-    fn verify(&self, py: Python<'_>, proof: &Bound<'_, SolidCertificate>) -> PyResult<f64> {
-        let proof = &proof.get().0;
-        self.ask(py, |cast| cast.verify(proof))?.or_raise()
-    }
-
-    /// Whether the bodies as they are, as closed sets, have a point in common.
-    fn intersects(&self, py: Python<'_>) -> PyResult<bool> {
-        self.ask(py, |cast| cast.intersects())
-    }
-
-    /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
-    /// none up to their size.
-    fn depth(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        self.ask(py, |cast| cast.depth())
-    }
-
-    /// The translation after which the bodies never meet again, None if nothing faces.
-    fn exit(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        self.ask(py, |cast| cast.exit())
-    }
-
-    /// float: The tolerance that is used, a length.
-    #[getter]
-    fn tolerance(&self, py: Python<'_>) -> PyResult<f64> {
-        self.ask(py, |cast| cast.tolerance())
-    }
-
-    /// Solid or ConvexPolyhedron: The moving body.
-    #[getter]
-    fn moving(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[0].object(py)
-    }
-
-    /// Solid or ConvexPolyhedron: The fixed body.
-    #[getter]
-    fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[1].object(py)
-    }
-
-    /// Pose: Where the moving body is.
-    #[getter]
-    fn moving_pose(&self) -> Pose {
-        Pose(self.poses[0])
-    }
-
-    /// Pose: Where the fixed body is.
-    #[getter]
-    fn fixed_pose(&self) -> Pose {
-        Pose(self.poses[1])
-    }
-
-    /// ndarray of shape (3,): The direction, as given.
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.direction)
-    }
-
-    /// The same bodies where they are, and the direction turned round.
-    fn reversed(&self, py: Python<'_>) -> Self {
-        let bodies = [self.bodies[0].copy(py), self.bodies[1].copy(py)];
-        Self { bodies, direction: -self.direction, ..*self }
-    }
-
-    fn __repr__(&self) -> String {
-        format!("SolidCast(direction={:?})", coordinates(self.direction))
-    }
-}
-
-/// Where a solid is stopped.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidContact {
-    contact: colltrans::SolidContact,
-    query: Py<SolidCast>,
-}
-
-#[pymethods]
-impl SolidContact {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str, &'static str) = ("nominal", "normal", "point");
-
-    /// float: Where the bodies as they are, not shrunk, meet, in multiples of the direction.
-    #[getter]
-    fn nominal(&self) -> f64 {
-        self.contact.nominal
-    }
-
-    /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.contact.normal)
-    }
-
-    /// ndarray of shape (3,): The contact point on the fixed body, in the world.
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.contact.point_on_fixed)
-    }
-
-    /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
-    #[getter]
-    fn point_at_start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.contact.point_on_moving)
-    }
-
-    /// Feature: What of the moving body touches; of a face its vertices in the input's numbers.
-    #[getter]
-    fn moving_feature(&self) -> PyResult<Feature> {
-        feature(self.contact.moving_feature, &self.query.get().bodies[0])
-    }
-
-    /// Feature: What of the fixed body touches.
-    #[getter]
-    fn fixed_feature(&self) -> PyResult<Feature> {
-        feature(self.contact.fixed_feature, &self.query.get().bodies[1])
-    }
-
-    fn __repr__(&self) -> String {
-        let (t, n) = (self.contact.nominal, coordinates(self.contact.normal));
-        format!("SolidContact(nominal={t:?}, normal={n:?})")
-    }
-}
-
-/// A feature by the numbers of the input; a face by the vertices of all its triangles.
-fn feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
-    let vertices = match feature {
-        colltrans::Feature::Vertex(v) => vec![v],
-        colltrans::Feature::Edge(ends) => ends.to_vec(),
-        colltrans::Feature::Face(face) => {
-            let solid = body.solid().or_raise()?;
-            let triangles = solid.triangles().iter().zip(solid.facet_indices());
-            let corners = triangles.filter(|(_, f)| **f == face).flat_map(|(t, _)| *t);
-            let mut found: Vec<u32> = corners.map(|v| solid.vertex_indices()[v as usize]).collect();
-            found.sort_unstable();
-            found.dedup();
-            found
-        }
-    };
-    Ok(Feature::new(feature.kind(), vertices))
-}
-
-/// A solid can move until it touches.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidBlocked {
-    distance: f64,
-    contact: Py<SolidContact>,
-}
-
-#[pymethods]
-impl SolidBlocked {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("distance", "contact");
-
-    /// float: How far, in multiples of the direction, the bodies shrunk by half the tolerance each.
-    #[getter]
-    fn distance(&self) -> f64 {
-        self.distance
-    }
-
-    /// SolidContact: What stops it.
-    #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<SolidContact> {
-        self.contact.clone_ref(py)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("SolidBlocked(distance={:?})", self.distance)
-    }
-}
-
-/// A solid can move as far as it likes.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidFree {
-    separation: Option<[f64; 4]>,
-}
-
-#[pymethods]
-impl SolidFree {
-    /// float: Infinite.
-    #[getter]
-    fn distance(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// float or None: The margin of a plane between the bodies, parallel to the direction, a length;
-    /// None if there is no such plane: it slides along, or moves away.
-    #[getter]
-    fn margin(&self) -> Option<f64> {
-        self.separation.map(|s| s[3])
-    }
-
-    /// ndarray of shape (3,) or None: Unit normal of that plane, in the world.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.separation.map(|s| PyArray1::from_slice(py, &s[..3]))
-    }
-
-    fn __repr__(&self) -> &'static str {
-        "SolidFree()"
-    }
-}
-
-/// Two solids overlap where they are, by more than is tolerated.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidOverlapping {
-    depth: Option<f64>,
-}
-
-#[pymethods]
-impl SolidOverlapping {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("depth",);
-
-    /// None: There is none.
-    #[getter]
-    fn distance(&self) -> Option<f64> {
-        None
-    }
-
-    /// float or None: The least tolerance with which they would not overlap, a length.
-    #[getter]
-    fn depth(&self) -> Option<f64> {
-        self.depth
-    }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "SolidOverlapping(depth={})",
-            self.depth.map_or("None".into(), |d| format!("{d:?}"))
-        )
-    }
-}
-
-/// The proof of a clearance between solids.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidCertificate(colltrans::SolidCertificate);
-
-#[pymethods]
-impl SolidCertificate {
-    /// float: The tolerance by which the bodies were shrunk.
-    #[getter]
-    fn tolerance(&self) -> f64 {
-        self.0.tolerance
-    }
-
-    /// float: The proven lower bound of the distance, in multiples of the direction.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.0.lower
-    }
-
-    /// The proof as text.
-    fn to_json(&self) -> String {
-        self.0.to_json()
-    }
-
-    /// From what `to_json` has written. It is read, not believed.
-    #[staticmethod]
-    fn from_json(text: &str) -> PyResult<Self> {
-        colltrans::SolidCertificate::from_json(text).or_raise().map(Self)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("SolidCertificate(lower={:?})", self.0.lower)
-    }
-}
-
-fn solid_answer<'py>(
-    query: &Bound<'py, SolidCast>,
-    answer: &Clearance<colltrans::Solid>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let py = query.py();
-    Ok(match answer {
-        Clearance::Blocked { distance, contact } => {
-            let contact = SolidContact { contact: *contact, query: query.clone().unbind() };
-            let contact = Py::new(py, contact)?;
-            Bound::new(py, SolidBlocked { distance: *distance, contact })?.into_any()
-        }
-        Clearance::Free(separation) => {
-            let separation = separation.as_ref().map(|s| {
-                let [x, y, z] = coordinates(s.normal);
-                [x, y, z, s.margin]
-            });
-            Bound::new(py, SolidFree { separation })?.into_any()
-        }
-        Clearance::Overlapping(overlap) => {
-            Bound::new(py, SolidOverlapping { depth: overlap.depth })?.into_any()
-        }
-    })
 }

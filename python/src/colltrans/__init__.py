@@ -67,6 +67,8 @@ from colltrans.many import (
     clearance_many,
     contact_range_many,
 )
+from colltrans.pictures import picture, show
+from colltrans.solids import SolidColumns
 
 __all__ = [
     "Assembly",
@@ -110,6 +112,7 @@ __all__ = [
     "SolidBlocked",
     "SolidCast",
     "SolidCertificate",
+    "SolidColumns",
     "SolidContact",
     "SolidFree",
     "SolidOverlapping",
@@ -125,5 +128,7 @@ __all__ = [
     "contact_range_many",
     "directional_depth",
     "intersects",
+    "picture",
     "read",
+    "show",
 ]

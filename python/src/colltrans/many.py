@@ -7,7 +7,7 @@ the query asked alone. A row without an answer has the outcome ``"error"`` and a
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ from colltrans._colltrans import (
     Pose,
     Separated,
     Slides,
+    Solid,
 )
 from colltrans.errors import ColltransError, InputError
 
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
 
 Floats: TypeAlias = NDArray[np.float64]
 Bodies: TypeAlias = "ConvexPolyhedron | Sequence[ConvexPolyhedron | ColltransError]"
+AnyBodies: TypeAlias = (
+    "ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid | ColltransError]"
+)
 Poses: TypeAlias = "ArrayLike | Pose | HasMatrix | None"
 Solver: TypeAlias = Literal["auto", "cta", "portal"]
 Question: TypeAlias = Literal["contact", "range", "clearance"]
@@ -83,11 +87,11 @@ class _Queries:
 
     def ask(self, question: Any, i: int) -> Any:
         """One of them, alone."""
+        tolerance = float(row_of(self.graze_tolerance, i)[0])
+        return self.ask_with(question, i, graze_tolerance=tolerance, solver=self.solver)
 
-        def row(table: Floats) -> Floats:
-            values: Floats = table[i if len(table) > 1 else 0]
-            return values.reshape(-1, 4) if values.size > 7 else values
-
+    def ask_with(self, question: Any, i: int, **choices: Any) -> Any:
+        """One of them, alone, with the choices that its kind has."""
         moving, fixed = (
             bodies[0 if index is None else index[i]]
             for bodies, index in zip(self.bodies, self.indices, strict=True)
@@ -95,16 +99,21 @@ class _Queries:
         return question(
             moving,
             fixed,
-            row(self.direction),
-            moving_pose=row(self.poses[0]),
-            fixed_pose=row(self.poses[1]),
-            graze_tolerance=float(row(self.graze_tolerance)[0]),
-            solver=self.solver,
+            row_of(self.direction, i),
+            moving_pose=row_of(self.poses[0], i),
+            fixed_pose=row_of(self.poses[1], i),
+            **choices,
         )
 
 
+def row_of(table: Floats, i: int) -> Floats:
+    """A row of a table of one for all or one for each; a matrix as one."""
+    values: Floats = table[i if len(table) > 1 else 0]
+    return values.reshape(-1, 4) if values.size > 7 else values
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Columns(Generic[Answer_co]):
+class Table(Generic[Answer_co]):
     """Answers as columns, one row a query. Numbers that a row has not are NaN.
 
     ``len(columns)`` is the number of rows, ``columns[i]`` the whole answer of one of them, with its
@@ -118,34 +127,14 @@ class Columns(Generic[Answer_co]):
         The names of the outcomes; the last one is ``"error"``.
     errors : dict of int to str
         The messages of the rows without an answer.
-    normal : ndarray of shape (N, 3)
-        Unit normals, in the world, from the moving body to the fixed one.
-    point : ndarray of shape (N, 3)
-        Contact points, in the world.
-    lower, upper : ndarray of shape (N,)
-        Proven bounds of the translation, in multiples of the direction.
-    translation : ndarray of shape (N,)
-        Of the first contact, in multiples of the direction.
-    tolerance : ndarray of shape (N,)
-        What rounding can make of ``upper - lower``.
-    margin : ndarray of shape (N,)
-        How far the shadows are apart, a length; negative where they overlap and graze.
     """
 
     outcome: NDArray[np.uint8]
     outcomes: tuple[str, ...]
     errors: dict[int, str]
-    translation: Floats
-    lower: Floats
-    upper: Floats
-    tolerance: Floats
-    margin: Floats
-    normal: Floats
-    point: Floats
-    _queries: _Queries
+    _queries: Any
 
     _question: ClassVar[Any]
-    _checked: ClassVar[str] = "translation"
 
     def __len__(self) -> int:
         return len(self.outcome)
@@ -242,6 +231,54 @@ class Columns(Generic[Answer_co]):
                 yield field.name, column
 
     def _is_row(self, answer: Any, i: int) -> bool:
+        """Whether a row says what this answer does."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{n} {name}" for name, n in self.counts().items())
+        return f"{type(self).__name__}({len(self)} rows: {counts})"
+
+    def _repr_html_(self) -> str:
+        shown = min(len(self), 8)
+        columns = [("outcome", [self.outcomes[code] for code in self.outcome[:shown]])]
+        columns += [(name, column[:shown].tolist()) for name, column in self._numbers()]
+        head = "".join(f"<th>{name}</th>" for name, _ in columns)
+        lines = (
+            "".join(f"<td>{_cell(column[i])}</td>" for _, column in columns) for i in range(shown)
+        )
+        body = "".join(f"<tr><th>{i}</th>{line}</tr>" for i, line in enumerate(lines))
+        return f"<p>{self!r}</p><table><tr><th></th>{head}</tr>{body}</table>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Columns(Table[Answer_co]):
+    """Answers about convex bodies as columns; see :class:`Table`.
+
+    Attributes
+    ----------
+    normal : ndarray of shape (N, 3)
+        Unit normals, in the world, from the moving body to the fixed one.
+    point : ndarray of shape (N, 3)
+        Contact points, in the world.
+    lower, upper : ndarray of shape (N,)
+        Proven bounds of the translation, in multiples of the direction.
+    translation : ndarray of shape (N,)
+        Of the first contact, in multiples of the direction.
+    tolerance : ndarray of shape (N,)
+        What rounding can make of ``upper - lower``.
+    margin : ndarray of shape (N,)
+        How far the shadows are apart, a length; negative where they overlap and graze.
+    """
+
+    translation: Floats
+    lower: Floats
+    upper: Floats
+    tolerance: Floats
+    margin: Floats
+    normal: Floats
+    point: Floats
+
+    def _is_row(self, answer: Any, i: int) -> bool:
         match answer:
             case None:
                 return False
@@ -259,21 +296,6 @@ class Columns(Generic[Answer_co]):
                 name, translation = "contact", contact.translation
         same = np.array_equal(self.translation[i], translation, equal_nan=True)
         return same and self.outcomes[self.outcome[i]] == name
-
-    def __repr__(self) -> str:
-        counts = ", ".join(f"{n} {name}" for name, n in self.counts().items())
-        return f"{type(self).__name__}({len(self)} rows: {counts})"
-
-    def _repr_html_(self) -> str:
-        shown = min(len(self), 8)
-        columns = [("outcome", [self.outcomes[code] for code in self.outcome[:shown]])]
-        columns += [(name, column[:shown].tolist()) for name, column in self._numbers()]
-        head = "".join(f"<th>{name}</th>" for name, _ in columns)
-        lines = (
-            "".join(f"<td>{_cell(column[i])}</td>" for _, column in columns) for i in range(shown)
-        )
-        body = "".join(f"<tr><th>{i}</th>{line}</tr>" for i, line in enumerate(lines))
-        return f"<p>{self!r}</p><table><tr><th></th>{head}</tr>{body}</table>"
 
 
 def _cell(value: Any) -> str:
@@ -383,15 +405,9 @@ def cast_many(
     >>> columns[1].features.moving.kind
     'face'
     """
-    queries = _queries(
-        moving,
-        fixed,
-        direction,
-        (moving_pose, fixed_pose),
-        (moving_index, fixed_index),
-        graze_tolerance,
-        solver,
-    )
+    poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
+    _refuse_solids(moving, fixed)
+    queries = _queries((moving, fixed), direction, poses, indices, graze_tolerance, solver)
     return ContactColumns(**queries.ask_all("contact", _threads(threads)))
 
 
@@ -429,18 +445,13 @@ def contact_range_many(
     >>> columns.translation, columns.exit
     (array([2., 1.]), array([4., 2.]))
     """
-    queries = _queries(
-        moving,
-        fixed,
-        direction,
-        (moving_pose, fixed_pose),
-        (moving_index, fixed_index),
-        graze_tolerance,
-        solver,
-    )
+    poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
+    _refuse_solids(moving, fixed)
+    queries = _queries((moving, fixed), direction, poses, indices, graze_tolerance, solver)
     return RangeColumns(**queries.ask_all("range", _threads(threads)))
 
 
+@overload
 def clearance_many(
     moving: Bodies,
     fixed: Bodies,
@@ -453,19 +464,85 @@ def clearance_many(
     graze_tolerance: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
-) -> ClearanceColumns:
+) -> ClearanceColumns: ...
+@overload
+def clearance_many(
+    moving: Solid,
+    fixed: AnyBodies,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    solver: Solver = "auto",
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> "SolidColumns": ...
+@overload
+def clearance_many(
+    moving: AnyBodies,
+    fixed: Solid,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    solver: Solver = "auto",
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> "SolidColumns": ...
+@overload
+def clearance_many(
+    moving: AnyBodies,
+    fixed: AnyBodies,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    solver: Solver = "auto",
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> "ClearanceColumns | SolidColumns": ...
+def clearance_many(
+    moving: AnyBodies,
+    fixed: AnyBodies,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    graze_tolerance: ArrayLike = 0.0,
+    solver: Solver = "auto",
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> "ClearanceColumns | SolidColumns":
     """:func:`clearance` for every row: how far from here, and what stops it.
 
     Parameters
     ----------
-    moving, fixed, direction, moving_pose, fixed_pose, moving_index, fixed_index
+    moving, fixed : ConvexPolyhedron, Solid or sequence of them
+        As for :func:`cast_many`. If one of them is a solid, all rows are asked as solids.
+    direction, moving_pose, fixed_pose, moving_index, fixed_index
         As for :func:`cast_many`.
     graze_tolerance, solver, threads
         As for :func:`cast_many`.
+    tolerance : float or array_like of shape (N,), optional
+        Of solids, as for :class:`SolidCast`.
+    ignore_start_overlaps : bool
+        Of solids, as for :class:`SolidCast`.
 
     Returns
     -------
-    ClearanceColumns
+    ClearanceColumns or SolidColumns
 
     Examples
     --------
@@ -474,35 +551,47 @@ def clearance_many(
     >>> clearance_many(cube, cube, [[0, 0, -1], [1, 0, 0]], moving_pose=[0, 0, 1]).distance
     array([ 0., inf])
     """
-    queries = _queries(
-        moving,
-        fixed,
-        direction,
-        (moving_pose, fixed_pose),
-        (moving_index, fixed_index),
-        graze_tolerance,
-        solver,
-    )
+    bodies, indices = (moving, fixed), (moving_index, fixed_index)
+    poses = (moving_pose, fixed_pose)
+    if any(isinstance(body, Solid) for side in bodies for body in _listed(side)):
+        if np.any(graze_tolerance):
+            raise InputError("graze_tolerance: is for convex bodies; solids have tolerance")
+        tolerances = None if tolerance is None else _column(tolerance, "tolerance")
+        asked = _queries(bodies, direction, poses, indices, 0.0, solver, tolerances)
+        return ask_solids(asked, tolerances, ignore_start_overlaps, _threads(threads))
+    if tolerance is not None or ignore_start_overlaps:
+        raise InputError("tolerance, ignore_start_overlaps: are for solids")
+    queries = _queries(bodies, direction, poses, indices, graze_tolerance, solver)
     return ClearanceColumns(**queries.ask_all("clearance", _threads(threads)))
 
 
+def _refuse_solids(*sides: Any) -> None:
+    if any(isinstance(body, Solid) for side in sides for body in _listed(side)):
+        raise TypeError("solids are asked for their clearance: clearance_many")
+
+
+def _listed(bodies: Any) -> Any:
+    return [bodies] if isinstance(bodies, (ConvexPolyhedron, Solid)) else bodies
+
+
 def _queries(
-    moving: Bodies,
-    fixed: Bodies,
+    bodies: tuple[AnyBodies, AnyBodies],
     direction: ArrayLike,
     poses: tuple[Poses, Poses],
     indices: tuple[ArrayLike | None, ArrayLike | None],
     graze_tolerance: ArrayLike,
     solver: Solver,
+    tolerance: Floats | None = None,
 ) -> _Queries:
     """All arguments as tables, and how many rows they have together."""
-    moving_bodies, moving_index = _body_list(moving, indices[0], "moving")
-    fixed_bodies, fixed_index = _body_list(fixed, indices[1], "fixed")
+    moving_bodies, moving_index = _body_list(bodies[0], indices[0], "moving")
+    fixed_bodies, fixed_index = _body_list(bodies[1], indices[1], "fixed")
     tables = {
         "direction": _table(direction, "direction", 3),
         "moving_pose": _pose_table(poses[0], "moving_pose"),
         "fixed_pose": _pose_table(poses[1], "fixed_pose"),
         "graze_tolerance": _column(graze_tolerance, "graze_tolerance"),
+        "tolerance": np.zeros((1, 1)) if tolerance is None else tolerance,
     }
     rows = {name: len(table) for name, table in tables.items() if len(table) != 1}
     for name, index in (("moving_index", moving_index), ("fixed_index", fixed_index)):
@@ -523,12 +612,12 @@ def _queries(
 
 
 def _body_list(
-    bodies: Bodies, index: ArrayLike | None, name: str
+    bodies: AnyBodies, index: ArrayLike | None, name: str
 ) -> tuple[list[Any], NDArray[np.int64] | None]:
-    alone = isinstance(bodies, ConvexPolyhedron)
-    all_bodies: list[Any] = [bodies] if alone else list(bodies)  # type: ignore[arg-type]
+    alone = isinstance(bodies, (ConvexPolyhedron, Solid))
+    all_bodies: list[Any] = list(_listed(bodies))
     for body in all_bodies:
-        if not isinstance(body, (ConvexPolyhedron, Exception)):
+        if not isinstance(body, (ConvexPolyhedron, Solid, Exception)):
             raise TypeError(f"{name}: not a ConvexPolyhedron, but {type(body).__name__}")
     if index is None:
         return all_bodies, None if alone else np.arange(len(all_bodies))
@@ -581,3 +670,7 @@ def _threads(threads: int | None) -> int | None:
     if threads is not None and (not isinstance(threads, (int, np.integer)) or threads < 1):
         raise InputError(f"threads: {threads!r} is not a whole number from 1")
     return None if threads is None else int(threads)
+
+
+# They are tables too, so they come last.
+from colltrans.solids import SolidColumns, ask_solids  # noqa: E402

@@ -1,0 +1,323 @@
+//! Answers of queries about solids: frozen, with what they were asked.
+
+use colltrans::Clearance;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::answer::Feature;
+use crate::arrays::{coordinates, row};
+use crate::errors::OrRaise;
+use crate::saved::{Saved, saved};
+use crate::show::{Options, Shown, show};
+use crate::solid::Piece;
+use crate::solid_cast::SolidCast;
+
+/// Where a solid is stopped.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct SolidContact {
+    pub(crate) contact: colltrans::SolidContact,
+    pub(crate) query: Py<SolidCast>,
+}
+
+#[pymethods]
+impl SolidContact {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str, &'static str) = ("nominal", "normal", "point");
+
+    /// float: Where the bodies as they are, not shrunk, meet, in multiples of the direction.
+    #[getter]
+    fn nominal(&self) -> f64 {
+        self.contact.nominal
+    }
+
+    /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.contact.normal)
+    }
+
+    /// ndarray of shape (3,): The contact point on the fixed body, in the world.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.contact.point_on_fixed)
+    }
+
+    /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
+    #[getter]
+    fn point_at_start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.contact.point_on_moving)
+    }
+
+    /// Feature: What of the moving body touches; of a face its vertices in the input's numbers.
+    #[getter]
+    fn moving_feature(&self) -> PyResult<Feature> {
+        feature(self.contact.moving_feature, &self.query.get().bodies[0])
+    }
+
+    /// Feature: What of the fixed body touches.
+    #[getter]
+    fn fixed_feature(&self) -> PyResult<Feature> {
+        feature(self.contact.fixed_feature, &self.query.get().bodies[1])
+    }
+
+    /// SolidCast: The query.
+    #[getter]
+    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
+        self.query.clone_ref(py)
+    }
+
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let c = &self.contact;
+        let vectors = [c.normal, c.point_on_moving, c.point_on_fixed].map(|v| v.to_array());
+        let features = [c.moving_feature, c.fixed_feature].map(parts);
+        let query = self.query.clone_ref(py);
+        saved(py, "SolidContact", (query, c.nominal, vectors, features, c.triangles))
+    }
+
+    fn __repr__(&self) -> String {
+        let (t, n) = (self.contact.nominal, coordinates(self.contact.normal));
+        format!("SolidContact(nominal={t:?}, normal={n:?})")
+    }
+}
+
+/// A feature as its name and numbers.
+fn parts(feature: colltrans::Feature) -> (&'static str, Vec<u32>) {
+    let numbers = match feature {
+        colltrans::Feature::Vertex(v) => vec![v],
+        colltrans::Feature::Edge(ends) => ends.to_vec(),
+        colltrans::Feature::Face(face) => vec![face],
+    };
+    (feature.kind(), numbers)
+}
+
+/// A feature by the numbers of the input; a face by the vertices of all its triangles.
+fn feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
+    let vertices = match feature {
+        colltrans::Feature::Vertex(v) => vec![v],
+        colltrans::Feature::Edge(ends) => ends.to_vec(),
+        colltrans::Feature::Face(face) => {
+            let solid = body.solid().or_raise()?;
+            let triangles = solid.triangles().iter().zip(solid.facet_indices());
+            let corners = triangles.filter(|(_, f)| **f == face).flat_map(|(t, _)| *t);
+            let mut found: Vec<u32> = corners.map(|v| solid.vertex_indices()[v as usize]).collect();
+            found.sort_unstable();
+            found.dedup();
+            found
+        }
+    };
+    Ok(Feature::new(feature.kind(), vertices))
+}
+
+/// A solid can move until it touches.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct SolidBlocked {
+    pub(crate) distance: f64,
+    pub(crate) contact: Py<SolidContact>,
+}
+
+#[pymethods]
+impl SolidBlocked {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str) = ("distance", "contact");
+
+    /// float: How far, in multiples of the direction, the bodies shrunk by half the tolerance each.
+    #[getter]
+    fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// SolidContact: What stops it.
+    #[getter]
+    fn contact(&self, py: Python<'_>) -> Py<SolidContact> {
+        self.contact.clone_ref(py)
+    }
+
+    /// SolidCast: The query.
+    #[getter]
+    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
+        self.contact.get().query.clone_ref(py)
+    }
+
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "SolidBlocked", (self.distance, self.contact.clone_ref(py)))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("SolidBlocked(distance={:?})", self.distance)
+    }
+}
+
+/// A solid can move as far as it likes.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct SolidFree {
+    pub(crate) separation: Option<[f64; 4]>,
+    pub(crate) query: Py<SolidCast>,
+}
+
+#[pymethods]
+impl SolidFree {
+    /// float: Infinite.
+    #[getter]
+    fn distance(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// float or None: The margin of a plane between the bodies, parallel to the direction, a length;
+    /// None if there is no such plane: it slides along, or moves away.
+    #[getter]
+    fn margin(&self) -> Option<f64> {
+        self.separation.map(|s| s[3])
+    }
+
+    /// ndarray of shape (3,) or None: Unit normal of that plane, in the world.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.separation.map(|s| PyArray1::from_slice(py, &s[..3]))
+    }
+
+    /// SolidCast: The query.
+    #[getter]
+    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
+        self.query.clone_ref(py)
+    }
+
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "SolidFree", (self.separation, self.query.clone_ref(py)))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "SolidFree()"
+    }
+}
+
+/// Two solids overlap where they are, by more than is tolerated.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct SolidOverlapping {
+    pub(crate) depth: Option<f64>,
+    pub(crate) query: Py<SolidCast>,
+}
+
+#[pymethods]
+impl SolidOverlapping {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str,) = ("depth",);
+
+    /// None: There is none.
+    #[getter]
+    fn distance(&self) -> Option<f64> {
+        None
+    }
+
+    /// float or None: The least tolerance with which they would not overlap, a length.
+    #[getter]
+    fn depth(&self) -> Option<f64> {
+        self.depth
+    }
+
+    /// SolidCast: The query.
+    #[getter]
+    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
+        self.query.clone_ref(py)
+    }
+
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "SolidOverlapping", (self.depth, self.query.clone_ref(py)))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "SolidOverlapping(depth={})",
+            self.depth.map_or("None".into(), |d| format!("{d:?}"))
+        )
+    }
+}
+
+/// The proof of a clearance between solids.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct SolidCertificate(pub(crate) colltrans::SolidCertificate);
+
+#[pymethods]
+impl SolidCertificate {
+    /// float: The tolerance by which the bodies were shrunk.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.0.tolerance
+    }
+
+    /// float: The proven lower bound of the distance, in multiples of the direction.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.0.lower
+    }
+
+    /// The proof as text.
+    pub(crate) fn to_json(&self) -> String {
+        self.0.to_json()
+    }
+
+    /// From what `to_json` has written. It is read, not believed.
+    #[staticmethod]
+    pub(crate) fn from_json(text: &str) -> PyResult<Self> {
+        colltrans::SolidCertificate::from_json(text).or_raise().map(Self)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        saved(py, "SolidCertificate", (self.to_json(),))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("SolidCertificate(lower={:?})", self.0.lower)
+    }
+}
+
+pub(crate) fn solid_answer<'py>(
+    query: &Bound<'py, SolidCast>,
+    answer: &Clearance<colltrans::Solid>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = query.py();
+    Ok(match answer {
+        Clearance::Blocked { distance, contact } => {
+            let contact = SolidContact { contact: *contact, query: query.clone().unbind() };
+            let contact = Py::new(py, contact)?;
+            Bound::new(py, SolidBlocked { distance: *distance, contact })?.into_any()
+        }
+        Clearance::Free(separation) => {
+            let separation = separation.as_ref().map(|s| {
+                let [x, y, z] = coordinates(s.normal);
+                [x, y, z, s.margin]
+            });
+            Bound::new(py, SolidFree { separation, query: query.clone().unbind() })?.into_any()
+        }
+        Clearance::Overlapping(overlap) => {
+            let query = query.clone().unbind();
+            Bound::new(py, SolidOverlapping { depth: overlap.depth, query })?.into_any()
+        }
+    })
+}

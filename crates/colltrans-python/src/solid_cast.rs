@@ -1,0 +1,252 @@
+//! Queries about solids.
+//!
+//! They run without the interpreter's lock: one may take milliseconds, or, of large bodies, minutes.
+
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+use colltrans::glam::DVec3;
+use colltrans::{SolidOptions, StartOverlap};
+use numpy::PyArray1;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::arrays::{coordinates, row, vector};
+use crate::errors::{OrRaise, error};
+use crate::pose::{Pose, pose};
+use crate::saved::{Saved, saved};
+use crate::show::{Options, Shown, show};
+use crate::solid::Piece;
+use crate::solid_answer::{SolidCertificate, solid_answer};
+
+/// A query about solids as a value: two placed bodies and a direction.
+///
+/// Parameters
+/// ----------
+/// moving, fixed : Solid or ConvexPolyhedron
+///     The body that moves, and the one that does not.
+/// direction : array_like of shape (3,)
+///     Of the world, of any length; translations count in multiples of it.
+/// moving_pose, fixed_pose : array_like or Pose, optional
+///     Where the bodies are; see :class:`Pose`.
+/// tolerance : float, optional
+///     Both bodies are shrunk by half of this length, so that parts that fit do not jam. By default
+///     what rounding can do to a fit, 0 where both poses turn by quarter turns. (The command line
+///     adds what the files' precision can do.)
+/// ignore_start_overlaps : bool
+///     Whether facets that cross now do not block, but contacts that begin later do.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import Solid, SolidCast
+/// >>> bolt, plate = Solid.read("data/bolt.stl"), Solid.read("data/plate.off")
+/// >>> query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
+/// >>> query.clearance()
+/// SolidBlocked(distance=7.0)
+/// >>> query.exit()
+/// 12.0
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct SolidCast {
+    pub(crate) bodies: [Piece; 2],
+    pub(crate) poses: [colltrans::Pose; 2],
+    pub(crate) direction: DVec3,
+    pub(crate) options: SolidOptions,
+}
+
+/// Between two looks at signals.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// Bodies of fewer triangles are asked in the thread that asks: no answer takes long.
+const LARGE: usize = 4096;
+
+impl SolidCast {
+    /// Asks the library.
+    fn run<T>(
+        &self,
+        question: impl FnOnce(&colltrans::Cast<'_, colltrans::Solid>) -> T,
+    ) -> PyResult<T> {
+        let solids = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
+        let [moving, fixed] = [0, 1].map(|i| solids[i].at(self.poses[i]));
+        colltrans::Cast::new(moving, fixed, self.direction)
+            .and_then(|cast| cast.with_options(self.options))
+            .map(|cast| question(&cast))
+            .map_err(|what| error("QueryError", what))
+    }
+
+    /// Without the interpreter's lock. Where it may take long, on a thread of its own, which is left
+    /// alone when a signal ends the waiting.
+    fn ask<T: Send + 'static>(
+        slf: &Bound<'_, Self>,
+        question: impl FnOnce(&colltrans::Cast<'_, colltrans::Solid>) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let (py, query) = (slf.py(), slf.get());
+        let triangles: usize = query.bodies.iter().map(Piece::triangle_count).sum();
+        if triangles < LARGE {
+            return py.detach(|| query.run(question));
+        }
+        let query = slf.clone().unbind();
+        let (sender, receiver) = mpsc::sync_channel(1);
+        std::thread::Builder::new().spawn(move || {
+            // Nobody waits any more after a signal.
+            let _ = sender.send(query.get().run(question));
+        })?;
+        py.detach(move || {
+            loop {
+                match receiver.recv_timeout(PATIENCE) {
+                    Ok(answer) => return answer,
+                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                    Err(RecvTimeoutError::Disconnected) => {
+                        let what = "internal error; please report it";
+                        return Err(PyRuntimeError::new_err(what));
+                    }
+                }
+            }
+        })
+    }
+}
+
+#[pymethods]
+impl SolidCast {
+    #[new]
+    #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
+        tolerance=None, ignore_start_overlaps=false))]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    pub(crate) fn new(
+        py: Python<'_>,
+        moving: &Bound<'_, PyAny>,
+        fixed: &Bound<'_, PyAny>,
+        direction: &Bound<'_, PyAny>,
+        moving_pose: Option<&Bound<'_, PyAny>>,
+        fixed_pose: Option<&Bound<'_, PyAny>>,
+        tolerance: Option<f64>,
+        ignore_start_overlaps: bool,
+    ) -> PyResult<Self> {
+        let start_overlap =
+            if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+        let cast = Self {
+            bodies: [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?],
+            poses: [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?],
+            direction: vector(direction, "direction")?,
+            options: SolidOptions { tolerance, start_overlap, ..SolidOptions::default() },
+        };
+        py.detach(|| cast.run(|_| ()))?;
+        Ok(cast)
+    }
+
+    /// How far can the moving body move from where it is, and what stops it?
+    ///
+    /// Returns
+    /// -------
+    /// SolidBlocked or SolidFree or SolidOverlapping
+    pub(crate) fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let answer = Self::ask(slf, |cast| cast.clearance())?;
+        solid_answer(slf, &answer)
+    }
+
+    /// The clearance, with a proof that :meth:`verify` checks.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of (SolidBlocked or SolidFree or SolidOverlapping, SolidCertificate)
+    fn certified_clearance<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, SolidCertificate)> {
+        let (answer, proof) = Self::ask(slf, |cast| cast.certified_clearance())?;
+        Ok((solid_answer(slf, &answer)?, SolidCertificate(proof)))
+    }
+
+    /// Checks a proof against the two bodies.
+    ///
+    /// Parameters
+    /// ----------
+    /// proof : SolidCertificate
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     How far the bounds of the distance are apart, in multiples of the direction.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(slf: &Bound<'_, Self>, proof: &Bound<'_, SolidCertificate>) -> PyResult<f64> {
+        let proof = proof.clone().unbind();
+        Self::ask(slf, move |cast| cast.verify(&proof.get().0))?.or_raise()
+    }
+
+    /// Whether the bodies as they are, as closed sets, have a point in common.
+    pub(crate) fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
+        Self::ask(slf, |cast| cast.intersects())
+    }
+
+    /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
+    /// none up to their size.
+    fn depth(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
+        Self::ask(slf, |cast| cast.depth())
+    }
+
+    /// The translation after which the bodies never meet again, None if nothing faces.
+    fn exit(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
+        Self::ask(slf, |cast| cast.exit())
+    }
+
+    /// float: The tolerance that is used, a length.
+    #[getter]
+    fn tolerance(&self, py: Python<'_>) -> PyResult<f64> {
+        py.detach(|| self.run(|cast| cast.tolerance()))
+    }
+
+    /// Solid or ConvexPolyhedron: The moving body.
+    #[getter]
+    fn moving(&self, py: Python<'_>) -> Py<PyAny> {
+        self.bodies[0].object(py)
+    }
+
+    /// Solid or ConvexPolyhedron: The fixed body.
+    #[getter]
+    fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
+        self.bodies[1].object(py)
+    }
+
+    /// Pose: Where the moving body is.
+    #[getter]
+    fn moving_pose(&self) -> Pose {
+        Pose(self.poses[0])
+    }
+
+    /// Pose: Where the fixed body is.
+    #[getter]
+    fn fixed_pose(&self) -> Pose {
+        Pose(self.poses[1])
+    }
+
+    /// ndarray of shape (3,): The direction, as given.
+    #[getter]
+    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.direction)
+    }
+
+    /// The same bodies where they are, and the direction turned round.
+    fn reversed(&self, py: Python<'_>) -> Self {
+        let bodies = [self.bodies[0].copy(py), self.bodies[1].copy(py)];
+        Self { bodies, direction: -self.direction, ..*self }
+    }
+
+    /// A picture of the bodies and of the answer: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let bodies = [self.bodies[0].object(py), self.bodies[1].object(py)];
+        let poses = self.poses.map(Pose);
+        let ignores = self.options.start_overlap == StartOverlap::Ignore;
+        let direction = self.direction.to_array();
+        saved(py, "SolidCast", (bodies, direction, poses, self.options.tolerance, ignores))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("SolidCast(direction={:?})", coordinates(self.direction))
+    }
+}

@@ -1,0 +1,251 @@
+"""Pictures of answers: the bodies, a ghost of the moving one where they meet, point and normal.
+
+They are figures of plotly (``pip install colltrans[pictures]``): a notebook shows one, a script
+opens a browser, and a file holds all that it needs. None of it needs a screen or a graphics card.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from colltrans._colltrans import (
+    Behind,
+    Blocked,
+    Cast,
+    Contact,
+    ContactRange,
+    ConvexPolyhedron,
+    DirectionalDepth,
+    Grazing,
+    Intersection,
+    Overlapping,
+    Pose,
+    Separated,
+    Slides,
+    Solid,
+    SolidBlocked,
+    SolidCast,
+    SolidContact,
+    SolidFree,
+    SolidOverlapping,
+)
+
+Floats: TypeAlias = NDArray[np.float64]
+MOVING, FIXED, TOUCH = "#d9822b", "#4c6a92", "#c0392b"
+
+
+@dataclass(frozen=True)
+class _Mark:
+    """What an answer says: how far to the ghost, where it touches, a normal there."""
+
+    name: str
+    translation: float | None
+    point: Floats | None
+    normal: Floats | None
+    direction: Floats
+
+
+def picture(answer: Any) -> Any:
+    """An answer, or the query of one, as a figure of plotly.
+
+    Parameters
+    ----------
+    answer : Contact, Blocked, SolidBlocked, Cast or any other answer or query
+        What it says of a contact is drawn: the moving body as it is and, as a ghost, where it
+        touches; the point, and the normal from the moving body to the fixed one.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        ``write_html`` saves it, with ``include_plotlyjs=True`` for use without a network.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without plotly, ``pip install colltrans[pictures]``.
+    TypeError
+        Something that is no answer.
+
+    Examples
+    --------
+    >>> from colltrans import ConvexPolyhedron, cast, picture
+    >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    >>> figure = picture(cast(cube, cube, [1, 0, 0], moving_pose=[-3, 0.5, 0]))
+    >>> [trace.name for trace in figure.data if trace.name]
+    ['moving', 'fixed', 'contact at 2', 'point', 'normal']
+    """
+    import plotly.graph_objects as go
+
+    if isinstance(answer, Cast):
+        answer = answer.first_contact()
+    elif isinstance(answer, SolidCast):
+        answer = answer.clearance()
+    query, marks = _said(answer)
+    moving = _placed(query.moving, query.moving_pose)
+    fixed = _placed(query.fixed, query.fixed_pose)
+    figure = go.Figure()
+    figure.add_traces(list(_body(go, moving, "moving", MOVING, 1.0)))
+    figure.add_traces(list(_body(go, fixed, "fixed", FIXED, 1.0)))
+    size = float(np.ptp(np.vstack([moving[0], fixed[0]]), axis=0).max()) or 1.0
+    for mark in marks:
+        figure.add_traces(list(_drawn(go, mark, moving, size)))
+    axes = {axis: {"showbackground": False} for axis in ("xaxis", "yaxis", "zaxis")}
+    figure.update_layout(
+        title=repr(answer),
+        scene={"aspectmode": "data", **axes},
+        legend={"itemsizing": "constant"},
+        margin={"l": 0, "r": 0, "t": 40, "b": 0},
+    )
+    return figure
+
+
+def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:
+    """Shows an answer as a picture: in the notebook, in a browser, or in a file.
+
+    Every answer and query has it as a method, ``answer.show()``.
+
+    Parameters
+    ----------
+    answer : Contact, Blocked, SolidBlocked, Cast or any other answer or query
+    file : str or os.PathLike, optional
+        A page (HTML) that is written instead; it holds all that it needs.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without plotly, ``pip install colltrans[pictures]``.
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> from colltrans import ConvexPolyhedron, cast
+    >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    >>> page = os.path.join(tempfile.mkdtemp(), "contact.html")
+    >>> cast(cube, cube, [1, 0, 0], moving_pose=[-3, 0.5, 0]).show(file=page)
+    >>> os.path.getsize(page) > 1_000_000
+    True
+    """
+    figure = picture(answer)
+    if file is None:
+        figure.show()
+    else:
+        figure.write_html(file, include_plotlyjs=True)
+
+
+def _said(answer: Any) -> tuple[Cast | SolidCast, list[_Mark]]:
+    """The query of an answer, and what is to be drawn of it."""
+    match answer:
+        case Contact():
+            return answer.query, [_mark("contact", answer)]
+        case Blocked(contact=contact) | Behind(contact=contact) | Grazing(contact=contact):
+            return contact.query, [_mark(type(answer).__name__.lower(), contact)]
+        case Slides(grazing=grazing):
+            return grazing.contact.query, [_mark("slides", grazing.contact)]
+        case Overlapping(first=first, last=last) | ContactRange(first=first, last=last):
+            ends = [end.contact if isinstance(end, Grazing) else end for end in (first, last)]
+            marks = [_mark(name, end) for name, end in zip(("first", "last"), ends, strict=True)]
+            return ends[0].query, marks
+        case DirectionalDepth():
+            return _said(answer.clearance)
+        case Intersection():
+            return _said(answer.outcome)
+        case SolidBlocked(contact=contact):
+            return contact.query, [_solid_mark(contact)]
+        case SolidContact():
+            return answer.query, [_solid_mark(answer)]
+        case Separated() | SolidFree() | SolidOverlapping():
+            normal = None if isinstance(answer, SolidOverlapping) else answer.normal
+            query = answer.query
+            return query, [_Mark("apart", None, None, normal, query.direction)]
+    raise TypeError(f"no answer and no query, but {type(answer).__name__}")
+
+
+def _mark(name: str, contact: Contact) -> _Mark:
+    direction = contact.query.direction
+    return _Mark(name, contact.translation, contact.point, contact.normal, direction)
+
+
+def _solid_mark(contact: SolidContact) -> _Mark:
+    direction = contact.query.direction
+    return _Mark("blocked", contact.nominal, contact.point, contact.normal, direction)
+
+
+Placed: TypeAlias = tuple[Floats, NDArray[np.uint32], NDArray[Any]]
+
+
+def _placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
+    """Vertices in the world, triangles, and the edges that are to be seen."""
+    vertices = body.vertices @ pose.rotation.T + pose.translation
+    if isinstance(body, Solid):
+        return vertices, body.triangles, _creases(vertices, body.triangles)
+    if body.dimension < 2:
+        return vertices, np.zeros((0, 3), np.uint32), np.zeros((1, 2), np.uint32) + [0, -1]
+    fans = [(f[0], *f[k : k + 2]) for f in body.faces for k in range(1, len(f) - 1)]
+    triangles = np.array(fans, np.uint32)
+    return vertices, triangles, _creases(vertices, triangles)
+
+
+def _creases(vertices: Floats, triangles: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """The edges but for those that two triangles of one plane share."""
+    a, b, c = vertices[triangles].swapaxes(0, 1)
+    normals = np.cross(b - a, c - a)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    owners = np.repeat(np.arange(len(triangles)), 3)
+    order = np.lexsort(sides.T)
+    sides, owners = sides[order], owners[order]
+    shared = (sides[:-1] == sides[1:]).all(axis=1)
+    flat = np.einsum("ij,ij->i", normals[owners[:-1]], normals[owners[1:]]) > 1 - 1e-6
+    hidden = sides[:-1][shared & flat]
+    gone = set(map(tuple, hidden.tolist()))
+    kept = [side for side in dict.fromkeys(map(tuple, sides.tolist())) if side not in gone]
+    return np.array(kept, np.uint32).reshape(-1, 2)
+
+
+def _body(go: Any, placed: Placed, name: str, colour: str, opacity: float) -> Iterator[Any]:
+    vertices, triangles, edges = placed
+    x, y, z = vertices.T
+    i, j, k = triangles.T
+    style = {"color": colour, "opacity": opacity, "flatshading": True, "hoverinfo": "name"}
+    yield go.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, name=name, showlegend=True, **style)
+    lines = np.full((len(edges), 3, 3), np.nan)
+    lines[:, :2] = vertices[edges]
+    x, y, z = lines.reshape(-1, 3).T
+    line = {"color": colour if opacity < 1 else "#222222", "width": 2}
+    yield go.Scatter3d(x=x, y=y, z=z, mode="lines", line=line, hoverinfo="skip", showlegend=False)
+
+
+def _drawn(go: Any, mark: _Mark, moving: Placed, size: float) -> Iterator[Any]:
+    vertices, triangles, edges = moving
+    start = vertices.mean(axis=0)
+    length = float(np.linalg.norm(mark.direction))
+    way = mark.direction * (size / length if mark.translation is None else mark.translation)
+    if mark.translation is not None:
+        ghost = (vertices + way, triangles, edges)
+        yield from _body(go, ghost, f"{mark.name} at {mark.translation:.6g}", MOVING, 0.3)
+    dashed = {"color": MOVING, "width": 3, "dash": "dash"}
+    yield _line(go, start, start + way, dashed, None)
+    if mark.point is not None:
+        x, y, z = mark.point.reshape(3, 1)
+        yield go.Scatter3d(
+            x=x, y=y, z=z, mode="markers", marker={"color": TOUCH, "size": 6}, name="point"
+        )
+    if mark.normal is not None:
+        foot = start if mark.point is None else mark.point
+        tip = foot + mark.normal * (size / 4)
+        yield _line(go, foot, tip, {"color": TOUCH, "width": 6}, "normal")
+        (x, y, z), (u, v, w) = tip.reshape(3, 1), mark.normal.reshape(3, 1)
+        cone = {"sizemode": "absolute", "sizeref": size / 12, "anchor": "tip", "showscale": False}
+        colour = [[0, TOUCH], [1, TOUCH]]
+        yield go.Cone(x=x, y=y, z=z, u=u, v=v, w=w, colorscale=colour, hoverinfo="skip", **cone)
+
+
+def _line(go: Any, start: Floats, end: Floats, line: dict[str, Any], name: str | None) -> Any:
+    x, y, z = np.stack([start, end]).T
+    return go.Scatter3d(
+        x=x, y=y, z=z, mode="lines", line=line, name=name, showlegend=name is not None
+    )

@@ -10,7 +10,11 @@ from conftest import ROOT
 
 import colltrans
 
-PAGES = [page for page in [ROOT / "docs" / "python.md"] if page.exists()]
+TUTORIALS = ROOT / "python" / "docs" / "tutorials"
+PAGES = [ROOT / "docs" / "python.md", *sorted(TUTORIALS.glob("*.md"))]
+
+#: What pages use beside numpy.
+NEEDED = {"cad": ["plotly"], "data": ["pyarrow"], "python": ["plotly"]}
 
 
 def docstrings() -> Iterator[tuple[str, str]]:
@@ -24,6 +28,8 @@ def docstrings() -> Iterator[tuple[str, str]]:
 
 @pytest.mark.parametrize(("name", "text"), list(docstrings()))
 def test_docstrings(name: str, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    if name in ("picture", "show"):
+        pytest.importorskip("plotly")
     monkeypatch.chdir(ROOT)
     run(name, text)
     assert text, f"{name} has no docstring"
@@ -31,7 +37,11 @@ def test_docstrings(name: str, text: str, monkeypatch: pytest.MonkeyPatch) -> No
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_pages(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From start to end, without a screen; the tutorials are most of them."""
+    for package in NEEDED.get(page.stem, ()):
+        pytest.importorskip(package)
     monkeypatch.chdir(ROOT)
+    monkeypatch.delenv("ROWS", raising=False)
     run(page.name, page.read_text())
 
 

@@ -1,0 +1,322 @@
+"""One cast by this package and by what is used in its place today: time, error, what is missed.
+
+``pip install './python[peers]'``, then ``python python/benchmarks/peers.py [ROWS]``. All answer
+the same settings in one run: two polytopes, one turned about anyhow above the other and moved
+down, some past it. None of the others casts convex bodies, so each runs the best loop that its
+distance query allows, conservative advancement: move on by the distance over the part of the
+direction along its normal, until it is below a billionth, the bodies part, or 100 steps are
+done. python-fcl's own continuous collision has rows of its own.
+
+The yardstick is this package's answer with its proof: the error is against its certified
+bounds. *missed* are contacts that were not found, *invented* those that are none, *off* those
+found but wrong by more than 1e-6 (the bodies have radius 1), *stuck* the loops that did not
+end.
+"""
+
+import sys
+import time
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+
+import colltrans
+from colltrans import Contact, ConvexPolyhedron
+
+LIMIT, STEPS, OFF = 1e-9, 100, 1e-6
+DOWN = np.array([0.0, 0.0, -1.0])
+
+
+def settings(vertices, rows):
+    """Points on two spheres, and for each row where the moving one is and how it is turned."""
+    random = np.random.default_rng(11)
+    clouds = random.normal(size=(2, vertices, 3))
+    clouds /= np.linalg.norm(clouds, axis=-1, keepdims=True)
+    starts = random.uniform(-1.5, 1.5, size=(rows, 3)) * [1, 1, 0] + [0, 0, 6]
+    turns = random.normal(size=(rows, 4))
+    return clouds, starts, turns / np.linalg.norm(turns, axis=1, keepdims=True)
+
+
+def advance(distance):
+    """Conservative advancement along DOWN: the translation, None for a miss, NaN if stuck."""
+    t = 0.0
+    for _ in range(STEPS):
+        gap, normal = distance(t)
+        if gap <= LIMIT:
+            return t
+        closing = float(normal @ DOWN)
+        if closing <= 1e-12:
+            return None
+        t += gap / closing
+        if t > 20:
+            return None
+    return np.nan
+
+
+def between(from_moving, from_fixed, gap):
+    """The normal from the moving body to the fixed one, by their nearest points."""
+    return (np.asarray(from_fixed) - np.asarray(from_moving)) / max(gap, 1e-300)
+
+
+def polygons(body):
+    """The triangles of a body, by its own vertices."""
+    return np.array([(f[0], *f[k : k + 2]) for f in body.faces for k in range(1, len(f) - 1)])
+
+
+def ours(bodies):
+    pose = np.zeros(7)
+
+    def ask(start, turn):
+        pose[:3], pose[3:] = start, turn
+        answer = colltrans.cast(*bodies, DOWN, moving_pose=pose)
+        return answer.translation if isinstance(answer, Contact) else None
+
+    return ask
+
+
+def coal(bodies):
+    import coal
+
+    def shape(body):
+        points = coal.StdVec_Vec3s()
+        points.extend(list(body.vertices))
+        model = coal.BVHModelOBBRSS()
+        model.beginModel(0, len(points))
+        model.addVertices(body.vertices)
+        model.endModel()
+        model.buildConvexHull(True, "Qt")
+        return model.convex
+
+    moving, fixed = map(shape, bodies)
+    request, still = coal.DistanceRequest(), coal.Transform3s()
+    request.gjk_tolerance = 1e-12
+
+    def ask(start, turn):
+        place = coal.Transform3s(coal.Quaternion(turn[3], *turn[:3]), start)
+
+        def distance(t):
+            place.setTranslation(start + t * DOWN)
+            found = coal.DistanceResult()
+            gap = coal.distance(moving, place, fixed, still, request, found)
+            return gap, between(found.getNearestPoint1(), found.getNearestPoint2(), gap)
+
+        return advance(distance)
+
+    return ask
+
+
+def fcl_objects(bodies):
+    import fcl
+
+    def shape(body):
+        triangles = polygons(body)
+        flat = np.hstack([np.full((len(triangles), 1), 3), triangles]).ravel()
+        return fcl.CollisionObject(fcl.Convex(body.vertices, len(triangles), flat))
+
+    return [shape(body) for body in bodies]
+
+
+def fcl_distance(bodies):
+    import fcl
+
+    moving, fixed = fcl_objects(bodies)
+    request = fcl.DistanceRequest(
+        enable_nearest_points=True, gjk_solver_type=fcl.GJKSolverType.GST_LIBCCD
+    )
+
+    def ask(start, turn):
+        moving.setQuatRotation(turn[[3, 0, 1, 2]])
+
+        def distance(t):
+            moving.setTranslation(start + t * DOWN)
+            found = fcl.DistanceResult()
+            gap = fcl.distance(moving, fixed, request, found)
+            return gap, between(*found.nearest_points, gap)
+
+        return advance(distance)
+
+    return ask
+
+
+def fcl_meshes(bodies):
+    import fcl
+
+    def model(body):
+        triangles = polygons(body)
+        mesh = fcl.BVHModel()
+        mesh.beginModel(len(body.vertices), len(triangles))
+        mesh.addSubModel(body.vertices, triangles)
+        mesh.endModel()
+        return fcl.CollisionObject(mesh)
+
+    return map(model, bodies)
+
+
+def fcl_continuous(objects):
+    def make(bodies):
+        import fcl
+
+        moving, fixed = objects(bodies)
+        request = fcl.ContinuousCollisionRequest(
+            num_max_iterations=1000,
+            toc_err=1e-9,
+            ccd_solver_type=fcl.CCDSolverType.CCDC_CONSERVATIVE_ADVANCEMENT,
+        )
+        still, far = fcl.Transform(), 10.0
+
+        def ask(start, turn):
+            turned = turn[[3, 0, 1, 2]]
+            moving.setTransform(fcl.Transform(turned, start))
+            found = fcl.ContinuousCollisionResult()
+            end = fcl.Transform(turned, start + far * DOWN)
+            fcl.continuousCollide(moving, end, fixed, still, request, found)
+            return found.time_of_contact * far if found.is_collide else None
+
+        return ask
+
+    return make
+
+
+def pybullet(bodies):
+    import pybullet as engine
+
+    engine.connect(engine.DIRECT)
+
+    def shape(body):
+        hull = engine.createCollisionShape(engine.GEOM_MESH, vertices=body.vertices.tolist())
+        made = engine.createMultiBody(0, hull)
+        engine.changeDynamics(made, -1, collisionMargin=0.0)
+        return made
+
+    moving, fixed = map(shape, bodies)
+
+    def ask(start, turn):
+        def distance(t):
+            engine.resetBasePositionAndOrientation(moving, (start + t * DOWN).tolist(), turn)
+            found = engine.getClosestPoints(moving, fixed, 1e3)
+            nearest = min(found, key=lambda point: point[8])
+            return nearest[8], -np.array(nearest[7])
+
+        return advance(distance)
+
+    return ask
+
+
+def mujoco(bodies):
+    import mujoco
+
+    def mesh(name, body):
+        numbers = " ".join(f"{x!r}" for x in body.vertices.ravel().tolist())
+        return f'<mesh name="{name}" vertex="{numbers}"/>'
+
+    model = mujoco.MjModel.from_xml_string(
+        f"<mujoco><asset>{mesh('a', bodies[0])}{mesh('b', bodies[1])}</asset><worldbody>"
+        '<body><freejoint/><geom type="mesh" mesh="a"/></body>'
+        '<body><geom type="mesh" mesh="b"/></body></worldbody></mujoco>'
+    )
+    model.opt.ccd_tolerance, model.opt.ccd_iterations = 1e-12, 200
+    data, ends = mujoco.MjData(model), np.zeros(6)
+
+    def ask(start, turn):
+        data.qpos[3:7] = turn[[3, 0, 1, 2]]
+
+        def distance(t):
+            data.qpos[:3] = start + t * DOWN
+            mujoco.mj_kinematics(model, data)
+            gap = mujoco.mj_geomDistance(model, data, 0, 1, 1e3, ends)
+            return gap, between(ends[:3], ends[3:], gap)
+
+        return advance(distance)
+
+    return ask
+
+
+def trimesh(bodies):
+    import trimesh
+
+    def manager(body, name):
+        mesh = trimesh.Trimesh(body.vertices, polygons(body), process=False)
+        found = trimesh.collision.CollisionManager()
+        found.add_object(name, mesh)
+        return found
+
+    moving, fixed = manager(bodies[0], "moving"), manager(bodies[1], "fixed")
+
+    def ask(start, turn):
+        place = colltrans.Pose(np.r_[start, turn]).as_matrix()
+
+        def distance(t):
+            place[:3, 3] = start + t * DOWN
+            moving.set_transform("moving", place)
+            gap, found = moving.min_distance_other(fixed, return_data=True)
+            return gap, between(found.point("moving"), found.point("fixed"), gap)
+
+        return advance(distance)
+
+    return ask
+
+
+PEERS = {
+    "colltrans": ("colltrans", ours),
+    "coal, distance": ("coal", coal),
+    "python-fcl, distance": ("python-fcl", fcl_distance),
+    "python-fcl, continuousCollide of convex bodies": ("python-fcl", fcl_continuous(fcl_objects)),
+    "python-fcl, continuousCollide of meshes": ("python-fcl", fcl_continuous(fcl_meshes)),
+    "pybullet, getClosestPoints": ("pybullet", pybullet),
+    "mujoco, mj_geomDistance": ("mujoco", mujoco),
+    "trimesh, min_distance_other": ("trimesh", trimesh),
+}
+
+
+def judged(found, known):
+    """How a row went: its error if both found a contact, else a word."""
+    if found is not None and np.isnan(found):
+        return "stuck"
+    if not isinstance(known, Contact):
+        return "invented" if found is not None else None
+    if found is None:
+        return "missed"
+    proof = known.certificate
+    return max(proof.lower - found, found - proof.upper, 0.0)
+
+
+def line(name, spent, verdicts):
+    errors = np.array([v for v in verdicts if isinstance(v, float)])
+    words = [v for v in verdicts if isinstance(v, str)]
+    counts = [words.count("missed"), words.count("invented"), int((errors > OFF).sum())]
+    counts.append(words.count("stuck"))
+    largest = f"{errors.max():.1e}" if errors.size else "-"
+    return f"| {name} | {spent * 1e6:.1f} | {largest} | " + " | ".join(map(str, counts)) + " |"
+
+
+def main():
+    rows = int(sys.argv[1]) if len(sys.argv) > 1 else 300
+    for vertices in (8, 128):
+        clouds, starts, turns = settings(vertices, rows)
+        bodies = [ConvexPolyhedron(cloud) for cloud in clouds]
+        known = [
+            colltrans.cast(*bodies, DOWN, moving_pose=np.r_[start, turn])
+            for start, turn in zip(starts, turns, strict=True)
+        ]
+        assert all(not isinstance(k, Contact) or k.certificate.verify() < 1e-9 for k in known)
+        hits = sum(isinstance(k, Contact) for k in known)
+        print(f"\n{vertices} vertices, {rows} rows, {hits} contacts\n")
+        print("| who | us a cast, median | largest error | missed | invented | off | stuck |")
+        print("|---|---:|---:|---:|---:|---:|---:|")
+        for name, (package, make) in PEERS.items():
+            try:
+                told = f"{name} ({version(package)})"
+                ask = make(bodies)
+            except (PackageNotFoundError, ImportError) as error:
+                print(f"| {name} | not installed: {error} | | | | | |")
+                continue
+            verdicts, spent = [], []
+            for start, turn, truth in zip(starts, turns, known, strict=True):
+                began = time.perf_counter()
+                found = ask(start, turn)
+                spent.append(time.perf_counter() - began)
+                verdicts.append(judged(found, truth))
+            print(line(told, float(np.median(spent)), verdicts), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -3,128 +3,18 @@
 //! A *last* contact is the first one of the query turned round, and keeps that query, as in the
 //! library.
 
-use colltrans::{Clearance, ContactRange as Range, Outcome, OverlapAhead, WhyFree};
-use numpy::{IntoPyArray, PyArray1};
+use colltrans::{ContactRange as Range, Outcome};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::{coordinates, row};
 use crate::certificate::{Certificate, Separation};
 use crate::errors::OrRaise;
+use crate::features::{Features, Steps, feature};
 use crate::pose::Pose;
 use crate::query::{Cast, Query, solver_name};
-use crate::saved::{Saved, proof_parts, saved, started_name, step_parts};
+use crate::saved::{Saved, proof_parts, saved, step_parts};
 use crate::show::{Options, Shown, show};
-
-/// Work done for one answer.
-#[pyclass(frozen, get_all, module = "colltrans")]
-pub(crate) struct Steps {
-    /// int: Planar problems solved.
-    pub(crate) planar_problems: u32,
-    /// int: Supporting planes computed.
-    pub(crate) supports: u32,
-    /// int: Portals visited.
-    pub(crate) pivots: u32,
-    /// int: Iterations of inner loops.
-    pub(crate) iterations: u32,
-    /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
-    pub(crate) started_from: &'static str,
-}
-
-impl Steps {
-    pub(crate) fn of(steps: colltrans::Steps) -> Self {
-        let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
-            steps;
-        let started_from = started_name(started_from);
-        Self { planar_problems, supports, pivots, iterations, started_from }
-    }
-}
-
-#[pymethods]
-impl Steps {
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let Self { planar_problems, supports, pivots, iterations, started_from } = *self;
-        saved(py, "Steps", ([planar_problems, supports, pivots, iterations], started_from))
-    }
-
-    fn __repr__(&self) -> String {
-        let Self { planar_problems, supports, pivots, iterations, started_from } = self;
-        format!(
-            "Steps(planar_problems={planar_problems}, supports={supports}, pivots={pivots}, \
-             iterations={iterations}, started_from='{started_from}')"
-        )
-    }
-}
-
-/// A vertex, an edge or a face.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct Feature {
-    kind: &'static str,
-    vertices: Vec<u32>,
-}
-
-#[pymethods]
-impl Feature {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("kind", "vertices");
-
-    /// str: ``"vertex"``, ``"edge"`` or ``"face"``.
-    #[getter]
-    fn kind(&self) -> &'static str {
-        self.kind
-    }
-
-    /// ndarray: Its vertices, by the numbers of the points or the mesh that the body was made from.
-    #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.vertices)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Feature", (self.kind, self.vertices.clone()))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Feature('{}', {:?})", self.kind, self.vertices)
-    }
-}
-
-impl Feature {
-    pub(crate) fn new(kind: &'static str, vertices: Vec<u32>) -> Self {
-        Self { kind, vertices }
-    }
-}
-
-fn feature(feature: colltrans::Feature, body: &colltrans::ConvexPolyhedron) -> Feature {
-    let input = body.input_indices();
-    let vertices = feature.vertices(body).into_iter().map(|v| input[v as usize]).collect();
-    Feature { kind: feature.kind(), vertices }
-}
-
-/// The parts of both bodies that touch.
-#[pyclass(frozen, get_all, module = "colltrans")]
-pub(crate) struct Features {
-    /// Feature: Of the moving body.
-    pub(crate) moving: Py<Feature>,
-    /// Feature: Of the fixed body.
-    pub(crate) fixed: Py<Feature>,
-}
-
-#[pymethods]
-impl Features {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("moving", "fixed");
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Features", (self.moving.clone_ref(py), self.fixed.clone_ref(py)))
-    }
-
-    fn __repr__(&self) -> String {
-        let [moving, fixed] = [&self.moving, &self.fixed].map(|f| f.get().__repr__());
-        format!("Features(moving={moving}, fixed={fixed})")
-    }
-}
 
 /// Where the bodies first meet along the direction.
 #[pyclass(frozen, module = "colltrans")]
@@ -229,7 +119,7 @@ impl Contact {
         saved(py, "Contact", (query, numbers, pair, solver_name(c.solver), counts, started_from))
     }
 
-    fn __repr__(&self) -> String {
+    pub(crate) fn __repr__(&self) -> String {
         let (t, n) = (self.contact.translation, coordinates(self.contact.normal));
         format!("Contact(translation={t:?}, normal={n:?})")
     }
@@ -279,7 +169,7 @@ impl Grazing {
         saved(py, "Grazing", (contact, g.overlap, g.separating_direction.to_array()))
     }
 
-    fn __repr__(&self) -> String {
+    pub(crate) fn __repr__(&self) -> String {
         let contact = self.contact.get().__repr__();
         format!("Grazing(overlap={:?}, contact={contact})", self.grazing.overlap)
     }
@@ -353,7 +243,7 @@ impl Separated {
         saved(py, "Separated", (query, proof, solver_name(s.solver), counts, started_from))
     }
 
-    fn __repr__(&self) -> String {
+    pub(crate) fn __repr__(&self) -> String {
         format!("Separated(margin={:?})", self.separated.certificate.margin)
     }
 }
@@ -401,278 +291,30 @@ impl ContactRange {
         saved(py, "ContactRange", (self.interval, first, last))
     }
 
-    fn __repr__(&self) -> String {
+    pub(crate) fn __repr__(&self) -> String {
         format!("ContactRange(interval={:?})", self.interval)
     }
 }
 
-/// The moving body can move until it touches.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct Blocked {
-    pub(crate) distance: f64,
-    pub(crate) contact: Py<Contact>,
-}
-
-#[pymethods]
-impl Blocked {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("distance", "contact");
-
-    /// float: How far it may safely move, in multiples of the direction: never more than it can.
-    #[getter]
-    fn distance(&self) -> f64 {
-        self.distance
-    }
-
-    /// Contact: What stops it.
-    #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<Contact> {
-        self.contact.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Blocked", (self.distance, self.contact.clone_ref(py)))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Blocked(distance={:?})", self.distance)
-    }
-}
-
-/// The moving body slides along the other one, as far as it likes.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct Slides {
-    pub(crate) grazing: Py<Grazing>,
-}
-
-#[pymethods]
-impl Slides {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("grazing",);
-
-    /// float: Infinite.
-    #[getter]
-    fn distance(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// Grazing: Along what it slides.
-    #[getter]
-    fn grazing(&self, py: Python<'_>) -> Py<Grazing> {
-        self.grazing.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Slides", (self.grazing.clone_ref(py),))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Slides(grazing={})", self.grazing.get().__repr__())
-    }
-}
-
-/// The last contact lies behind, or is here and the moving body leaves it.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct Behind {
-    pub(crate) contact: Py<Contact>,
-}
-
-#[pymethods]
-impl Behind {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("contact",);
-
-    /// float: Infinite.
-    #[getter]
-    fn distance(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// Contact: The last one: the first one of the query turned round.
-    #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<Contact> {
-        self.contact.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Behind", (self.contact.clone_ref(py),))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Behind(contact={})", self.contact.get().__repr__())
-    }
-}
-
-/// The bodies overlap where they are, by more than rounding error.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct Overlapping {
-    pub(crate) first: Py<Contact>,
-    pub(crate) last: Py<Contact>,
-}
-
-#[pymethods]
-impl Overlapping {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("first", "last");
-
-    /// None: There is none.
-    #[getter]
-    fn distance(&self) -> Option<f64> {
-        None
-    }
-
-    /// Contact: The first contact, behind.
-    #[getter]
-    fn first(&self, py: Python<'_>) -> Py<Contact> {
-        self.first.clone_ref(py)
-    }
-
-    /// Contact: The last contact, ahead: the first one of the query turned round.
-    #[getter]
-    fn last(&self, py: Python<'_>) -> Py<Contact> {
-        self.last.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Overlapping", (self.first.clone_ref(py), self.last.clone_ref(py)))
-    }
-
-    fn __repr__(&self) -> String {
-        let [first, last] = [&self.first, &self.last].map(|c| c.get().__repr__());
-        format!("Overlapping(first={first}, last={last})")
-    }
-}
-
-/// How far the moving body has to go back until the overlap has ended.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct DirectionalDepth {
-    pub(crate) depth: f64,
-    pub(crate) clearance: Py<PyAny>,
-}
-
-#[pymethods]
-impl DirectionalDepth {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("depth",);
-
-    /// float: In multiples of the direction, never less than the true depth; 0 without overlap.
-    #[getter]
-    fn depth(&self) -> f64 {
-        self.depth
-    }
-
-    /// Blocked or Slides or Behind or Separated or Overlapping: What it follows from.
-    #[getter]
-    fn clearance(&self, py: Python<'_>) -> Py<PyAny> {
-        self.clearance.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "DirectionalDepth", (self.depth, self.clearance.clone_ref(py)))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("DirectionalDepth(depth={:?})", self.depth)
-    }
-}
-
-/// Whether the bodies meet where they are: true or false in a condition.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct Intersection {
-    pub(crate) meets: bool,
-    pub(crate) direction: [f64; 3],
-    pub(crate) outcome: Py<PyAny>,
-}
-
-#[pymethods]
-impl Intersection {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("meets",);
-
-    /// bool: Whether they have a point in common, to within rounding error.
-    #[getter]
-    fn meets(&self) -> bool {
-        self.meets
-    }
-
-    /// ndarray of shape (3,): The direction between the centres, of the cast that found out.
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.direction.to_vec().into_pyarray(py)
-    }
-
-    /// Contact or Grazing or Separated: What that cast found.
-    #[getter]
-    fn outcome(&self, py: Python<'_>) -> Py<PyAny> {
-        self.outcome.clone_ref(py)
-    }
-
-    fn __bool__(&self) -> bool {
-        self.meets
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Intersection", (self.meets, self.direction, self.outcome.clone_ref(py)))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Intersection(meets={})", if self.meets { "True" } else { "False" })
-    }
-}
-
-fn contact(py: Python<'_>, query: Query, contact: colltrans::Contact) -> PyResult<Py<Contact>> {
+pub(crate) fn contact(
+    py: Python<'_>,
+    query: Query,
+    contact: colltrans::Contact,
+) -> PyResult<Py<Contact>> {
     Py::new(py, Contact { contact, query })
 }
 
-fn grazing(py: Python<'_>, query: Query, grazing: colltrans::Grazing) -> PyResult<Py<Grazing>> {
+pub(crate) fn grazing(
+    py: Python<'_>,
+    query: Query,
+    grazing: colltrans::Grazing,
+) -> PyResult<Py<Grazing>> {
     let contact = contact(py, query, grazing.contact)?;
     Py::new(py, Grazing { grazing, contact })
 }
 
 /// An answer of a class of its own.
-fn object<T>(py: Python<'_>, of: T) -> PyResult<Bound<'_, PyAny>>
+pub(crate) fn object<T>(py: Python<'_>, of: T) -> PyResult<Bound<'_, PyAny>>
 where
     T: pyo3::PyClass + Into<PyClassInitializer<T>>,
 {
@@ -701,46 +343,4 @@ pub(crate) fn range(py: Python<'_>, query: Query, of: Range) -> PyResult<Bound<'
     };
     let interval = interval.unwrap_or((f64::NAN, f64::NAN));
     object(py, ContactRange { interval, first, last })
-}
-
-pub(crate) fn clearance(py: Python<'_>, query: Query, of: Clearance) -> PyResult<Bound<'_, PyAny>> {
-    match of {
-        Clearance::Blocked { distance, contact: of } => {
-            object(py, Blocked { distance, contact: contact(py, query, of)? })
-        }
-        Clearance::Free(WhyFree::Slides(of)) => {
-            object(py, Slides { grazing: grazing(py, query, of)? })
-        }
-        Clearance::Free(WhyFree::Behind(of)) => {
-            object(py, Behind { contact: contact(py, query.reversed(py), of)? })
-        }
-        Clearance::Free(WhyFree::Separated(separated)) => {
-            object(py, Separated { separated, query })
-        }
-        Clearance::Overlapping(OverlapAhead { first, last }) => {
-            let back = query.reversed(py);
-            let (first, last) = (contact(py, query, first)?, contact(py, back, last)?);
-            object(py, Overlapping { first, last })
-        }
-    }
-}
-
-pub(crate) fn depth(
-    py: Python<'_>,
-    query: Query,
-    of: colltrans::DirectionalDepth,
-) -> PyResult<Bound<'_, PyAny>> {
-    let clearance = clearance(py, query, of.clearance)?.unbind();
-    object(py, DirectionalDepth { depth: of.depth, clearance })
-}
-
-pub(crate) fn intersection(
-    py: Python<'_>,
-    query: Query,
-    of: colltrans::Intersection,
-) -> PyResult<Bound<'_, PyAny>> {
-    let query = Query { direction: of.direction, ..query };
-    let direction = coordinates(of.direction);
-    let outcome = outcome(py, query, of.outcome)?.unbind();
-    object(py, Intersection { meets: of.meets, direction, outcome })
 }

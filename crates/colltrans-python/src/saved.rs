@@ -9,11 +9,10 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::answer::{
-    Behind, Blocked, Contact, ContactRange, DirectionalDepth, Feature, Features, Grazing,
-    Intersection, Overlapping, Separated, Slides, Steps,
-};
+use crate::answer::{Contact, ContactRange, Grazing, Separated};
 use crate::certificate::{Certificate, Separation};
+use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapping, Slides};
+use crate::features::{Feature, Features, Steps};
 use crate::pose::Pose;
 use crate::query::{Cast, Query, solver_called_by};
 use crate::solid::Piece;

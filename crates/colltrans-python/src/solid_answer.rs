@@ -4,9 +4,9 @@ use colltrans::Clearance;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::answer::Feature;
 use crate::arrays::{coordinates, row};
 use crate::errors::OrRaise;
+use crate::features::Feature;
 use crate::saved::{Saved, saved};
 use crate::show::{Options, Shown, show};
 use crate::solid::Piece;

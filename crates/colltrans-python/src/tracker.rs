@@ -8,9 +8,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use self_cell::self_cell;
 
-use crate::answer::{self, Steps};
+use crate::answer;
 use crate::body::ConvexPolyhedron;
+use crate::clearance;
 use crate::errors::error;
+use crate::features::Steps;
 use crate::query::{Arguments, Query};
 
 type Bodies = [Py<ConvexPolyhedron>; 2];
@@ -135,9 +137,9 @@ questions! {
     /// :func:`contact_range`, starting from the last answer.
     contact_range => contact_range, answer::range;
     /// :func:`clearance`, starting from the last answer.
-    clearance => clearance, answer::clearance;
+    clearance => clearance, clearance::clearance;
     /// :func:`directional_depth`, starting from the last answer.
-    directional_depth => directional_depth, answer::depth;
+    directional_depth => directional_depth, clearance::depth;
     /// :func:`intersects`, starting from the last answer to the same question.
-    intersects => intersects, answer::intersection;
+    intersects => intersects, clearance::intersection;
 }

@@ -45,6 +45,7 @@ from colltrans._colltrans import (
     read,
 )
 from colltrans.assembly import Assembly, Blocking, Plan, RemovalMap, Rooms, Step, Stuck
+from colltrans.columns import ClearanceColumns, Columns, ContactColumns, Failed, RangeColumns
 from colltrans.errors import (
     AssemblyError,
     BuildError,
@@ -57,16 +58,7 @@ from colltrans.errors import (
     PoseError,
     QueryError,
 )
-from colltrans.many import (
-    ClearanceColumns,
-    Columns,
-    ContactColumns,
-    Failed,
-    RangeColumns,
-    cast_many,
-    clearance_many,
-    contact_range_many,
-)
+from colltrans.many import cast_many, clearance_many, contact_range_many
 from colltrans.pictures import picture, show
 from colltrans.solids import SolidColumns
 

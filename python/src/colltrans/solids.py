@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from colltrans._colltrans import SolidBlocked, SolidCast, SolidFree, SolidOverlapping
+from colltrans.columns import Table
 from colltrans.errors import InputError
-from colltrans.many import Floats, Table, _Queries, row_of
+from colltrans.queries import Floats, Queries, row_of
 
 OUTCOMES = ("blocked", "free", "overlapping", "error")
 #: Between two looks at signals, in seconds.
@@ -21,10 +22,10 @@ PATIENCE = 0.1
 
 
 @dataclass(frozen=True)
-class _SolidQueries:
+class SolidQueries:
     """What was asked: the tables of all kinds of bodies, and the choices of solids."""
 
-    queries: _Queries
+    queries: Queries
     tolerance: Floats | None
     ignore_start_overlaps: bool
 
@@ -89,10 +90,10 @@ def _values(answer: Any) -> tuple[int, float, float, float, Any, Any]:
 
 
 def ask_solids(
-    queries: _Queries, tolerance: Floats | None, ignore_start_overlaps: bool, threads: int | None
+    queries: Queries, tolerance: Floats | None, ignore_start_overlaps: bool, threads: int | None
 ) -> SolidColumns:
     """Answers all rows. Ctrl-C ends it: rows that are being answered go on in the background."""
-    asked, n = _SolidQueries(queries, tolerance, ignore_start_overlaps), queries.count
+    asked, n = SolidQueries(queries, tolerance, ignore_start_overlaps), queries.count
     columns = SolidColumns(
         outcome=np.full(n, OUTCOMES.index("error"), np.uint8),
         outcomes=OUTCOMES,
@@ -136,7 +137,7 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _check_bodies(queries: _Queries, i: int) -> None:
+def _check_bodies(queries: Queries, i: int) -> None:
     """The words of the other bulk queries, where a row has no body."""
     for side, bodies, index in zip(
         ("moving", "fixed"), queries.bodies, queries.indices, strict=True

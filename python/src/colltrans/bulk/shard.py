@@ -21,8 +21,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from colltrans.bulk.bodies import Bodies, file_digest
+from colltrans.columns import Columns
 from colltrans.errors import ColltransError, InputError
-from colltrans.many import Columns, cast_many, clearance_many, contact_range_many
+from colltrans.many import cast_many, clearance_many, contact_range_many
 
 QUESTIONS: dict[str, Any] = {
     "contact": cast_many,

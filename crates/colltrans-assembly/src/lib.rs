@@ -17,6 +17,7 @@ mod error;
 mod orient;
 mod part;
 mod watch;
+mod witness;
 
 pub mod blocking;
 pub mod candidates;

@@ -5,7 +5,9 @@
 //! leaves? So arcs are asked as needed. Of the arcs known, take a strongly connected component that
 //! none leaves, and ask its pairs with the parts outside: if one blocks, there is one arc more; if
 //! none does, the group is removable. Once all parts are one component there is none. For parts that
-//! hold each other, that takes about as many casts as parts, not as pairs.
+//! hold each other, that takes about as many casts as parts, not as pairs; and most of them are of two
+//! facets that met along another direction ([`Witnesses`]). That changes no answer, so each thread may
+//! keep its own.
 
 use colltrans::{StartOverlap, Workspace};
 use glam::DVec3;
@@ -16,6 +18,7 @@ use crate::blocking::Blocking;
 use crate::bodies::{Bodies, Room};
 use crate::error::AssemblyError;
 use crate::watch::Watch;
+use crate::witness::Witnesses;
 
 /// The smallest group that can be taken out along one of the directions; of equal ones not the base,
 /// then that of the first direction.
@@ -31,7 +34,7 @@ pub(super) fn smallest(
     watch: Watch,
 ) -> Result<Option<Way>, AssemblyError> {
     let opposite = |k: usize| directions.iter().position(|d| *d == -directions[k]);
-    let look = |workspace: &mut Workspace, k: usize| {
+    let look = |memory: &mut Memory, k: usize| {
         watch.check()?;
         if opposite(k).is_some_and(|o| o < k) {
             return Ok(Vec::new());
@@ -39,7 +42,7 @@ pub(super) fn smallest(
         let mut found = Vec::new();
         for k in std::iter::once(k).chain(opposite(k)) {
             let search = |g: &[usize]| allowed(g).is_some();
-            match removable(bodies, alive, directions[k], start, workspace, search) {
+            match removable(bodies, alive, directions[k], start, memory, search) {
                 Search::OneComponent => break,
                 Search::NoneAllowed => (),
                 Search::Found(group) => {
@@ -51,13 +54,35 @@ pub(super) fn smallest(
         Ok(found)
     };
     let found: Result<Vec<Vec<Ranked>>, AssemblyError> =
-        (0..directions.len()).into_par_iter().map_init(Workspace::default, look).collect();
+        (0..directions.len()).into_par_iter().map_init(Memory::default, look).collect();
     let best = found?.into_iter().flatten().min_by_key(|x| x.0);
     Ok(best.map(|((_, _, k), parts)| Way { parts, direction: directions[k] }))
 }
 
 /// A group with its size, whether the base is in it, and the position of its direction.
 type Ranked = ((usize, bool, usize), Vec<usize>);
+
+/// What a thread keeps from one direction to the next.
+#[derive(Default)]
+struct Memory {
+    workspace: Workspace,
+    witnesses: Witnesses,
+}
+
+impl Memory {
+    fn meets(&mut self, bodies: &Bodies, pair: [usize; 2], d: DVec3, start: StartOverlap) -> bool {
+        let Self { workspace, witnesses } = self;
+        let known = witnesses.stop(bodies, pair, d, f64::INFINITY, start, workspace);
+        if known.is_some() {
+            return true;
+        }
+        let room = bodies.room(pair, d, None, start, workspace);
+        if let Room::Blocked(stop) = &room {
+            witnesses.keep(bodies, pair, stop);
+        }
+        room != Room::Free
+    }
+}
 
 enum Search {
     /// All parts hold each other.
@@ -73,7 +98,7 @@ fn removable(
     alive: &[bool],
     d: DVec3,
     start: StartOverlap,
-    workspace: &mut Workspace,
+    memory: &mut Memory,
     allowed: impl Fn(&[usize]) -> bool,
 ) -> Search {
     let count = alive.iter().filter(|a| **a).count();
@@ -94,7 +119,7 @@ fn removable(
         groups.sort_by_key(Vec::len);
         let before = arcs.len();
         for group in groups {
-            match leaving(bodies, &group, &mut unasked, d, start, workspace) {
+            match leaving(bodies, &group, &mut unasked, d, start, memory) {
                 Some(arc) => arcs.push(arc),
                 None if allowed(&group) => return Search::Found(group),
                 None => (),
@@ -113,7 +138,7 @@ fn leaving(
     unasked: &mut [Vec<usize>],
     d: DVec3,
     start: StartOverlap,
-    workspace: &mut Workspace,
+    memory: &mut Memory,
 ) -> Option<(usize, usize)> {
     for &a in group {
         let mut k = 0;
@@ -124,7 +149,7 @@ fn leaving(
                 continue;
             }
             unasked[a].remove(k);
-            if bodies.room([a, b], d, None, start, workspace) != Room::Free {
+            if memory.meets(bodies, [a, b], d, start) {
                 return Some((a, b));
             }
         }

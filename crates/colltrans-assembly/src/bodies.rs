@@ -4,7 +4,7 @@
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
 use colltrans::{
-    Cast, Clearance, Pose, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
+    Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
 };
 use glam::DVec3;
 use rayon::prelude::*;
@@ -76,6 +76,8 @@ pub struct Bodies<'a> {
     fit: Fit,
     /// The bodies, shrunk or grown.
     solids: Vec<Solid>,
+    /// What that could not do as it should.
+    displaced: Vec<ShrinkReport>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
     /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
@@ -102,16 +104,16 @@ impl<'a> Bodies<'a> {
                 Fit::Tolerance(length) => part.solid().shrunk(length / 2.0),
                 Fit::Margin(length) => part.solid().grown(length / 2.0),
             };
-            solid.map(|(solid, _)| solid).map_err(refused)
+            solid.map_err(refused)
         };
-        let solids: Result<Vec<Solid>, AssemblyError> =
+        let both: Result<Vec<(Solid, ShrinkReport)>, AssemblyError> =
             assembly.parts().par_iter().map(displaced).collect();
-        let solids = solids?;
+        let (solids, displaced): (Vec<Solid>, Vec<ShrinkReport>) = both?.into_iter().unzip();
         let boxes: Vec<Aabb> = solids.iter().map(|s| Aabb::of(s.bounds())).collect();
         let tree = BoxTree::new(boxes.iter().copied());
         let noise = 4.0 * Fit::default_for(assembly).tolerance();
         let overlapping = Vec::new();
-        let mut bodies = Self { assembly, fit, solids, boxes, tree, overlapping, noise };
+        let mut bodies = Self { assembly, fit, solids, displaced, boxes, tree, overlapping, noise };
         let pairs = bodies.neighbours(0.0);
         let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
         bodies.overlapping = overlapping.collect();
@@ -136,6 +138,31 @@ impl<'a> Bodies<'a> {
     /// Whether there are no parts.
     pub fn is_empty(&self) -> bool {
         self.boxes.is_empty()
+    }
+
+    /// What could not be shrunk, or grown, as the fit asks for; in words, `None` if nothing.
+    ///
+    /// Facets turn inside out where a part is thinner than the tolerance: what is said about them is
+    /// not what the part does. Vertices that stay are those of saddles: around them no displacement is
+    /// inwards for all facets.
+    pub fn remark(&self, part: usize) -> Option<String> {
+        let ShrinkReport { stuck, inverted, .. } = &self.displaced[part];
+        let mut said = match self.fit {
+            Fit::Tolerance(_) => vec!["shrunk by half the tolerance".to_owned()],
+            Fit::Margin(_) => vec!["grown by half the margin".to_owned()],
+        };
+        let given = self.assembly.parts()[part].solid();
+        if self.solids[part].is_closed() && volume(given) > 0.0 && volume(&self.solids[part]) <= 0.0
+        {
+            said.push("nothing of it is left: it is thinner than that".into());
+        }
+        if !inverted.is_empty() {
+            said.push(format!("facets that this turns inside out: {}", inverted.len()));
+        }
+        if !stuck.is_empty() {
+            said.push(format!("vertices that it cannot move: {}", stuck.len()));
+        }
+        (said.len() > 1).then(|| said.join("; "))
     }
 
     /// Lengths below this are a matter of the files' last digits: `2^-19` of the assembly's size.
@@ -311,6 +338,16 @@ impl<'a> Bodies<'a> {
         let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
+}
+
+/// The volume that the triangles enclose; negative if they are inside out.
+fn volume(solid: &Solid) -> f64 {
+    let corner = |v: u32| solid.vertices()[v as usize] - solid.vertices()[0];
+    let of = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(corner);
+        a.dot(b.cross(c)) / 6.0
+    };
+    solid.triangles().iter().map(of).sum()
 }
 
 /// Where two bodies meet, and after how far.

@@ -201,12 +201,14 @@ fn a_cancelled_run_says_so() {
     assert!(matches!(result, Err(AssemblyError::Cancelled)));
 }
 
+type Stage<'a> = &'a dyn Fn(Watch) -> Result<(), AssemblyError>;
+
 #[test]
 fn any_stage_ends_soon_after_it_is_cancelled() {
     let assembly = boxed();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     // Called off by what looks on, after so many calls: in the midst of each stage.
-    let asked = |limit: usize, work: &dyn Fn(Watch) -> Result<(), AssemblyError>| {
+    let asked = |limit: usize, work: Stage| {
         let (flag, calls) = (AtomicBool::new(false), AtomicUsize::new(0));
         let look = |_, _, _| {
             if calls.fetch_add(1, Ordering::Relaxed) + 1 >= limit {
@@ -222,7 +224,7 @@ fn any_stage_ends_soon_after_it_is_cancelled() {
     let directions = found.directions();
     let matrix = Matrix::new(&bodies, &directions, &all, start, Watch::default()).unwrap();
     let options = MapOptions { samples: 162, ..Default::default() };
-    let stages: [&dyn Fn(Watch) -> Result<(), AssemblyError>; 6] = [
+    let stages: [Stage; 6] = [
         &|w| Start::new(&bodies, w).map(drop),
         &|w| liaisons(&bodies, w).map(drop),
         &|w| Matrix::new(&bodies, &directions, &all, start, w).map(drop),

@@ -2,21 +2,23 @@
 //!
 //! A node covers consecutive facets and holds what bounds them, in the body frame: a box; an axis
 //! `n` (the mean unit normal) with the sine of the largest angle between it and a facet's normal;
-//! and the slab `low <= n . x <= high` of all their vertices. Boxes are exact. The sine is an upper
-//! bound, and exactly 0 for facets whose computed normals are exact and equal; slabs are rounded to
-//! nearest, and whoever reads them allows for that.
+//! the slab `low <= n . x <= high` of all their vertices; and how far they are, at most, from the line
+//! along `n` through the middle of the box. Boxes are exact. The sine is an upper bound, and exactly 0
+//! for facets whose computed normals are exact and equal; the distance is an upper bound up to the
+//! rounding of a coordinate, as slabs are, and whoever reads them allows for that.
 //!
 //! Built from the top: 16 bins along each axis and the surface-area heuristic; halves by count where
-//! that finds nothing. Node `i` is followed by its first child's subtree; its second child is at
-//! `i + skip`. So subtrees are built apart, on several threads, and joined end to end: the tree is
-//! the same on any number of threads.
+//! that finds nothing. The children of node `i` are at `i + skip` and the place behind, for a search
+//! reads both; then comes all that is below the first, and all that is below the second. As `skip` is
+//! relative, subtrees are built apart, on several threads, and joined end to end: the tree is the same
+//! on any number of threads.
 
 use std::thread;
 
 use glam::{DVec3, Vec3Swizzles};
 
 /// Facets of a leaf, at most.
-pub(crate) const LEAF: usize = 3;
+pub(crate) const LEAF: usize = 4;
 const BINS: usize = 16;
 /// Subtrees with fewer facets are not worth a thread.
 const FORK: usize = 1 << 14;
@@ -30,9 +32,12 @@ pub(crate) struct Node {
     pub(crate) high: DVec3,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
+    /// Largest distance of a vertex from the line along `axis` through the middle of the box, or from
+    /// that point where there is no axis.
+    pub(crate) radius: f32,
     /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on.
     pub(crate) spread: f32,
-    /// The second child is so far behind; 0 for a leaf.
+    /// The first child is so far behind; 0 for a leaf.
     pub(crate) skip: u32,
     /// The first of its facets.
     pub(crate) first: u32,
@@ -113,7 +118,8 @@ fn build_on(threads: usize, vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<
         .collect();
     let builder = Builder { vertices, triangles };
     let mut nodes = Vec::with_capacity(items.len());
-    builder.grow(&mut items, 0, threads, &mut nodes);
+    nodes.push(builder.node(&items, 0));
+    builder.grow(&mut items, 0, 0, threads, &mut nodes);
     nodes.shrink_to_fit();
     (nodes, items.iter().map(|i| i.facet).collect())
 }
@@ -124,28 +130,44 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Appends the subtree over `items`, the first of which is at `first`.
-    fn grow(&self, items: &mut [Item], first: u32, threads: usize, nodes: &mut Vec<Node>) {
-        let at = nodes.len();
-        nodes.push(self.node(items, first));
+    /// Appends what is below node `at`, which covers `items`, the first of them at `first`.
+    fn grow(
+        &self,
+        items: &mut [Item],
+        at: usize,
+        first: u32,
+        threads: usize,
+        nodes: &mut Vec<Node>,
+    ) {
         if items.len() <= LEAF {
             return;
         }
         let middle = split(items);
         let (left, right) = items.split_at_mut(middle);
         let second = first + middle as u32;
+        let child = nodes.len();
+        nodes[at].skip = (child - at) as u32;
         if threads > 1 && left.len().min(right.len()) >= FORK {
             let mut behind = Vec::with_capacity(right.len());
             thread::scope(|scope| {
-                scope.spawn(|| self.grow(right, second, threads / 2, &mut behind));
-                self.grow(left, first, threads - threads / 2, nodes);
+                scope.spawn(|| {
+                    behind.push(self.node(right, second));
+                    self.grow(right, 0, second, threads / 2, &mut behind);
+                });
+                nodes.extend([self.node(left, first); 2]);
+                self.grow(left, child, first, threads - threads / 2, nodes);
             });
-            nodes[at].skip = (nodes.len() - at) as u32;
-            nodes.append(&mut behind);
+            // The second child goes to its place, the rest to the end.
+            let root = &mut behind[0];
+            if root.skip != 0 {
+                root.skip += (nodes.len() - 1 - (child + 1)) as u32;
+            }
+            nodes[child + 1] = *root;
+            nodes.extend_from_slice(&behind[1..]);
         } else {
-            self.grow(left, first, 1, nodes);
-            nodes[at].skip = (nodes.len() - at) as u32;
-            self.grow(right, second, 1, nodes);
+            nodes.extend([self.node(left, first), self.node(right, second)]);
+            self.grow(left, child, first, 1, nodes);
+            self.grow(right, child + 1, second, 1, nodes);
         }
     }
 
@@ -163,6 +185,7 @@ impl Builder<'_> {
             high,
             axis: DVec3::ZERO,
             slab: [f64::NEG_INFINITY, f64::INFINITY],
+            radius: round_up((high - low).length() * 0.5),
             spread: ANY as f32,
             skip: 0,
             first,
@@ -186,14 +209,18 @@ impl Builder<'_> {
                 return;
             }
         }
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut low, mut high, mut aside) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+        let middle = (node.low + node.high) * 0.5;
         for item in items {
             for v in self.triangles[item.facet as usize] {
-                let height = node.axis.dot(self.vertices[v as usize]);
+                let at = self.vertices[v as usize];
+                let height = node.axis.dot(at);
                 (low, high) = (low.min(height), high.max(height));
+                aside = aside.max(node.axis.cross(at - middle).length_squared());
             }
         }
         node.slab = [low, high];
+        node.radius = round_up(aside.sqrt());
         node.spread = round_up(spread);
     }
 }

@@ -181,7 +181,10 @@ impl Pair {
         for block in placements.chunks(BLOCK) {
             let mut distances = Vec::with_capacity(BLOCK);
             for Placement { poses: [s, t], direction } in block {
-                let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else { continue };
+                let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else {
+                    distances.push(None);
+                    continue;
+                };
                 let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
                 ours.add(time);
                 distances.push(answer.distance().filter(|d| d.is_finite()));

@@ -285,17 +285,19 @@ fn check_surface(body: &ConvexPolyhedron) {
 }
 
 /// No point is farther outside a face's plane than the hull's own error says, with the plane taken
-/// through three of its corners.
+/// through the face's corners.
+///
+/// The plane is exact: of a narrow face one with a rounded normal is turned by more than is allowed.
 fn check_inside(body: &ConvexPolyhedron, points: &[DVec3]) {
     let reach = points.iter().map(|p| p.length()).fold(0.0, f64::max);
     for face in 0..body.face_count() as u32 {
         let corners: Vec<DVec3> =
             body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();
-        let Some((anchor, normal)) = plane(&corners) else { continue };
-        let [anchor, exact_normal] = [anchor, normal].map(Vector::new);
+        let Some(normal) = newell_normal(&corners) else { continue };
+        let anchor = Vector::new(corners[0]);
+        let length = Vector::dot(&normal, &normal).to_f64().sqrt();
         for point in points {
-            let outside = exact_normal.dot(&Vector::new(*point).minus(&anchor)).to_f64();
-            // A plane through rounded corners is turned by as much as they are rounded.
+            let outside = normal.dot(&Vector::new(*point).minus(&anchor)).to_f64() / length;
             let allowed = 4.0 * body.hull_error() + 64.0 * f64::EPSILON * reach;
             assert!(
                 outside <= allowed,
@@ -306,12 +308,14 @@ fn check_inside(body: &ConvexPolyhedron, points: &[DVec3]) {
     }
 }
 
-/// A point of a face and its unit normal, by Newell's sum in units of its own extent; `None` for
-/// faces too narrow to have one.
-fn plane(corners: &[DVec3]) -> Option<(DVec3, DVec3)> {
-    let anchor = corners[0];
-    let extent = corners.iter().map(|c| c.distance(anchor)).fold(0.0, f64::max);
-    let spokes: Vec<DVec3> = corners.iter().map(|c| (*c - anchor) / extent).collect();
-    let normal: DVec3 = spokes.windows(2).map(|w| w[0].cross(w[1])).sum();
-    (normal.length() > 1e-3).then(|| (anchor, normal.normalize()))
+/// A face's exact normal, by Newell's sum in units of its own extent; `None` for faces too narrow to
+/// have one.
+fn newell_normal(corners: &[DVec3]) -> Option<Vector> {
+    let extent = corners.iter().map(|c| c.distance(corners[0])).fold(0.0, f64::max);
+    // A power of two: dividing by it is exact.
+    let unit = extent.log2().floor().exp2();
+    let anchor = Vector::new(corners[0] / unit);
+    let spokes = corners.iter().map(|c| Vector::new(*c / unit).minus(&anchor)).collect::<Vec<_>>();
+    let sum = spokes.windows(2).map(|w| w[0].cross(&w[1])).reduce(|a, b| a.plus(&b))?;
+    (sum.dot(&sum).to_f64() > 1e-6).then_some(sum)
 }

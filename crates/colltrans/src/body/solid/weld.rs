@@ -25,7 +25,8 @@ pub(super) fn first_equals(vertices: &[DVec3]) -> Vec<u32> {
 /// Equal for equal coordinates; the upper bits of a product depend on all bits of its factors.
 fn hash(point: DVec3) -> u64 {
     let mix = |h: u64, c: f64| {
-        let wide = u128::from(h ^ (c + 0.0).to_bits()) * 0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835;
+        let bits = u128::from(h ^ (c + 0.0).to_bits());
+        let wide = bits.wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835);
         (wide >> 64) as u64 ^ wide as u64
     };
     point.to_array().into_iter().fold(0x243f_6a88_85a3_08d3, mix)

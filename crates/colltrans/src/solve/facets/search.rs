@@ -1,4 +1,4 @@
-//! Best first through both trees.
+//! Best first through both trees, straight down until something is found.
 //!
 //! A pair of nodes stands for all pairs of their facets. The pair with the least bound is split next,
 //! the newest first among equals; bounds of gaps that block are clamped at 0, so that a contact at the
@@ -222,8 +222,10 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
                 (self.cut)(nodes(seen, entry.views), Reason::NotBefore);
-                // As are all others.
-                queue.drain().for_each(|e| (self.cut)(nodes(seen, e.views), Reason::NotBefore));
+                // As are all others: it is the least, or else the limit is not positive.
+                for rest in queue.drain() {
+                    (self.cut)(nodes(seen, rest.views), Reason::NotBefore);
+                }
                 break;
             }
             let (a, b) =

@@ -417,6 +417,34 @@ fn many_points_on_a_flat_circle() {
     assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
 }
 
+/// A cloud with noise, stretched along its axes and turned; and the stretches.
+fn stretched(
+    cloud: &[(i32, i32, i32)],
+    exponents: [i32; 3],
+    noise: i32,
+    seed: u64,
+) -> (Vec<DVec3>, DVec3) {
+    let mut random = Random(seed);
+    let rotation = random.rotation();
+    let scale = DVec3::from_array(exponents.map(|e| 2.0_f64.powi(e)));
+    let mut point = |&(x, y, z): &(i32, i32, i32)| {
+        let exact = DVec3::new(x.into(), y.into(), z.into());
+        rotation * ((exact + random.vector() * 2.0_f64.powi(noise)) * scale)
+    };
+    (cloud.iter().map(&mut point).collect(), scale)
+}
+
+/// Two faces meet as on a knife: a point in both planes, up to rounding, is far beyond their edge.
+#[test]
+fn a_point_beyond_a_sharp_edge_is_a_vertex() {
+    let cloud = [(-3, 1, -3), (1, 0, -3), (0, 0, 0), (0, 0, -3), (3, -1, -3), (0, -1, 0)];
+    let (points, _) = stretched(&cloud, [-41, -54, -35], -26, 7_512_252_205_779_326_864);
+    let body = ConvexPolyhedron::from_points(&points).unwrap();
+    let size = points.iter().map(|p| p.length()).fold(0.0, f64::max);
+    assert!(body.input_indices().contains(&3));
+    assert!(body.hull_error() <= 1e-14 * size, "{:e} of {size:e}", body.hull_error());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
@@ -427,16 +455,8 @@ proptest! {
         noise in -60_i32..-10,
         seed in any::<u64>(),
     ) {
-        let mut random = Random(seed);
-        let rotation = random.rotation();
-        let scale = DVec3::new(2.0_f64.powi(exponents.0), 2.0_f64.powi(exponents.1), 2.0_f64.powi(exponents.2));
-        let points: Vec<DVec3> = cloud
-            .iter()
-            .map(|&(x, y, z)| {
-                let exact = DVec3::new(x.into(), y.into(), z.into());
-                rotation * ((exact + random.vector() * 2.0_f64.powi(noise)) * scale)
-            })
-            .collect();
+        let exponents = [exponents.0, exponents.1, exponents.2];
+        let (points, scale) = stretched(&cloud, exponents, noise, seed);
         let body = ConvexPolyhedron::from_points(&points).unwrap();
         let size = points.iter().map(|p| p.length()).fold(0.0, f64::max);
         // Beyond a million to one, rounding alone makes faces of what is flat.

@@ -197,7 +197,7 @@ pub(super) fn lost(points: &[DVec3], kept: &[u32], dropped: &[u32], tolerance: f
     if kept.len() < 4 {
         return dropped.to_vec();
     }
-    let Ok(hull) = simplicial_hull(points, kept, tolerance) else { return dropped.to_vec() };
+    let Ok(hull) = simplicial_hull(points, kept, &[], tolerance) else { return dropped.to_vec() };
     let locator = super::violation::Locator::new(points, &hull);
     let mut near = 0;
     dropped

@@ -39,8 +39,29 @@ pub(crate) struct Hull {
 /// Rounds of dropping vertices that are no corners; each is a hull of fewer points.
 const MAX_ROUNDS: usize = 16;
 
+/// A point within the tolerance of two planes is far beyond the edge where they meet if that is as
+/// sharp as a knife's. So many tolerances outside the finished faces, it is made a vertex.
+const BEYOND: f64 = 16.0;
+
 /// Most points: vertex and half-edge numbers must fit 31 bits.
 const MAX_POINTS: usize = (u32::MAX / 16) as usize;
+
+impl Hull {
+    /// Which of the points `near` the surface are outside the faces by more than a distance.
+    fn beyond(&self, points: &[DVec3], near: &[u32], distance: f64) -> Vec<u32> {
+        if self.violation <= distance {
+            return Vec::new();
+        }
+        let corners: Vec<DVec3> = self.vertices.iter().map(|&i| points[i as usize]).collect();
+        let locator = Locator::of_faces(&corners, &self.topology);
+        let mut face = 0;
+        let is_beyond = |&i: &u32| locator.outside(points[i as usize], &mut face) > distance;
+        let mut found: Vec<u32> = near.iter().copied().filter(is_beyond).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+}
 
 /// Checks that points are finite, in range, and not too many.
 pub(super) fn check_points(points: &[DVec3]) -> Result<(), BuildError> {
@@ -88,7 +109,7 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
     for _ in 0..MAX_ROUNDS {
         let simplicial = match known.take() {
             Some(simplicial) => simplicial,
-            None => match quickhull::simplicial_hull(points, &kept, tolerance) {
+            None => match quickhull::simplicial_hull(points, &kept, &forced, tolerance) {
                 Ok(simplicial) => simplicial,
                 Err(flat) => return planar::hull(points, &kept, flat, tolerance),
             },
@@ -97,7 +118,19 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
         let regions = merge::regions(points, &simplicial, tolerance);
         let redundant = merge::redundant(points, &simplicial, &regions, tolerance, &forced);
         if redundant.is_empty() {
-            return finish(points, &simplicial, &regions, &near);
+            let hull = finish(points, &simplicial, &regions, &near);
+            let mut beyond = hull.beyond(points, &near, BEYOND * tolerance);
+            beyond.retain(|v| forced.binary_search(v).is_err());
+            if beyond.is_empty() {
+                return hull;
+            }
+            kept = simplicial.vertices();
+            for list in [&mut kept, &mut forced] {
+                list.extend(&beyond);
+                list.sort_unstable();
+                list.dedup();
+            }
+            continue;
         }
         let mut rest: Vec<u32> = simplicial.vertices();
         rest.retain(|v| redundant.binary_search(v).is_err());
@@ -112,7 +145,7 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
     }
     // Rounds always end long before; if not, the triangles themselves are a correct answer.
     let all: Vec<u32> = (0..points.len() as u32).collect();
-    match quickhull::simplicial_hull(points, &all, tolerance) {
+    match quickhull::simplicial_hull(points, &all, &forced, tolerance) {
         Ok(simplicial) => {
             let regions = merge::Regions::triangles(&simplicial);
             finish(points, &simplicial, &regions, &simplicial.near)

@@ -82,14 +82,16 @@ pub(super) enum Flat {
 /// In breadth both rings grow together. Patches of a bounded number of points cannot do much harm.
 const POINTS_A_PATCH: u32 = 128;
 
-/// The hull of the points in `kept`, or what dimension they have instead.
+/// The hull of the points in `kept`, or what dimension they have instead. Points within the tolerance
+/// of a triangle and outside none by more are left out, unless they are in `forced` (ascending).
 pub(super) fn simplicial_hull(
     points: &[DVec3],
     kept: &[u32],
+    forced: &[u32],
     tolerance: f64,
 ) -> Result<Simplicial, Flat> {
     let simplex = first_simplex(points, kept, tolerance)?;
-    let mut builder = Builder::new(points, kept, tolerance);
+    let mut builder = Builder::new(points, kept, forced, tolerance);
     builder.start(simplex, kept);
     let in_breadth = kept.len() as u32 / POINTS_A_PATCH;
     let mut inserted = 0;
@@ -151,6 +153,7 @@ enum Assigned {
 
 struct Builder<'a> {
     points: &'a [DVec3],
+    forced: &'a [u32],
     tolerance: f64,
     /// Bound on the distance between two points.
     extent: f64,
@@ -170,7 +173,7 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(points: &'a [DVec3], kept: &[u32], tolerance: f64) -> Self {
+    fn new(points: &'a [DVec3], kept: &[u32], forced: &'a [u32], tolerance: f64) -> Self {
         let (low, high) = kept
             .iter()
             .map(|&i| points[i as usize])
@@ -179,6 +182,7 @@ impl<'a> Builder<'a> {
             });
         Self {
             points,
+            forced,
             tolerance,
             extent: (high - low).length(),
             triangles: Vec::new(),
@@ -254,10 +258,11 @@ impl<'a> Builder<'a> {
     }
 
     /// Puts a point on the list of the triangle it is farthest outside of, if by more than the
-    /// tolerance.
+    /// tolerance or the point is forced.
     fn assign(&mut self, i: u32, faces: impl Iterator<Item = u32>) -> Assigned {
         let p = self.at(i);
-        let mut best = (self.tolerance, NONE);
+        let is_forced = self.forced.binary_search(&i).is_ok();
+        let mut best = (if is_forced { 0.0 } else { self.tolerance }, NONE);
         let mut nearest = f64::NEG_INFINITY;
         for face in faces {
             let distance = self.distance(face, p);

@@ -10,6 +10,9 @@
 //! Lengths are in the unit of the files. Directions have length 1, so distances are lengths.
 //! Everything is the same on any number of threads. The memory of a run is that of the parts and 90
 //! bytes for each pair of parts that meets along a direction asked.
+//!
+//! Without the features `files` and `report` what is left reads GLB from memory and draws nothing: for
+//! a page.
 
 mod bodies;
 mod boxes;
@@ -25,6 +28,7 @@ pub mod map;
 pub mod matrix;
 pub mod plan;
 pub mod read;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod rooms;
 pub mod sphere;

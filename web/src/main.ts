@@ -9,15 +9,17 @@ import { h, named, soon } from "./dom";
 import { type Answer, type ConvexAnswer, Engine, type Pair, Refused, type Slot, type Take } from "./engine";
 import { EXAMPLES, SLOTS } from "./examples";
 import { dot, length, placed, sub } from "./math";
-import { Found } from "./found";
+import type { AssemblyTab } from "./assembly";
+import type { Found } from "./found";
 import { AnswerPanel, type Refusal, type Shown } from "./panel";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
 import { type Bodies, type Tool, View, drawn, forget } from "./view";
 
-const TABS: Tab[] = ["answer", "found"];
-const engine = new Engine(new URL("worker.js", import.meta.url));
+const TABS: Tab[] = ["answer", "found", "assembly"];
+const WORKER = new URL("worker.js", import.meta.url);
+const engine = new Engine(WORKER);
 
 class Page {
   private state: State = fromHash(location.hash);
@@ -34,7 +36,10 @@ class Page {
   private view: View | undefined;
   private readonly shadow = new Shadow();
   private readonly panel: AnswerPanel;
+  /** Read when their tabs are opened. */
   private found: Found | undefined;
+  private assembly: AssemblyTab | undefined;
+  private readonly opening = new Set<Tab>();
   private readonly time: Timeline;
   private asking = false;
   private again = false;
@@ -71,11 +76,33 @@ class Page {
     view.onDirection = (d) => this.change((state) => (state.direction = d));
     view.onPose = (slot, pose) => this.change((state) => (state.poses[slot] = pose));
     this.view = view;
-    this.found = new Found(this.engine, view, () => this.pair());
-    named("panel").append(this.found.element);
-    this.found.changed(this.answer);
     this.tools(view);
     this.fit();
+    this.show();
+  }
+
+  /** Reads what a tab needs. */
+  private async openTab(tab: Tab) {
+    const { view } = this;
+    if (this.opening.has(tab) || (tab === "found" && !view)) return;
+    this.opening.add(tab);
+    try {
+      if (tab === "found") {
+        const { Found } = await import("./found");
+        this.found = new Found(this.engine, view!, () => this.pair());
+        named("panel").append(this.found.element);
+        this.found.changed(this.answer);
+      } else if (tab === "assembly") {
+        const { AssemblyTab } = await import("./assembly");
+        this.assembly = new AssemblyTab(WORKER, () => this.state, () => this.remember(), (text, what) => void this.copy(text, what));
+        named("panel").append(this.assembly.panel);
+        named("stage").prepend(this.assembly.stage);
+        void this.assembly.start();
+      }
+    } catch (error) {
+      this.opening.delete(tab);
+      toast(`This part of the page could not be read: ${error instanceof Error ? error.message : String(error)}`);
+    }
     this.show();
   }
 
@@ -260,6 +287,7 @@ class Page {
     for (const tab of TABS) named(`tab-${tab}`).setAttribute("aria-selected", String(state.tab === tab));
     const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, verdict: this.verdict };
     this.panel.show(shown);
+    if (state.tab !== "answer") void this.openTab(state.tab);
     this.found?.show(state, state.tab === "found");
     this.time.show(state, answer, this.pass());
     view?.setPlain(state.tab === "found");
@@ -288,7 +316,8 @@ class Page {
     select.value = same?.[0] ?? "";
     select.addEventListener("change", async () => {
       if (!select.value) return;
-      this.state = { ...fromExample(select.value), tab: this.state.tab };
+      const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
+      this.state = { ...fromExample(select.value), tab, assembly: this.state.assembly };
       this.answer = undefined;
       await this.loadBoth();
       this.fit();
@@ -299,18 +328,20 @@ class Page {
       const root = document.documentElement;
       const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
       root.dataset.theme = dark ? "light" : "dark";
-      this.view?.themeChanged();
-      this.show();
+      this.themed();
     });
-    onChange(() => {
-      this.view?.themeChanged();
-      this.show();
-    });
+    onChange(() => this.themed());
     addEventListener("hashchange", () => {
       if (location.hash === toHash(this.state)) return;
       this.state = fromHash(location.hash);
       void this.loadBoth().then(() => this.fit());
     });
+  }
+
+  private themed() {
+    this.view?.themeChanged();
+    this.assembly?.themeChanged();
+    this.show();
   }
 
   private tools(view: View) {
@@ -358,6 +389,10 @@ class Page {
       event.preventDefault();
       zone.hidden = true;
       const files = [...(event.dataTransfer?.files ?? [])];
+      if (this.state.tab === "assembly") {
+        void this.assembly?.open(files);
+        return;
+      }
       const first: Slot = (over(event.target)?.dataset.slot as Slot | undefined) ?? "moving";
       const second: Slot = first === "moving" ? "fixed" : "moving";
       void (async () => {
@@ -389,7 +424,7 @@ class Page {
 
   /** For tests. */
   probe() {
-    return { engine: this.engine, view: this.view, state: this.state, answer: this.answer, firstAnswer: this.firstAnswer };
+    return { assembly: this.assembly?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, firstAnswer: this.firstAnswer };
   }
 }
 

@@ -8,10 +8,11 @@ import {
   AmbientLight, BufferAttribute, BufferGeometry, CircleGeometry, Color, ConeGeometry, CylinderGeometry,
   DirectionalLight, DoubleSide, Group, Line, LineBasicMaterial, LineDashedMaterial, LineLoop,
   LineSegments, Material, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Object3D, PerspectiveCamera,
-  PlaneGeometry, Quaternion, Ray, Raycaster, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer,
+  PlaneGeometry, Quaternion, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { TransformControls } from "three/addons/controls/TransformControls.js";
+import type { TransformControls } from "three/addons/controls/TransformControls.js";
+import { aim, onPage, rounded } from "./aim";
 import { type Palette, palette } from "./colours";
 import { h, soon, svg } from "./dom";
 import type { Answer, Body, Feature, Slot, Touch } from "./engine";
@@ -73,7 +74,9 @@ export class View {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 1e4);
   readonly renderer: WebGLRenderer;
   private readonly orbit: OrbitControls;
-  private readonly gizmo: TransformControls;
+  /** Read when a body is to be moved by its handles. */
+  private gizmo: Promise<TransformControls> | undefined;
+  private handles: TransformControls | undefined;
   private readonly handle = new Object3D();
   /** Made anew with every answer. */
   private readonly shown = new Group();
@@ -115,26 +118,18 @@ export class View {
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.addEventListener("change", this.render);
     this.orbit.listenToKeyEvents(canvas);
-    this.gizmo = new TransformControls(this.camera, canvas);
-    this.gizmo.size = 0.8;
-    this.gizmo.addEventListener("change", this.render);
-    this.gizmo.addEventListener("dragging-changed", (event) => {
-      this.orbit.enabled = !event.value;
-      if (!event.value) this.moved(true);
-    });
-    this.gizmo.addEventListener("objectChange", () => this.moved(false));
     const sun = new DirectionalLight(0xffffff, 2.1);
     sun.position.set(0.6, 0.9, 1);
     this.camera.add(sun, sun.target);
     sun.target.position.set(0, 0, -1);
-    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.25), this.shown, this.extra, this.handle, this.gizmo.getHelper());
+    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.25), this.shown, this.extra, this.handle);
     this.arrowDrag(canvas);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
 
   readonly render = soon(() => {
-    this.gizmo.getHelper().updateMatrixWorld();
+    this.handles?.getHelper().updateMatrixWorld();
     this.renderer.render(this.scene, this.camera);
     this.placeLabels();
     this.placeAxes();
@@ -147,13 +142,34 @@ export class View {
   setTool(tool: Tool, slot: Slot) {
     this.tool = tool;
     this.held = slot;
-    this.gizmo.detach();
-    if (tool !== "look" && this.drawnBodies[slot]) {
-      this.gizmo.setMode(tool === "move" ? "translate" : "rotate");
-      this.gizmo.attach(this.handle);
-    }
+    this.handles?.detach();
+    if (tool !== "look") void this.attach();
     this.placeHandle();
     this.render();
+  }
+
+  private async attach() {
+    this.gizmo ??= this.makeGizmo();
+    const gizmo = await this.gizmo;
+    if (this.tool === "look" || !this.drawnBodies[this.held]) return;
+    gizmo.setMode(this.tool === "move" ? "translate" : "rotate");
+    gizmo.attach(this.handle);
+    this.render();
+  }
+
+  private async makeGizmo(): Promise<TransformControls> {
+    const { TransformControls } = await import("three/addons/controls/TransformControls.js");
+    const gizmo = new TransformControls(this.camera, this.renderer.domElement);
+    gizmo.size = 0.8;
+    gizmo.addEventListener("change", this.render);
+    gizmo.addEventListener("dragging-changed", (event) => {
+      this.orbit.enabled = !event.value;
+      if (!event.value) this.moved(true);
+    });
+    gizmo.addEventListener("objectChange", () => this.moved(false));
+    this.scene.add(gizmo.getHelper());
+    this.handles = gizmo;
+    return gizmo;
   }
 
   /** Only bodies and what others add; for the views of searches. */
@@ -493,7 +509,7 @@ export class View {
   private placeHandle() {
     const { state } = this;
     const body = this.drawnBodies[this.held];
-    if (!state || !body || this.gizmo.dragging) return;
+    if (!state || !body || this.handles?.dragging) return;
     const matrix = matrixOf(state.poses[this.held], body.middle, this.origin);
     matrix.decompose(this.handle.position, this.handle.quaternion, this.handle.scale);
   }
@@ -516,69 +532,21 @@ export class View {
 
   /** The tip of the arrow follows the pointer over a sphere about the moving body. */
   private arrowDrag(canvas: HTMLCanvasElement) {
-    const ray = (event: PointerEvent): Ray => {
-      const box = canvas.getBoundingClientRect();
-      const x = ((event.clientX - box.left) / box.width) * 2 - 1;
-      const y = 1 - ((event.clientY - box.top) / box.height) * 2;
-      const caster = new Raycaster();
-      caster.setFromCamera(new Vector2(x, y), this.camera);
-      return caster.ray;
-    };
-    const near = (event: PointerEvent): boolean => {
-      if (!this.tip || this.plain) return false;
-      const box = canvas.getBoundingClientRect();
-      const at = this.tip.clone().project(this.camera);
-      const [x, y] = [((at.x + 1) / 2) * box.width + box.left, ((1 - at.y) / 2) * box.height + box.top];
-      return Math.hypot(x - event.clientX, y - event.clientY) < (event.pointerType === "touch" ? 34 : 18);
-    };
-    let side = 0;
-    const point = (event: PointerEvent, done: boolean) => {
+    const ends = () => {
       const { moving } = this.drawnBodies;
-      const { state } = this;
-      if (!moving || !state || !this.tip) return;
-      const base = this.inScene(placed(state.poses.moving, moving.middle));
-      const reach = this.tip.distanceTo(base);
-      const r = ray(event);
-      const middle = r.closestPointToPoint(base, new Vector3());
-      const off = middle.distanceTo(base);
-      const depth = off < reach ? Math.sqrt(reach * reach - off * off) : 0;
-      const at = middle.addScaledVector(r.direction, depth * side).sub(base).normalize();
-      const long = length(state.direction);
-      const round = (x: number) => Number((x * long).toPrecision(4));
-      const d: Vec = [at.x, at.y, at.z].map((x) => (Math.abs(x) < 0.003 ? 0 : round(x))) as Vec;
+      if (!moving || !this.state || !this.tip || this.plain) return undefined;
+      return { base: this.inScene(placed(this.state.poses.moving, moving.middle)), tip: this.tip };
+    };
+    aim(canvas, this.camera, this.orbit, ends, (way, done) => {
+      const long = length(this.state!.direction);
+      const d = rounded(times(way, long), 0.003 * long);
       if (length(d) > 0) this.onDirection(d, done);
-    };
-    canvas.addEventListener("pointerdown", (event) => {
-      if (!near(event)) return;
-      const { moving } = this.drawnBodies;
-      const base = this.inScene(placed(this.state!.poses.moving, moving!.middle));
-      side = Math.sign(this.tip!.clone().sub(base).dot(ray(event).direction)) || 1;
-      this.orbit.enabled = false;
-      canvas.setPointerCapture(event.pointerId);
-      event.stopImmediatePropagation();
-      const move = (e: PointerEvent) => point(e, false);
-      const up = (e: PointerEvent) => {
-        canvas.removeEventListener("pointermove", move);
-        canvas.removeEventListener("pointerup", up);
-        canvas.removeEventListener("pointercancel", up);
-        this.orbit.enabled = true;
-        point(e, true);
-      };
-      canvas.addEventListener("pointermove", move);
-      canvas.addEventListener("pointerup", up);
-      canvas.addEventListener("pointercancel", up);
-    }, { capture: true });
-    canvas.addEventListener("pointermove", (event) => {
-      canvas.style.cursor = near(event) ? "grab" : "";
     });
   }
 
   /** Where the tip of the arrow is, in pixels of the page: for tests. */
   tipOnPage(): [number, number] | undefined {
-    if (!this.tip) return undefined;
-    const box = this.renderer.domElement.getBoundingClientRect();
-    const at = this.tip.clone().project(this.camera);
-    return [((at.x + 1) / 2) * box.width + box.left, ((1 - at.y) / 2) * box.height + box.top];
+    return this.tip && onPage(this.renderer.domElement, this.camera, this.tip);
   }
 
   private clear(group: Group) {

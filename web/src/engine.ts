@@ -94,6 +94,25 @@ export interface SolidAnswer {
 
 export type Answer = ConvexAnswer | SolidAnswer;
 
+/** One reason of a proof between solids: how often it is given, about how many pairs of facets. */
+export interface Claims {
+  because: string;
+  claims: number;
+  pairs: number;
+}
+
+/** A proof of an answer between solids. */
+export interface SolidProof {
+  tolerance: number;
+  /** `null`: nothing ever stops the body. */
+  lower: number | null;
+  stop: { distance: number; triangles: [number, number] } | null;
+  overlap: { kind: string; triangles: number[] } | null;
+  start_entries: number;
+  start_claims: Claims[] | null;
+  claims: Claims[];
+}
+
 /** Two placed bodies and a direction. */
 export interface Pair {
   moving_pose: Pose;

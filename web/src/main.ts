@@ -6,18 +6,20 @@
 
 import { onChange } from "./colours";
 import { h, named, soon } from "./dom";
-import { type Answer, type ConvexAnswer, Engine, type Pair, Refused, type Slot, type Take } from "./engine";
+import { type Answer, Engine, type Pair, Refused, type Slot, type SolidAnswer, type SolidProof, type Take } from "./engine";
 import { EXAMPLES, SLOTS } from "./examples";
 import { dot, length, placed, sub } from "./math";
 import type { AssemblyTab } from "./assembly";
 import type { Found } from "./found";
-import { AnswerPanel, type Refusal, type Shown } from "./panel";
+import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
 import { type Bodies, type Tool, View, drawn, forget } from "./view";
 
 const TABS: Tab[] = ["answer", "found", "assembly"];
+/** Up to so many triangles of both bodies together. */
+const PROVED_SOON = 20_000;
 const WORKER = new URL("worker.js", import.meta.url);
 const engine = new Engine(WORKER);
 
@@ -29,6 +31,9 @@ class Page {
   /** Milliseconds from the page's beginning. */
   private firstAnswer: number | undefined;
   private verdict: Shown["verdict"];
+  /** Of an answer between solids, with its entries. */
+  private solidProof: { told: SolidProof; entries: ArrayBuffer } | undefined;
+  private proving = 0;
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
   private readonly engine = engine;
   private readonly bodies: Bodies = {};
@@ -41,6 +46,9 @@ class Page {
   private assembly: AssemblyTab | undefined;
   private readonly opening = new Set<Tab>();
   private readonly time: Timeline;
+  /** The question that was answered last, and the one before, about the same bodies. */
+  private last: Pair | undefined;
+  private before: Pair | undefined;
   private asking = false;
   private again = false;
   private loading = 0;
@@ -89,9 +97,9 @@ class Page {
     try {
       if (tab === "found") {
         const { Found } = await import("./found");
-        this.found = new Found(this.engine, view!, () => this.pair());
+        this.found = new Found(this.engine, view!, () => this.pair(), () => this.before);
         named("panel").append(this.found.element);
-        this.found.changed(this.answer);
+        this.found.changed();
       } else if (tab === "assembly") {
         const { AssemblyTab } = await import("./assembly");
         this.assembly = new AssemblyTab(WORKER, () => this.state, () => this.remember(), (text, what) => void this.copy(text, what));
@@ -155,7 +163,9 @@ class Page {
     if (!this.bodies.moving || !this.bodies.fixed) return;
     this.asking = true;
     try {
-      const { answer, took } = await this.engine.cast(this.pair());
+      const pair = structuredClone(this.pair());
+      const { answer, took } = await this.engine.cast(pair);
+      if (JSON.stringify(pair) !== JSON.stringify(this.last)) [this.before, this.last] = [this.last, pair];
       this.firstAnswer ??= performance.now();
       [this.answer, this.took, this.error] = [answer, took, undefined];
     } catch (error) {
@@ -167,11 +177,48 @@ class Page {
       void this.ask();
     }
     this.show();
-    this.found?.changed(this.answer);
+    this.found?.changed();
+    this.proveSoon();
+  }
+
+  /** Between small solids the proof is made once the question stands still. */
+  private proveSoon() {
+    this.solidProof = undefined;
+    clearTimeout(this.proving);
+    const triangles = SLOTS.reduce((sum, slot) => sum + (this.bodies[slot]?.body.facts.triangles ?? 0), 0);
+    if (this.answer?.kind !== "solid" || triangles > PROVED_SOON) return;
+    this.proving = window.setTimeout(() => this.prove().catch(() => undefined), 250);
+  }
+
+  private async prove() {
+    const answer = this.answer;
+    const { facts, numbers } = await this.engine.ask({ do: "certify", ...this.pair() });
+    if (answer === this.answer) this.solidProof = { told: facts as SolidProof, entries: numbers };
+    this.show();
+  }
+
+  /** The claims, and the plane if there is one. */
+  private async verifySolid(answer: SolidAnswer) {
+    if (!this.solidProof) await this.prove();
+    const { told, entries } = this.solidProof ?? {};
+    if (!told || !entries) return;
+    const check = async (proof: object, file?: ArrayBuffer) => (await this.engine.ask({ do: "verify", ...this.pair(), proof }, file)).facts;
+    const facts = await check({ clearance: told }, entries.slice(0));
+    const plane = answer.margin ? await check({ separation: { normal: answer.sideways, margin: answer.margin } }) : undefined;
+    const bad = [facts, plane].find((one) => one && !one.holds);
+    const count = entries.byteLength.toLocaleString("en");
+    this.verdict = bad
+      ? { holds: false, text: `✗ ${bad.because}` }
+      : { holds: true, text: `✓ it holds: ${count} entries checked, gap ${Number(facts.proven).toExponential(1)}${plane ? `; margin ${Number(plane.proven).toExponential(1)}` : ""}` };
   }
 
   private async verify() {
-    const answer = this.answer as ConvexAnswer | undefined;
+    if (this.answer?.kind === "solid") {
+      await this.verifySolid(this.answer).catch((error: unknown) => (this.verdict = { holds: false, text: String(error) }));
+      this.show();
+      return;
+    }
+    const answer = this.answer;
     if (!answer) return;
     const proof = answer.outcome === "separated"
       ? { separation: { normal: answer.sideways, margin: answer.margin } }
@@ -214,6 +261,7 @@ class Page {
     try {
       const body = await this.engine.load(slot, name, take, bytes);
       forget(this.bodies[slot]);
+      [this.last, this.before] = [undefined, undefined];
       this.bodies[slot] = drawn(body);
       this.state.parts[slot] = { file: name, take };
       delete this.refusals[slot];
@@ -285,7 +333,7 @@ class Page {
     const { moving, fixed } = this.bodies;
     document.body.dataset.tab = state.tab;
     for (const tab of TABS) named(`tab-${tab}`).setAttribute("aria-selected", String(state.tab === tab));
-    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, verdict: this.verdict };
+    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof?.told, verdict: this.verdict };
     this.panel.show(shown);
     if (state.tab !== "answer") void this.openTab(state.tab);
     this.found?.show(state, state.tab === "found");
@@ -412,14 +460,19 @@ class Page {
     }
   }
 
-  private async save(how: "png" | "svg") {
+  private async save(how: Picture) {
     if (!this.view) return;
-    const blob = how === "png"
-      ? await this.view.picture()
-      : new Blob([this.shadow.source()], { type: "image/svg+xml" });
-    const link = h("a", { href: URL.createObjectURL(blob), download: how === "png" ? "contact.png" : "shadows.svg" });
-    link.click();
-    URL.revokeObjectURL(link.href);
+    try {
+      const blob = how === "png"
+        ? await this.view.picture()
+        : new Blob([how === "svg" ? this.shadow.source() : await this.view.drawing()], { type: "image/svg+xml" });
+      const name = { png: "contact.png", svg: "shadows.svg", drawing: "contact.svg" }[how];
+      const link = h("a", { href: URL.createObjectURL(blob), download: name });
+      link.click();
+      URL.revokeObjectURL(link.href);
+    } catch (error) {
+      toast(error instanceof Error ? error.message : String(error));
+    }
   }
 
   /** For tests. */

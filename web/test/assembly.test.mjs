@@ -27,7 +27,7 @@ after(async () => {
 });
 
 async function opened(hash = "", options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1200, height: 900 }, ...options });
+  const context = await browser.newContext({ viewport: { width: 900, height: 640 }, ...options });
   const page = await context.newPage();
   page.complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
@@ -51,7 +51,9 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
   const { facts, plan, fit } = await probe(page);
   assert.equal(facts.parts.length, 16);
   assert.equal(fit.tolerance, 0.1);
-  assert.equal(plan.stuck.length, 0);
+  // A ball bearing is not parted by straight moves.
+  const stuck = plan.stuck.flatMap(({ parts }) => parts.map((k) => facts.parts[k].name));
+  assert.ok(stuck.length > 0 && stuck.every((name) => name.startsWith("bearing")), stuck.join());
   await page.click('[aria-label="Step on"]');
   await page.waitForFunction(() => window.colltrans.probe().assembly.t === 1);
   assert.match(await page.textContent(".assembly-stage output"), /^Step 1 of \d+: bolt_0 along \+z/);
@@ -103,9 +105,12 @@ test("dragging the arrow, picking a part, clicking into its map", async () => {
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(() => window.colltrans.probe().state.assembly.direction[2] < 1);
   // The address leads back.
-  await page.waitForFunction(() => location.hash.includes("apart="));
+  await page.waitForFunction(() => {
+    const fields = new URLSearchParams(location.hash.slice(1));
+    return fields.has("apart") && fields.get("ad") === window.colltrans.probe().state.assembly.direction.join(",");
+  });
   const again = await opened(new URL(page.url()).hash.replace(/^#/, "&").replace("&tab=assembly", ""));
-  assert.deepEqual((await probe(again)).along.first, (await probe(page)).along.first);
+  await page.waitForFunction((along) => JSON.stringify(window.colltrans.probe().assembly.along) === along, JSON.stringify((await probe(again)).along));
   assert.deepEqual([...page.complaints, ...again.complaints], []);
   await page.context().close();
   await again.context().close();

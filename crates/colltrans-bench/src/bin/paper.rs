@@ -73,6 +73,9 @@ const KINDS: [Kind; 5] = [
 
 const STRETCH: f64 = 100.0;
 
+/// Only the region of the last solution is remembered.
+const REGION: Focus = Focus { features: false, region: Region::Automatic };
+
 impl Kind {
     fn name(self) -> String {
         match self {
@@ -147,7 +150,9 @@ fn measure_size(
                 let name = format!("{}, change {:.4} %", kind.name(), 100.0 * change);
                 let unit = unit.unwrap_or(f64::NAN);
                 let names = ["focus 1%", "focus end", "centre end"];
-                rows.push(row(&name, n, &names, &measured, (unit, &parry)));
+                let mut row = row(&name, n, &names, &measured, (unit, &parry));
+                row["phases"] = focused_phases(&sequences);
+                rows.push(row);
             }
         }
     }
@@ -254,37 +259,67 @@ fn one_off(blocks: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
 /// Median nanoseconds of each phase of a search from the centre to the end, on all blocks.
 fn phases(blocks: &Blocks) -> Value {
     let options = options(CONTESTANTS[CONTESTANTS.len() - 1].1);
-    let mut spent: Vec<(&str, Times)> = Vec::new();
+    let mut spent = Spent::default();
     for (bodies, settings) in blocks {
         for pass in 0..2 {
             for setting in settings {
                 let mut clock = observe::Clock::new();
                 let cast = setting.cast(bodies, &options);
                 let found = cast.and_then(|cast| cast.first_contact_observed(&mut clock));
-                if pass == 0 || found.is_err() {
-                    continue;
-                }
-                let phases = clock.profile().phases();
-                spent.resize_with(phases.len(), || ("", Times::default()));
-                for ((name, times), (phase, nanoseconds)) in spent.iter_mut().zip(phases) {
-                    *name = phase;
-                    times.add(nanoseconds);
+                if pass == 1 && found.is_ok() {
+                    spent.add(&clock);
                 }
             }
         }
     }
-    let mut median = |(name, times): &mut (&str, Times)| {
-        times.sort();
-        ((*name).to_owned(), json!(times.median()))
-    };
-    spent.iter_mut().map(&mut median).collect::<Map<_, _>>().into()
+    spent.medians()
+}
+
+/// The same with region focus, in sequences.
+fn focused_phases(sequences: &Blocks) -> Value {
+    let options = options(Some(Narrowing { start: NarrowFrom::Center, gap: 0.0 }));
+    let mut spent = Spent::default();
+    for (bodies, sequence) in sequences {
+        let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");
+        for setting in sequence {
+            let mut clock = observe::Clock::new();
+            let cast = setting.cast(bodies, &options);
+            let found = cast.and_then(|cast| tracker.first_contact_observed(&cast, &mut clock));
+            if found.is_ok() {
+                spent.add(&clock);
+            }
+        }
+    }
+    spent.medians()
+}
+
+/// Nanoseconds of each phase.
+#[derive(Default)]
+struct Spent(Vec<(&'static str, Times)>);
+
+impl Spent {
+    fn add(&mut self, clock: &observe::Clock) {
+        let phases = clock.profile().phases();
+        self.0.resize_with(phases.len(), || ("", Times::default()));
+        for ((name, times), (phase, nanoseconds)) in self.0.iter_mut().zip(phases) {
+            *name = phase;
+            times.add(nanoseconds);
+        }
+    }
+
+    fn medians(mut self) -> Value {
+        let mut median = |(name, times): &mut (&str, Times)| {
+            times.sort();
+            ((*name).to_owned(), json!(times.median()))
+        };
+        self.0.iter_mut().map(&mut median).collect::<Map<_, _>>().into()
+    }
 }
 
 /// Region focus to a gap of 1 % and to the end, and the same without focus.
 fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
     let stopwatch = Stopwatch::new();
-    let region = Focus { features: false, region: Region::Automatic };
-    let contestants = [(0.01, region), (0.0, region), (0.0, Focus::NONE)];
+    let contestants = [(0.01, REGION), (0.0, REGION), (0.0, Focus::NONE)];
     let mut measured: Vec<Measured> = contestants.iter().map(|_| Measured::default()).collect();
     let mut parry = Times::default();
     for (turn, (bodies, sequence)) in sequences.iter().enumerate() {

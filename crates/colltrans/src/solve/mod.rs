@@ -268,12 +268,13 @@ impl<O: Observer> Run<'_, '_, O> {
     /// Region focus: the last contact points, and the half-side of the square around them.
     fn region(&self, region: Region, last: &WarmStart) -> Option<RegionFocus> {
         let setting = self.difference.setting;
-        let (touching, normals) = match last {
+        let (touching, normals, pair) = match last {
             WarmStart::Nothing => return None,
             WarmStart::Contact(portal) => {
-                (setting.weighted(&portal.pairs, &portal.weights), portal.normals)
+                let touching = setting.weighted(&portal.pairs, &portal.weights);
+                (touching, portal.normals, portal.pairs[0])
             }
-            WarmStart::Apart { pair, normals } => (setting.vertices(*pair), *normals),
+            WarmStart::Apart { pair, normals } => (setting.vertices(*pair), *normals, *pair),
         };
         let half_side = match region {
             Region::Everywhere => return None,
@@ -284,7 +285,7 @@ impl<O: Observer> Run<'_, '_, O> {
             }
         };
         let worth = region != Region::Automatic || self.difference.is_near(half_side);
-        worth.then_some(RegionFocus { touching, half_side })
+        worth.then_some(RegionFocus { touching, half_side, pair, normal: normals[0] })
     }
 
     fn contact_or_grazing(

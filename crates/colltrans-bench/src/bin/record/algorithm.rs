@@ -35,8 +35,8 @@ pub(super) fn write(page: &mut String, run: &Value) -> Result<(), Failure> {
         sequences(page, row)?;
     }
     page.push_str(
-        "\nWhere the time from the centre to the end goes: medians in ns of each phase, and \
-         iterations of all loops in a planar problem.\n\n\
+        "\nWhere the time to the end goes, from the centre and, in sequences, with region focus: medians \
+         in ns of each phase, and iterations of all loops in a planar problem.\n\n\
          | bodies | vertices | planar problems | cell shift, exit | region | bound | refinement | each \
          planar problem | iterations |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
@@ -97,7 +97,9 @@ fn sequences(page: &mut String, row: &Value) -> Result<(), Failure> {
 
 fn phases(page: &mut String, row: &Value) -> Result<(), Failure> {
     let spent = |name: &str| number(row, &["phases", name]);
-    let problems = of(row, "centre end", "planar_problems");
+    let focused = row["contestants"]["focus end"].is_object();
+    let who = if focused { "focus end" } else { "centre end" };
+    let problems = of(row, who, "planar_problems");
     write!(page, "| {} | {} |", text(row, "settings"), thousands(number(row, &["vertices"])))?;
     for name in
         ["planar problems", "cell shift", "search region", "lower bound", "portal refinement"]
@@ -108,7 +110,7 @@ fn phases(page: &mut String, row: &Value) -> Result<(), Failure> {
         page,
         " {} | {:.1} |",
         thousands(spent("planar problems") / problems),
-        of(row, "centre end", "iterations") / problems,
+        of(row, who, "iterations") / problems,
     )?;
     Ok(())
 }

@@ -9,7 +9,7 @@ use super::crossing::Crossing;
 use super::exit::{Corners, ExitTest, Solved};
 use super::pair::SectionPair;
 use super::piece::{Affine, Piece};
-use super::planar::{self, Hint, Planar};
+use super::planar::{self, Planar};
 use super::region::{Region, Square};
 use super::start::Origin;
 use crate::setting::Setting;
@@ -93,7 +93,7 @@ impl SectionPair<'_> {
     fn minimise<O: Observer>(&self, options: &CtaOptions, watch: &mut Watch<O>) -> Narrowed {
         let begin = self.begin(&options.start);
         let levels = begin.at.to_array();
-        let first = planar::solve(&self.sides, levels, &Hint::NONE);
+        let first = planar::solve(&self.sides, levels, &begin.hint);
         watch.ended(Phase::Planar);
         let Some(first) = first else {
             watch.planar_problem(|| PlanarProblem::hidden(levels));
@@ -110,7 +110,7 @@ impl SectionPair<'_> {
             solved: None,
             last_separation: None,
             contradiction: None,
-            right: None,
+            last: (levels, first),
             watch,
             steps: 1,
         };
@@ -136,8 +136,8 @@ struct Minimisation<'q, 'a, 'o, O> {
     solved: Option<Solved>,
     last_separation: Option<(Features, DVec3)>,
     contradiction: Option<DVec3>,
-    /// The body on the right in the last planar problem.
-    right: Option<usize>,
+    /// The last planar problem: its levels and answer.
+    last: ([f64; 2], Planar),
     watch: &'q mut Watch<'o, O>,
     /// Planar problems solved.
     steps: u32,
@@ -154,12 +154,14 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             self.steps += 1;
             self.watch.ended(Phase::Bound);
             let sides = &self.sections.sides;
-            let answer = planar::solve(sides, levels, &Hint { height, right: self.right });
+            let (at_last, last) = &self.last;
+            let answer = planar::solve(sides, levels, &last.hint(*at_last, levels, height));
             self.watch.ended(Phase::Planar);
             let Some(answer) = answer else {
                 self.watch.planar_problem(|| PlanarProblem::hidden(levels));
                 break;
             };
+            self.last = (levels, answer);
             if !self.learn(at, levels, &answer) {
                 break;
             }
@@ -182,7 +184,6 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
 
     /// Cuts the region and raises the bound; `false` if there is nothing more to learn.
     fn learn(&mut self, at: DVec2, levels: [f64; 2], answer: &Planar) -> bool {
-        self.right = answer.right();
         let local = answer.piece(&self.sections.frame, levels);
         let shifted = self.shift(levels, answer, &local);
         self.watch.ended(Phase::Cell);

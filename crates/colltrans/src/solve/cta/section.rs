@@ -11,6 +11,10 @@ use crate::body::convex::sections::{Snapshot, Turn, next_clockwise, next_counter
 /// Newton's method walks so far up a chain before it searches the snapshot.
 const STEPS_BEFORE_SEARCH: usize = 2;
 
+/// Mesh vertices passed, and edges of a section walked, from the answer at other levels before the
+/// snapshot is searched.
+const STEPS_NEAR: usize = 6;
+
 /// Where a height was found on a chain.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Located {
@@ -39,12 +43,20 @@ pub(super) struct Section<'a> {
     /// Once asked for: its highest entry.
     highest: OnceCell<usize>,
     x: f64,
+    /// Whether edges that cross the level of the problem before are a few vertices away.
+    is_near: bool,
 }
 
 impl<'a> Section<'a> {
-    /// At level `x` of the side's range.
-    pub(super) fn new(side: &'a Side<'a>, x: f64) -> Self {
-        Self { side, lowest: OnceCell::new(), highest: OnceCell::new(), x }
+    /// At level `x` of the side's range, after a problem at level `last`.
+    pub(super) fn new(side: &'a Side<'a>, x: f64, last: f64) -> Self {
+        let is_near = (x - last).abs() <= side.near;
+        Self { side, lowest: OnceCell::new(), highest: OnceCell::new(), x, is_near }
+    }
+
+    /// Whether the level of the problem before is near.
+    pub(super) fn is_near(&self) -> bool {
+        self.is_near
     }
 
     fn lowest(&self) -> Option<(Snapshot<'a>, usize)> {
@@ -105,53 +117,83 @@ impl<'a> Section<'a> {
         (third.shadow - base) - from.drift * (third.level - from.levels[0])
     }
 
-    /// From an edge that crosses at or below the level, up the mesh to one that crosses, at each
-    /// vertex by the edge whose line has the least `score` at the level. `None` if rounding hides
-    /// the way up.
-    fn climb(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
+    /// From an edge upwards along the mesh to one that crosses the level, at each vertex by the edge
+    /// whose line has the least `score` at the level. `None` if it passes more than `limit` vertices,
+    /// or if rounding hides the way.
+    fn reach(&self, from: u32, limit: usize, score: impl Fn(f64) -> f64) -> Option<u32> {
         let topology = self.side.topology;
         let mut up = from;
-        loop {
-            let vertex = topology.target(up);
-            if self.side.level(vertex) > self.x {
+        for _ in 0..=limit {
+            let (low, high) = (topology.half_edge(up).origin, topology.target(up));
+            if self.side.level(high) <= self.x {
+                up = self.best_edge(high, 1.0, &score)?;
+            } else if self.side.level(low) > self.x {
+                up = topology.half_edge(self.best_edge(low, -1.0, &score)?).twin;
+            } else {
                 return Some(up);
             }
-            self.side.count(1);
-            let start = self.side.point(vertex);
-            let mut best = f64::INFINITY;
-            let mut next = None;
-            for (&h, &neighbour) in
-                topology.outgoing(vertex).iter().zip(topology.neighbours(vertex))
-            {
-                let end = self.side.point(neighbour);
-                let drift = (end.shadow.x - start.shadow.x) / (end.level - start.level);
-                let candidate = score(start.shadow.x + drift * (self.x - start.level));
-                let better = end.level > start.level && (next.is_none() || candidate < best);
-                (best, next) = if better { (candidate, Some(h)) } else { (best, next) };
-            }
-            up = next?;
         }
+        None
+    }
+
+    /// The half-edge from a vertex towards the level, which is above it for a `sign` of 1 and below
+    /// it for -1, whose line has the least `score` there.
+    fn best_edge(&self, vertex: u32, sign: f64, score: impl Fn(f64) -> f64) -> Option<u32> {
+        self.side.count(1);
+        let topology = self.side.topology;
+        let start = self.side.point(vertex);
+        let mut best = f64::INFINITY;
+        let mut found = None;
+        for (&h, &neighbour) in topology.outgoing(vertex).iter().zip(topology.neighbours(vertex)) {
+            let end = self.side.point(neighbour);
+            let rise = end.level - start.level;
+            let drift = (end.shadow.x - start.shadow.x) / rise;
+            let candidate = score(start.shadow.x + drift * (self.x - start.level));
+            let better = sign * rise > 0.0 && (found.is_none() || candidate < best);
+            (best, found) = if better { (candidate, Some(h)) } else { (best, found) };
+        }
+        found
     }
 
     /// The lowest vertex.
     pub(super) fn bottom(&self) -> Option<Bottom> {
         let (snapshot, lowest) = self.lowest()?;
-        let up = self.climb(snapshot.up(lowest), |h| h)?;
-        let mut vertex = self.crossing(up);
-        let mut left = self.direction(Chain::Left, &vertex);
-        let mut right = self.direction(Chain::Right, &vertex);
-        for _ in 0..self.step_limit() {
+        let up = self.reach(snapshot.up(lowest), usize::MAX - 1, |h| h)?;
+        Some(self.descend(up, self.step_limit()).unwrap_or_else(|last| last))
+    }
+
+    /// The same, from an edge upwards that crosses the level before, if that is near.
+    pub(super) fn bottom_from(&self, last: u32) -> Option<Bottom> {
+        if self.is_near
+            && let Some(up) = self.reach(last, STEPS_NEAR, |h| h)
+            && let Ok(found) = self.descend(up, STEPS_NEAR)
+        {
+            return Some(found);
+        }
+        self.bottom()
+    }
+
+    /// Down the section from the vertex on an edge to its lowest one; where it came to, if that is
+    /// more than `limit` steps away.
+    fn descend(&self, up: u32, limit: usize) -> Result<Bottom, Bottom> {
+        let vertex = self.crossing(up);
+        let directions = [Chain::Left, Chain::Right].map(|chain| self.direction(chain, &vertex));
+        let mut bottom = Bottom { vertex, directions };
+        for _ in 0..limit {
+            let [left, right] = bottom.directions;
             if !Chain::Left.ascends(left) {
-                vertex = self.up(Chain::Left, &vertex);
-                (right, left) = (-left, self.direction(Chain::Left, &vertex));
+                let vertex = self.up(Chain::Left, &bottom.vertex);
+                let ahead = self.direction(Chain::Left, &vertex);
+                bottom = Bottom { vertex, directions: [ahead, -left] };
             } else if !Chain::Right.ascends(right) {
-                vertex = self.up(Chain::Right, &vertex);
-                (left, right) = (-right, self.direction(Chain::Right, &vertex));
+                let vertex = self.up(Chain::Right, &bottom.vertex);
+                let ahead = self.direction(Chain::Right, &vertex);
+                bottom = Bottom { vertex, directions: [-right, ahead] };
             } else {
-                break;
+                return Ok(bottom);
             }
         }
-        Some(Bottom { vertex, directions: [left, right] })
+        Err(bottom)
     }
 
     /// The end towards `chain` of the lowest edge if that is horizontal, else the lowest vertex.
@@ -171,7 +213,7 @@ impl<'a> Section<'a> {
         let turn = self.side.turn_up(chain);
         self.side.count(snapshot.halvings());
         let index = snapshot.locate(height, (lowest, highest), turn, (h, self.x));
-        let up = self.climb(snapshot.up(index), |height| (height - h).abs())?;
+        let up = self.reach(snapshot.up(index), usize::MAX - 1, |height| (height - h).abs())?;
         let start = self.crossing(up);
         let mut bracket = if start.h() <= h {
             Bracket::new(start, self.up(chain, &start))
@@ -191,6 +233,43 @@ impl<'a> Section<'a> {
             }
         }
         Some(self.walk(chain, bracket, h, self.step_limit()))
+    }
+
+    /// The edge of a chain at height `h`, from an edge upwards that crosses the level before, if that
+    /// is near; `None` if the chain does not reach the height.
+    pub(super) fn locate_from(&self, chain: Chain, h: f64, last: u32) -> Option<Bracket> {
+        if self.is_near
+            && let Some(found) = self.locate_near(chain, h, last)
+        {
+            return Some(found);
+        }
+        match self.locate(chain, h)? {
+            Located::Edge(edge) if edge.low.h() <= h => Some(edge),
+            _ => None,
+        }
+    }
+
+    /// The same in a few steps.
+    fn locate_near(&self, chain: Chain, h: f64, last: u32) -> Option<Bracket> {
+        let start = self.crossing(self.reach(last, STEPS_NEAR, |height| (height - h).abs())?);
+        let mut bracket = if start.h() <= h {
+            Bracket::new(start, self.up(chain, &start))
+        } else {
+            Bracket::new(self.down(chain, &start), start)
+        };
+        if !chain.ascends(bracket.direction) {
+            return None;
+        }
+        for _ in 0..STEPS_NEAR {
+            if bracket.low.h() <= h {
+                return match self.walk(chain, bracket, h, STEPS_NEAR) {
+                    Located::Edge(edge) => Some(edge),
+                    Located::Beyond(_) | Located::Short => None,
+                };
+            }
+            bracket = self.retreat(chain, &bracket)?;
+        }
+        None
     }
 
     /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite

@@ -11,6 +11,9 @@ use super::crossing::Chain;
 use crate::body::convex::sections::{AxisSections, SectionForm, Turn};
 use crate::body::topology::Topology;
 
+/// Levels that are this many mean edges apart are near (measured).
+const NEAR: f64 = 4.0;
+
 /// A mesh vertex: its level and its shadow.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
@@ -28,6 +31,8 @@ pub(super) struct Side<'a> {
     pub(super) shadow: [DVec3; 2],
     constant: DVec2,
     pub(super) height: SectionForm,
+    /// Levels closer than this are a few vertices apart, if these are spread evenly.
+    pub(super) near: f64,
     /// The turn that leads up the left chain.
     left_turn: Turn,
     /// Iterations of the loops of planar problems so far: section vertices computed, mesh vertices
@@ -44,9 +49,11 @@ impl<'a> Side<'a> {
         shadow: [DVec3; 2],
         constant: DVec2,
     ) -> Self {
+        let range = sections.range[1] - sections.range[0];
         Self {
             vertices,
             topology,
+            near: NEAR * range / (vertices.len() as f64).sqrt(),
             sections,
             axis: sections.axis,
             shadow,
@@ -82,6 +89,18 @@ impl<'a> Side<'a> {
     /// The level of a point of the body frame.
     pub(super) fn level_of(&self, point: DVec3) -> f64 {
         self.axis.dot(point)
+    }
+
+    /// The height of a point of the body frame.
+    pub(super) fn height_of(&self, point: DVec3) -> f64 {
+        self.shadow[0].dot(point) + self.constant.x
+    }
+
+    /// An edge at a vertex, by its half-edge upwards.
+    pub(super) fn edge_at(&self, vertex: u32) -> u32 {
+        let h = self.topology.outgoing(vertex)[0];
+        let is_up = self.level(self.topology.target(h)) > self.level(vertex);
+        if is_up { h } else { self.topology.half_edge(h).twin }
     }
 
     #[inline]

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2, DVec3};
 use super::crossing::{Chain, Crossing};
 use super::minimise::{Narrowed, minimise};
 use super::pair::SectionPair;
-use super::planar::{self, Hint, Planar};
+use super::planar::{self, Hint, Last, Planar};
 use super::section::Section;
 use super::side::Side;
 use super::{CtaOptions, Guess, Origin};
@@ -361,7 +361,7 @@ fn colliding(random: &mut Random) -> Example {
 
 /// All vertices of a section in order, from the bottom up the left chain.
 fn polygon(side: &Side, x: f64) -> Vec<Crossing> {
-    let section = Section::new(side, x);
+    let section = Section::new(side, x, x);
     let first = section.bottom().unwrap().vertex;
     let mut all = vec![first];
     loop {
@@ -442,12 +442,31 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     };
     // A bound from below and a guess, right or wrong, change the way, not the answer.
     let unguided = height(&Hint::NONE);
+    let edges = [0, 1].map(|i| polygons[i][random.index(polygons[i].len())].up);
+    let between = [polygons[1][0].up, edges[1]];
+    let lasts = [
+        Last::Nothing,
+        Last::Facing { right: 0, edges },
+        Last::Facing { right: 1, edges },
+        Last::Bottom { upper: 0, vertex: edges[0], between },
+    ];
     for known in [1e-6, 1e-2, 1.0] {
-        for right in [None, Some(0), Some(1)] {
-            let found = height(&Hint { height: least.min(10.0) - known, right });
+        for last in lasts {
+            let found = height(&Hint { height: least.min(10.0) - known, levels, last });
             let same = found == unguided || (found - unguided).abs() < 1e-9;
             assert!(same, "{name}: {found} {unguided}");
         }
+    }
+    // So does an answer at other levels, near or far.
+    for share in [1e-9, 1e-3, 0.1, 1.0] {
+        let others = [0, 1].map(|i| {
+            let [low, high] = query.sides[i].range();
+            levels[i] + (random.within(low, high) - levels[i]) * share
+        });
+        let other = planar::solve(&query.sides, others, &Hint::NONE).unwrap();
+        let found = height(&other.hint(others, levels, least.min(10.0) - share));
+        let same = found == unguided || (found - unguided).abs() < 1e-9;
+        assert!(same, "{name}, from {share}: {found} {unguided}");
     }
     match planar::solve(&query.sides, levels, &Hint::NONE).unwrap() {
         Planar::Vertex { vertex, .. } => {

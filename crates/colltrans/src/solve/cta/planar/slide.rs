@@ -53,15 +53,32 @@ impl<'a, 'b> Slide<'a, 'b> {
         Self { sections, chains, right }
     }
 
-    /// Newton's method from a height, if both sections reach it and approach each other there.
-    pub(super) fn solve_from(&self, height: f64) -> Option<Planar> {
-        let locate = |body: usize| match self.sections[body].locate(self.chains[body], height)? {
-            Located::Edge(edge) if edge.low.h() <= height => Some(edge),
-            _ => None,
-        };
-        let edges = [locate(0)?, locate(1)?];
-        let starts = self.gap(&edges, height) > 0.0 && self.closes(&edges);
-        starts.then(|| self.solve(&edges, height)).flatten()
+    /// From a height that both sections reach, with the edges there sought from those of the problem
+    /// before: up by Newton's method if the gap is positive and falls there, down to where it is
+    /// least if it is positive and grows. If the sections overlap there, a step of Newton's method
+    /// leads down to where they do not, because the gap is convex.
+    pub(super) fn solve_from(&self, height: f64, last: [u32; 2]) -> Option<Planar> {
+        let edge =
+            |body: usize| self.sections[body].locate_from(self.chains[body], height, last[body]);
+        let mut edges = [edge(0)?, edge(1)?];
+        let mut h = height;
+        let gap = self.gap(&edges, h);
+        if gap <= 0.0 {
+            if !self.closes(&edges) {
+                return None;
+            }
+            h -= gap.abs() / self.slope(&edges).abs();
+            edges = [self.down_to(0, edges[0], h)?, self.down_to(1, edges[1], h)?];
+            let covers = |edge: &Bracket| edge.low.h() <= h;
+            if !edges.iter().all(covers) || self.gap(&edges, h) <= 0.0 {
+                return None;
+            }
+        }
+        if self.closes(&edges) {
+            return self.solve(&edges, h);
+        }
+        let found = self.separated_at_least_gap(&edges, STEPS_NEAR)?;
+        found.misses().then_some(found)
     }
 
     /// Whether the gap falls along these edges.

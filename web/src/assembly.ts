@@ -74,6 +74,8 @@ export class AssemblyTab {
   private moves: Move[] = [];
   private error = "";
   private busy = "";
+  /** Whether what may take long is done without being asked for. */
+  private patient = true;
   private asking = false;
   private again = false;
   /** Counts assemblies and fits: what comes for an older one is of no use. */
@@ -163,6 +165,7 @@ export class AssemblyTab {
   }
 
   private async example() {
+    this.patient = true;
     this.asked.tolerance ??= 0.1;
     try {
       const files = await Promise.all(GEARBOX.map(async (file) => {
@@ -179,6 +182,7 @@ export class AssemblyTab {
   /** Files that somebody chose or dropped make another assembly. */
   async open(files: File[]) {
     if (!files.length) return;
+    this.patient = true;
     this.asked.tolerance = null;
     this.asked.part = null;
     try {
@@ -247,7 +251,7 @@ export class AssemblyTab {
       this.fit = facts as Fit;
       this.wait("");
       await this.ask();
-      if (turn !== this.turn) return;
+      if (turn !== this.turn || !this.patient) return;
       if (this.asked.part !== null) await this.askMap();
       if (turn === this.turn && this.facts.parts.length <= SOON) await this.askPlan();
     } catch (error) {
@@ -325,10 +329,15 @@ export class AssemblyTab {
   /** What takes too long is given up: the worker goes, and another one reads the files again. */
   private async giveUp() {
     this.engine.stop("it was given up");
-    const { files, source } = this;
-    const planned = this.plan;
-    await this.load(files, source).catch((error: unknown) => this.refuse(error));
-    this.plan ??= planned;
+    this.patient = false;
+    this.asked.part = null;
+    if (this.facts) await this.load(this.files, this.source).catch((error: unknown) => this.refuse(error));
+    else this.refuse(new Error("It was given up."));
+  }
+
+  /** The address has changed. */
+  stateChanged() {
+    if (this.facts) void this.refit();
   }
 
   private turnTo(d: Vec) {

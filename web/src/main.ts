@@ -109,6 +109,8 @@ class Page {
       }
     } catch (error) {
       this.opening.delete(tab);
+      // Not again at once.
+      this.state.tab = "answer";
       toast(`This part of the page could not be read: ${error instanceof Error ? error.message : String(error)}`);
     }
     this.show();
@@ -383,6 +385,7 @@ class Page {
       if (location.hash === toHash(this.state)) return;
       this.state = fromHash(location.hash);
       void this.loadBoth().then(() => this.fit());
+      this.assembly?.stateChanged();
     });
   }
 
@@ -424,7 +427,9 @@ class Page {
     const halves = [...zone.querySelectorAll<HTMLElement>("[data-slot]")];
     const over = (target: EventTarget | null) => halves.find((half) => half === target);
     addEventListener("dragenter", (event) => {
-      if (event.dataTransfer?.types.includes("Files")) zone.hidden = false;
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      zone.hidden = false;
+      zone.querySelector("p")!.textContent = this.state.tab === "assembly" ? "Drop all parts of an assembly, or a GLB" : "Drop a mesh on the body it replaces";
     });
     addEventListener("dragover", (event) => {
       event.preventDefault();

@@ -15,8 +15,8 @@ const MATERIALS = ["meshlambert", "meshbasic", "linedashed"];
 /** For what no material here has; left out where all of a piece is between `#ifdef USE_...`. */
 const PIECES =
   /^(shadowmap_|shadowmask_|transmission_|envmap_|cube_uv_|bumpmap_|normalmap_|displacementmap_|morph|skin|logdepthbuf_|clipping_planes_|alphahash_|alphamap_|alphatest_|batching_|lightmap_|aomap_|emissivemap_|specularmap_|roughnessmap_|metalnessmap_|gradientmap_|fog_|lightprobes_|map_|uv_|dithering_|premultiplied_)/;
-/** Included by the other materials only. */
-const OTHERS = /^(lights_(physical|phong|toon)_|iridescence_|clearcoat_)/;
+/** Included by the other materials only, or with tone mapping. */
+const OTHERS = /^(lights_(physical|phong|toon)_|iridescence_|clearcoat_|tonemapping_pars_)/;
 /** Classes without which the renderer does not begin. */
 const STUBS = {
   "renderers/webxr/WebXRManager.js": `export class WebXRManager {
@@ -24,6 +24,7 @@ const STUBS = {
     addEventListener() {} removeEventListener() {} setAnimationLoop() {} getEnvironmentBlendMode() {} dispose() {}
   }`,
   "renderers/webgl/WebGLShadowMap.js": "export function WebGLShadowMap() { this.enabled = false; this.render = () => {}; }",
+  "renderers/shaders/DFGLUTData.js": "export function getDFGLUT() { return null; }",
   "extras/PMREMGenerator.js": "export class PMREMGenerator {}",
 };
 

@@ -31,6 +31,8 @@ export class Sphere {
     "aria-label": "Removal map: click for a direction, arrow keys turn the one that is chosen",
   });
   private map: RemovalMap | undefined;
+  /** The farthest that is not free. */
+  private farthest = 1;
   private chosen: Vec = [0, 0, 1];
   private right: Vec = [1, 0, 0];
   private up: Vec = [0, 0, 1];
@@ -67,6 +69,7 @@ export class Sphere {
   }
 
   show(map: RemovalMap | undefined, chosen: Vec) {
+    if (map && map !== this.map) this.farthest = map.distances.reduce((best, x) => (Number.isFinite(x) ? Math.max(best, x) : best), 0) || map.size;
     [this.map, this.chosen] = [map, unit(chosen)];
     this.draw();
   }
@@ -94,7 +97,7 @@ export class Sphere {
     for (let t = 0; t < triangles.length; t += 3) {
       const [a, b, c] = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!];
       if (flat[3 * a + 2]! + flat[3 * b + 2]! + flat[3 * c + 2]! < -0.1) continue;
-      context.fillStyle = context.strokeStyle = this.tint([a, b, c].map((k) => distances[k]!), map.size, colours.dark);
+      context.fillStyle = context.strokeStyle = this.tint([a, b, c].map((k) => distances[k]!), colours.dark);
       context.lineWidth = 0.6;
       context.beginPath();
       context.moveTo(flat[3 * a]!, flat[3 * a + 1]!);
@@ -136,12 +139,12 @@ export class Sphere {
   }
 
   /** Green where all corners are free; else the lighter, the farther, by lightness alone. */
-  private tint(far: number[], size: number, dark: boolean): string {
+  private tint(far: number[], dark: boolean): string {
     const free = far.filter((x) => x === Infinity).length;
     if (free === far.length) return dark ? "#35d6a6" : "#12a37c";
     const blocked = far.filter(Number.isFinite);
     const mean = blocked.reduce((sum, x) => sum + x, 0) / blocked.length;
-    const s = Math.sqrt(Math.min(1, mean / (0.5 * size)));
+    const s = Math.sqrt(Math.min(1, mean / this.farthest));
     return `hsl(28 ${dark ? 30 : 45}% ${dark ? 18 + 40 * s : 34 + 48 * s}%)`;
   }
 }

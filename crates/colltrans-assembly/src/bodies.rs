@@ -4,7 +4,7 @@
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
 use colltrans::{
-    Cast, Clearance, Pose, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
+    Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
 };
 use glam::DVec3;
 use rayon::prelude::*;
@@ -55,6 +55,8 @@ pub struct Stop {
     pub normal: DVec3,
     /// The contact point on the other part, in the world.
     pub point: DVec3,
+    /// The triangles of both bodies that meet.
+    pub(crate) triangles: [u32; 2],
 }
 
 /// How far one part can move before another stops it.
@@ -74,10 +76,13 @@ pub struct Bodies<'a> {
     fit: Fit,
     /// The bodies, shrunk or grown.
     solids: Vec<Solid>,
+    /// What that could not do as it should.
+    displaced: Vec<ShrinkReport>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
     /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
     overlapping: Vec<[usize; 2]>,
+    noise: f64,
 }
 
 impl<'a> Bodies<'a> {
@@ -99,14 +104,16 @@ impl<'a> Bodies<'a> {
                 Fit::Tolerance(length) => part.solid().shrunk(length / 2.0),
                 Fit::Margin(length) => part.solid().grown(length / 2.0),
             };
-            solid.map(|(solid, _)| solid).map_err(refused)
+            solid.map_err(refused)
         };
-        let solids: Result<Vec<Solid>, AssemblyError> =
+        let both: Result<Vec<(Solid, ShrinkReport)>, AssemblyError> =
             assembly.parts().par_iter().map(displaced).collect();
-        let solids = solids?;
+        let (solids, displaced): (Vec<Solid>, Vec<ShrinkReport>) = both?.into_iter().unzip();
         let boxes: Vec<Aabb> = solids.iter().map(|s| Aabb::of(s.bounds())).collect();
         let tree = BoxTree::new(boxes.iter().copied());
-        let mut bodies = Self { assembly, fit, solids, boxes, tree, overlapping: Vec::new() };
+        let noise = 4.0 * Fit::default_for(assembly).tolerance();
+        let overlapping = Vec::new();
+        let mut bodies = Self { assembly, fit, solids, displaced, boxes, tree, overlapping, noise };
         let pairs = bodies.neighbours(0.0);
         let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
         bodies.overlapping = overlapping.collect();
@@ -131,6 +138,36 @@ impl<'a> Bodies<'a> {
     /// Whether there are no parts.
     pub fn is_empty(&self) -> bool {
         self.boxes.is_empty()
+    }
+
+    /// What could not be shrunk, or grown, as the fit asks for; in words, `None` if nothing.
+    ///
+    /// Facets turn inside out where a part is thinner than the tolerance: what is said about them is
+    /// not what the part does. Vertices that stay are those of saddles: around them no displacement is
+    /// inwards for all facets.
+    pub fn remark(&self, part: usize) -> Option<String> {
+        let ShrinkReport { stuck, inverted, .. } = &self.displaced[part];
+        let mut said = match self.fit {
+            Fit::Tolerance(_) => vec!["shrunk by half the tolerance".to_owned()],
+            Fit::Margin(_) => vec!["grown by half the margin".to_owned()],
+        };
+        let given = self.assembly.parts()[part].solid();
+        if self.solids[part].is_closed() && volume(given) > 0.0 && volume(&self.solids[part]) <= 0.0
+        {
+            said.push("nothing of it is left: it is thinner than that".into());
+        }
+        if !inverted.is_empty() {
+            said.push(format!("facets that this turns inside out: {}", inverted.len()));
+        }
+        if !stuck.is_empty() {
+            said.push(format!("vertices that it cannot move: {}", stuck.len()));
+        }
+        (said.len() > 1).then(|| said.join("; "))
+    }
+
+    /// Lengths below this are a matter of the files' last digits: `2^-19` of the assembly's size.
+    pub(crate) fn noise(&self) -> f64 {
+        self.noise
     }
 
     pub(crate) fn bounds(&self, part: usize) -> Aabb {
@@ -173,26 +210,72 @@ impl<'a> Bodies<'a> {
         let options = SolidOptions {
             start_overlap: start,
             tolerance: Some(0.0),
-            before,
+            // A plane between the two, which comes with "free" where there is no limit, is not needed.
+            before: before.or(Some(f64::INFINITY)),
             overlapping: Some(overlapping),
         };
-        let at = |k: usize| self.solids[k].at(Pose::IDENTITY);
-        // Directions and tolerances are checked at the door, so nothing is refused here.
-        let cast = Cast::new(at(a), at(b), d).and_then(|c| c.with_options(options));
-        match cast.map(|cast| cast.clearance_in(workspace)) {
-            Ok(Clearance::Blocked { distance, contact }) => Room::Blocked(Stop {
-                distance,
-                nominal: self.nominal([a, b], d, distance, &contact),
-                normal: contact.normal,
-                point: contact.point_on_fixed,
-            }),
-            _ => Room::Free,
-        }
+        let contact = met([&self.solids[a], &self.solids[b]], d, options, workspace);
+        contact.map_or(Room::Free, |(distance, c)| {
+            Room::Blocked(self.stop([a, b], d, distance, c.triangles, &c))
+        })
+    }
+
+    /// Two triangles of the bodies of two parts, as bodies of their own.
+    pub(crate) fn facets(&self, parts: [usize; 2], triangles: [u32; 2]) -> Option<[Solid; 2]> {
+        let alone = |k: usize| {
+            let solid = &self.solids[parts[k]];
+            let corners = solid.triangles()[triangles[k] as usize];
+            let vertices = corners.map(|v| solid.vertices()[v as usize]);
+            Solid::from_open_mesh(&vertices, &[[0, 1, 2]]).ok()
+        };
+        Some([alone(0)?, alone(1)?])
+    }
+
+    /// The room of two parts, if these were all of their facets; parts that overlap are not refused.
+    pub(crate) fn room_of_facets(
+        &self,
+        [a, b]: [usize; 2],
+        facets: &[Solid; 2],
+        triangles: [u32; 2],
+        d: DVec3,
+        start: StartOverlap,
+        workspace: &mut Workspace,
+    ) -> Room {
+        let options = SolidOptions {
+            start_overlap: start,
+            tolerance: Some(0.0),
+            before: Some(f64::INFINITY),
+            overlapping: Some(start == StartOverlap::Ignore && self.overlaps(a, b)),
+        };
+        let contact = met([&facets[0], &facets[1]], d, options, workspace);
+        contact.map_or(Room::Free, |(distance, c)| {
+            Room::Blocked(self.stop([a, b], d, distance, triangles, &c))
+        })
+    }
+
+    fn stop(
+        &self,
+        pair: [usize; 2],
+        d: DVec3,
+        distance: f64,
+        triangles: [u32; 2],
+        contact: &SolidContact,
+    ) -> Stop {
+        let nominal = self.nominal(pair, d, distance, triangles, contact);
+        let SolidContact { normal, point_on_fixed: point, .. } = *contact;
+        Stop { distance, nominal, normal, point, triangles }
     }
 
     /// The contact points are put back to where they are on the parts as they were given.
-    fn nominal(&self, [a, b]: [usize; 2], d: DVec3, distance: f64, contact: &SolidContact) -> f64 {
-        let [moving, fixed] = contact.triangles.map(|t| t as usize);
+    fn nominal(
+        &self,
+        [a, b]: [usize; 2],
+        d: DVec3,
+        distance: f64,
+        triangles: [u32; 2],
+        contact: &SolidContact,
+    ) -> f64 {
+        let [moving, fixed] = triangles.map(|t| t as usize);
         let moved = self.displacement(a, moving, contact.point_on_moving)
             - self.displacement(b, fixed, contact.point_on_fixed);
         let nominal = distance + contact.normal.dot(moved) / contact.normal.dot(d);
@@ -254,6 +337,31 @@ impl<'a> Bodies<'a> {
         let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
         let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
+    }
+}
+
+/// The volume that the triangles enclose; negative if they are inside out.
+fn volume(solid: &Solid) -> f64 {
+    let corner = |v: u32| solid.vertices()[v as usize] - solid.vertices()[0];
+    let of = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(corner);
+        a.dot(b.cross(c)) / 6.0
+    };
+    solid.triangles().iter().map(of).sum()
+}
+
+/// Where two bodies meet, and after how far.
+fn met(
+    [moving, fixed]: [&Solid; 2],
+    d: DVec3,
+    options: SolidOptions,
+    workspace: &mut Workspace,
+) -> Option<(f64, SolidContact)> {
+    let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY), d);
+    // Directions and tolerances are checked at the door, so nothing is refused here.
+    match cast.and_then(|c| c.with_options(options)).ok()?.clearance_in(workspace) {
+        Clearance::Blocked { distance, contact } => Some((distance, contact)),
+        _ => None,
     }
 }
 

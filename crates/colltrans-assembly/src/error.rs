@@ -80,6 +80,15 @@ pub enum AssemblyError {
         /// The name.
         name: String,
     },
+    /// A part has no name.
+    #[error("a part has no name")]
+    NoName,
+    /// A pair to be ignored is one part.
+    #[error("{name} and {name} are no pair to be ignored: a part does not block itself")]
+    SamePart {
+        /// The part's name.
+        name: String,
+    },
     /// No part has this name.
     #[error("no part is named {name}{}", hint(near.as_deref()))]
     UnknownPart {

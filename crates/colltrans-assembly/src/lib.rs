@@ -8,8 +8,9 @@
 //! directions) -> [`report`] (pictures, one HTML file, an animation).
 //!
 //! Lengths are in the unit of the files. Directions have length 1, so distances are lengths.
-//! Everything is the same on any number of threads. The memory of a run is that of the parts and 90
-//! bytes for each pair of parts that meets along a direction asked.
+//! Everything is the same on any number of threads. The memory of a run is that of the parts, 100
+//! bytes for each pair of parts that meets along a direction asked, and on each thread up to 50 kB for
+//! each pair of parts whose facets are kept to be asked again.
 //!
 //! Without the features `files` and `report` what is left reads GLB from memory and draws nothing: for
 //! a page.
@@ -20,6 +21,7 @@ mod error;
 mod orient;
 mod part;
 mod watch;
+mod witness;
 
 pub mod blocking;
 pub mod candidates;

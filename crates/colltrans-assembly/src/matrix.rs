@@ -34,7 +34,12 @@ impl Meeting {
 
     /// The same meeting, as the other part sees it that moves along the opposite of `d`.
     fn mirrored(&self, d: DVec3) -> Self {
-        let turn = |s: Stop| Stop { normal: -s.normal, point: s.point - d * s.distance, ..s };
+        let turn = |s: Stop| Stop {
+            normal: -s.normal,
+            point: s.point - d * s.distance,
+            triangles: [s.triangles[1], s.triangles[0]],
+            ..s
+        };
         Self { moving: self.fixed, fixed: self.moving, stop: self.stop.map(turn) }
     }
 }

@@ -35,14 +35,21 @@ impl Part {
     /// A part of pieces; a surface that is open becomes one without an inside, which is noted.
     ///
     /// # Errors
-    /// A surface that is not one of a solid; no pieces.
+    /// A surface that is not one of a solid; no pieces; a name without letters.
     pub fn new(name: impl Into<String>, pieces: &[Piece]) -> Result<Self, AssemblyError> {
         let name = name.into();
+        if name.trim().is_empty() {
+            return Err(AssemblyError::NoName);
+        }
         let refused = |source| AssemblyError::Part { part: name.clone(), source };
         let mut defects = Vec::new();
         let mut solids = Vec::with_capacity(pieces.len());
-        for piece in pieces {
-            solids.push(solid(piece, &mut defects).map_err(refused)?);
+        for (k, piece) in pieces.iter().enumerate() {
+            let mut own = Vec::new();
+            solids.push(solid(piece, &mut own).map_err(refused)?);
+            let which =
+                |text| if pieces.len() > 1 { format!("piece {}: {text}", k + 1) } else { text };
+            defects.extend(own.into_iter().map(which));
         }
         let facets = pieces.iter().map(|p| p.faces.len()).sum();
         let solid = match &solids[..] {
@@ -103,7 +110,7 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
     if let Err(SolidError::Inconsistent { .. }) = built
         && let Some(turned) = orient::consistent(&vertices, &mut faces)
     {
-        defects.push(format!("{turned} facets were oriented against the others, and are turned"));
+        defects.push(format!("facets oriented against the others, and turned: {turned}"));
         built = Solid::from_mesh(&vertices, &faces);
     }
     let solid = match built {
@@ -116,11 +123,10 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
     };
     let report = solid.report();
     if report.turned() > 0 {
-        defects.push(format!("{} shells were inside out and have been turned", report.turned()));
+        defects.push(format!("shells inside out, and turned: {}", report.turned()));
     }
     if report.crowded_edges > 0 {
-        let count = report.crowded_edges;
-        defects.push(format!("more than two facets meet at {count} edges"));
+        defects.push(format!("edges at which more than two facets meet: {}", report.crowded_edges));
     }
     Ok(solid)
 }
@@ -153,10 +159,13 @@ impl Assembly {
     /// The same, with pairs (by name) that never block each other and may overlap.
     ///
     /// # Errors
-    /// A name that no part has.
+    /// A name that no part has; a part paired with itself.
     pub fn with_ignored<S: AsRef<str>>(mut self, pairs: &[[S; 2]]) -> Result<Self, AssemblyError> {
         for [a, b] in pairs {
             let (a, b) = (self.index(a.as_ref())?, self.index(b.as_ref())?);
+            if a == b {
+                return Err(AssemblyError::SamePart { name: self.parts[a].name.clone() });
+            }
             self.ignored.push([a.min(b), a.max(b)]);
         }
         self.ignored.sort_unstable();

@@ -98,8 +98,9 @@ pub fn disassemble(
     watch: Watch,
 ) -> Result<Plan, AssemblyError> {
     let tally = watch.stage(Stage::Plan, bodies.len());
-    let mut planner =
-        Planner { bodies, finer, options, watch, tally, plan: Plan::default(), base: base(bodies) };
+    let (plan, base) = (Plan::default(), base(bodies));
+    let known = loose::Known::default();
+    let mut planner = Planner { bodies, finer, options, watch, tally, plan, base, known };
     let all: Vec<usize> = (0..bodies.len()).collect();
     planner.plan.left = planner.take_apart(&all, matrix, None)?;
     Ok(planner.plan)
@@ -137,6 +138,7 @@ struct Planner<'a> {
     tally: Tally<'a>,
     plan: Plan,
     base: Vec<bool>,
+    known: loose::Known,
 }
 
 /// A group that can be taken out, and the direction.
@@ -239,7 +241,7 @@ impl Planner<'_> {
     /// A way along directions that the matrix does not have: of contacts of these parts, then of the
     /// sphere. Counts them.
     fn search_finer(
-        &self,
+        &mut self,
         left: &[usize],
         alive: &[bool],
         matrix: &Matrix,
@@ -257,14 +259,24 @@ impl Planner<'_> {
             0 => Vec::new(),
             count => Sphere::with_directions(count).directions,
         };
+        let parts = self.bodies.assembly().parts();
+        let base = &self.base;
         let allowed = |group: &[usize]| {
-            let movable = !group.iter().any(|&k| self.fixed(k));
-            movable.then(|| group.iter().any(|&k| self.base[k]))
+            let movable = !group.iter().any(|&k| parts[k].fixed());
+            movable.then(|| group.iter().any(|&k| base[k]))
         };
         for directions in [own, sphere] {
             *asked += directions.len();
-            let start = self.options.start;
-            let way = loose::smallest(self.bodies, &directions, alive, start, allowed, self.watch)?;
+            let (start, known) = (self.options.start, &mut self.known);
+            let way = loose::smallest(
+                self.bodies,
+                &directions,
+                alive,
+                start,
+                allowed,
+                known,
+                self.watch,
+            )?;
             if way.is_some() {
                 return Ok(way);
             }

@@ -3,6 +3,11 @@
 //!
 //! The others come in the order in which their boxes are met, from a tree; the best so far is handed
 //! on, and ends the walk once the next box lies beyond it.
+//!
+//! Where overlaps are ignored, parts that overlap are the costly ones: all of what crosses now has to
+//! be passed over. So facets that stopped the part at once along another direction are asked first
+//! ([`Witnesses`]), and once something stops it within [`Bodies::noise`], no more of those that it
+//! overlaps are asked: which of them stops it "at once" is a matter of the files' last digits.
 
 use colltrans::{StartOverlap, Workspace};
 use glam::DVec3;
@@ -11,6 +16,7 @@ use rayon::prelude::*;
 use crate::bodies::{Bodies, Room, Stop};
 use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
+use crate::witness::Witnesses;
 
 /// The room of a part, or of a group, in one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +77,8 @@ impl PartRoom {
 /// The room of a group of parts that move as one, against `others` (all that are `true`).
 ///
 /// Of several stops at one distance the first part of the group, and the lowest number of the
-/// others, is named.
+/// others, is named. With [`StartOverlap::Ignore`], of those parts that a part overlaps and that stop
+/// it within `2^-19` of the assembly's size, one is named, with its distance.
 pub fn room_of(
     bodies: &Bodies,
     group: &[usize],
@@ -80,13 +87,39 @@ pub fn room_of(
     start: StartOverlap,
     workspace: &mut Workspace,
 ) -> PartRoom {
+    room_with(bodies, group, others, d, start, workspace, &mut Witnesses::default())
+}
+
+fn room_with(
+    bodies: &Bodies,
+    group: &[usize],
+    others: &[bool],
+    d: DVec3,
+    start: StartOverlap,
+    workspace: &mut Workspace,
+    witnesses: &mut Witnesses,
+) -> PartRoom {
     let mut best = PartRoom::Free;
     for &part in group {
-        for (bound, by) in bodies.ahead(part, d) {
+        let ahead = bodies.ahead(part, d);
+        if start == StartOverlap::Ignore && best.distance() > bodies.noise() {
+            // What is farther away cannot overlap.
+            let near = ahead.iter().take_while(|x| x.0 <= bodies.noise()).map(|x| x.1);
+            let mut near = near.filter(|&by| others[by] && !group.contains(&by));
+            let noise = bodies.noise();
+            let known = near.find_map(|by| {
+                let stop = witnesses.stop(bodies, [part, by], d, noise, start, workspace)?;
+                Some(PartRoom::Blocked { part, by, stop })
+            });
+            best = known.unwrap_or(best);
+        }
+        for (bound, by) in ahead {
             if bound > best.distance() {
                 break;
             }
-            if !others[by] || group.contains(&by) {
+            let overlapping = bodies.overlaps(part, by);
+            let at_once = start == StartOverlap::Ignore && best.distance() <= bodies.noise();
+            if !others[by] || group.contains(&by) || (overlapping && at_once) {
                 continue;
             }
             // Of equal distances only those are let through that would be named instead.
@@ -101,6 +134,9 @@ pub fn room_of(
                 Room::Free => (),
                 Room::Overlapping => return PartRoom::Overlapping { part, by },
                 Room::Blocked(stop) => {
+                    if overlapping && stop.distance <= bodies.noise() {
+                        witnesses.keep(bodies, [part, by], &stop);
+                    }
                     let nearer = match best {
                         PartRoom::Blocked { part: p, by: b, stop: s } => {
                             (stop.distance, part, by) < (s.distance, p, b)
@@ -117,6 +153,9 @@ pub fn room_of(
     best
 }
 
+/// Directions that are asked of a part one after another.
+const CHUNK: usize = 64;
+
 /// The rooms of every part in every direction (rows: parts), against all others.
 ///
 /// # Errors
@@ -128,13 +167,17 @@ pub fn rooms(
     watch: Watch,
 ) -> Result<Vec<Vec<PartRoom>>, AssemblyError> {
     let all = vec![true; bodies.len()];
-    let tally = watch.stage(Stage::Rooms, bodies.len() * directions.len().div_ceil(16));
+    let tally = watch.stage(Stage::Rooms, bodies.len() * directions.len().div_ceil(CHUNK));
     let row = |part: usize| -> Result<Vec<PartRoom>, AssemblyError> {
         let blocks: Result<Vec<Vec<PartRoom>>, AssemblyError> = directions
-            .par_chunks(16)
+            .par_chunks(CHUNK)
             .map_init(Workspace::default, |workspace, chunk| {
-                let room = |d: &DVec3| room_of(bodies, &[part], &all, *d, start, workspace);
-                let rooms = chunk.iter().map(room).collect();
+                // They belong to a chunk: so the answer is the same on any number of threads.
+                let mut witnesses = Witnesses::default();
+                let mut room = |d: &DVec3| {
+                    room_with(bodies, &[part], &all, *d, start, workspace, &mut witnesses)
+                };
+                let rooms = chunk.iter().map(&mut room).collect();
                 tally.step().map(|()| rooms)
             })
             .collect();

@@ -2,13 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use colltrans::{StartOverlap, Workspace};
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
 use colltrans_assembly::read::{ReadOptions, read};
-use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
+use colltrans_assembly::rooms::rooms;
+use colltrans_assembly::sphere::Sphere;
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, Bodies, Fit, Room, Watch};
 
 fn collection() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
@@ -45,6 +49,57 @@ fn the_gearbox_comes_apart_with_its_bearings_as_groups() {
     let key = plan.steps[at("key")].direction;
     assert!(key.z > 0.999, "{key}");
     assert_eq!(plan.stuck.len(), 2, "translations cannot take the bearings apart");
+}
+
+#[test]
+fn the_suggested_tolerance_takes_the_gearbox_apart() {
+    let Some(folder) = collection() else { return };
+    let assembly = read(folder.join("gearbox"), &ReadOptions::default()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let start = Start::new(&bodies, Watch::default()).unwrap();
+    assert_eq!(start.remaining().count(), 3);
+    let tolerance = start.suggested.unwrap();
+    assert!((0.004..0.006).contains(&tolerance), "{tolerance}");
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
+    assert!(bodies.overlapping().is_empty());
+    let plan = planned(&bodies);
+    let mut sizes: Vec<usize> = plan.steps.iter().map(|s| s.parts.len()).collect();
+    sizes.sort_unstable();
+    assert_eq!(sizes, [[1; 10].as_slice(), &[9, 9]].concat());
+}
+
+/// 24 overlapping pieces of a car, each a part: rooms where overlaps are ignored.
+#[test]
+fn rooms_of_overlapping_pieces_are_those_of_all_pairs() {
+    let Some(folder) = collection() else { return };
+    let piece = |k: usize| folder.join(format!("car_seat/car_{k}.stl"));
+    let parts: Vec<PathBuf> = (1..=24).map(piece).collect();
+    let list: Vec<_> = parts.iter().map(|p| serde_json::json!({ "file": p })).collect();
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("car.json");
+    std::fs::write(&file, serde_json::json!({ "parts": list }).to_string()).unwrap();
+    let assembly = read(&file, &ReadOptions::default()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    assert!(bodies.overlapping().len() > 50);
+    let start = StartOverlap::Ignore;
+    let directions = Sphere::new(1).directions;
+    let table = rooms(&bodies, &directions, start, Watch::default()).unwrap();
+    let at_once = 4.0 * bodies.fit().tolerance();
+    let mut workspace = Workspace::default();
+    for (k, &d) in directions.iter().enumerate().step_by(5) {
+        for (a, row) in table.iter().enumerate() {
+            let others = (0..bodies.len()).filter(|&b| b != a);
+            let rooms = others.map(|b| bodies.room([a, b], d, None, start, &mut workspace));
+            let distance = |room: Room| match room {
+                Room::Blocked(stop) => stop.distance,
+                _ => f64::INFINITY,
+            };
+            let least = rooms.map(distance).fold(f64::INFINITY, f64::min);
+            let found = row[k].distance();
+            let same = found == least || (found - least).abs() < 1e-9;
+            assert!(same || (least..=at_once).contains(&found), "{a} {d}: {found} {least}");
+        }
+    }
 }
 
 /// The seat where somebody sits with the back to the bonnet, 0.3 aside.

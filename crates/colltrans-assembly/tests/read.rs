@@ -7,6 +7,7 @@ mod common;
 use std::io::Write;
 use std::path::Path;
 
+use base64::Engine;
 use colltrans_assembly::plan::Plan;
 use colltrans_assembly::read::{Geometry, ReadOptions, read};
 use colltrans_assembly::report::glb::animation;
@@ -188,4 +189,64 @@ fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
     std::fs::write(&file, package(&model.replace("objectid=\"2\"", "objectid=\"7\""))).unwrap();
     let message = open(&file).unwrap_err().to_string();
     assert!(message.contains("build item 2: there is no object 7"), "{message}");
+    let refused = |model: &str, words: &str| {
+        std::fs::write(&file, package(model)).unwrap();
+        let message = open(&file).unwrap_err().to_string();
+        assert!(message.contains(words), "{message}");
+    };
+    refused(&model.replace("inch", "league"), "the unit league is none of micron");
+    // Each holds the one before ten times: 10^12 cubes in a few lines.
+    let ten = |k: usize| {
+        let below = format!("<component objectid=\"{}\"/>", k - 1).repeat(10);
+        format!("<object id=\"{k}\"><components>{below}</components></object>")
+    };
+    let nested: String = (3..15).map(ten).collect();
+    let many = model.replace("</resources>", &format!("{nested}</resources>"));
+    refused(
+        &many.replace("<item objectid=\"2\"/>", "<item objectid=\"14\"/>"),
+        "build item 2: more than",
+    );
+    let none = r#"<model unit="foot"><resources/><build/></model>"#;
+    std::fs::write(&file, package(none)).unwrap();
+    let empty = open(&file).unwrap();
+    assert_eq!((empty.parts().len(), empty.notes()), (0, &["no mesh is in this file".into()][..]));
+}
+
+#[test]
+fn gltf_files_whose_numbers_do_not_fit_are_refused() {
+    // A triangle three times over, 36 bytes of positions and 18 of indices.
+    let file = |positions: usize, indices: usize| {
+        let mut bytes = Vec::new();
+        for x in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+            bytes.extend(x.to_le_bytes());
+        }
+        bytes.extend([0_u16, 1, 2].repeat(3).iter().flat_map(|k| k.to_le_bytes()));
+        let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
+        serde_json::json!({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0, "name": "leaf"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [
+                {"bufferView": 0, "componentType": 5126, "count": positions, "type": "VEC3",
+                 "min": [0, 0, 0], "max": [1, 1, 0]},
+                {"bufferView": 1, "componentType": 5123, "count": indices, "type": "SCALAR"}],
+            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                            {"buffer": 0, "byteOffset": 36, "byteLength": 18}],
+            "buffers": [{"byteLength": 54, "uri": format!("data:;base64,{data}")}],
+        })
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    let read = |positions: usize, indices: usize| {
+        std::fs::write(&path, file(positions, indices).to_string()).unwrap();
+        open(&path).map_err(|e| e.to_string())
+    };
+    assert_eq!(read(3, 3).unwrap().names(&[0]), ["leaf"]);
+    let refused = |positions: usize, indices: usize, words: &str| {
+        let message = read(positions, indices).unwrap_err();
+        assert!(message.contains("node 0, mesh 0") && message.contains(words), "{message}");
+    };
+    refused(1_000_000, 3, "positions lie beyond");
+    refused(3, 1_000_000, "indices lie beyond");
+    refused(3, 8, "8 corners do not make triangles");
 }

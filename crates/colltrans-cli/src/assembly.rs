@@ -100,8 +100,9 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     }
     for joint in &arguments.joint {
         let parts = joint.split_once('=').and_then(|(n, v)| Some((n, v.trim().parse().ok()?)));
-        let (name, value): (&str, f64) =
-            parts.ok_or_else(|| usage(format!("--joint {joint}: not NAME=VALUE")))?;
+        let (name, value): (&str, f64) = parts
+            .filter(|p: &(&str, f64)| p.1.is_finite())
+            .ok_or_else(|| usage(format!("--joint {joint}: not NAME=VALUE")))?;
         options.joints.insert(name.trim().to_owned(), value);
     }
     let assembly = read::read(&arguments.source, &options)
@@ -141,7 +142,7 @@ fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure
         }
     }
     if let Some(samples) = arguments.samples.filter(|n| *n > 0) {
-        all.extend(Sphere::with_directions(samples.min(1 << 20)).directions);
+        all.extend(Sphere::with_directions(samples).directions);
     }
     Ok(all)
 }
@@ -215,7 +216,8 @@ impl From<AssemblyError> for Failure {
         let code = match error {
             AssemblyError::Length { .. }
             | AssemblyError::Direction { .. }
-            | AssemblyError::UnknownPart { .. } => Code::Usage,
+            | AssemblyError::UnknownPart { .. }
+            | AssemblyError::SamePart { .. } => Code::Usage,
             AssemblyError::Replay { .. } | AssemblyError::Cancelled => Code::Query,
             _ => Code::Input,
         };

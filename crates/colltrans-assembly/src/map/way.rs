@@ -3,17 +3,26 @@
 //! The triangles of the sphere are cut where outcomes change: where other parts are in the way at
 //! their corners, or at other distances. First those that are wide and reach far: a gap that leads out
 //! is a place between two obstacles, and what goes there goes far before it is stopped.
+//!
+//! What is held closely is found to be so without its rooms: along each sample one contact that is
+//! near enough will do, and mostly it is of facets that met before ([`Witnesses`]).
 
+use colltrans::Workspace;
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::{MapOptions, Mapper};
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Room};
 use crate::error::AssemblyError;
 use crate::rooms::PartRoom;
 use crate::watch::Watch;
+use crate::witness::Witnesses;
 
 /// What goes less far than this share of its own size along all samples is held, not loose.
 const FAR: f64 = 0.5;
+/// And after each round some sample has to go farther by this share: a ball that rolls a little in its
+/// groove is no way out.
+const FARTHER: f64 = 0.125;
 /// Distances that differ by less than this share are no change.
 const CHANGE: f64 = 0.1;
 /// Triangles that are cut in one round, and rounds.
@@ -23,7 +32,7 @@ const ROUNDS: usize = 8;
 const NARROWEST: f64 = 0.01;
 
 /// A direction in which a group is free of `others`; `None` if there is none among those looked at,
-/// some 2,000 at most, or if the group is held too closely for a look.
+/// some 2,000 at most, or if the group is held too closely for a look, or for one more.
 pub(crate) fn way_out(
     bodies: &Bodies,
     group: &[usize],
@@ -32,17 +41,21 @@ pub(crate) fn way_out(
     watch: Watch,
 ) -> Result<Option<DVec3>, AssemblyError> {
     let mut mapper = Mapper::new(bodies, group, others.to_vec(), options, watch);
-    mapper.ask()?;
-    let farthest = mapper.rooms.iter().map(PartRoom::distance).fold(0.0, f64::max);
     let bounds = group.iter().map(|&k| bodies.bounds(k)).reduce(|a, b| a.join(&b));
-    if farthest < FAR * bounds.map_or(0.0, |b| (b.high - b.low).max_element()) {
+    let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
+    if !mapper.reaches(FAR * size)? {
         return Ok(None);
     }
-    for _ in 0..ROUNDS {
+    mapper.ask()?;
+    for round in 0..ROUNDS {
         if let Some(k) = mapper.rooms.iter().position(PartRoom::is_free) {
             return Ok(Some(mapper.sphere.directions[k]));
         }
+        let farthest = mapper.rooms.iter().map(PartRoom::distance).fold(0.0, f64::max);
         let cuts = mapper.changes();
+        if farthest < (FAR + FARTHER * round as f64) * size {
+            return Ok(None);
+        }
         if cuts.is_empty() {
             return Ok(None);
         }
@@ -53,6 +66,45 @@ pub(crate) fn way_out(
 }
 
 impl Mapper<'_> {
+    /// Whether the group goes so far along any of the samples.
+    fn reaches(&self, far: f64) -> Result<bool, AssemblyError> {
+        let look = |(workspace, witnesses): &mut (Workspace, Witnesses), d: &DVec3| {
+            self.watch.check().map(|()| !self.is_held(*d, far, workspace, witnesses))
+        };
+        let reached = self.sphere.directions.par_iter().map_init(Default::default, look);
+        // What ends the look: a direction that reaches, or a call to stop.
+        reached.find_any(|r| !matches!(r, Ok(false))).unwrap_or(Ok(false))
+    }
+
+    /// Whether something stops the group before it has gone so far.
+    fn is_held(
+        &self,
+        d: DVec3,
+        far: f64,
+        workspace: &mut Workspace,
+        witnesses: &mut Witnesses,
+    ) -> bool {
+        let start = self.options.start;
+        let mut pairs = Vec::new();
+        for &part in self.group {
+            let ahead = self.bodies.ahead(part, d).into_iter().take_while(|x| x.0 < far);
+            let ahead = ahead.filter(|&(_, by)| self.others[by] && !self.group.contains(&by));
+            pairs.extend(ahead.map(|(_, by)| [part, by]));
+        }
+        let within = far.next_down();
+        let mut known = pairs.iter();
+        if known.any(|&p| witnesses.stop(self.bodies, p, d, within, start, workspace).is_some()) {
+            return true;
+        }
+        pairs.into_iter().any(|pair| {
+            let room = self.bodies.room(pair, d, Some(far), start, workspace);
+            if let Room::Blocked(stop) = &room {
+                witnesses.keep(self.bodies, pair, stop);
+            }
+            room != Room::Free
+        })
+    }
+
     /// The triangles to be cut next.
     fn changes(&self) -> Vec<usize> {
         let score = |t: usize| {

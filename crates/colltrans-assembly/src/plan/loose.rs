@@ -5,7 +5,13 @@
 //! leaves? So arcs are asked as needed. Of the arcs known, take a strongly connected component that
 //! none leaves, and ask its pairs with the parts outside: if one blocks, there is one arc more; if
 //! none does, the group is removable. Once all parts are one component there is none. For parts that
-//! hold each other, that takes about as many casts as parts, not as pairs.
+//! hold each other, that takes about as many casts as parts, not as pairs; and most of them are of two
+//! facets that met along another direction ([`Witnesses`]). That changes no answer, so each thread may
+//! keep its own. Parts stay where they are while others are taken out, so what a pair does is asked
+//! once, whatever is left ([`Known`]).
+
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
 
 use colltrans::{StartOverlap, Workspace};
 use glam::DVec3;
@@ -16,6 +22,28 @@ use crate::blocking::Blocking;
 use crate::bodies::{Bodies, Room};
 use crate::error::AssemblyError;
 use crate::watch::Watch;
+use crate::witness::Witnesses;
+
+/// What was asked: whether one part meets another, by direction.
+#[derive(Default)]
+pub(super) struct Known(HashMap<[u64; 3], Answers>);
+
+type Answers = HashMap<[usize; 2], bool>;
+
+impl Known {
+    fn key(d: DVec3) -> [u64; 3] {
+        d.to_array().map(f64::to_bits)
+    }
+
+    fn take(&mut self, d: DVec3) -> Mutex<Answers> {
+        Mutex::new(self.0.remove(&Self::key(d)).unwrap_or_default())
+    }
+
+    fn put_back(&mut self, d: DVec3, answers: Mutex<Answers>) {
+        let answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
+        self.0.entry(Self::key(d)).or_default().extend(answers);
+    }
+}
 
 /// The smallest group that can be taken out along one of the directions; of equal ones not the base,
 /// then that of the first direction.
@@ -28,10 +56,12 @@ pub(super) fn smallest(
     alive: &[bool],
     start: StartOverlap,
     allowed: impl Fn(&[usize]) -> Option<bool> + Sync,
+    known: &mut Known,
     watch: Watch,
 ) -> Result<Option<Way>, AssemblyError> {
+    let answers: Vec<Mutex<Answers>> = directions.iter().map(|d| known.take(*d)).collect();
     let opposite = |k: usize| directions.iter().position(|d| *d == -directions[k]);
-    let look = |workspace: &mut Workspace, k: usize| {
+    let look = |memory: &mut Memory, k: usize| {
         watch.check()?;
         if opposite(k).is_some_and(|o| o < k) {
             return Ok(Vec::new());
@@ -39,7 +69,10 @@ pub(super) fn smallest(
         let mut found = Vec::new();
         for k in std::iter::once(k).chain(opposite(k)) {
             let search = |g: &[usize]| allowed(g).is_some();
-            match removable(bodies, alive, directions[k], start, workspace, search) {
+            // Each direction is looked at by one thread.
+            let mut known = answers[k].lock().unwrap_or_else(PoisonError::into_inner);
+            let asked = Asked { bodies, d: directions[k], start, known: &mut known, memory };
+            match removable(asked, alive, search) {
                 Search::OneComponent => break,
                 Search::NoneAllowed => (),
                 Search::Found(group) => {
@@ -51,13 +84,53 @@ pub(super) fn smallest(
         Ok(found)
     };
     let found: Result<Vec<Vec<Ranked>>, AssemblyError> =
-        (0..directions.len()).into_par_iter().map_init(Workspace::default, look).collect();
+        (0..directions.len()).into_par_iter().map_init(Memory::default, look).collect();
+    for (d, answers) in directions.iter().zip(answers) {
+        known.put_back(*d, answers);
+    }
     let best = found?.into_iter().flatten().min_by_key(|x| x.0);
     Ok(best.map(|((_, _, k), parts)| Way { parts, direction: directions[k] }))
 }
 
 /// A group with its size, whether the base is in it, and the position of its direction.
 type Ranked = ((usize, bool, usize), Vec<usize>);
+
+/// What a thread keeps from one direction to the next.
+#[derive(Default)]
+struct Memory {
+    workspace: Workspace,
+    witnesses: Witnesses,
+}
+
+/// Questions along one direction.
+struct Asked<'a> {
+    bodies: &'a Bodies<'a>,
+    d: DVec3,
+    start: StartOverlap,
+    known: &'a mut Answers,
+    memory: &'a mut Memory,
+}
+
+impl Asked<'_> {
+    /// Whether one part ever meets another.
+    fn meets(&mut self, pair: [usize; 2]) -> bool {
+        if let Some(known) = self.known.get(&pair) {
+            return *known;
+        }
+        let Self { bodies, d, start, .. } = *self;
+        let Memory { workspace, witnesses } = &mut *self.memory;
+        let seen = witnesses.stop(bodies, pair, d, f64::INFINITY, start, workspace);
+        let meets = seen.is_some() || {
+            let room = bodies.room(pair, d, None, start, workspace);
+            if let Room::Blocked(stop) = &room {
+                witnesses.keep(bodies, pair, stop);
+            }
+            room != Room::Free
+        };
+        self.known.insert(pair, meets);
+        meets
+    }
+}
 
 enum Search {
     /// All parts hold each other.
@@ -67,18 +140,11 @@ enum Search {
     Found(Vec<usize>),
 }
 
-/// A group that can be taken out along `d` and is allowed to; the smallest that was come across.
-fn removable(
-    bodies: &Bodies,
-    alive: &[bool],
-    d: DVec3,
-    start: StartOverlap,
-    workspace: &mut Workspace,
-    allowed: impl Fn(&[usize]) -> bool,
-) -> Search {
+/// A group that can be taken out along a direction and is allowed to; the smallest that was come across.
+fn removable(mut asked: Asked, alive: &[bool], allowed: impl Fn(&[usize]) -> bool) -> Search {
     let count = alive.iter().filter(|a| **a).count();
     let ahead = |part: usize| -> Vec<usize> {
-        let all = bodies.ahead(part, d).into_iter().map(|x| x.1);
+        let all = asked.bodies.ahead(part, asked.d).into_iter().map(|x| x.1);
         all.filter(|&k| alive[k]).collect()
     };
     let mut unasked: Vec<Vec<usize>> =
@@ -94,7 +160,7 @@ fn removable(
         groups.sort_by_key(Vec::len);
         let before = arcs.len();
         for group in groups {
-            match leaving(bodies, &group, &mut unasked, d, start, workspace) {
+            match leaving(&mut asked, &group, &mut unasked) {
                 Some(arc) => arcs.push(arc),
                 None if allowed(&group) => return Search::Found(group),
                 None => (),
@@ -108,12 +174,9 @@ fn removable(
 
 /// An arc from the group to a part outside, of the pairs that were not asked before.
 fn leaving(
-    bodies: &Bodies,
+    asked: &mut Asked,
     group: &[usize],
     unasked: &mut [Vec<usize>],
-    d: DVec3,
-    start: StartOverlap,
-    workspace: &mut Workspace,
 ) -> Option<(usize, usize)> {
     for &a in group {
         let mut k = 0;
@@ -124,7 +187,7 @@ fn leaving(
                 continue;
             }
             unasked[a].remove(k);
-            if bodies.room([a, b], d, None, start, workspace) != Room::Free {
+            if asked.meets([a, b]) {
                 return Some((a, b));
             }
         }

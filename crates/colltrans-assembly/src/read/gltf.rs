@@ -12,7 +12,7 @@ use gltf::buffer::Source;
 use gltf::mesh::Mode;
 use gltf::{Document, Gltf, Node};
 
-use super::{Names, assembled, contents, in_file, io};
+use super::{Names, assembled, contents, in_file, io, or_noted, placed_one_more};
 use crate::error::ReadError;
 use crate::part::{Assembly, Part, Piece};
 
@@ -27,11 +27,12 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Assembly, ReadError> {
     let files = document.buffers().filter_map(|b| file_of(path, &b)).collect();
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let Some(scene) = scene else { return Err(contents(path, "scenes", "there is no scene")) };
-    let mut reader = Reader { path, buffers, parts: Vec::new(), names: Names::default() };
+    let mut reader =
+        Reader { path, buffers, parts: Vec::new(), names: Names::default(), placed: 0 };
     for node in scene.nodes() {
         reader.node(&node, DAffine3::IDENTITY, 0)?;
     }
-    Ok(assembled(path, reader.parts, files)?.with_unit("m"))
+    Ok(or_noted(assembled(path, reader.parts, files)?.with_unit("m")))
 }
 
 /// The file of a buffer that has one of its own.
@@ -79,6 +80,7 @@ struct Reader<'a> {
     buffers: Vec<Vec<u8>>,
     parts: Vec<Part>,
     names: Names,
+    placed: usize,
 }
 
 impl Reader<'_> {
@@ -87,6 +89,7 @@ impl Reader<'_> {
         if depth > DEEPEST {
             return Err(contents(self.path, place, "nodes are nested too deep, or in a ring"));
         }
+        placed_one_more(&mut self.placed).map_err(|e| contents(self.path, &place, e))?;
         let columns = node.transform().matrix().map(|c| c.map(f64::from));
         let world = above * DAffine3::from_mat4(DMat4::from_cols_array_2d(&columns));
         if let Some(mesh) = node.mesh() {
@@ -107,21 +110,32 @@ impl Reader<'_> {
 
     /// The triangles of all primitives of a mesh.
     fn mesh(&self, mesh: &gltf::Mesh, place: &str) -> Result<Mesh, ReadError> {
+        let refused =
+            |reason: String| contents(self.path, format!("{place}, mesh {}", mesh.index()), reason);
         let mut merged = Mesh::default();
         for primitive in mesh.primitives() {
             let reader =
                 primitive.reader(|buffer| self.buffers.get(buffer.index()).map(Vec::as_slice));
-            let Some(positions) = reader.read_positions() else { continue };
+            let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else { continue };
+            let short = |what: &str| refused(format!("its {what} lie beyond their buffer"));
+            let positions = reader.read_positions().ok_or_else(|| short("positions"))?;
             let base = merged.vertices.len() as u32;
             merged.vertices.extend(positions.map(|p| DVec3::from(Vec3::from(p))));
             let count = merged.vertices.len() as u32 - base;
-            let indices: Vec<u32> = match reader.read_indices() {
-                Some(indices) => indices.into_u32().collect(),
-                None => (0..count).collect(),
+            if count as usize != accessor.count() {
+                return Err(short("positions"));
+            }
+            let indices: Vec<u32> = if primitive.indices().is_some() {
+                let indices = reader.read_indices().ok_or_else(|| short("indices"))?;
+                indices.into_u32().collect()
+            } else {
+                (0..count).collect()
             };
             if let Some(beyond) = indices.iter().find(|&&k| k >= count) {
-                let reason = format!("index {beyond} of only {count} vertices");
-                return Err(contents(self.path, format!("{place}, mesh {}", mesh.index()), reason));
+                return Err(refused(format!("index {beyond} of only {count} vertices")));
+            }
+            if primitive.mode() == Mode::Triangles && !indices.len().is_multiple_of(3) {
+                return Err(refused(format!("{} corners do not make triangles", indices.len())));
             }
             merged.faces.extend(
                 triangles(primitive.mode(), &indices)

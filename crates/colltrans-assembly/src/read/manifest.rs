@@ -35,14 +35,14 @@ struct Entry {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "a file is a name or a list of names")]
 enum OneOrMany {
     One(String),
     Many(Vec<String>),
 }
 
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "a scale is a number or three of them")]
 enum Scale {
     Same(f64),
     Each([f64; 3]),
@@ -50,7 +50,11 @@ enum Scale {
 
 /// A quaternion `x, y, z, w`; or roll, pitch and yaw in degrees; or the rows of a matrix.
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "a rotation is { quaternion = [x, y, z, w] }, { rpy_degrees = [roll, pitch, yaw] } or \
+                 { matrix = three rows of three numbers }"
+)]
 enum Rotation {
     Quaternion([f64; 4]),
     Named(NamedRotation),
@@ -160,6 +164,9 @@ impl Rotation {
     fn matrix(&self) -> Result<DMat3, String> {
         match self {
             Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => quaternion(*q),
+            Self::Named(NamedRotation::RpyDegrees(rpy)) if rpy.iter().any(|a| !a.is_finite()) => {
+                Err(format!("rpy_degrees {rpy:?} is not finite"))
+            }
             Self::Named(NamedRotation::RpyDegrees(rpy)) => Ok(rpy_matrix(rpy.map(f64::to_radians))),
             Self::Matrix(rows) | Self::Named(NamedRotation::Matrix(rows)) => matrix(rows),
         }

@@ -18,7 +18,7 @@ mod urdf;
 
 #[cfg(feature = "files")]
 use std::collections::BTreeMap;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 #[cfg(feature = "files")]
@@ -107,6 +107,27 @@ fn piece(path: &Path, world_from_piece: DAffine3) -> Result<Piece, ReadError> {
     Ok(Piece { vertices: mesh.vertices, faces: mesh.faces, world_from_piece })
 }
 
+/// Nodes or components of a file, each as often as it is placed, at most.
+const MOST_PLACED: usize = 1 << 16;
+
+/// Counts what a file places.
+fn placed_one_more(count: &mut usize) -> Result<(), String> {
+    *count += 1;
+    if *count > MOST_PLACED {
+        return Err(format!("more than {MOST_PLACED} things are placed, one in another"));
+    }
+    Ok(())
+}
+
+/// An assembly that says so if it has no parts.
+fn or_noted(assembly: Assembly) -> Assembly {
+    if assembly.parts().is_empty() {
+        assembly.with_note("no mesh is in this file")
+    } else {
+        assembly
+    }
+}
+
 /// The file's name without its extension.
 #[cfg(feature = "files")]
 fn stem(path: &Path) -> String {
@@ -115,15 +136,19 @@ fn stem(path: &Path) -> String {
 
 /// Names that a file gives more than once are numbered, from the second on.
 #[derive(Default)]
-struct Names(HashSet<String>);
+struct Names {
+    taken: HashSet<String>,
+    /// The next number of a name that was given before.
+    next: HashMap<String, usize>,
+}
 
 impl Names {
     fn unique(&mut self, name: &str) -> String {
+        let number = self.next.entry(name.to_owned()).or_insert(2);
         let mut chosen = name.to_owned();
-        let mut number = 2;
-        while !self.0.insert(chosen.clone()) {
+        while !self.taken.insert(chosen.clone()) {
             chosen = format!("{name}_{number}");
-            number += 1;
+            *number += 1;
         }
         chosen
     }

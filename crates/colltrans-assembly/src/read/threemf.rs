@@ -12,12 +12,14 @@ use glam::{DAffine3, DMat3, DVec3};
 use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 
-use super::{Names, assembled, contents, in_file, io};
+use super::{Names, assembled, contents, in_file, io, or_noted, placed_one_more};
 use crate::error::ReadError;
 use crate::part::{Assembly, Part, Piece};
 
 /// Larger models are refused before they are unpacked.
 const LARGEST: u64 = 1 << 32;
+/// The units of the core specification, 3.4.
+const UNITS: [&str; 6] = ["micron", "millimeter", "centimeter", "inch", "foot", "meter"];
 /// Components nested deeper than this are a ring.
 const DEEPEST: usize = 64;
 
@@ -27,15 +29,18 @@ pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
     model.parse(path, &text)?;
     let mut parts = Vec::new();
     let mut names = Names::default();
+    let mut placed = 0;
     for (k, (object, transform)) in model.items.iter().enumerate() {
         let place = format!("build item {}", k + 1);
         model.collect(path, &place, object, *transform, 0, &mut |name, piece| {
+            placed_one_more(&mut placed).map_err(|e| contents(path, &place, e))?;
+            let Some(piece) = piece else { return Ok(()) };
             let part = Part::new(names.unique(name), &[piece]).map_err(in_file(path))?;
             parts.push(part);
             Ok(())
         })?;
     }
-    Ok(assembled(path, parts, Vec::new())?.with_unit(model.unit))
+    Ok(or_noted(assembled(path, parts, Vec::new())?.with_unit(model.unit)))
 }
 
 /// The text of the package's model.
@@ -79,6 +84,9 @@ struct Model {
     items: Vec<(String, DAffine3)>,
 }
 
+/// Told of an object, by its name, and its mesh.
+type Call<'a> = dyn FnMut(&str, Option<Piece>) -> Result<(), ReadError> + 'a;
+
 impl Model {
     fn parse(&mut self, path: &Path, text: &str) -> Result<(), ReadError> {
         let mut reader = quick_xml::Reader::from_str(text);
@@ -105,7 +113,13 @@ impl Model {
         let number = |key: &str| parsed::<f64>(key, need(key)?);
         let index = |key: &str| parsed::<u32>(key, need(key)?);
         match tag.local_name().as_ref() {
-            "model" => get("unit").unwrap_or("millimeter").clone_into(&mut self.unit),
+            "model" => {
+                let unit = get("unit").unwrap_or("millimeter");
+                if !UNITS.contains(&unit) {
+                    return Err(format!("the unit {unit} is none of {}", UNITS.join(", ")));
+                }
+                unit.clone_into(&mut self.unit);
+            }
             "object" => {
                 let id = need("id")?.to_owned();
                 let object = Object { name: get("name").map(str::to_owned), ..Object::default() };
@@ -138,7 +152,7 @@ impl Model {
         Ok(())
     }
 
-    /// Calls with every mesh below an object, and its name.
+    /// Calls with every object below an object, its name, and its mesh if it has one.
     fn collect(
         &self,
         path: &Path,
@@ -146,7 +160,7 @@ impl Model {
         id: &str,
         at: DAffine3,
         depth: usize,
-        call: &mut dyn FnMut(&str, Piece) -> Result<(), ReadError>,
+        call: &mut Call,
     ) -> Result<(), ReadError> {
         let object = self
             .objects
@@ -155,11 +169,12 @@ impl Model {
         if depth > DEEPEST {
             return Err(contents(path, place, "components are nested too deep, or in a ring"));
         }
-        if !object.faces.is_empty() {
-            let name = object.name.clone().unwrap_or_else(|| format!("object_{id}"));
+        let name = object.name.clone().unwrap_or_else(|| format!("object_{id}"));
+        let mesh = || {
             let (vertices, faces) = (object.vertices.clone(), object.faces.clone());
-            call(&name, Piece { vertices, faces, world_from_piece: at })?;
-        }
+            Piece { vertices, faces, world_from_piece: at }
+        };
+        call(&name, (!object.faces.is_empty()).then(mesh))?;
         for (child, transform) in &object.components {
             self.collect(path, place, child, at * *transform, depth + 1, call)?;
         }

@@ -15,7 +15,11 @@ use crate::part::{Assembly, Part};
 pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadError> {
     let text = std::fs::read_to_string(path).map_err(io(path))?;
     let robot = urdf_rs::read_from_string(&text).map_err(|e| contents(path, "URDF", e))?;
-    for name in options.joints.keys() {
+    for (name, value) in &options.joints {
+        if !value.is_finite() {
+            let reason = format!("the position {value} of joint {name} is not finite");
+            return Err(contents(path, "joints", reason));
+        }
         if robot.joints.iter().all(|j| j.name != *name) {
             return Err(contents(path, "joints", format!("there is no joint {name}")));
         }
@@ -28,6 +32,9 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
         let world = places[link.name.as_str()];
         let mut pieces = Vec::new();
         for (origin, shape) in geometries(link, options.geometry) {
+            if let Some(reason) = refused(origin, shape) {
+                return Err(contents(path, format!("link {}", link.name), reason));
+            }
             let at = world * pose(origin);
             match shape {
                 Shape::Mesh { filename, scale } => match finder.find(filename) {
@@ -58,6 +65,22 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
     notes.extend(missing.iter().map(|file| format!("{file} cannot be found and is left out")));
     let assembly = assembled(path, parts, read)?.with_unit("m");
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
+}
+
+/// What is wrong with the numbers of a geometry.
+fn refused(origin: &urdf_rs::Pose, shape: &Shape) -> Option<String> {
+    let finite = origin.xyz.0.iter().chain(&origin.rpy.0).all(|x| x.is_finite());
+    if !finite {
+        return Some(format!("its origin {:?}, {:?} is not finite", origin.xyz.0, origin.rpy.0));
+    }
+    let (what, sizes) = match shape {
+        Shape::Box { size } => ("box", size.0.to_vec()),
+        Shape::Cylinder { radius, length } => ("cylinder", vec![*radius, *length]),
+        Shape::Sphere { radius } => ("sphere", vec![*radius]),
+        Shape::Mesh { .. } | Shape::Capsule { .. } => return None,
+    };
+    let sound = sizes.iter().all(|x| x.is_finite() && *x > 0.0);
+    (!sound).then(|| format!("a {what} of {sizes:?}: sizes must be finite and positive"))
 }
 
 fn geometries(link: &Link, which: Geometry) -> Vec<(&urdf_rs::Pose, &Shape)> {

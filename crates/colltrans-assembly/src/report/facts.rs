@@ -13,11 +13,15 @@ pub fn json(f: &Findings) -> Value {
     let parts: Vec<Value> = assembly
         .parts()
         .iter()
-        .map(|p| {
+        .enumerate()
+        .map(|(k, p)| {
             let mut part =
                 json!({ "name": p.name(), "facets": p.facets(), "volume": p.solid().volume() });
             if !p.defects().is_empty() {
                 part["defects"] = json!(p.defects());
+            }
+            if let Some(remark) = f.bodies.remark(k) {
+                part["remark"] = json!(remark);
             }
             part
         })

@@ -316,8 +316,10 @@ fn parts(text: &mut String, f: &Findings) {
         "<h2>Parts</h2>\n<table><tr><th>part</th><th>facets</th><th>volume</th>\
                    <th>remarks</th></tr>\n",
     );
-    for p in f.bodies.assembly().parts().iter().take(MOST_ROWS) {
-        let mut remarks: Vec<String> = p.defects().iter().map(|d| escaped(d)).collect();
+    for (k, p) in f.bodies.assembly().parts().iter().enumerate().take(MOST_ROWS) {
+        let remark = f.bodies.remark(k);
+        let mut remarks: Vec<String> =
+            p.defects().iter().chain(&remark).map(|d| escaped(d)).collect();
         if p.fixed() {
             remarks.push("fixed".into());
         }

@@ -1,7 +1,8 @@
 //! `solids`: meshes that are not convex, beside `parry3d-f64`'s cast of two triangle meshes.
 //!
 //! Three groups. *Pairs*: random rotations and directions, the moving mesh starting beside the fixed
-//! one; each query is timed alone, both libraries on the same settings, in turns. *Growth*: the same
+//! one; each query is timed alone, both libraries on the same settings, fifty at a time in turns: a
+//! query of a library behind one of the other would find the caches full of the other's. *Growth*: the same
 //! bumpy ball in more and more facets. *Flat*: two slabs with many facets in one plane, resting,
 //! sliding, parting, and with a gap.
 
@@ -35,6 +36,8 @@ struct Command {
 
 /// Two answers agree when they differ by less than this share of the bodies' size.
 const AGREEMENT: f64 = 1e-4;
+/// Queries of one library in a row.
+const BLOCK: usize = 50;
 
 fn main() -> ExitCode {
     let command = Command::parse();
@@ -162,7 +165,7 @@ impl Pair {
     fn measure(&self, arguments: &Arguments) -> Value {
         let [a, b] = &self.bodies;
         let (Some(p), Some(q)) = (solid(a), solid(b)) else { return Value::Null };
-        let (r, s) = (
+        let (r, f) = (
             triangle_mesh(p.vertices(), p.triangles()),
             triangle_mesh(q.vertices(), q.triangles()),
         );
@@ -174,27 +177,30 @@ impl Pair {
         let (mut ours, mut theirs) = (Times::default(), Times::default());
         let (mut hits, mut apart) = (0, 0);
         let mut workspace = Workspace::default();
-        for _ in 0..count {
-            let Placement { poses, direction } = Placement::draw(radii, &mut random);
-            let Ok(cast) = Cast::new(p.at(poses[0]), q.at(poses[1]), direction) else {
-                continue;
-            };
-            let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
-            ours.add(time);
-            let placed = ParrySetting::placed([&poses[0], &poses[1]], direction);
-            let (other, time) = stopwatch.time(|| placed.cast(&r, &s));
-            theirs.add(time);
-            let distance = match answer {
-                Clearance::Blocked { distance, .. } => Some(distance),
-                _ => None,
-            };
-            hits += usize::from(distance.is_some());
-            let agree = match (distance, other) {
-                (Some(x), Some(y)) => (x - y).abs() <= AGREEMENT * (radii[0] + radii[1]),
-                (None, None) => true,
-                _ => false,
-            };
-            apart += usize::from(!agree);
+        let placements: Vec<_> = (0..count).map(|_| Placement::draw(radii, &mut random)).collect();
+        for block in placements.chunks(BLOCK) {
+            let mut distances = Vec::with_capacity(BLOCK);
+            for Placement { poses: [s, t], direction } in block {
+                let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else {
+                    distances.push(None);
+                    continue;
+                };
+                let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
+                ours.add(time);
+                distances.push(answer.distance().filter(|d| d.is_finite()));
+            }
+            for (Placement { poses: [s, t], direction }, distance) in block.iter().zip(distances) {
+                let placed = ParrySetting::placed([s, t], *direction);
+                let (other, time) = stopwatch.time(|| placed.cast(&r, &f));
+                theirs.add(time);
+                hits += usize::from(distance.is_some());
+                let agree = match (distance, other) {
+                    (Some(x), Some(y)) => (x - y).abs() <= AGREEMENT * (radii[0] + radii[1]),
+                    (None, None) => true,
+                    _ => false,
+                };
+                apart += usize::from(!agree);
+            }
         }
         ours.sort();
         theirs.sort();

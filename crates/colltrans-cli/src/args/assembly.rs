@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use colltrans::glam::DVec3;
 
-use super::values::{direction, length, threads};
+use super::values::{direction, length, samples, threads};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
@@ -29,7 +29,7 @@ pub(crate) struct AssemblyArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) directions: Option<PathBuf>,
     /// Rooms in so many directions or more, spread over the sphere; the plan tries them too
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = samples)]
     pub(crate) samples: Option<usize>,
     /// Ask only the directions that are given
     #[arg(long)]

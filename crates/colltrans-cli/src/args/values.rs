@@ -188,6 +188,16 @@ pub(crate) fn bytes(text: &str) -> Result<usize, String> {
 /// Most threads that make sense to ask for.
 const MOST_THREADS: usize = 1024;
 
+/// Samples of the sphere, each asked of every part.
+const MOST_SAMPLES: usize = 655_362;
+
+pub(crate) fn samples(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(count) if count <= MOST_SAMPLES => Ok(count),
+        _ => Err(format!("a number from 0 to {MOST_SAMPLES} is needed")),
+    }
+}
+
 pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     match text.parse::<NonZeroUsize>() {
         Ok(count) if count.get() <= MOST_THREADS => Ok(count),

@@ -86,8 +86,8 @@ fn summary(f: &Findings) -> String {
         Fit::Margin(length) => format!("margin {length}"),
     };
     let mut text = format!("{} parts, {fit}\n", assembly.parts().len());
-    for p in assembly.parts() {
-        for defect in p.defects() {
+    for (k, p) in assembly.parts().iter().enumerate() {
+        for defect in p.defects().iter().chain(&f.bodies.remark(k)) {
             let _ = writeln!(text, "  {}: {defect}", p.name());
         }
     }

@@ -209,6 +209,14 @@ fn sources_that_are_wrong_are_named() {
     refused(place, &["bad.toml"], 3, &["bad.toml: line 3"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = [0, 0, 0, 2]\n");
     refused(place, &["bad.toml"], 3, &["bad.toml: part 1 (cube)", "length 2, not 1"]);
+    write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = { rpy_degrees = [nan, 0, 0] }\n");
+    refused(place, &["bad.toml"], 3, &["bad.toml: part 1 (cube)", "rpy_degrees [NaN"]);
+    write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = { matrix = [[1, 0], [0, 1]] }\n");
+    refused(place, &["bad.toml"], 3, &["bad.toml: line 3", "three rows of three numbers"]);
+    write("bad.toml", "[[part]]\nfile = 'cube.off'\nname = ' '\n");
+    refused(place, &["bad.toml"], 3, &["bad.toml: a part has no name"]);
+    write("bad.toml", "ignore = [['a', 'a']]\n[[part]]\nfile = 'cube.off'\nname = 'a'\n");
+    refused(place, &["bad.toml"], 3, &["bad.toml: a and a are no pair"]);
     write("bad.json", "{\"parts\": [\n{\"file\": \"cube.off\", \"turned\": 3}]}");
     refused(place, &["bad.json"], 3, &["bad.json: line 2", "turned"]);
     write("bad.json", "{\"parts\": [{\"file\": \"gone.off\"}, {\"file\": \"cube.off\"}]}");
@@ -219,6 +227,14 @@ fn sources_that_are_wrong_are_named() {
     refused(place, &["bad.3mf"], 3, &["bad.3mf"]);
     write("bad.urdf", "<robot name='r'><link></robot>");
     refused(place, &["bad.urdf"], 3, &["bad.urdf: URDF"]);
+    let shaped = |shape: &str| {
+        let geometry = format!("<collision><geometry>{shape}</geometry></collision>");
+        write("bad.urdf", &format!("<robot name='r'><link name='arm'>{geometry}</link></robot>"));
+    };
+    for shape in ["<box size='0 1 1'/>", "<box size='1 nan 1'/>", "<sphere radius='-1'/>"] {
+        shaped(shape);
+        refused(place, &["bad.urdf"], 3, &["bad.urdf: link arm", "finite and positive"]);
+    }
     std::fs::create_dir(place.join("empty")).unwrap();
     let output = run(place, &["empty"]);
     assert_eq!(output.status.code(), Some(0));
@@ -248,7 +264,7 @@ fn meshes_that_a_urdf_file_misses_are_named_or_skipped() {
 #[test]
 fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
     let folder = stacked();
-    let cases: [(&[&str], &[&str]); 10] = [
+    let cases: [(&[&str], &[&str]); 14] = [
         (&["--tolerance", "-1"], &["--tolerance", "-1"]),
         (&["--tolerance", "wide"], &["--tolerance", "wide"]),
         (&["--tolerance", "1", "--margin", "1"], &["--tolerance", "--margin"]),
@@ -257,7 +273,11 @@ fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
         (&["--map", "q*"], &["no part is named q*"]),
         (&["--fixed", "lo"], &["no part is named lo; is it low?"]),
         (&["--ignore", "low"], &["--ignore low: not two names"]),
+        (&["--ignore", "low,low"], &["low and low are no pair"]),
         (&["--joint", "elbow"], &["--joint elbow: not NAME=VALUE"]),
+        (&["--joint", "elbow=nan"], &["--joint elbow=nan: not NAME=VALUE"]),
+        (&["--samples", "-3"], &["--samples", "from 0 to 655362"]),
+        (&["--samples", "99999999999"], &["--samples", "from 0 to 655362"]),
         (&["--threads", "0"], &["--threads"]),
     ];
     for (flags, words) in cases {
@@ -283,4 +303,14 @@ fn overlaps_are_told_with_what_to_try() {
     assert!(names(&tried["left"]).is_empty());
     let ignoring = facts(folder.path(), &["deep.toml", "--ignore-overlaps"]);
     assert!(names(&ignoring["left"]).is_empty());
+}
+
+#[test]
+fn parts_thinner_than_the_tolerance_are_told_of() {
+    let folder = stacked();
+    let told = answered(folder.path(), &["two.toml", "--tolerance", "3"]);
+    assert!(told.contains("low: shrunk by half the tolerance; nothing of it is left"), "{told}");
+    let found = facts(folder.path(), &["two.toml", "--tolerance", "3"]);
+    assert!(found["parts"][0]["remark"].as_str().unwrap().contains("nothing of it is left"));
+    assert!(facts(folder.path(), &["two.toml"])["parts"][0]["remark"].is_null());
 }

@@ -198,6 +198,18 @@ impl Shrinking {
         Self { field, nodes, most, farthest, stuck }
     }
 
+    /// What a node's box becomes.
+    pub(crate) fn boxed(&self, [low, high]: [DVec3; 2], amount: f64, node: usize) -> [DVec3; 2] {
+        if amount <= self.most {
+            let motion = &self.nodes[node];
+            let rate = |r: [f32; 3]| DVec3::from_array(r.map(f64::from)) * amount;
+            [low + rate(motion.low), high + rate(motion.high)]
+        } else {
+            let swell = self.farthest * amount.abs();
+            [low - swell, high + swell]
+        }
+    }
+
     pub(crate) fn heap_bytes(&self) -> usize {
         self.field.capacity() * size_of::<DVec3>()
             + self.nodes.capacity() * size_of::<NodeMotion>()

@@ -2,22 +2,26 @@
 //!
 //! A node covers consecutive facets and holds what bounds them, in the body frame: a box; an axis
 //! `n` (the mean unit normal) with the sine of the largest angle between it and a facet's normal;
-//! and the slab `low <= n . x <= high` of all their vertices. Boxes are exact. The sine is an upper
-//! bound, and exactly 0 for facets whose computed normals are exact and equal; slabs are rounded to
-//! nearest, and whoever reads them allows for that.
+//! the slab `low <= n . x <= high` of all their vertices; and how far they are, at most, from the line
+//! along `n` through the middle of the box. Boxes are exact. The sine is an upper bound, and exactly 0
+//! for facets whose computed normals are exact and equal; the distance is an upper bound up to the
+//! rounding of a coordinate, as slabs are, and whoever reads them allows for that.
 //!
-//! Built from the top: 16 bins along each axis and the surface-area heuristic; halves by count where
-//! that finds nothing. Node `i` is followed by its first child's subtree; its second child is at
-//! `i + skip`. So subtrees are built apart, on several threads, and joined end to end: the tree is
-//! the same on any number of threads.
+//! Built from the top: up to 16 bins along each axis and the surface-area heuristic; halves by count where
+//! that finds nothing. The children of node `i` are at `i + skip` and the place behind, for a search
+//! reads both; then comes all that is below the first, and all that is below the second. As `skip` is
+//! relative, subtrees are built apart, on several threads, and joined end to end: the tree is the same
+//! on any number of threads.
 
 use std::thread;
 
 use glam::{DVec3, Vec3Swizzles};
 
 /// Facets of a leaf, at most.
-pub(crate) const LEAF: usize = 3;
+pub(crate) const LEAF: usize = 4;
 const BINS: usize = 16;
+/// More facets than this are weighed by as many of them.
+const SAMPLE: usize = 1 << 12;
 /// Subtrees with fewer facets are not worth a thread.
 const FORK: usize = 1 << 14;
 /// A sine that stands for "any angle".
@@ -30,9 +34,12 @@ pub(crate) struct Node {
     pub(crate) high: DVec3,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
+    /// Largest distance of a vertex from the line along `axis` through the middle of the box, or from
+    /// that point where there is no axis.
+    pub(crate) radius: f32,
     /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on.
     pub(crate) spread: f32,
-    /// The second child is so far behind; 0 for a leaf.
+    /// The first child is so far behind; 0 for a leaf.
     pub(crate) skip: u32,
     /// The first of its facets.
     pub(crate) first: u32,
@@ -56,8 +63,9 @@ struct Item {
     facet: u32,
     low: DVec3,
     high: DVec3,
-    /// Twice the area times the unit normal.
-    area: DVec3,
+    /// Unit normal, and twice the area.
+    normal: DVec3,
+    area: f64,
     /// How far rounding may have turned that normal, a sine.
     doubt: f64,
 }
@@ -65,8 +73,10 @@ struct Item {
 impl Item {
     fn new(facet: u32, corners: [DVec3; 3]) -> Self {
         let [a, b, c] = corners;
-        let (area, doubt) = normal(corners);
-        Self { facet, low: a.min(b).min(c), high: a.max(b).max(c), area, doubt }
+        let (normal, doubt) = normal(corners);
+        let area = normal.length();
+        let normal = if area > 0.0 { normal / area } else { DVec3::ZERO };
+        Self { facet, low: a.min(b).min(c), high: a.max(b).max(c), normal, area, doubt }
     }
 
     fn center(&self) -> DVec3 {
@@ -113,7 +123,8 @@ fn build_on(threads: usize, vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<
         .collect();
     let builder = Builder { vertices, triangles };
     let mut nodes = Vec::with_capacity(items.len());
-    builder.grow(&mut items, 0, threads, &mut nodes);
+    nodes.push(builder.node(&items, 0));
+    builder.grow(&mut items, 0, 0, threads, &mut nodes);
     nodes.shrink_to_fit();
     (nodes, items.iter().map(|i| i.facet).collect())
 }
@@ -124,28 +135,44 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Appends the subtree over `items`, the first of which is at `first`.
-    fn grow(&self, items: &mut [Item], first: u32, threads: usize, nodes: &mut Vec<Node>) {
-        let at = nodes.len();
-        nodes.push(self.node(items, first));
+    /// Appends what is below node `at`, which covers `items`, the first of them at `first`.
+    fn grow(
+        &self,
+        items: &mut [Item],
+        at: usize,
+        first: u32,
+        threads: usize,
+        nodes: &mut Vec<Node>,
+    ) {
         if items.len() <= LEAF {
             return;
         }
         let middle = split(items);
         let (left, right) = items.split_at_mut(middle);
         let second = first + middle as u32;
+        let child = nodes.len();
+        nodes[at].skip = (child - at) as u32;
         if threads > 1 && left.len().min(right.len()) >= FORK {
             let mut behind = Vec::with_capacity(right.len());
             thread::scope(|scope| {
-                scope.spawn(|| self.grow(right, second, threads / 2, &mut behind));
-                self.grow(left, first, threads - threads / 2, nodes);
+                scope.spawn(|| {
+                    behind.push(self.node(right, second));
+                    self.grow(right, 0, second, threads / 2, &mut behind);
+                });
+                nodes.extend([self.node(left, first); 2]);
+                self.grow(left, child, first, threads - threads / 2, nodes);
             });
-            nodes[at].skip = (nodes.len() - at) as u32;
-            nodes.append(&mut behind);
+            // The second child goes to its place, the rest to the end.
+            let root = &mut behind[0];
+            if root.skip != 0 {
+                root.skip += (nodes.len() - 1 - (child + 1)) as u32;
+            }
+            nodes[child + 1] = *root;
+            nodes.extend_from_slice(&behind[1..]);
         } else {
-            self.grow(left, first, 1, nodes);
-            nodes[at].skip = (nodes.len() - at) as u32;
-            self.grow(right, second, 1, nodes);
+            nodes.extend([self.node(left, first), self.node(right, second)]);
+            self.grow(left, child, first, 1, nodes);
+            self.grow(right, child + 1, second, 1, nodes);
         }
     }
 
@@ -155,14 +182,15 @@ impl Builder<'_> {
         for item in items {
             low = low.min(item.low);
             high = high.max(item.high);
-            sum += item.area;
-            total += item.area.length();
+            sum += item.normal * item.area;
+            total += item.area;
         }
         let mut node = Node {
             low,
             high,
             axis: DVec3::ZERO,
             slab: [f64::NEG_INFINITY, f64::INFINITY],
+            radius: round_up((high - low).length() * 0.5),
             spread: ANY as f32,
             skip: 0,
             first,
@@ -177,40 +205,48 @@ impl Builder<'_> {
     }
 
     fn add_cone(&self, items: &[Item], node: &mut Node) {
-        let mut spread = 0.0_f64;
+        let (mut squared, mut doubt) = (0.0_f64, 0.0_f64);
         for item in items {
-            spread = spread.max(deviation(node.axis, item.area, item.doubt));
-            if spread >= 1.0 {
+            let [x, y] = deviation(node.axis, item);
+            (squared, doubt) = (squared.max(x), doubt.max(y));
+            if squared >= 1.0 || doubt >= 1.0 {
                 // No facing can be told from it, and its slab is hardly thinner than the box.
                 node.axis = DVec3::ZERO;
                 return;
             }
         }
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        // Sines that add up to less than 1 belong to angles that add up to less than a right one.
+        let spread = squared.sqrt() + doubt;
+        if spread >= 1.0 {
+            node.axis = DVec3::ZERO;
+            return;
+        }
+        let (mut low, mut high, mut aside) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+        let middle = (node.low + node.high) * 0.5;
         for item in items {
             for v in self.triangles[item.facet as usize] {
-                let height = node.axis.dot(self.vertices[v as usize]);
+                let at = self.vertices[v as usize];
+                let height = node.axis.dot(at);
                 (low, high) = (low.min(height), high.max(height));
+                aside = aside.max(node.axis.cross(at - middle).length_squared());
             }
         }
         node.slab = [low, high];
+        node.radius = round_up(aside.sqrt());
         node.spread = round_up(spread);
     }
 }
 
-/// The sine of the angle between a unit axis and a normal of any length, rounded up; [`ANY`] from a
-/// right angle on.
-fn deviation(axis: DVec3, area: DVec3, doubt: f64) -> f64 {
-    let length = area.length();
-    if doubt >= 1.0 || axis.dot(area) <= 0.0 {
-        return ANY;
+/// The square of the sine of the angle between a unit axis and a normal, at least 1 from a right angle
+/// on, and how far rounding may be off, a sine.
+fn deviation(axis: DVec3, item: &Item) -> [f64; 2] {
+    if item.doubt >= 1.0 || axis.dot(item.normal) <= 0.0 {
+        return [ANY; 2];
     }
-    let cross = axis.cross(area) / length;
-    let (x, y) = (axis.abs(), area.abs() / length);
+    let squared = axis.cross(item.normal).length_squared();
+    let (x, y) = (axis.abs(), item.normal.abs());
     let terms = x.yzx() * y.zxy() + x.zxy() * y.yzx();
-    let sine = cross.length() + 4.0 * f64::EPSILON * terms.length() + doubt;
-    // Sines that add up to less than 1 belong to angles that add up to less than a right one.
-    sine
+    [squared, item.doubt + 4.0 * f64::EPSILON * terms.element_sum()]
 }
 
 /// The next single-precision number that is not smaller.
@@ -228,7 +264,7 @@ fn split(items: &mut [Item]) -> usize {
         high = high.max(center);
     }
     if let Some((axis, bin)) = cheapest(items, low, high) {
-        let key = Binning::new(low, high, axis);
+        let key = Binning::new(low, high, axis, items.len());
         let middle = partition(items, |item| key.bin(item) <= bin);
         if middle > 0 && middle < items.len() {
             return middle;
@@ -255,22 +291,25 @@ fn partition(items: &mut [Item], belongs: impl Fn(&Item) -> bool) -> usize {
     middle
 }
 
-/// Sixteen intervals of the centres along an axis.
+/// Intervals of the centres along an axis.
 struct Binning {
     axis: usize,
     low: f64,
     scale: f64,
+    last: usize,
 }
 
 impl Binning {
-    fn new(low: DVec3, high: DVec3, axis: usize) -> Self {
-        let scale = BINS as f64 / (high[axis] - low[axis]);
-        Self { axis, low: low[axis], scale }
+    /// For so many items: few need few.
+    fn new(low: DVec3, high: DVec3, axis: usize, items: usize) -> Self {
+        let bins = items.clamp(4, BINS);
+        let scale = bins as f64 / (high[axis] - low[axis]);
+        Self { axis, low: low[axis], scale, last: bins - 1 }
     }
 
     fn bin(&self, item: &Item) -> usize {
         // Out of range, or no number where all centres are one, ends at either end.
-        (((item.center()[self.axis] - self.low) * self.scale) as usize).min(BINS - 1)
+        (((item.center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
     }
 }
 
@@ -302,30 +341,31 @@ impl Bin {
     }
 }
 
-/// The axis and the last bin of the first child for which the surface-area heuristic is least.
+/// The axis and the last bin of the first child for which the surface-area heuristic is least; of many
+/// facets a share is looked at.
 fn cheapest(items: &[Item], low: DVec3, high: DVec3) -> Option<(usize, usize)> {
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in 0..3 {
         if high[axis] <= low[axis] {
             continue;
         }
-        let binning = Binning::new(low, high, axis);
+        let binning = Binning::new(low, high, axis, items.len());
         let mut bins = [Bin::EMPTY; BINS];
-        for item in items {
+        for item in items.iter().step_by(items.len().div_ceil(SAMPLE)) {
             let bin = &mut bins[binning.bin(item)];
             *bin = bin.join(Bin { low: item.low, high: item.high, count: 1 });
         }
         let mut behind = [0.0; BINS];
         let mut all = Bin::EMPTY;
-        for k in (1..BINS).rev() {
+        for k in (1..=binning.last).rev() {
             all = all.join(bins[k]);
             behind[k] = all.cost();
         }
         let mut front = Bin::EMPTY;
-        for k in 0..BINS - 1 {
+        for k in 0..binning.last {
             front = front.join(bins[k]);
             let cost = front.cost() + behind[k + 1];
-            let both = front.count > 0 && front.count < items.len();
+            let both = front.count > 0 && behind[k + 1] > 0.0;
             if both && best.is_none_or(|b| cost < b.0) {
                 best = Some((cost, axis, k));
             }

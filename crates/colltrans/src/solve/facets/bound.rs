@@ -1,19 +1,21 @@
 //! What two nodes bound: whether any pair of their facets can count, and for how little.
 //!
-//! A node is looked at in the query frame as a [`Shade`]: a box, a slab `low <= n.x <= high` that
-//! holds its facets, and how far their normals differ from `n`. Everything is rounded outwards by the
+//! A node is looked at in the query frame as a [`Shade`]: a box, a slab `low <= n.x <= high` and a
+//! cylinder about `n` that hold its facets, and how far their normals differ from `n`. Everything is rounded outwards by the
 //! blur of coordinates, except along axes where coordinates are exact: there boxes that touch are
 //! told from boxes that overlap, so that zero clearance is cut off high up in the trees.
 
-use glam::{DVec2, DVec3, Vec3Swizzles};
+use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 use super::scene::{Scene, Side, sum_error};
-use crate::body::solid::tree::Node;
+use crate::body::solid::Shrinking;
 
 /// Slabs steeper than this say little about heights.
 const STEEP: f64 = 1e-3;
 /// Slabs less steep than this say little about shadows.
 const LEVEL: f64 = 0.1;
+/// Rounding of a sine, or of the square of one.
+const SINE: f64 = 32.0 * f64::EPSILON;
 
 /// Why no two facets of a pair of nodes need a further look: what a proof says of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -37,7 +39,7 @@ pub enum Reason {
 }
 
 /// A node in the query frame.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Shade {
     pub(super) low: DVec3,
     pub(super) high: DVec3,
@@ -46,6 +48,15 @@ pub(super) struct Shade {
     /// The node's axis and its slab.
     pub(super) axis: DVec3,
     pub(super) slab: [f64; 2],
+    /// The middle of a cylinder around the node, its axis the node's; a ball where that has none.
+    middle: DVec3,
+    radius: f64,
+    /// Half the cylinder's height.
+    thick: f64,
+    /// No point of the node has a shadow farther from that of the middle.
+    breadth: f64,
+    /// The slab over the shadow, if it says something of heights.
+    heights: Option<Heights>,
     /// The axis' component along the direction, rounded in the body frame.
     along: f64,
     /// Facing can be told if `|along|` reaches this.
@@ -54,26 +65,85 @@ pub(super) struct Shade {
 
 impl Shade {
     pub(super) fn new(scene: &Scene, side: &Side, at: usize) -> Self {
-        let node = &shrunk(side, at);
-        let (low, high) = boxed(scene, side, node);
-        let mut spread = f64::from(node.spread);
-        if let Some(shrinking) = side.shrinking {
-            let motion = &shrinking.nodes[at];
-            spread += f64::from(motion.turn) * side.amount + f64::from(motion.rough);
-        }
-        let terms = (node.axis * side.along).abs().element_sum();
-        spread += if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
+        let node = &side.solid.nodes()[at];
         let axis = side.view * node.axis;
-        let (shift, slack) = (axis.dot(side.view_offset), scene.blur);
-        Self {
-            low,
-            high,
+        let shift = axis.dot(side.view_offset);
+        let mut shade = Self {
+            low: node.low,
+            high: node.high,
             local: [node.low, node.high],
             axis,
-            slab: [node.slab[0] + shift - slack, node.slab[1] + shift + slack],
+            slab: [node.slab[0] + shift - scene.blur, node.slab[1] + shift + scene.blur],
+            middle: side.view * ((node.low + node.high) * 0.5) + side.view_offset,
+            radius: f64::from(node.radius) + 2.0 * scene.blur,
+            thick: 0.0,
+            breadth: 0.0,
+            heights: None,
             along: node.axis.dot(side.along),
-            spread,
+            spread: f64::from(node.spread),
+        };
+        if let Some(shrinking) = side.shrinking {
+            shade.shrink(shrinking, side.amount, at);
         }
+        let terms = (node.axis * side.along).abs().element_sum();
+        shade.spread +=
+            if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
+        (shade.low, shade.high) = boxed(scene, side, shade.local);
+        shade.trim();
+        shade.breadth = shade.radius + axis.xy().length() * shade.thick;
+        shade.heights = Heights::new(scene, &shade);
+        shade
+    }
+
+    /// Moves the sides inwards as the facets do.
+    fn shrink(&mut self, shrinking: &Shrinking, amount: f64, at: usize) {
+        let motion = &shrinking.nodes[at];
+        let swell = shrinking.farthest * amount.abs();
+        self.spread += f64::from(motion.turn) * amount + f64::from(motion.rough);
+        self.radius += swell;
+        self.local = shrinking.boxed(self.local, amount, at);
+        if amount <= shrinking.most {
+            self.slab[0] += f64::from(motion.slab[0]) * amount;
+            self.slab[1] += f64::from(motion.slab[1]) * amount;
+        } else {
+            self.slab = [self.slab[0] - swell, self.slab[1] + swell];
+        }
+    }
+
+    /// Lifts the middle to that of the slab, and cuts from the box what is outside the cylinder: of a
+    /// patch that lies aslant in its body's frame, the box is much larger.
+    fn trim(&mut self) {
+        let mut extent = DVec3::splat(self.radius);
+        if self.slab[1] < f64::INFINITY {
+            let lift = (self.slab[0] + self.slab[1]) * 0.5 - self.axis.dot(self.middle);
+            self.middle += self.axis * lift;
+            self.thick = (self.slab[1] - self.slab[0]) * 0.5;
+            let squares = self.axis * self.axis;
+            let across = squares.yzx() + squares.zxy();
+            let sines = DVec3::new(across.x.sqrt(), across.y.sqrt(), across.z.sqrt());
+            extent = extent * sines + self.axis.abs() * self.thick + (self.radius * SINE);
+        }
+        self.low = self.low.max(self.middle - extent);
+        self.high = self.high.min(self.middle + extent);
+    }
+
+    /// No point of the node is farther from its middle, in the shadow, along a unit vector there.
+    fn reach(&self, along: DVec2) -> f64 {
+        let rise = self.axis.xy().dot(along);
+        if self.slab[1] == f64::INFINITY {
+            return self.radius;
+        }
+        self.radius * (1.0 - rise * rise + SINE).max(0.0).sqrt() + rise.abs() * self.thick
+    }
+
+    /// How far points of another node are above this one's slab, along the direction, by the other's
+    /// cylinder; `sine` and `cosine` are those of the angle between the axes.
+    fn heights_above(&self, other: &Self, inverse: f64, [sine, cosine]: [f64; 2]) -> [f64; 2] {
+        let level = self.axis.dot(other.middle);
+        let spread = other.radius * sine + other.thick * cosine.abs();
+        let (x, y) = (level - spread - self.slab[1], level + spread - self.slab[0]);
+        let (x, y) = (x * inverse, y * inverse);
+        [x.min(y), x.max(y)]
     }
 
     /// Whether both nodes lie in one plane, exactly, and look at each other. Boxes without thickness are
@@ -124,42 +194,19 @@ impl Shade {
     }
 }
 
-/// The node of the shrunk body, but for its normals.
-fn shrunk(side: &Side, at: usize) -> Node {
-    let mut node = side.solid.nodes()[at];
-    let Some(shrinking) = side.shrinking else { return node };
-    let amount = side.amount;
-    if amount <= shrinking.most {
-        let motion = &shrinking.nodes[at];
-        let rate = |r: [f32; 3]| DVec3::from_array(r.map(f64::from)) * amount;
-        node.low += rate(motion.low);
-        node.high += rate(motion.high);
-        node.slab[0] += f64::from(motion.slab[0]) * amount;
-        node.slab[1] += f64::from(motion.slab[1]) * amount;
-    } else {
-        let swell = shrinking.farthest * amount;
-        node.low -= swell;
-        node.high += swell;
-        node.slab = [node.slab[0] - swell, node.slab[1] + swell];
-    }
-    node
-}
-
 /// The node's box in the query frame: exact along aligned axes, rounded outwards along others.
-fn boxed(scene: &Scene, side: &Side, node: &Node) -> (DVec3, DVec3) {
-    let (center, half) = ((node.low + node.high) * 0.5, (node.high - node.low) * 0.5);
+fn boxed(scene: &Scene, side: &Side, [near, far]: [DVec3; 2]) -> (DVec3, DVec3) {
+    let (center, half) = ((near + far) * 0.5, (far - near) * 0.5);
     let middle = side.view * center + side.view_offset;
-    let rows = side.view.transpose();
-    let extent = DVec3::new(
-        rows.x_axis.abs().dot(half),
-        rows.y_axis.abs().dot(half),
-        rows.z_axis.abs().dot(half),
-    ) + DVec3::splat(scene.blur);
+    let DMat3 { x_axis, y_axis, z_axis } = side.view;
+    let extent = x_axis.abs() * half.x + y_axis.abs() * half.y + z_axis.abs() * half.z;
+    let extent = extent + scene.blur;
     let (mut low, mut high) = (middle - extent, middle + extent);
-    if side.shrinking.is_none() {
+    if side.shrinking.is_none() && side.aligned != [false; 3] {
+        let rows = side.view.transpose();
         for (k, row) in [rows.x_axis, rows.y_axis, rows.z_axis].into_iter().enumerate() {
             if side.aligned[k] {
-                let (a, b) = (row.dot(node.low), row.dot(node.high));
+                let (a, b) = (row.dot(near), row.dot(far));
                 let offset = side.view_offset[k];
                 let exact = side.moving || side.offset[1] == DVec3::ZERO;
                 low[k] = rounded_sum(a.min(b), offset, exact, -1);
@@ -208,6 +255,9 @@ pub(super) fn least_gap(
     if parting && b.high.z < a.low.z {
         return Err(Reason::Parting);
     }
+    if discs_apart(a, b) {
+        return Err(Reason::ShadowsApart);
+    }
     let swept = swept(scene, a, b);
     if swept[0] > swept[1] {
         return Err(Reason::ShadowsApart);
@@ -218,16 +268,17 @@ pub(super) fn least_gap(
     if parting && swept[1] < 0.0 {
         return Err(Reason::Parting);
     }
-    let region = Region { middle: (low + high).xy() * 0.5, half: (high - low).xy() * 0.5 };
-    let (p, q) = (Heights::new(scene, a), Heights::new(scene, b));
-    let [least, largest] = gaps(&region, (a, p.as_ref()), (b, q.as_ref()), swept);
+    let [least, largest] = gaps(a, b, swept);
     if least >= limit {
         return Err(Reason::NotBefore);
     }
     if parting && largest < 0.0 {
         return Err(Reason::Parting);
     }
-    if p.is_none() || q.is_none() {
+    if ellipses_apart(a, b) {
+        return Err(Reason::ShadowsApart);
+    }
+    if a.heights.is_none() || b.heights.is_none() {
         let apart = sides_apart(scene, (&scene.moving, a), (&scene.fixed, b))
             || sides_apart(scene, (&scene.fixed, b), (&scene.moving, a));
         if apart {
@@ -246,11 +297,7 @@ fn swept(scene: &Scene, a: &Shade, b: &Shade) -> [f64; 2] {
 /// Whether a reason to cut a pair of nodes holds, checked by itself; `limit` as for [`least_gap`].
 pub(super) fn holds(scene: &Scene, a: &Shade, b: &Shade, reason: Reason, limit: f64) -> bool {
     let (low, high) = (a.low.max(b.low), a.high.min(b.high));
-    let gaps = || {
-        let region = Region { middle: (low + high).xy() * 0.5, half: (high - low).xy() * 0.5 };
-        let (p, q) = (Heights::new(scene, a), Heights::new(scene, b));
-        gaps(&region, (a, p.as_ref()), (b, q.as_ref()), swept(scene, a, b))
-    };
+    let gaps = || gaps(a, b, swept(scene, a, b));
     let swept_apart = || {
         let [least, largest] = swept(scene, a, b);
         least > largest
@@ -261,6 +308,8 @@ pub(super) fn holds(scene: &Scene, a: &Shade, b: &Shade, reason: Reason, limit: 
         Reason::ShadowsApart => {
             low.x >= high.x
                 || low.y >= high.y
+                || discs_apart(a, b)
+                || ellipses_apart(a, b)
                 || swept_apart()
                 || sides_apart(scene, (&scene.moving, a), (&scene.fixed, b))
                 || sides_apart(scene, (&scene.fixed, b), (&scene.moving, a))
@@ -273,24 +322,61 @@ pub(super) fn holds(scene: &Scene, a: &Shade, b: &Shade, reason: Reason, limit: 
     }
 }
 
-/// A rectangle of the shadow plane.
+/// Whether the shadows of the cylinders are apart, by discs around them.
+fn discs_apart(a: &Shade, b: &Shade) -> bool {
+    let reach = a.breadth + b.breadth;
+    (b.middle - a.middle).xy().length_squared() > reach * reach
+}
+
+/// The same, seen along the line of their middles.
+fn ellipses_apart(a: &Shade, b: &Shade) -> bool {
+    let apart = (b.middle - a.middle).xy();
+    let distance = apart.length();
+    distance > 0.0 && {
+        let along = apart / distance;
+        distance > a.reach(along) + b.reach(along)
+    }
+}
+
+/// What holds a common shadow: a rectangle, and two discs.
 struct Region {
     middle: DVec2,
     half: DVec2,
+    discs: [(DVec2, f64); 2],
 }
 
 impl Region {
-    /// The range of a linear function.
+    fn new(a: &Shade, b: &Shade) -> Self {
+        let (low, high) = (a.low.max(b.low).xy(), a.high.min(b.high).xy());
+        let disc = |s: &Shade| (s.middle.xy(), s.breadth);
+        Self { middle: (low + high) * 0.5, half: (high - low) * 0.5, discs: [disc(a), disc(b)] }
+    }
+
+    /// The range of a linear function over the rectangle.
     fn range(&self, slope: DVec2) -> [f64; 2] {
         let (value, spread) = (slope.dot(self.middle), slope.abs().dot(self.half));
         [value - spread, value + spread]
     }
+
+    /// The same, by the discs too.
+    fn fine_range(&self, slope: DVec2) -> [f64; 2] {
+        let [mut low, mut high] = self.range(slope);
+        let steep = slope.length();
+        for (middle, radius) in self.discs {
+            let (value, spread) = (slope.dot(middle), steep * radius);
+            (low, high) = (low.max(value - spread), high.min(value + spread));
+        }
+        [low, high]
+    }
 }
 
 /// Heights of a slab over the shadow: `base[0] + slope.s <= h <= base[1] + slope.s`.
+#[derive(Debug, Clone, Copy)]
 struct Heights {
     slope: DVec2,
     base: [f64; 2],
+    /// One over the axis' component along the direction.
+    inverse: f64,
 }
 
 impl Heights {
@@ -299,19 +385,18 @@ impl Heights {
         if c.abs() < STEEP || shade.slab[1] == f64::INFINITY {
             return None;
         }
-        let (x, y) = (shade.slab[0] / c, shade.slab[1] / c);
-        let slack = scene.blur / c.abs();
-        Some(Self { slope: -shade.axis.xy() / c, base: [x.min(y) - slack, x.max(y) + slack] })
+        let inverse = c.recip();
+        let (x, y) = (shade.slab[0] * inverse, shade.slab[1] * inverse);
+        let slack = scene.blur * inverse.abs();
+        let base = [x.min(y) - slack, x.max(y) + slack];
+        Some(Self { slope: shade.axis.xy() * -inverse, base, inverse })
     }
 }
 
-/// Bounds of all gaps over a region, the best of boxes, slabs and what is known already.
-fn gaps(
-    region: &Region,
-    (a, p): (&Shade, Option<&Heights>),
-    (b, q): (&Shade, Option<&Heights>),
-    swept: [f64; 2],
-) -> [f64; 2] {
+/// Bounds of all gaps, the best of boxes, slabs and what is known already.
+fn gaps(a: &Shade, b: &Shade, swept: [f64; 2]) -> [f64; 2] {
+    let region = Region::new(a, b);
+    let (p, q) = (a.heights.as_ref(), b.heights.as_ref());
     let mut least = swept[0].max(b.low.z - a.high.z);
     let mut largest = swept[1].min(b.high.z - a.low.z);
     if let Some(p) = p {
@@ -325,9 +410,14 @@ fn gaps(
         largest = largest.min(q.base[1] + high - a.low.z);
     }
     if let (Some(p), Some(q)) = (p, q) {
-        let [low, high] = region.range(q.slope - p.slope);
+        let [low, high] = region.fine_range(q.slope - p.slope);
         least = least.max(q.base[0] - p.base[1] + low);
         largest = largest.min(q.base[1] - p.base[0] + high);
+        let angle = [a.axis.cross(b.axis).length(), a.axis.dot(b.axis)];
+        let over = a.heights_above(b, p.inverse, angle);
+        let under = b.heights_above(a, q.inverse, angle);
+        least = least.max(over[0]).max(-under[1]);
+        largest = largest.min(over[1]).min(-under[0]);
     }
     [least, largest]
 }

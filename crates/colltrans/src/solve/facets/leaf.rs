@@ -25,7 +25,7 @@ pub(super) const SHARP: f64 = 65_536.0;
 pub(super) const FINE: f64 = 256.0;
 
 /// A facet, its shadow running counter-clockwise.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Facet {
     pub(super) triangle: u32,
     pub(super) corners: [Corner; 3],
@@ -103,16 +103,29 @@ struct Turns([[Turn; 3]; 3]);
 
 impl Turns {
     fn new(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
+        Self([0, 1, 2].map(|k| Self::about(scene, sides, k, corners)))
+    }
+
+    /// `None` if a side certainly has all corners on its outer side.
+    fn unless_apart(scene: &Scene, sides: &Facet, corners: &Facet) -> Option<Self> {
         let mut turns = [[Turn { value: 0.0, error: 0.0, sign: Ordering::Equal }; 3]; 3];
         for (k, row) in turns.iter_mut().enumerate() {
-            let (a, b) = (sides.corners[k].at, sides.corners[(k + 1) % 3].at);
-            for (turn, corner) in row.iter_mut().zip(&corners.corners) {
-                let (value, error) = rough_turn(scene, a, b, corner.at);
-                let sign = if value > 0.0 { Ordering::Greater } else { Ordering::Less };
-                *turn = Turn { value, error, sign };
+            *row = Self::about(scene, sides, k, corners);
+            if row.iter().all(|t| t.value < -t.error) {
+                return None;
             }
         }
-        Self(turns)
+        Some(Self(turns))
+    }
+
+    /// Those of side `k`.
+    fn about(scene: &Scene, sides: &Facet, k: usize, corners: &Facet) -> [Turn; 3] {
+        let (a, b) = (sides.corners[k].at, sides.corners[(k + 1) % 3].at);
+        corners.corners.each_ref().map(|corner| {
+            let (value, error) = rough_turn(scene, a, b, corner.at);
+            let sign = if value > 0.0 { Ordering::Greater } else { Ordering::Less };
+            Turn { value, error, sign }
+        })
     }
 
     /// Makes all signs exact.
@@ -126,11 +139,6 @@ impl Turns {
                 }
             }
         }
-    }
-
-    /// Whether side `k` certainly has all corners on its outer side.
-    fn separates(&self, k: usize) -> bool {
-        self.0[k].iter().all(|t| t.value < -t.error)
     }
 
     /// Whether side `k` certainly has a corner on its inner side.
@@ -162,14 +170,8 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {
         return None;
     }
-    let mut of_f = Turns::new(scene, f, g);
-    if (0..3).any(|k| of_f.separates(k)) {
-        return None;
-    }
-    let mut of_g = Turns::new(scene, g, f);
-    if (0..3).any(|k| of_g.separates(k)) {
-        return None;
-    }
+    let mut of_f = Turns::unless_apart(scene, f, g)?;
+    let mut of_g = Turns::unless_apart(scene, g, f)?;
     let separated = (0..3).any(|k| !of_f.admits(k) && separates(scene, f, k, g))
         || (0..3).any(|k| !of_g.admits(k) && separates(scene, g, k, f));
     if separated {
@@ -186,8 +188,30 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     match range.judge(SHARP * scene.blur, wanted == Wanted::NotCrossing) {
         Rounded::Known(gap) => Some(gap),
         Rounded::Beyond(least) if least >= limit => None,
-        Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g)),
+        Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g, |_| true)),
     }
+}
+
+/// The least gap of two facets whose shadows overlap, exact but for its last roundings, and where.
+/// Corners of the common shadow that rounding says are not the lowest are left out.
+pub(super) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meeting) {
+    let (mut of_f, mut of_g) = (Turns::new(scene, f, g), Turns::new(scene, g, f));
+    of_f.resolve(scene, f, g);
+    of_g.resolve(scene, g, f);
+    let mut least = f64::INFINITY;
+    each_gap(scene, f, g, &of_f, &of_g, |(value, error), _| least = least.min(value + error));
+    let low = |(value, error): (f64, f64)| value - error <= least;
+    let mut near = [None; 15];
+    let mut count = 0;
+    each_gap(scene, f, g, &of_f, &of_g, |gap, at| {
+        if low(gap) {
+            near[count] = Some(at);
+            count += 1;
+        }
+    });
+    let keep = |at: Meeting| near[..count].contains(&Some(at));
+    let gap = exact(scene, f, g, &of_f, &of_g, keep);
+    (gap.least, gap.at)
 }
 
 /// The gap of two facets whose shadows overlap, exact but for its last roundings.
@@ -195,7 +219,7 @@ pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
     let (mut of_f, mut of_g) = (Turns::new(scene, f, g), Turns::new(scene, g, f));
     of_f.resolve(scene, f, g);
     of_g.resolve(scene, g, f);
-    exact(scene, f, g, &of_f, &of_g)
+    exact(scene, f, g, &of_f, &of_g, |_| true)
 }
 
 /// Whether side `k` of a facet has no corner of the other on its inner side, exactly.
@@ -268,25 +292,37 @@ fn rounded(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> R
         bound: [f64::INFINITY, f64::NEG_INFINITY],
         worst: 0.0,
     };
+    each_gap(scene, f, g, of_f, of_g, |gap, at| range.add(gap, at));
+    range
+}
+
+/// The rounded gap at each corner of the common shadow, and a bound of its error.
+fn each_gap(
+    scene: &Scene,
+    f: &Facet,
+    g: &Facet,
+    of_f: &Turns,
+    of_g: &Turns,
+    mut add: impl FnMut((f64, f64), Meeting),
+) {
     let (under, over) = (Slope::new(scene, g), Slope::new(scene, f));
     for k in 0..3 {
         if of_g.contain(k) {
-            range.add(under.height_above(f.corners[k].at), Meeting::Corner(k as u8));
+            add(under.height_above(f.corners[k].at), Meeting::Corner(k as u8));
         }
         if of_f.contain(k) {
             let (height, error) = over.height_above(g.corners[k].at);
-            range.add((-height, error), Meeting::Under(k as u8));
+            add((-height, error), Meeting::Under(k as u8));
         }
     }
     for k in 0..3 {
         for j in 0..3 {
             if cross(of_f, of_g, [k, j]) {
                 let gap = crossing(scene, [f, g], [k, j], of_f, of_g);
-                range.add(gap, Meeting::Sides(k as u8, j as u8));
+                add(gap, Meeting::Sides(k as u8, j as u8));
             }
         }
     }
-    range
 }
 
 /// Whether side `k` of `f` and side `j` of `g` cross in points that are no ends of them.
@@ -366,11 +402,18 @@ impl Slope {
     }
 }
 
-/// The gap from exact signs at all corners of the common shadow, its values exact but for their last
-/// roundings.
-fn exact(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> Gap {
-    let small = exact_in::<SMALL>(scene, f, g, of_f, of_g);
-    let gap = small.or_else(|| exact_in::<LARGE>(scene, f, g, of_f, of_g));
+/// The gap from exact signs at those corners of the common shadow that are to be kept, its values
+/// exact but for their last roundings.
+fn exact(
+    scene: &Scene,
+    f: &Facet,
+    g: &Facet,
+    of_f: &Turns,
+    of_g: &Turns,
+    keep: impl Fn(Meeting) -> bool,
+) -> Gap {
+    let small = exact_in::<SMALL>(scene, f, g, of_f, of_g, &keep);
+    let gap = small.or_else(|| exact_in::<LARGE>(scene, f, g, of_f, of_g, &keep));
     // Large numbers have room for all there are.
     gap.unwrap_or(NO_GAP)
 }
@@ -391,18 +434,19 @@ fn exact_in<const N: usize>(
     g: &Facet,
     of_f: &Turns,
     of_g: &Turns,
+    keep: &impl Fn(Meeting) -> bool,
 ) -> Option<Gap> {
     let [p, q, r] = &f.corners;
     let [b, c, e] = &g.corners;
     let mut gap = NO_GAP;
     for k in 0..3 {
-        if of_g.contain(k) {
+        if of_g.contain(k) && keep(Meeting::Corner(k as u8)) {
             // `g` runs backwards here: its normal points along the direction.
             let volume = scene.outside_wide::<N>(b, e, c, &f.corners[k]);
             let above = Above::new(&volume, &scene.turn_wide(b, c, e))?;
             gap.add(scene, above, Meeting::Corner(k as u8));
         }
-        if of_f.contain(k) {
+        if of_f.contain(k) && keep(Meeting::Under(k as u8)) {
             let volume = scene.outside_wide::<N>(p, q, r, &g.corners[k]);
             let above = Above::new(&volume, &scene.turn_wide(p, q, r))?;
             gap.add(scene, above, Meeting::Under(k as u8));
@@ -410,7 +454,7 @@ fn exact_in<const N: usize>(
     }
     for k in 0..3 {
         for j in 0..3 {
-            if cross(of_f, of_g, [k, j]) {
+            if cross(of_f, of_g, [k, j]) && keep(Meeting::Sides(k as u8, j as u8)) {
                 let ([a, b], [c, e]) = (f.side(k), g.side(j));
                 let volume = scene.outside_wide::<N>(a, b, c, e).negate();
                 let plane = scene.turn_wide::<N>(a, b, e).subtract(&scene.turn_wide(a, b, c));

@@ -185,7 +185,7 @@ impl<'a> Side<'a> {
 }
 
 /// A vertex of one of the bodies.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Corner {
     /// In the body frame, after shrinking.
     pub(super) local: DVec3,

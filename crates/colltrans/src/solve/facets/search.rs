@@ -1,4 +1,4 @@
-//! Best first through both trees.
+//! Best first through both trees, straight down until something is found.
 //!
 //! A pair of nodes stands for all pairs of their facets. The pair with the least bound is split next,
 //! the newest first among equals; bounds of gaps that block are clamped at 0, so that a contact at the
@@ -8,11 +8,12 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use super::bound::{Reason, Shade, least_gap};
 use super::leaf::{self, Facet, Gap, Meeting, Wanted};
-use super::scene::Scene;
-use crate::body::solid::tree::{LEAF, Node};
+use super::scene::{Scene, Side};
+use crate::body::solid::tree::Node;
 
 /// An answer may be larger than the least gap by so many times the blur of coordinates: bounds of
 /// nodes are rounded by a third of that.
@@ -73,23 +74,94 @@ impl Found {
         let f = Facet::facing(scene, true, self.moving as usize, Ordering::Greater);
         let g = Facet::facing(scene, false, self.fixed as usize, Ordering::Less);
         let (Some(f), Some(g)) = (f, g) else { return self };
-        let gap = leaf::sharpened(scene, &f, &g);
-        Self { gap: aim.clamp(gap.least), at: gap.at, error: gap.error, ..self }
+        let (least, at) = leaf::least_exactly(scene, &f, &g);
+        Self { gap: aim.clamp(least), at, error: 0.0, ..self }
     }
 }
 
-/// The queue of a search, which can be kept from one query to the next: then a query allocates
-/// nothing.
+/// The queue of a search and what it has seen of both bodies, which can be kept from one query to the
+/// next: then a query allocates nothing.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
     queue: BinaryHeap<Entry>,
+    /// Of the moving body, and of the fixed one.
+    seen: [Seen; 2],
+}
+
+/// The nodes of a body that a search has come to, and the facets of leaves: each is in many pairs.
+#[derive(Debug, Clone, Default)]
+struct Seen {
+    views: Vec<View>,
+    facets: Vec<Facet>,
+}
+
+/// A node in the query frame.
+#[derive(Debug, Clone, Copy)]
+struct View {
+    shade: Shade,
+    node: u32,
+    leaf: bool,
+    size: f64,
+    /// Where its children are among the views, or those of its facets that matter among the facets,
+    /// and how many; once they have been asked for.
+    parts: Option<[u32; 2]>,
+}
+
+impl Seen {
+    fn start(&mut self, scene: &Scene, side: &Side) {
+        self.views.clear();
+        self.facets.clear();
+        self.look(scene, side, 0);
+    }
+
+    fn look(&mut self, scene: &Scene, side: &Side, at: u32) {
+        let node = &side.solid.nodes()[at as usize];
+        let (leaf, size) = (node.is_leaf(), size(node));
+        self.views.push(View {
+            shade: Shade::new(scene, side, at as usize),
+            node: at,
+            leaf,
+            size,
+            parts: None,
+        });
+    }
+
+    /// The first of the two children of a view.
+    fn children(&mut self, scene: &Scene, side: &Side, view: u32) -> u32 {
+        let View { node, parts, .. } = self.views[view as usize];
+        if let Some([first, _]) = parts {
+            return first;
+        }
+        let first = self.views.len() as u32;
+        for part in children(&side.solid.nodes()[node as usize], node) {
+            self.look(scene, side, part);
+        }
+        self.views[view as usize].parts = Some([first, 2]);
+        first
+    }
+
+    /// The facets of a leaf that look the right way.
+    fn leaf(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
+        let View { node, parts, .. } = self.views[view as usize];
+        let [first, count] = parts.unwrap_or_else(|| {
+            let wanted = if side.moving { Ordering::Greater } else { Ordering::Less };
+            let facing = |t| Facet::facing(scene, side.moving, t, wanted);
+            let first = self.facets.len();
+            self.facets.extend(side.solid.nodes()[node as usize].facets().filter_map(facing));
+            let parts = [first as u32, (self.facets.len() - first) as u32];
+            self.views[view as usize].parts = Some(parts);
+            parts
+        });
+        first as usize..(first + count) as usize
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     bound: f64,
     number: u32,
-    nodes: [u32; 2],
+    /// Positions among what has been seen.
+    views: [u32; 2],
 }
 
 impl Ord for Entry {
@@ -114,13 +186,16 @@ impl Eq for Entry {}
 
 /// Whether the moving node of a pair is the one to be split: the larger one, unless it is a leaf.
 pub(super) fn splits_moving(a: &Node, b: &Node) -> bool {
-    let size = |n: &Node| (n.high - n.low).length_squared();
     !a.is_leaf() && (b.is_leaf() || size(a) >= size(b))
+}
+
+fn size(node: &Node) -> f64 {
+    (node.high - node.low).length_squared()
 }
 
 /// The children of a node.
 pub(super) fn children(node: &Node, at: u32) -> [u32; 2] {
-    [at + 1, at + node.skip]
+    [at + node.skip, at + node.skip + 1]
 }
 
 /// One search under way.
@@ -138,30 +213,32 @@ pub(super) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
 
 impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
     pub(super) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
-        let queue = &mut workspace.queue;
+        let Workspace { queue, seen } = workspace;
         queue.clear();
-        let (a, b) = (self.shade(true, 0), self.shade(false, 0));
-        let mut next =
-            self.judge([0, 0], &a, &b).map(|bound| Entry { bound, number: 0, nodes: [0, 0] });
+        seen[0].start(self.scene, &self.scene.moving);
+        seen[1].start(self.scene, &self.scene.fixed);
+        let mut next = self.judge(seen, [0, 0], 0);
         let mut number = 0;
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
-                (self.cut)(entry.nodes, Reason::NotBefore);
+                (self.cut)(nodes(seen, entry.views), Reason::NotBefore);
+                // As are all others: it is the least, or else the limit is not positive.
+                for rest in queue.drain() {
+                    (self.cut)(nodes(seen, rest.views), Reason::NotBefore);
+                }
+                break;
+            }
+            let (a, b) =
+                (&seen[0].views[entry.views[0] as usize], &seen[1].views[entry.views[1] as usize]);
+            if a.leaf && b.leaf {
+                self.leaves(seen, entry.views);
+                (self.cut)(nodes(seen, entry.views), Reason::Examined);
                 continue;
             }
-            let nodes = entry.nodes.map(|n| n as usize);
-            let (a, b) = (
-                &self.scene.moving.solid.nodes()[nodes[0]],
-                &self.scene.fixed.solid.nodes()[nodes[1]],
-            );
-            if a.is_leaf() && b.is_leaf() {
-                self.leaves(a, b);
-                (self.cut)(entry.nodes, Reason::Examined);
-                continue;
-            }
-            for bound in self.split(entry.nodes, a, b).into_iter().flatten() {
+            let split_moving = !a.leaf && (b.leaf || a.size >= b.size);
+            for views in self.split(seen, entry.views, split_moving) {
                 number += 1;
-                let child = Entry { number, ..bound };
+                let Some(child) = self.judge(seen, views, number) else { continue };
                 // The better child goes on without a detour through the queue.
                 match next {
                     Some(best) if best.bound < child.bound => queue.push(child),
@@ -172,7 +249,8 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
                     None => next = Some(child),
                 }
             }
-            if let (Some(child), Some(top)) = (next, queue.peek())
+            // Straight down at first: what is found bounds what has to be kept.
+            if let (true, Some(child), Some(top)) = (self.found.is_some(), next, queue.peek())
                 && top.bound < child.bound
             {
                 queue.push(child);
@@ -182,54 +260,40 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
         self.found.map(|found| found.sharpened(self.scene, self.aim))
     }
 
-    fn shade(&self, moving: bool, at: u32) -> Shade {
-        Shade::new(self.scene, self.scene.side(moving), at as usize)
-    }
-
-    /// The bound of a pair of nodes, unless it is cut.
-    fn judge(&mut self, nodes: [u32; 2], a: &Shade, b: &Shade) -> Option<f64> {
+    /// A pair with its bound, unless it is cut.
+    fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
         self.steps[0] += 1;
-        match least_gap(self.scene, a, b, self.limit, self.aim != Aim::Least) {
-            Ok(bound) => Some(self.aim.clamp(bound)),
+        let [a, b] = [0, 1].map(|k| &seen[k].views[views[k] as usize]);
+        match least_gap(self.scene, &a.shade, &b.shade, self.limit, self.aim != Aim::Least) {
+            Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, views }),
             Err(reason) => {
-                (self.cut)(nodes, reason);
+                (self.cut)([a.node, b.node], reason);
                 None
             }
         }
     }
 
-    fn split(&mut self, nodes: [u32; 2], a: &Node, b: &Node) -> [Option<Entry>; 2] {
-        let moving = splits_moving(a, b);
-        let (parts, whole) = if moving {
-            (children(a, nodes[0]), self.shade(false, nodes[1]))
+    /// The two pairs that a pair is split into.
+    fn split(&self, seen: &mut [Seen; 2], [a, b]: [u32; 2], moving: bool) -> [[u32; 2]; 2] {
+        if moving {
+            let first = seen[0].children(self.scene, &self.scene.moving, a);
+            [[first, b], [first + 1, b]]
         } else {
-            (children(b, nodes[1]), self.shade(true, nodes[0]))
-        };
-        parts.map(|part| {
-            let shade = self.shade(moving, part);
-            let nodes = if moving { [part, nodes[1]] } else { [nodes[0], part] };
-            let bound = if moving {
-                self.judge(nodes, &shade, &whole)
-            } else {
-                self.judge(nodes, &whole, &shade)
-            };
-            bound.map(|bound| Entry { bound, number: 0, nodes })
-        })
+            let first = seen[1].children(self.scene, &self.scene.fixed, b);
+            [[a, first], [a, first + 1]]
+        }
     }
 
     /// All pairs of facets of two leaves.
-    fn leaves(&mut self, a: &Node, b: &Node) {
+    fn leaves(&mut self, seen: &mut [Seen; 2], views: [u32; 2]) {
         self.steps[1] += 1;
         let scene = self.scene;
-        let mut back: [Option<Facet>; LEAF] = [None; LEAF];
-        for (slot, triangle) in back.iter_mut().zip(b.facets()) {
-            *slot = Facet::facing(scene, false, triangle, Ordering::Less);
-        }
-        for triangle in a.facets() {
-            let Some(f) = Facet::facing(scene, true, triangle, Ordering::Greater) else { continue };
-            for g in back.iter().flatten() {
+        let front = seen[0].leaf(scene, &scene.moving, views[0]);
+        let back = seen[1].leaf(scene, &scene.fixed, views[1]);
+        for f in &seen[0].facets[front] {
+            for g in &seen[1].facets[back.clone()] {
                 let wanted = self.aim.wanted();
-                let Some(gap) = leaf::gap(scene, &f, g, self.limit, wanted) else { continue };
+                let Some(gap) = leaf::gap(scene, f, g, self.limit, wanted) else { continue };
                 let Some(value) = self.aim.value(&gap) else { continue };
                 if value < self.limit {
                     // What could be better by less is not worth a look: rounding is as much.
@@ -241,4 +305,9 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
             }
         }
     }
+}
+
+/// The nodes of a pair.
+fn nodes(seen: &[Seen; 2], views: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|k| seen[k].views[views[k] as usize].node)
 }

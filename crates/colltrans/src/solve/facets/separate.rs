@@ -94,8 +94,6 @@ struct Farthest<'s, 'a> {
     side: &'s Side<'a>,
     /// The normal in the body's frame.
     local: DVec3,
-    /// How far shrinking may have moved a vertex out of its node.
-    swell: f64,
     /// Of what was looked at, the farthest; its height along the normal from the body's origin.
     vertex: u32,
     height: f64,
@@ -109,7 +107,6 @@ impl<'s, 'a> Farthest<'s, 'a> {
         let mut search = Self {
             side,
             local: side.matrix.transpose() * normal,
-            swell: side.shrinking.map_or(0.0, |s| s.farthest * side.amount.abs()),
             vertex: side.solid.triangles()[0][0],
             height: f64::NEG_INFINITY,
             beyond: f64::NEG_INFINITY,
@@ -144,8 +141,11 @@ impl<'s, 'a> Farthest<'s, 'a> {
         }
         let bound = |k: u32| {
             let node = &nodes[k as usize];
-            let far = DVec3::select(self.local.cmpgt(DVec3::ZERO), node.high, node.low);
-            self.local.dot(far) + self.swell
+            let mut ends = [node.low, node.high];
+            if let Some(shrinking) = self.side.shrinking {
+                ends = shrinking.boxed(ends, self.side.amount, k as usize);
+            }
+            self.local.dot(DVec3::select(self.local.cmpgt(DVec3::ZERO), ends[1], ends[0]))
         };
         let mut parts = children(node, at).map(|k| (bound(k), k));
         if parts[1].0 > parts[0].0 {

@@ -127,8 +127,22 @@ impl Scene<'_> {
             let drop = |p: DVec3| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
             return plane_sign(drop(a), drop(b), drop(c));
         }
+        let (value, error) = self.rough_turn_about(axis, a.at(), b.at(), c.at());
+        if value.abs() > error {
+            return sign(value);
+        }
         let small = self.turn_about_wide::<SMALL>(axis, a, b, c).sign();
         small.unwrap_or_else(|| decided(&self.turn_about_wide::<LARGE>(axis, a, b, c)))
+    }
+
+    /// From the query frame, whose axes are orthogonal to within a few `u`: turned back, a coordinate
+    /// is off by two blurs.
+    fn rough_turn_about(&self, axis: usize, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let back = self.frame.transpose();
+        let (x, y) = (back * (b - a), back * (c - a));
+        let (m, n, e) = (x[i].abs() + x[j].abs(), y[i].abs() + y[j].abs(), 4.0 * self.blur);
+        (x[i] * y[j] - x[j] * y[i], 2.0 * e * (m + n + e) + 8.0 * U * m * n)
     }
 
     fn turn_about_wide<const N: usize>(
@@ -158,6 +172,10 @@ impl Scene<'_> {
     pub(super) fn order(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
         if let (Some(a), Some(b)) = (a.world(self), b.world(self)) {
             return sign(a[axis] - b[axis]);
+        }
+        let rough = (self.frame.transpose() * (a.at() - b.at()))[axis];
+        if rough.abs() > 4.0 * self.blur {
+            return sign(rough);
         }
         decided(&a.wide::<LARGE>(self)[axis].subtract(&b.wide(self)[axis]))
     }

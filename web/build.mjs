@@ -30,7 +30,7 @@ const out = join(here, "dist");
 
 if (!process.argv.includes("--no-wasm")) {
   const { args, env } = found();
-  execFileSync("cargo", ["build", "--profile", "page", "--lib", "--target", "wasm32-unknown-unknown", ...args], {
+  execFileSync("cargo", ["build", "--profile", "page", "--workspace", "--lib", "--target", "wasm32-unknown-unknown", ...args], {
     cwd: crate,
     env: { ...process.env, ...env },
     stdio: "inherit",
@@ -39,7 +39,9 @@ if (!process.argv.includes("--no-wasm")) {
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-copyFileSync(join(crate, "target/wasm32-unknown-unknown/page/colltrans_wasm.wasm"), join(out, "colltrans.wasm"));
+const built = join(crate, "target/wasm32-unknown-unknown/page");
+copyFileSync(join(built, "colltrans_wasm.wasm"), join(out, "colltrans.wasm"));
+copyFileSync(join(built, "colltrans_wasm_assembly.wasm"), join(out, "colltrans_assembly.wasm"));
 for (const file of ["index.html", "style.css"]) copyFileSync(join(here, "src", file), join(out, file));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 await build({
@@ -47,6 +49,9 @@ await build({
   bundle: true,
   minify: true,
   format: "esm",
+  // What is not needed at once is read when it is asked for.
+  splitting: true,
+  chunkNames: "chunk-[name]-[hash]",
   target: "es2022",
   legalComments: "none",
   plugins: [shaders],

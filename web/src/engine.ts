@@ -1,4 +1,4 @@
-// The library, in a worker: questions go in, answers come out, in order.
+// A library, in a worker: questions go in, answers come out, in order.
 
 import type { Pose, Vec } from "./math";
 
@@ -94,6 +94,25 @@ export interface SolidAnswer {
 
 export type Answer = ConvexAnswer | SolidAnswer;
 
+/** One reason of a proof between solids: how often it is given, about how many pairs of facets. */
+export interface Claims {
+  because: string;
+  claims: number;
+  pairs: number;
+}
+
+/** A proof of an answer between solids. */
+export interface SolidProof {
+  tolerance: number;
+  /** `null`: nothing ever stops the body. */
+  lower: number | null;
+  stop: { distance: number; triangles: [number, number] } | null;
+  overlap: { kind: string; triangles: number[] } | null;
+  start_entries: number;
+  start_claims: Claims[] | null;
+  claims: Claims[];
+}
+
 /** Two placed bodies and a direction. */
 export interface Pair {
   moving_pose: Pose;
@@ -135,7 +154,7 @@ export class Engine {
   private next = 1;
 
   /** The worker starts at once: the library is read while the page is still being made. */
-  constructor(private readonly script: URL) {
+  constructor(private readonly script: URL, private readonly library: "colltrans" | "colltrans_assembly" = "colltrans") {
     this.running();
   }
 
@@ -172,21 +191,22 @@ export class Engine {
     return { answer: facts, took };
   }
 
+  /** What it holds is lost, and what it was asked has no answer; the next question starts another one. */
+  stop(why: string) {
+    this.worker?.terminate();
+    this.worker = undefined;
+    for (const waiting of this.waiting.values()) waiting.reject(new Error(why));
+    this.waiting.clear();
+  }
+
   private running(): Worker {
     if (this.worker) return this.worker;
-    const worker = new Worker(this.script, { type: "module" });
+    const worker = new Worker(this.script, { type: "module", name: this.library });
     worker.onmessage = ({ data }: MessageEvent<Reply>) => {
       this.waiting.get(data.id)?.resolve(data);
       this.waiting.delete(data.id);
     };
-    worker.onerror = (event) => {
-      // What it held is lost; the next question starts another one.
-      worker.terminate();
-      this.worker = undefined;
-      const error = new Error(event.message || "the worker could not be started");
-      for (const waiting of this.waiting.values()) waiting.reject(error);
-      this.waiting.clear();
-    };
+    worker.onerror = (event) => this.stop(event.message || "the worker could not be started");
     this.worker = worker;
     return worker;
   }

@@ -6,7 +6,7 @@
 import { BufferGeometry, DoubleSide, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { palette } from "./colours";
 import { h, svg } from "./dom";
-import type { Answer, Engine, Pair } from "./engine";
+import type { Engine, Pair } from "./engine";
 import { Graph, type Grid } from "./found/graph";
 import { type Minimisation, type Recording, below, minimisation, portals } from "./found/recording";
 import { type Vec, add, cross, dot, hull, length, placed, short, sub, times, unit } from "./math";
@@ -36,13 +36,12 @@ export class Found {
   private readonly portalPicture = svg("svg", { class: "figure", viewBox: `0 0 ${SIZE} ${SIZE}`, role: "img", "aria-label": "M seen along d" });
   private readonly portalTold = h("p", { class: "proof" });
   private readonly tracker = h("p", { class: "proof" });
+  private readonly near = h("p", { class: "proof" });
   private readonly from = h("select", { "aria-label": "Where the minimisation starts" });
   private readonly body: HTMLElement;
   private visible = false;
   private stale = true;
   private asked = 0;
-  private before: Pair | undefined;
-  private pairNow: Pair | undefined;
   private found: Minimisation | undefined;
   private refined: ReturnType<typeof portals>;
   private grid: Grid | undefined;
@@ -54,8 +53,10 @@ export class Found {
     private readonly engine: Engine,
     private readonly view: View,
     private readonly pair: () => Pair,
+    /** The question before. */
+    private readonly before: () => Pair | undefined,
   ) {
-    this.from.append(h("option", { value: "center" }, "from the centre of all levels, as in the paper"), h("option", { value: "guess" }, "from where ellipsoids would meet, as by default"));
+    this.from.append(h("option", { value: "center" }, "from the centre of all levels, as in the paper"), h("option", { value: "guess" }, "from where ellipsoids would meet, as by default"), h("option", { value: "region" }, "in N(p), around the solution of the question before"));
     this.from.addEventListener("change", () => this.refresh());
     this.graph.onStep = (step) => this.pick(step);
     this.body = h("div", { style: "display: contents" },
@@ -71,17 +72,12 @@ export class Found {
         h("h3", {}, "Portal refinement"),
         h("p", { class: "proof" }, "All differences of points of the two bodies, seen along d. The line of the motion is the cross; a portal is a triangle around it, and each step exchanges a corner for a deeper one."),
         this.portalPicture, this.portalSteps, this.portalTold),
-      h("section", { class: "card" }, h("h3", {}, "From the last answer"), this.tracker));
+      h("section", { class: "card" }, h("h3", {}, "From the last answer"), this.tracker, this.near));
     this.element.append(this.head, this.body);
   }
 
   /** There is another answer. */
-  changed(_answer: Answer | undefined) {
-    const now = structuredClone(this.pair());
-    if (JSON.stringify(now) !== JSON.stringify(this.pairNow)) {
-      this.before = this.pairNow;
-      this.pairNow = now;
-    }
+  changed() {
     this.stale = true;
     if (this.visible) this.refresh();
   }
@@ -112,18 +108,19 @@ export class Found {
     }
     try {
       const pair = this.pair();
-      const from_center = this.from.value === "center" ? 1e-9 : undefined;
-      const sections = await this.engine.ask({ do: "search", ...pair, solver: "cta", from_center });
-      const refined = await this.engine.ask({ do: "search", ...pair, solver: "portal", after: this.before });
+      const from_center = this.from.value === "guess" ? undefined : 1e-9;
+      const sections = await this.engine.ask({ do: "search", ...pair, solver: "cta", from_center, after: this.before() });
+      const refined = await this.engine.ask({ do: "search", ...pair, solver: "portal", after: this.before() });
       if (turn !== this.asked) return;
       const [first, second] = [sections.facts as Recording, refined.facts as Recording];
-      this.found = minimisation(first.events);
+      this.found = this.from.value === "region" ? within(first) : minimisation(first.events);
       this.refined = portals(second.events);
       this.grid = undefined;
       this.step = Math.min(this.step, Math.max(0, (this.found?.steps.length ?? 1) - 1));
       this.portal = Math.max(0, (this.refined?.steps.length ?? 1) - 1);
       this.tellWork(first, second);
       this.tellTracker(second);
+      this.tellNear(first);
       await this.sectionsOf();
       this.draw();
       if (this.found) await this.gridOf(turn, this.found);
@@ -153,8 +150,22 @@ export class Found {
     }
     const from = { features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.from];
     this.tracker.textContent =
-      `Asked after the question before this one, a tracker starts from ${from}: ${tracked.steps.supports} supporting planes and ` +
-      `${tracked.steps.pivots} portals, instead of ${steps.supports} and ${steps.pivots}. The proof is made anew, so it is as tight as any.`;
+      `Asked after the question before this one, a tracker starts from ${from}: ${count(tracked.steps.supports, "supporting plane")} and ` +
+      `${count(tracked.steps.pivots, "portal")}, instead of ${steps.supports} and ${steps.pivots}. The proof is made anew, so it is as tight as any.`;
+  }
+
+  /** What the neighbourhood of the last solution saves. */
+  private tellNear({ steps, region }: Recording) {
+    const l = length(this.pair().direction);
+    if (!region) {
+      this.near.textContent = region === null ? "The question before had no contact: there is no p, and no neighbourhood N(p)." : "";
+      return;
+    }
+    const [all, near] = [steps.planar_problems, region.steps.planar_problems];
+    const saved = all > near ? `${all - near} of ${all} are saved` : "nothing is saved";
+    this.near.textContent =
+      `The algorithm itself can look first where the last solution p was: in the square N(p) around its pair of levels, whose half-side δ = ${short(region.delta, 3)} ` +
+      `is how far the contact points have moved apart across d${l === 1 ? "" : " (a length)"}. There it solved ${count(near, "planar problem")}, from scratch ${all}: ${saved}.`;
   }
 
   // --- the minimisation
@@ -206,7 +217,9 @@ export class Found {
     } else {
       this.told.textContent = this.from.value === "guess"
         ? "Portal refinement began where the ellipsoids would meet, and no planar problem was needed."
-        : "Bodies without a volume have no sections to speak of.";
+        : this.from.value === "region"
+          ? "There is no solution before this one: change the question a little (drag the arrow, or move a body), and look again."
+          : "Bodies without a volume have no sections to speak of.";
     }
     for (const part of [this.graph.element, this.steps, this.planar.parentElement!]) part.hidden = !found;
     this.drawPlanar();
@@ -348,6 +361,15 @@ export class Found {
     }
     view.render();
   }
+}
+
+const count = (n: number, what: string) => `${n} ${what}${n === 1 ? "" : "s"}`;
+
+/** The minimisation in the neighbourhood of the last solution. */
+function within({ region }: Recording): Minimisation | undefined {
+  const found = region ? minimisation(region.events) : undefined;
+  if (found && region) found.square = { center: region.center, half: region.half };
+  return found;
 }
 
 /** The common part of two convex polygons, both counter-clockwise. */

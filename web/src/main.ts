@@ -6,18 +6,22 @@
 
 import { onChange } from "./colours";
 import { h, named, soon } from "./dom";
-import { type Answer, type ConvexAnswer, Engine, type Pair, Refused, type Slot, type Take } from "./engine";
+import { type Answer, Engine, type Pair, Refused, type Slot, type SolidAnswer, type SolidProof, type Take } from "./engine";
 import { EXAMPLES, SLOTS } from "./examples";
 import { dot, length, placed, sub } from "./math";
-import { Found } from "./found";
-import { AnswerPanel, type Refusal, type Shown } from "./panel";
+import type { AssemblyTab } from "./assembly";
+import type { Found } from "./found";
+import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
 import { type Bodies, type Tool, View, drawn, forget } from "./view";
 
-const TABS: Tab[] = ["answer", "found"];
-const engine = new Engine(new URL("worker.js", import.meta.url));
+const TABS: Tab[] = ["answer", "found", "assembly"];
+/** Up to so many triangles of both bodies together. */
+const PROVED_SOON = 20_000;
+const WORKER = new URL("worker.js", import.meta.url);
+const engine = new Engine(WORKER);
 
 class Page {
   private state: State = fromHash(location.hash);
@@ -27,6 +31,9 @@ class Page {
   /** Milliseconds from the page's beginning. */
   private firstAnswer: number | undefined;
   private verdict: Shown["verdict"];
+  /** Of an answer between solids, with its entries. */
+  private solidProof: { told: SolidProof; entries: ArrayBuffer } | undefined;
+  private proving = 0;
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
   private readonly engine = engine;
   private readonly bodies: Bodies = {};
@@ -34,8 +41,14 @@ class Page {
   private view: View | undefined;
   private readonly shadow = new Shadow();
   private readonly panel: AnswerPanel;
+  /** Read when their tabs are opened. */
   private found: Found | undefined;
+  private assembly: AssemblyTab | undefined;
+  private readonly opening = new Set<Tab>();
   private readonly time: Timeline;
+  /** The question that was answered last, and the one before, about the same bodies. */
+  private last: Pair | undefined;
+  private before: Pair | undefined;
   private asking = false;
   private again = false;
   private loading = 0;
@@ -71,11 +84,35 @@ class Page {
     view.onDirection = (d) => this.change((state) => (state.direction = d));
     view.onPose = (slot, pose) => this.change((state) => (state.poses[slot] = pose));
     this.view = view;
-    this.found = new Found(this.engine, view, () => this.pair());
-    named("panel").append(this.found.element);
-    this.found.changed(this.answer);
     this.tools(view);
     this.fit();
+    this.show();
+  }
+
+  /** Reads what a tab needs. */
+  private async openTab(tab: Tab) {
+    const { view } = this;
+    if (this.opening.has(tab) || (tab === "found" && !view)) return;
+    this.opening.add(tab);
+    try {
+      if (tab === "found") {
+        const { Found } = await import("./found");
+        this.found = new Found(this.engine, view!, () => this.pair(), () => this.before);
+        named("panel").append(this.found.element);
+        this.found.changed();
+      } else if (tab === "assembly") {
+        const { AssemblyTab } = await import("./assembly");
+        this.assembly = new AssemblyTab(WORKER, () => this.state, () => this.remember(), (text, what) => void this.copy(text, what));
+        named("panel").append(this.assembly.panel);
+        named("stage").prepend(this.assembly.stage);
+        void this.assembly.start();
+      }
+    } catch (error) {
+      this.opening.delete(tab);
+      // Not again at once.
+      this.state.tab = "answer";
+      toast(`This part of the page could not be read: ${error instanceof Error ? error.message : String(error)}`);
+    }
     this.show();
   }
 
@@ -128,7 +165,9 @@ class Page {
     if (!this.bodies.moving || !this.bodies.fixed) return;
     this.asking = true;
     try {
-      const { answer, took } = await this.engine.cast(this.pair());
+      const pair = structuredClone(this.pair());
+      const { answer, took } = await this.engine.cast(pair);
+      if (JSON.stringify(pair) !== JSON.stringify(this.last)) [this.before, this.last] = [this.last, pair];
       this.firstAnswer ??= performance.now();
       [this.answer, this.took, this.error] = [answer, took, undefined];
     } catch (error) {
@@ -140,11 +179,48 @@ class Page {
       void this.ask();
     }
     this.show();
-    this.found?.changed(this.answer);
+    this.found?.changed();
+    this.proveSoon();
+  }
+
+  /** Between small solids the proof is made once the question stands still. */
+  private proveSoon() {
+    this.solidProof = undefined;
+    clearTimeout(this.proving);
+    const triangles = SLOTS.reduce((sum, slot) => sum + (this.bodies[slot]?.body.facts.triangles ?? 0), 0);
+    if (this.answer?.kind !== "solid" || triangles > PROVED_SOON) return;
+    this.proving = window.setTimeout(() => this.prove().catch(() => undefined), 250);
+  }
+
+  private async prove() {
+    const answer = this.answer;
+    const { facts, numbers } = await this.engine.ask({ do: "certify", ...this.pair() });
+    if (answer === this.answer) this.solidProof = { told: facts as SolidProof, entries: numbers };
+    this.show();
+  }
+
+  /** The claims, and the plane if there is one. */
+  private async verifySolid(answer: SolidAnswer) {
+    if (!this.solidProof) await this.prove();
+    const { told, entries } = this.solidProof ?? {};
+    if (!told || !entries) return;
+    const check = async (proof: object, file?: ArrayBuffer) => (await this.engine.ask({ do: "verify", ...this.pair(), proof }, file)).facts;
+    const facts = await check({ clearance: told }, entries.slice(0));
+    const plane = answer.margin ? await check({ separation: { normal: answer.sideways, margin: answer.margin } }) : undefined;
+    const bad = [facts, plane].find((one) => one && !one.holds);
+    const count = entries.byteLength.toLocaleString("en");
+    this.verdict = bad
+      ? { holds: false, text: `✗ ${bad.because}` }
+      : { holds: true, text: `✓ it holds: ${count} entries checked, gap ${Number(facts.proven).toExponential(1)}${plane ? `; margin ${Number(plane.proven).toExponential(1)}` : ""}` };
   }
 
   private async verify() {
-    const answer = this.answer as ConvexAnswer | undefined;
+    if (this.answer?.kind === "solid") {
+      await this.verifySolid(this.answer).catch((error: unknown) => (this.verdict = { holds: false, text: String(error) }));
+      this.show();
+      return;
+    }
+    const answer = this.answer;
     if (!answer) return;
     const proof = answer.outcome === "separated"
       ? { separation: { normal: answer.sideways, margin: answer.margin } }
@@ -187,6 +263,7 @@ class Page {
     try {
       const body = await this.engine.load(slot, name, take, bytes);
       forget(this.bodies[slot]);
+      [this.last, this.before] = [undefined, undefined];
       this.bodies[slot] = drawn(body);
       this.state.parts[slot] = { file: name, take };
       delete this.refusals[slot];
@@ -258,8 +335,9 @@ class Page {
     const { moving, fixed } = this.bodies;
     document.body.dataset.tab = state.tab;
     for (const tab of TABS) named(`tab-${tab}`).setAttribute("aria-selected", String(state.tab === tab));
-    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, verdict: this.verdict };
+    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof?.told, verdict: this.verdict };
     this.panel.show(shown);
+    if (state.tab !== "answer") void this.openTab(state.tab);
     this.found?.show(state, state.tab === "found");
     this.time.show(state, answer, this.pass());
     view?.setPlain(state.tab === "found");
@@ -288,7 +366,8 @@ class Page {
     select.value = same?.[0] ?? "";
     select.addEventListener("change", async () => {
       if (!select.value) return;
-      this.state = { ...fromExample(select.value), tab: this.state.tab };
+      const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
+      this.state = { ...fromExample(select.value), tab, assembly: this.state.assembly };
       this.answer = undefined;
       await this.loadBoth();
       this.fit();
@@ -299,18 +378,21 @@ class Page {
       const root = document.documentElement;
       const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
       root.dataset.theme = dark ? "light" : "dark";
-      this.view?.themeChanged();
-      this.show();
+      this.themed();
     });
-    onChange(() => {
-      this.view?.themeChanged();
-      this.show();
-    });
+    onChange(() => this.themed());
     addEventListener("hashchange", () => {
       if (location.hash === toHash(this.state)) return;
       this.state = fromHash(location.hash);
       void this.loadBoth().then(() => this.fit());
+      this.assembly?.stateChanged();
     });
+  }
+
+  private themed() {
+    this.view?.themeChanged();
+    this.assembly?.themeChanged();
+    this.show();
   }
 
   private tools(view: View) {
@@ -345,7 +427,9 @@ class Page {
     const halves = [...zone.querySelectorAll<HTMLElement>("[data-slot]")];
     const over = (target: EventTarget | null) => halves.find((half) => half === target);
     addEventListener("dragenter", (event) => {
-      if (event.dataTransfer?.types.includes("Files")) zone.hidden = false;
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      zone.hidden = false;
+      zone.querySelector("p")!.textContent = this.state.tab === "assembly" ? "Drop all parts of an assembly, or a GLB" : "Drop a mesh on the body it replaces";
     });
     addEventListener("dragover", (event) => {
       event.preventDefault();
@@ -358,6 +442,10 @@ class Page {
       event.preventDefault();
       zone.hidden = true;
       const files = [...(event.dataTransfer?.files ?? [])];
+      if (this.state.tab === "assembly") {
+        void this.assembly?.open(files);
+        return;
+      }
       const first: Slot = (over(event.target)?.dataset.slot as Slot | undefined) ?? "moving";
       const second: Slot = first === "moving" ? "fixed" : "moving";
       void (async () => {
@@ -377,19 +465,24 @@ class Page {
     }
   }
 
-  private async save(how: "png" | "svg") {
+  private async save(how: Picture) {
     if (!this.view) return;
-    const blob = how === "png"
-      ? await this.view.picture()
-      : new Blob([this.shadow.source()], { type: "image/svg+xml" });
-    const link = h("a", { href: URL.createObjectURL(blob), download: how === "png" ? "contact.png" : "shadows.svg" });
-    link.click();
-    URL.revokeObjectURL(link.href);
+    try {
+      const blob = how === "png"
+        ? await this.view.picture()
+        : new Blob([how === "svg" ? this.shadow.source() : await this.view.drawing()], { type: "image/svg+xml" });
+      const name = { png: "contact.png", svg: "shadows.svg", drawing: "contact.svg" }[how];
+      const link = h("a", { href: URL.createObjectURL(blob), download: name });
+      link.click();
+      URL.revokeObjectURL(link.href);
+    } catch (error) {
+      toast(error instanceof Error ? error.message : String(error));
+    }
   }
 
   /** For tests. */
   probe() {
-    return { engine: this.engine, view: this.view, state: this.state, answer: this.answer, firstAnswer: this.firstAnswer };
+    return { assembly: this.assembly?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, firstAnswer: this.firstAnswer };
   }
 }
 

@@ -1,12 +1,15 @@
 // What is said and what can be set, beside the view.
 
 import { h, svg } from "./dom";
-import type { Answer, Certificate, Slot, Take } from "./engine";
+import type { Answer, Certificate, Claims, Slot, SolidAnswer, SolidProof, Take } from "./engine";
 import { type Vec, length, short } from "./math";
 import { asCommand, asPython, asRust } from "./share";
 import type { Solver, State } from "./state";
 import type { Drawn } from "./view";
 import { say } from "./words";
+
+/** The view as pixels, the shadows, the view as a drawing. */
+export type Picture = "png" | "svg" | "drawing";
 
 /** Why a file was not taken, and what it could be taken as. */
 export interface Refusal {
@@ -24,6 +27,8 @@ export interface Shown {
   took: number;
   bodies: Partial<Record<Slot, Drawn>>;
   refusals: Partial<Record<Slot, Refusal>>;
+  /** Of an answer between solids, once it is made. */
+  solidProof: SolidProof | undefined;
   /** What came of the check of the proof. */
   verdict: { holds: boolean; text: string } | undefined;
 }
@@ -35,7 +40,7 @@ export interface Actions {
   dismiss(slot: Slot): void;
   verify(): void;
   copy(text: string, what: string): void;
-  save(how: "png" | "svg"): void;
+  save(how: Picture): void;
 }
 
 const TAKEN: Record<Take, string> = {
@@ -165,7 +170,8 @@ export class AnswerPanel {
         h("button", { class: "small", onclick: copy(() => asPython(state()), "The program") }, "Copy as Python")),
       h("div", { class: "row" },
         h("button", { class: "small", onclick: () => this.act.save("png") }, "Save the view (PNG)"),
-        h("button", { class: "small", onclick: () => this.act.save("svg") }, "Save the shadows (SVG)")),
+        h("button", { class: "small", onclick: () => this.act.save("svg") }, "Save the shadows (SVG)"),
+        h("button", { class: "small", onclick: () => this.act.save("drawing") }, "Save the view (SVG)")),
       h("small", { style: "color: var(--soft)" }, "Nothing is sent anywhere. A link holds the question; files that are not examples have to be given again."),
     );
   }
@@ -248,11 +254,11 @@ export class AnswerPanel {
 
   private showProof(answer: Answer, shown: Shown) {
     const { verdict } = shown;
-    if (!this.fresh("proof", [answer, verdict])) return;
+    if (!this.fresh("proof", [answer, verdict, shown.solidProof])) return;
     const { check } = this;
     const judged = verdict && h("span", { class: `verdict ${verdict.holds ? "yes" : "no"}`, role: "status" }, verdict.text);
     if (answer.kind === "solid") {
-      this.proof.replaceChildren(h("p", { class: "proof" }, "Decided exactly. The library also makes a certificate of such an answer, a list of claims that covers all pairs of facets (Cast::certified_clearance); this page does not show it."));
+      this.proof.replaceChildren(...solidProof(answer, shown), h("div", { class: "row" }, check, judged));
       return;
     }
     if (answer.outcome === "separated") {
@@ -274,8 +280,37 @@ export class AnswerPanel {
   }
 }
 
+/** The proof between solids: what stops the body, and why none of all pairs of facets does before. */
+function solidProof(answer: SolidAnswer, { solidProof: proof, bodies }: Shown): Element[] {
+  const text = (...children: (string | HTMLElement)[]) => h("p", { class: "proof" }, ...children);
+  const plane = answer.margin ? [text("A plane along d lies between the bodies: a shorter proof, which is checked too.")] : [];
+  if (!proof) return [text("A list of claims that covers all pairs of facets; it is made when it is asked for."), ...plane];
+  const pairs = (bodies.moving?.body.facts.triangles ?? 0) * (bodies.fixed?.body.facts.triangles ?? 0);
+  const all = `all ${pairs.toLocaleString("en")} pairs of triangles`;
+  const { stop, overlap } = proof;
+  if (overlap) {
+    const how = overlap.kind === "facets" ? `around triangles ${overlap.triangles.join(" and ")}` : `a shell of the ${overlap.kind.split(" ")[0]} body lies inside the other`;
+    return [text(`They overlap where they are: ${how}.`), ...(proof.claims.length ? [text(`Claims about ${all}:`), table(proof.claims, pairs)] : [])];
+  }
+  const lower = proof.lower === null ? "ever" : "before ";
+  return [
+    ...(stop ? [bounds({ lower: proof.lower ?? 0, upper: stop.distance, tolerance: Math.abs(stop.distance - (proof.lower ?? 0)) })] : []),
+    text(`Of ${all} none stops the moving body ${lower}`, ...(proof.lower === null ? [] : [h("b", {}, String(proof.lower))]),
+      ...(stop ? [`; triangles ${stop.triangles.join(" and ")} do at `, h("b", {}, String(stop.distance))] : []), proof.tolerance ? `, both bodies being shrunk by half of ${short(proof.tolerance, 3)}.` : "."),
+    table(proof.claims, pairs),
+    ...(proof.start_claims ? [text("That they do not overlap where they are:"), table(proof.start_claims, pairs)] : []),
+    ...plane,
+  ];
+}
+
+function table(claims: Claims[], pairs: number): HTMLElement {
+  return h("dl", { class: "claims" }, ...claims.flatMap(({ because, claims, pairs: of }) => [
+    h("dt", {}, because), h("dd", {}, `${claims.toLocaleString("en")} claim${claims === 1 ? "" : "s"}, ${short((100 * of) / (pairs || 1), 3)} %`),
+  ]));
+}
+
 /** Both bounds on a line that shows nothing but the gap, and what rounding alone can make of it. */
-function bounds(proof: Certificate): SVGSVGElement {
+function bounds(proof: Pick<Certificate, "lower" | "upper" | "tolerance">): SVGSVGElement {
   const upper = proof.upper ?? proof.lower + proof.tolerance;
   const width = Math.max(upper - proof.lower, proof.tolerance, Number.MIN_VALUE);
   const x = (t: number) => 8 + (300 * (t - proof.lower)) / width;

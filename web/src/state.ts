@@ -20,6 +20,14 @@ export interface State {
   /** Where the moving body is shown, in multiples of the direction; `null`: at its start. */
   t: number | null;
   tab: Tab;
+  assembly: {
+    direction: Vec;
+    /** `null`: from the size of the parts. */
+    tolerance: number | null;
+    ignore: boolean;
+    /** The part whose removal map is shown. */
+    part: number | null;
+  };
 }
 
 export function fromExample(name: string): State {
@@ -34,6 +42,7 @@ export function fromExample(name: string): State {
     solver: example.solver ?? "auto",
     t: null,
     tab: "answer",
+    assembly: { direction: [0, 0, 1], tolerance: null, ignore: false, part: null },
   };
 }
 
@@ -55,9 +64,19 @@ export function toHash(state: State): string {
     ["solver", state.solver === "auto" ? undefined : state.solver],
     ["t", state.t === null ? undefined : String(state.t)],
     ["tab", state.tab === "answer" ? undefined : state.tab],
+    ...(state.tab === "assembly" ? assemblyFields(state) : []),
   ];
   const given = fields.filter((field): field is [string, string] => field[1] !== undefined);
   return `#${given.map(([key, value]) => `${key}=${encodeURIComponent(value).replace(/%(2C|3A|2F)/g, decodeURIComponent)}`).join("&")}`;
+}
+
+function assemblyFields({ assembly: { direction, tolerance, ignore, part } }: State): [string, string | undefined][] {
+  return [
+    ["ad", direction.join(",")],
+    ["atol", tolerance === null ? undefined : String(tolerance)],
+    ["aignore", ignore ? "1" : undefined],
+    ["apart", part === null ? undefined : String(part)],
+  ];
 }
 
 /** The state that an address tells; what it leaves out, or says wrongly, is as in the first example. */
@@ -84,5 +103,10 @@ export function fromHash(hash: string): State {
   state.solver = SOLVERS.find((s) => s === fields.get("solver")) ?? "auto";
   state.t = numbers("t", 1)?.[0] ?? null;
   state.tab = TABS.find((tab) => tab === fields.get("tab")) ?? "answer";
+  const { assembly } = state;
+  assembly.direction = (numbers("ad", 3) as Vec) ?? assembly.direction;
+  assembly.tolerance = numbers("atol", 1)?.[0] ?? null;
+  assembly.ignore = fields.get("aignore") === "1";
+  assembly.part = numbers("apart", 1)?.[0] ?? null;
   return state;
 }

@@ -6,17 +6,21 @@
 
 import {
   AmbientLight, BufferAttribute, BufferGeometry, CircleGeometry, Color, ConeGeometry, CylinderGeometry,
-  DirectionalLight, DoubleSide, Group, Line, LineBasicMaterial, LineDashedMaterial, LineLoop,
+  DirectionalLight, DoubleSide, FrontSide, Group, Line, LineBasicMaterial, LineDashedMaterial, LineLoop,
   LineSegments, Material, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Object3D, PerspectiveCamera,
-  PlaneGeometry, Quaternion, Ray, Raycaster, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer,
+  PlaneGeometry, Quaternion, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { TransformControls } from "three/addons/controls/TransformControls.js";
+import type { TransformControls } from "three/addons/controls/TransformControls.js";
+import { aim, onPage, rounded } from "./aim";
 import { type Palette, palette } from "./colours";
 import { h, soon, svg } from "./dom";
 import type { Answer, Body, Feature, Slot, Touch } from "./engine";
 import { type Pose, type Vec, add, cross, dot, length, placed, sub, times, turned, unit } from "./math";
 import type { State } from "./state";
+
+/** Triangles of an SVG file. */
+const MOST_DRAWN = 40_000;
 
 export type Tool = "look" | "move" | "turn";
 
@@ -73,7 +77,9 @@ export class View {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 1e4);
   readonly renderer: WebGLRenderer;
   private readonly orbit: OrbitControls;
-  private readonly gizmo: TransformControls;
+  /** Read when a body is to be moved by its handles. */
+  private gizmo: Promise<TransformControls> | undefined;
+  private handles: TransformControls | undefined;
   private readonly handle = new Object3D();
   /** Made anew with every answer. */
   private readonly shown = new Group();
@@ -115,26 +121,18 @@ export class View {
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.addEventListener("change", this.render);
     this.orbit.listenToKeyEvents(canvas);
-    this.gizmo = new TransformControls(this.camera, canvas);
-    this.gizmo.size = 0.8;
-    this.gizmo.addEventListener("change", this.render);
-    this.gizmo.addEventListener("dragging-changed", (event) => {
-      this.orbit.enabled = !event.value;
-      if (!event.value) this.moved(true);
-    });
-    this.gizmo.addEventListener("objectChange", () => this.moved(false));
     const sun = new DirectionalLight(0xffffff, 2.1);
     sun.position.set(0.6, 0.9, 1);
     this.camera.add(sun, sun.target);
     sun.target.position.set(0, 0, -1);
-    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.25), this.shown, this.extra, this.handle, this.gizmo.getHelper());
+    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.25), this.shown, this.extra, this.handle);
     this.arrowDrag(canvas);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
 
   readonly render = soon(() => {
-    this.gizmo.getHelper().updateMatrixWorld();
+    this.handles?.getHelper().updateMatrixWorld();
     this.renderer.render(this.scene, this.camera);
     this.placeLabels();
     this.placeAxes();
@@ -147,13 +145,34 @@ export class View {
   setTool(tool: Tool, slot: Slot) {
     this.tool = tool;
     this.held = slot;
-    this.gizmo.detach();
-    if (tool !== "look" && this.drawnBodies[slot]) {
-      this.gizmo.setMode(tool === "move" ? "translate" : "rotate");
-      this.gizmo.attach(this.handle);
-    }
+    this.handles?.detach();
+    if (tool !== "look") void this.attach();
     this.placeHandle();
     this.render();
+  }
+
+  private async attach() {
+    this.gizmo ??= this.makeGizmo();
+    const gizmo = await this.gizmo;
+    if (this.tool === "look" || !this.drawnBodies[this.held]) return;
+    gizmo.setMode(this.tool === "move" ? "translate" : "rotate");
+    gizmo.attach(this.handle);
+    this.render();
+  }
+
+  private async makeGizmo(): Promise<TransformControls> {
+    const { TransformControls } = await import("three/addons/controls/TransformControls.js");
+    const gizmo = new TransformControls(this.camera, this.renderer.domElement);
+    gizmo.size = 0.8;
+    gizmo.addEventListener("change", this.render);
+    gizmo.addEventListener("dragging-changed", (event) => {
+      this.orbit.enabled = !event.value;
+      if (!event.value) this.moved(true);
+    });
+    gizmo.addEventListener("objectChange", () => this.moved(false));
+    this.scene.add(gizmo.getHelper());
+    this.handles = gizmo;
+    return gizmo;
   }
 
   /** Only bodies and what others add; for the views of searches. */
@@ -241,6 +260,7 @@ export class View {
 
   private addBody(body: Drawn, matrix: Matrix4, colour: string, how: "solid" | "ghost" | "outline") {
     const group = new Group();
+    group.userData = { body, how };
     group.matrixAutoUpdate = false;
     group.matrix.copy(matrix);
     if (how !== "outline") {
@@ -493,7 +513,7 @@ export class View {
   private placeHandle() {
     const { state } = this;
     const body = this.drawnBodies[this.held];
-    if (!state || !body || this.gizmo.dragging) return;
+    if (!state || !body || this.handles?.dragging) return;
     const matrix = matrixOf(state.poses[this.held], body.middle, this.origin);
     matrix.decompose(this.handle.position, this.handle.quaternion, this.handle.scale);
   }
@@ -516,69 +536,21 @@ export class View {
 
   /** The tip of the arrow follows the pointer over a sphere about the moving body. */
   private arrowDrag(canvas: HTMLCanvasElement) {
-    const ray = (event: PointerEvent): Ray => {
-      const box = canvas.getBoundingClientRect();
-      const x = ((event.clientX - box.left) / box.width) * 2 - 1;
-      const y = 1 - ((event.clientY - box.top) / box.height) * 2;
-      const caster = new Raycaster();
-      caster.setFromCamera(new Vector2(x, y), this.camera);
-      return caster.ray;
-    };
-    const near = (event: PointerEvent): boolean => {
-      if (!this.tip || this.plain) return false;
-      const box = canvas.getBoundingClientRect();
-      const at = this.tip.clone().project(this.camera);
-      const [x, y] = [((at.x + 1) / 2) * box.width + box.left, ((1 - at.y) / 2) * box.height + box.top];
-      return Math.hypot(x - event.clientX, y - event.clientY) < (event.pointerType === "touch" ? 34 : 18);
-    };
-    let side = 0;
-    const point = (event: PointerEvent, done: boolean) => {
+    const ends = () => {
       const { moving } = this.drawnBodies;
-      const { state } = this;
-      if (!moving || !state || !this.tip) return;
-      const base = this.inScene(placed(state.poses.moving, moving.middle));
-      const reach = this.tip.distanceTo(base);
-      const r = ray(event);
-      const middle = r.closestPointToPoint(base, new Vector3());
-      const off = middle.distanceTo(base);
-      const depth = off < reach ? Math.sqrt(reach * reach - off * off) : 0;
-      const at = middle.addScaledVector(r.direction, depth * side).sub(base).normalize();
-      const long = length(state.direction);
-      const round = (x: number) => Number((x * long).toPrecision(4));
-      const d: Vec = [at.x, at.y, at.z].map((x) => (Math.abs(x) < 0.003 ? 0 : round(x))) as Vec;
+      if (!moving || !this.state || !this.tip || this.plain) return undefined;
+      return { base: this.inScene(placed(this.state.poses.moving, moving.middle)), tip: this.tip };
+    };
+    aim(canvas, this.camera, this.orbit, ends, (way, done) => {
+      const long = length(this.state!.direction);
+      const d = rounded(times(way, long), 0.003 * long);
       if (length(d) > 0) this.onDirection(d, done);
-    };
-    canvas.addEventListener("pointerdown", (event) => {
-      if (!near(event)) return;
-      const { moving } = this.drawnBodies;
-      const base = this.inScene(placed(this.state!.poses.moving, moving!.middle));
-      side = Math.sign(this.tip!.clone().sub(base).dot(ray(event).direction)) || 1;
-      this.orbit.enabled = false;
-      canvas.setPointerCapture(event.pointerId);
-      event.stopImmediatePropagation();
-      const move = (e: PointerEvent) => point(e, false);
-      const up = (e: PointerEvent) => {
-        canvas.removeEventListener("pointermove", move);
-        canvas.removeEventListener("pointerup", up);
-        canvas.removeEventListener("pointercancel", up);
-        this.orbit.enabled = true;
-        point(e, true);
-      };
-      canvas.addEventListener("pointermove", move);
-      canvas.addEventListener("pointerup", up);
-      canvas.addEventListener("pointercancel", up);
-    }, { capture: true });
-    canvas.addEventListener("pointermove", (event) => {
-      canvas.style.cursor = near(event) ? "grab" : "";
     });
   }
 
   /** Where the tip of the arrow is, in pixels of the page: for tests. */
   tipOnPage(): [number, number] | undefined {
-    if (!this.tip) return undefined;
-    const box = this.renderer.domElement.getBoundingClientRect();
-    const at = this.tip.clone().project(this.camera);
-    return [((at.x + 1) / 2) * box.width + box.left, ((1 - at.y) / 2) * box.height + box.top];
+    return this.tip && onPage(this.renderer.domElement, this.camera, this.tip);
   }
 
   private clear(group: Group) {
@@ -617,6 +589,79 @@ export class View {
     this.render();
   }
 
+  /** The picture as lines and areas, the nearer over the farther: text of an SVG file. */
+  async drawing(): Promise<string> {
+    let triangles = 0;
+    this.scene.traverseVisible((object) => {
+      const { geometry } = object as Partial<Mesh>;
+      if ((object as Mesh).isMesh) triangles += (geometry?.index ?? geometry?.getAttribute("position"))!.count / 3;
+    });
+    if (triangles > MOST_DRAWN) throw new Error(`${Math.round(triangles)} triangles are too many for an SVG file: the PNG has them`);
+    const { SVGRenderer } = await import("three/addons/renderers/SVGRenderer.js");
+    const drawing = new SVGRenderer();
+    const { clientWidth: wide, clientHeight: high } = this.host;
+    drawing.setSize(wide, high);
+    drawing.setPrecision(2);
+    const back = this.prepare();
+    drawing.render(this.scene, this.camera);
+    back();
+    const picture = drawing.domElement as unknown as SVGSVGElement;
+    picture.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+    picture.style.background = getComputedStyle(this.host).backgroundColor;
+    for (const { text, at } of this.texts) {
+      const place = at.clone().project(this.camera);
+      picture.append(svg("text", { x: (place.x * wide) / 2, y: (-place.y * high) / 2, "font-size": 14, "font-style": "italic", "text-anchor": "middle", fill: this.colours.text }, text));
+    }
+    return new XMLSerializer().serializeToString(picture);
+  }
+
+  /** For a renderer that draws facet after facet: what faces away is left out, edges are drawn after
+   * the facets of their body, the nearer body after the farther. Returns what takes that back. */
+  private prepare(): () => void {
+    const undo: (() => void)[] = [];
+    const eye = this.camera.position;
+    this.scene.traverse((object) => {
+      // Light is counted otherwise there: without the division by pi, and clipped.
+      const light = object as Partial<DirectionalLight>;
+      if (light.isLight) {
+        const { intensity } = light;
+        light.intensity = intensity! / 4;
+        undo.push(() => (light.intensity = intensity!));
+      }
+    });
+    const groups = this.shown.children.filter(({ userData }) => userData.how === "solid");
+    const far = (group: Object3D) => new Vector3().setFromMatrixPosition(group.matrix).distanceTo(eye);
+    groups.sort((a, b) => far(b) - far(a)).forEach((group, k) => {
+      const drawn = group.userData.body as Drawn;
+      const { body } = drawn;
+      const [mesh, lines] = group.children as [Mesh, LineSegments];
+      const [old, material] = [lines.geometry, mesh.material as Material];
+      const facing = eye.clone().applyMatrix4(group.matrix.clone().invert());
+      const seen = new BufferGeometry().setFromPoints(seenEdges(drawn, facing));
+      lines.geometry = seen;
+      if (body.facts.closed) material.side = FrontSide;
+      // Bodies that are not convex may stand in each other: there depth alone decides.
+      const convex = body.facts.kind === "convex";
+      mesh.renderOrder = convex ? 1 + k : 1;
+      lines.renderOrder = convex ? 1.5 + k : 1;
+      undo.push(() => {
+        seen.dispose();
+        lines.geometry = old;
+        material.side = DoubleSide;
+        mesh.renderOrder = lines.renderOrder = 0;
+      });
+    });
+    for (const object of this.shown.children) {
+      if (groups.includes(object) || object.type === "LineSegments") continue;
+      object.traverse((part) => {
+        const { renderOrder } = part;
+        part.renderOrder = 20 + renderOrder;
+        undo.push(() => (part.renderOrder = renderOrder));
+      });
+    }
+    return () => undo.forEach((f) => f());
+  }
+
   /** The picture as it is shown, on the page's ground. */
   picture(): Promise<Blob> {
     this.renderer.render(this.scene, this.camera);
@@ -630,6 +675,26 @@ export class View {
       canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture cannot be made")))),
     );
   }
+}
+
+/** Ends of the edges at a facet that looks at the eye; of a body about its middle. */
+function seenEdges({ body, middle }: Drawn, eye: Vector3): Vector3[] {
+  const { vertices, triangles, edges } = body;
+  const at = (v: number) => new Vector3(vertices[3 * v]! - middle[0], vertices[3 * v + 1]! - middle[1], vertices[3 * v + 2]! - middle[2]);
+  const key = (a: number, b: number) => Math.min(a, b) * (vertices.length / 3) + Math.max(a, b);
+  const seen = new Set<number>();
+  for (let t = 0; t < triangles.length; t += 3) {
+    const corners = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!] as const;
+    const [a, b, c] = corners.map(at) as [Vector3, Vector3, Vector3];
+    const normal = b.clone().sub(a).cross(c.clone().sub(a));
+    if (body.facts.closed && normal.dot(eye.clone().sub(a)) <= 0) continue;
+    corners.forEach((v, k) => seen.add(key(v, corners[(k + 1) % 3]!)));
+  }
+  const ends: Vector3[] = [];
+  for (let k = 0; k < edges.length; k += 2) {
+    if (seen.has(key(edges[k]!, edges[k + 1]!))) ends.push(at(edges[k]!), at(edges[k + 1]!));
+  }
+  return ends;
 }
 
 /** The largest `n . x` of a placed body. */

@@ -1,4 +1,4 @@
-// The worker: holds the library, answers one question after the other.
+// The worker: holds a library, the one that its name tells; answers one question after the other.
 
 interface Library {
   memory: WebAssembly.Memory;
@@ -21,8 +21,9 @@ interface Asked {
 const library: Promise<Library> = load();
 
 async function load(): Promise<Library> {
-  const response = await fetch(new URL("colltrans.wasm", import.meta.url));
-  if (!response.ok) throw new Error(`colltrans.wasm: ${response.status} ${response.statusText}`);
+  const file = `${self.name}.wasm`;
+  const response = await fetch(new URL(file, import.meta.url));
+  if (!response.ok) throw new Error(`${file}: ${response.status} ${response.statusText}`);
   // Not streamed: static servers are not agreed on the type of such files.
   const { instance } = await WebAssembly.instantiate(await response.arrayBuffer());
   return instance.exports as unknown as Library;

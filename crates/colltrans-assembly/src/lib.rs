@@ -11,6 +11,9 @@
 //! Everything is the same on any number of threads. The memory of a run is that of the parts, 100
 //! bytes for each pair of parts that meets along a direction asked, and on each thread up to 50 kB for
 //! each pair of parts whose facets are kept to be asked again.
+//!
+//! Without the features `files` and `report` what is left reads GLB from memory and draws nothing: for
+//! a page.
 
 mod bodies;
 mod boxes;
@@ -27,6 +30,7 @@ pub mod map;
 pub mod matrix;
 pub mod plan;
 pub mod read;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod rooms;
 pub mod sphere;

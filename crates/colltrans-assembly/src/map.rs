@@ -6,6 +6,7 @@
 //! free. A candidate that is free though none of the samples around it is, is *isolated*: a tight
 //! fit.
 
+#[cfg(feature = "report")]
 mod draw;
 mod regions;
 mod way;
@@ -22,6 +23,7 @@ use crate::rooms::{PartRoom, room_of};
 use crate::sphere::{Sphere, angle};
 use crate::watch::{Stage, Watch};
 
+#[cfg(feature = "report")]
 pub use draw::{png, svg};
 pub use regions::Region;
 pub(crate) use way::way_out;

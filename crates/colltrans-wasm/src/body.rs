@@ -12,7 +12,7 @@ use colltrans_mesh::{Format, Mesh};
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use crate::desk::{Answer, Refusal};
+use crate::answer::{Answer, Refusal};
 use crate::question::Take;
 
 /// How deep a face may lie below the hull, as a part of the mesh's extent: as on the command line.

@@ -2,14 +2,14 @@
 
 use colltrans::observe::Recording;
 use colltrans::{
-    Cast, Certificate, Clearance, Contact, ContactRange, Options, Solver, Steps, VertexPair,
-    WhyFree,
+    Cast, Certificate, CertificateError, Clearance, Contact, ContactRange, Options, Solver, Steps,
+    VertexPair, WhyFree,
 };
 use glam::DVec3;
 use serde_json::{Value, json};
 
+use crate::answer::{Answer, Refusal};
 use crate::body::{Hull, Lit};
-use crate::desk::{Answer, Refusal};
 use crate::pose::pose;
 use crate::question::{self, Pair, Proof};
 
@@ -126,10 +126,15 @@ pub(crate) fn verify(bodies: [&Hull; 2], pair: &Pair, proof: &Proof) -> Result<A
         }),
         Proof::Separation { normal, margin } => cast
             .verify(&colltrans::Separation { normal: DVec3::from_array(*normal), margin: *margin }),
+        Proof::Clearance(_) => return Err("that is a proof between solids".to_owned().into()),
     };
-    let told: Value = match checked {
+    Ok(judged(checked))
+}
+
+/// What came of a check.
+pub(crate) fn judged(checked: Result<f64, CertificateError>) -> Answer {
+    Answer::of(&match checked {
         Ok(proven) => json!({ "holds": true, "proven": proven }),
         Err(error) => json!({ "holds": false, "because": error.to_string() }),
-    };
-    Ok(Answer::of(&told))
+    })
 }

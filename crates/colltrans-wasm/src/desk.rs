@@ -1,41 +1,11 @@
 //! The bodies in use, and what is answered about them.
 
 use colltrans_mesh::Mesh;
-use serde_json::{Value, json};
 
+use crate::answer::{Answer, Refusal};
 use crate::body::{self, Part};
 use crate::question::{Load, Question, Slot, Take};
-use crate::{convex, levels, search, solid};
-
-/// An answer: JSON, and numbers in binary (little-endian) whose layout the JSON tells.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Answer {
-    /// JSON: an object, with a field `error` where there is no answer.
-    pub text: Vec<u8>,
-    /// Numbers that would be long as text.
-    pub numbers: Vec<u8>,
-}
-
-/// Why there is no answer.
-#[derive(Debug)]
-pub(crate) struct Refusal {
-    /// For people.
-    pub(crate) error: String,
-    /// What the same file could be taken as instead.
-    pub(crate) instead: Vec<&'static str>,
-}
-
-impl From<String> for Refusal {
-    fn from(error: String) -> Self {
-        Self { error, instead: Vec::new() }
-    }
-}
-
-impl Answer {
-    pub(crate) fn of(facts: &Value) -> Self {
-        Self { text: facts.to_string().into_bytes(), numbers: Vec::new() }
-    }
-}
+use crate::{certify, convex, levels, search, solid};
 
 /// Two bodies, as files made them.
 #[derive(Debug, Default)]
@@ -59,9 +29,7 @@ impl Desk {
             Ok(question) => self.answer(question, file),
             Err(error) => Err(format!("the question cannot be read: {error}").into()),
         };
-        answer.unwrap_or_else(|Refusal { error, instead }| {
-            Answer::of(&json!({ "error": error, "instead": instead }))
-        })
+        answer.unwrap_or_else(Refusal::told)
     }
 
     fn answer(&mut self, question: Question, file: Vec<u8>) -> Result<Answer, Refusal> {
@@ -76,7 +44,13 @@ impl Desk {
                     _ => solid::cast(bodies, &pair),
                 }
             }
-            Question::Verify(pair, proof) => convex::verify(self.convex()?, &pair, &proof),
+            Question::Certify(pair) => certify::certify(self.bodies()?, &pair),
+            Question::Verify(pair, proof) => match self.bodies()? {
+                [Part::Convex(moving), Part::Convex(fixed)] => {
+                    convex::verify([moving, fixed], &pair, &proof)
+                }
+                bodies => certify::verify(bodies, &pair, &proof, &file),
+            },
             Question::Search(asked) => search::search(self.convex()?, &asked),
             Question::Levels(asked) => levels::levels(self.convex()?, &asked),
         }

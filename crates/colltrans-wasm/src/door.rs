@@ -14,7 +14,8 @@
 use std::cell::RefCell;
 use std::sync::{Mutex, Once, PoisonError};
 
-use crate::desk::{Answer, Desk};
+use crate::answer::Answer;
+use crate::desk::Desk;
 
 #[derive(Default)]
 struct Door {

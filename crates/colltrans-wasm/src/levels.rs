@@ -12,9 +12,9 @@ use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 use glam::DVec3;
 use serde_json::json;
 
+use crate::answer::{Answer, Refusal};
 use crate::body::Hull;
 use crate::convex::query;
-use crate::desk::{Answer, Refusal};
 use crate::question::Levels;
 
 /// Pairs of levels that are answered at once.

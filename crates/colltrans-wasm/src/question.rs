@@ -2,7 +2,9 @@
 //!
 //! Read by hand: what derived readers add would be a third of the download.
 
-use serde_json::{Map, Value};
+use serde_json::Value;
+
+use crate::fields::Fields;
 
 /// One question.
 #[derive(Debug)]
@@ -11,6 +13,8 @@ pub(crate) enum Question {
     Load(Load),
     /// When do they meet, and how far can the moving one go?
     Cast(Pair),
+    /// A proof of the clearance between solids.
+    Certify(Pair),
     /// Is this proof, as an answer had it, one?
     Verify(Pair, Proof),
     /// What does a search do?
@@ -74,7 +78,12 @@ pub(crate) enum Solver {
 #[derive(Debug)]
 pub(crate) enum Proof {
     Contact(Certificate),
-    Separation { normal: [f64; 3], margin: f64 },
+    Separation {
+        normal: [f64; 3],
+        margin: f64,
+    },
+    /// Between solids.
+    Clearance(Claimed),
 }
 
 #[derive(Debug)]
@@ -86,6 +95,20 @@ pub(crate) struct Certificate {
     pub(crate) pairs: [[u32; 2]; 3],
     pub(crate) weights: [f64; 3],
     pub(crate) tolerance: f64,
+}
+
+/// What a proof between solids says; its entries come as the file, a byte each.
+#[derive(Debug)]
+pub(crate) struct Claimed {
+    pub(crate) tolerance: f64,
+    /// Infinite where nothing ever stops the body.
+    pub(crate) lower: f64,
+    /// The distance, and the two triangles.
+    pub(crate) stop: Option<(f64, [u32; 2])>,
+    /// Where they overlap at the start: in which way, and the triangles.
+    pub(crate) overlap: Option<(String, Vec<u32>)>,
+    /// How many of the entries are about the start.
+    pub(crate) start_entries: usize,
 }
 
 /// A search to look at.
@@ -113,11 +136,11 @@ impl Question {
     /// From JSON.
     pub(crate) fn read(text: &[u8]) -> Result<Self, String> {
         let value: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
-        let Value::Object(map) = &value else { return Err("it is no object".into()) };
-        let fields = Fields(map);
+        let fields = Fields::of(&value)?;
         match fields.text("do")? {
             "load" => fields.load().map(Self::Load),
             "cast" => fields.pair().map(Self::Cast),
+            "certify" => fields.pair().map(Self::Certify),
             "verify" => Ok(Self::Verify(fields.pair()?, fields.object("proof")?.proof()?)),
             "search" => fields.search().map(Self::Search),
             "levels" => fields.levels().map(Self::Levels),
@@ -126,45 +149,17 @@ impl Question {
     }
 }
 
-/// The fields of an object.
-struct Fields<'a>(&'a Map<String, Value>);
+/// A question's fields, as a question reads them.
+trait Read {
+    fn load(&self) -> Result<Load, String>;
+    fn pair(&self) -> Result<Pair, String>;
+    fn proof(&self) -> Result<Proof, String>;
+    fn claimed(&self) -> Result<Claimed, String>;
+    fn search(&self) -> Result<Search, String>;
+    fn levels(&self) -> Result<Levels, String>;
+}
 
-impl<'a> Fields<'a> {
-    /// `None` for what is missing or null.
-    fn get(&self, key: &str) -> Option<&'a Value> {
-        self.0.get(key).filter(|value| !value.is_null())
-    }
-
-    fn need(&self, key: &str) -> Result<&'a Value, String> {
-        self.get(key).ok_or_else(|| format!("{key} is missing"))
-    }
-
-    fn object(&self, key: &str) -> Result<Self, String> {
-        let map = self.need(key)?.as_object().ok_or_else(|| format!("{key} is no object"))?;
-        Ok(Self(map))
-    }
-
-    fn text(&self, key: &str) -> Result<&'a str, String> {
-        self.need(key)?.as_str().ok_or_else(|| format!("{key} is no text"))
-    }
-
-    fn flag(&self, key: &str) -> bool {
-        self.get(key).and_then(Value::as_bool).unwrap_or(false)
-    }
-
-    fn number(&self, key: &str) -> Result<Option<f64>, String> {
-        let number = |value: &Value| value.as_f64().ok_or_else(|| format!("{key} is no number"));
-        self.get(key).map(number).transpose()
-    }
-
-    fn list(&self, key: &str) -> Result<Vec<f64>, String> {
-        numbers(self.need(key)?).ok_or_else(|| format!("{key} is no list of numbers"))
-    }
-
-    fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], String> {
-        self.list(key)?.try_into().map_err(|_| format!("{key} does not hold {N} numbers"))
-    }
-
+impl Read for Fields<'_> {
     fn load(&self) -> Result<Load, String> {
         let slot = match self.text("slot")? {
             "moving" => Slot::Moving,
@@ -204,6 +199,9 @@ impl<'a> Fields<'a> {
             let margin = given.number("margin")?.ok_or("margin is missing")?;
             return Ok(Proof::Separation { normal: given.array("normal")?, margin });
         }
+        if let Ok(given) = self.object("clearance") {
+            return given.claimed().map(Proof::Clearance);
+        }
         let given = self.object("contact")?;
         let number = |key: &str| given.number(key)?.ok_or_else(|| format!("{key} is missing"));
         Ok(Proof::Contact(Certificate {
@@ -214,6 +212,30 @@ impl<'a> Fields<'a> {
             weights: given.array("weights")?,
             tolerance: number("tolerance")?,
         }))
+    }
+
+    fn claimed(&self) -> Result<Claimed, String> {
+        let triangles = |key: &str, from: &Self| -> Result<Vec<u32>, String> {
+            Ok(from.list(key)?.into_iter().map(|x| x as u32).collect())
+        };
+        let missing = |key: &str| format!("{key} is missing");
+        let stop = self.get("stop").is_some().then(|| -> Result<_, String> {
+            let stop = self.object("stop")?;
+            let distance = stop.number("distance")?.ok_or_else(|| missing("distance"))?;
+            let two = triangles("triangles", &stop)?.try_into();
+            Ok((distance, two.map_err(|_| "triangles are not two".to_owned())?))
+        });
+        let overlap = self.get("overlap").is_some().then(|| -> Result<_, String> {
+            let overlap = self.object("overlap")?;
+            Ok((overlap.text("kind")?.to_owned(), triangles("triangles", &overlap)?))
+        });
+        Ok(Claimed {
+            tolerance: self.number("tolerance")?.ok_or_else(|| missing("tolerance"))?,
+            lower: self.number("lower")?.unwrap_or(f64::INFINITY),
+            stop: stop.transpose()?,
+            overlap: overlap.transpose()?,
+            start_entries: self.number("start_entries")?.unwrap_or(0.0) as usize,
+        })
     }
 
     fn search(&self) -> Result<Search, String> {
@@ -229,10 +251,6 @@ impl<'a> Fields<'a> {
             at: [self.list("moving_levels")?, self.list("fixed_levels")?],
         })
     }
-}
-
-fn numbers(value: &Value) -> Option<Vec<f64>> {
-    value.as_array()?.iter().map(Value::as_f64).collect()
 }
 
 fn pairs(value: &Value) -> Option<[[u32; 2]; 3]> {

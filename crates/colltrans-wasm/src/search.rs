@@ -1,13 +1,15 @@
 //! What a search did: the library's recording, as a page reads it.
 
 use colltrans::observe::{Event, Recording};
-use colltrans::{NarrowFrom, Narrowing, Options, Solver, Tracker};
+use colltrans::{
+    Cast, Focus, NarrowFrom, Narrowing, Options, Outcome, Pose, Region, Solver, Tracker,
+};
 use glam::DVec3;
 use serde_json::{Value, json};
 
+use crate::answer::{Answer, Refusal};
 use crate::body::Hull;
 use crate::convex::{query, work};
-use crate::desk::{Answer, Refusal};
 use crate::question::Search;
 
 pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
@@ -27,6 +29,9 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
     });
     if let Some(before) = &asked.after {
         let first = query(bodies, before)?;
+        if solver == Solver::Cta {
+            told["region"] = region(&first, &cast)?;
+        }
         let (mut tracker, mut seen) = (Tracker::new(), Recording::default());
         let mut outcome = None;
         for asked in [&first, &cast] {
@@ -42,6 +47,41 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
         });
     }
     Ok(Answer::of(&told))
+}
+
+/// The minimisation again, in the neighbourhood `N(p)` of the solution `p` of the query before: a
+/// square of pairs of levels around those of its contact points, whose half-side is how far those
+/// have moved apart sideways (the paper, section III-D).
+fn region(before: &Cast, cast: &Cast) -> Result<Value, Refusal> {
+    let said = |error: colltrans::QueryError| error.to_string();
+    let outcome = before.first_contact_observed(&mut Recording::default()).map_err(said)?;
+    let Outcome::Contact(contact) = outcome else { return Ok(Value::Null) };
+    let points = contact.points(before);
+    let back = |pose: Pose, v: DVec3| pose.matrix().transpose() * (v - pose.translation());
+    let p = back(before.moving_pose(), points.on_moving);
+    let q = back(before.fixed_pose(), points.on_fixed);
+    let apart = cast.fixed_pose().transform_point(q) - cast.moving_pose().transform_point(p);
+    let half_side = apart.reject_from(cast.direction()).length();
+    let focus = Focus { features: false, region: Region::Fixed(half_side) };
+    let (mut seen, mut tracker) =
+        (Recording::default(), Tracker::new().with_focus(focus).map_err(said)?);
+    tracker.first_contact_observed(before, &mut seen).map_err(said)?;
+    seen.clear();
+    let outcome = tracker.first_contact_observed(cast, &mut seen).map_err(said)?;
+    let level = |axis: DVec3, pose: Pose, v: DVec3| axis.dot(pose.matrix() * v);
+    let axes = seen.events().iter().find_map(|event| match event {
+        Event::Sections(sections) => Some(sections.axes),
+        _ => None,
+    });
+    let Some([a, b]) = axes else { return Ok(Value::Null) };
+    Ok(json!({
+        "center": [level(a, cast.moving_pose(), p), level(b, cast.fixed_pose(), q)],
+        // Levels count along axes of this length.
+        "half": half_side * a.length(),
+        "delta": half_side,
+        "steps": work(Solver::Cta, &outcome.steps()),
+        "events": seen.events().iter().filter_map(event).collect::<Vec<_>>(),
+    }))
 }
 
 fn array(v: DVec3) -> [f64; 3] {

@@ -1,11 +1,11 @@
 //! Casts between bodies of which at least one need not be convex.
 
-use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions, StartOverlap};
+use colltrans::{Cast, Clearance, Solid, SolidOptions, StartOverlap};
 use glam::DVec3;
 use serde_json::{Value, json};
 
+use crate::answer::{Answer, Refusal};
 use crate::body::{Facets, Lit, Part};
-use crate::desk::{Answer, Refusal};
 use crate::pose::pose;
 use crate::question::Pair;
 
@@ -13,9 +13,8 @@ use crate::question::Pair;
 const PRECISIONS: f64 = 2.0;
 
 pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
-    let poses = [pose(pair.moving_pose, "moving")?, pose(pair.fixed_pose, "fixed")?];
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);
-    let cast = query([moving, fixed], poses, pair)?;
+    let cast = query([moving, fixed], pair)?;
     let clearance = cast.clearance();
     let exit = cast.exit();
     let mut told = json!({
@@ -55,11 +54,13 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
     Ok(Answer::of(&told))
 }
 
-fn query<'a>(
+/// The query that a question asks.
+pub(crate) fn query<'a>(
     [moving, fixed]: [&'a Facets; 2],
-    [moving_pose, fixed_pose]: [Pose; 2],
     pair: &Pair,
 ) -> Result<Cast<'a, Solid>, Refusal> {
+    let [moving_pose, fixed_pose] =
+        [pose(pair.moving_pose, "moving")?, pose(pair.fixed_pose, "fixed")?];
     let direction = DVec3::from_array(pair.direction);
     let placed = [moving.body.at(moving_pose), fixed.body.at(fixed_pose)];
     let cast = Cast::new(placed[0], placed[1], direction).map_err(|error| error.to_string())?;

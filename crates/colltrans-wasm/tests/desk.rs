@@ -139,3 +139,68 @@ fn a_tracker_starts_from_the_last_answer() {
     let (answer, _) = ask(&mut desk, &question, Vec::new());
     assert_eq!(answer["tracked"]["from"], "features");
 }
+
+/// Read from text and bytes, as a page hands it back; changed in any of its parts it holds no more.
+#[test]
+fn proofs_between_solids_are_checked_as_they_were_told() {
+    let solids = |moving: &str, fixed: &str| loaded(moving, fixed, "solid");
+    let cases = [
+        (solids("bolt.stl", "plate.off"), [0.3, 0.2, 7.0], [0.0, 0.0, -1.0], "stop"),
+        (solids("bolt.stl", "plate.off"), [0.3, 0.2, 7.0], [0.0, 0.0, 1.0], "free"),
+        (solids("dodecahedron.off", "plate.off"), [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], "overlap"),
+    ];
+    for (mut desk, [x, y, z], direction, kind) in cases {
+        let mut question = pair("certify", direction);
+        question["moving_pose"] = json!([x, y, z, 0.0, 0.0, 0.0, 1.0]);
+        let Answer { text, numbers } = desk.ask(question.to_string().as_bytes(), Vec::new());
+        let told: Value = serde_json::from_slice(&text).unwrap();
+        assert_eq!(told["stop"].is_object(), kind == "stop", "{told}");
+        assert_eq!(told["overlap"].is_object(), kind == "overlap", "{told}");
+        let mut check = |proof: &Value, entries: &[u8]| {
+            question["do"] = json!("verify");
+            question["proof"] = json!({ "clearance": proof });
+            let answer = desk.ask(question.to_string().as_bytes(), entries.to_vec());
+            serde_json::from_slice::<Value>(&answer.text).unwrap()
+        };
+        assert_eq!(check(&told, &numbers)["holds"], true, "{told}");
+        let mut lie = told.clone();
+        lie["tolerance"] = json!(lie["tolerance"].as_f64().unwrap() + 1.0);
+        assert_eq!(check(&lie, &numbers)["holds"], false);
+        if kind == "stop" {
+            let mut lie = told.clone();
+            lie["lower"] = json!(lie["lower"].as_f64().unwrap() + 0.1);
+            assert_eq!(check(&lie, &numbers)["holds"], false);
+            lie = told.clone();
+            lie["stop"] = Value::Null;
+            assert_eq!(check(&lie, &numbers)["holds"], false);
+            assert_eq!(check(&told, &numbers[..numbers.len() - 1])["holds"], false);
+        }
+        assert!(check(&told, &[200])["error"].is_string());
+    }
+}
+
+/// The square lies around the last solution, and fewer planar problems are solved in it.
+#[test]
+fn the_neighbourhood_of_the_last_solution_saves_planar_problems() {
+    let mut desk = loaded("ellipsoid_a.obj", "ellipsoid_b.off", "convex");
+    let direction = [-0.6, -0.1, -0.9];
+    let mut question = pair("search", direction);
+    question["solver"] = json!("cta");
+    question["from_center"] = json!(1e-9);
+    question["after"] = pair("cast", [-0.6, -0.101, -0.9]);
+    let (answer, _) = ask(&mut desk, &question, Vec::new());
+    let region = &answer["region"];
+    let problems = |steps: &Value| steps["planar_problems"].as_u64().unwrap();
+    let (scratch, near) = (problems(&answer["steps"]), problems(&region["steps"]));
+    assert!(near >= 1 && near < scratch, "{near} {scratch}");
+    let first = region["events"].as_array().unwrap().iter().find(|e| e.get("planar").is_some());
+    let first = &first.unwrap()["planar"];
+    for k in 0..2 {
+        let apart = first[k].as_f64().unwrap() - region["center"][k].as_f64().unwrap();
+        assert!(apart.abs() < 1e-9, "{region}");
+    }
+    let delta = region["delta"].as_f64().unwrap();
+    assert!(delta > 0.0 && delta < 0.05, "{delta}");
+    let times = region["half"].as_f64().unwrap() / delta;
+    assert!((times - 3.0_f64.sqrt()).abs() < 1e-9, "{times}");
+}

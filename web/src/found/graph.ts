@@ -78,6 +78,15 @@ export class Graph {
     const add = (element: SVGElement) => this.marks.append(element);
     add(svg("rect", { x: EDGE, y: 10, width: INNER, height: INNER, fill: "none", stroke: colours.text, "stroke-opacity": 0.5 }));
     const now = found.steps[step];
+    if (found.square) {
+      const { center: [x, y], half } = found.square;
+      const [[u, v], [s, t]] = [place([x - half, y + half]), place([x + half, y - half])];
+      // Often smaller than a dot.
+      const [wide, high] = [Math.max(s - u, 3), Math.max(t - v, 3)];
+      add(svg("rect", { x: (u + s - wide) / 2, y: (v + t - high) / 2, width: wide, height: high, fill: colours.way, "fill-opacity": 0.12, stroke: colours.way, "stroke-width": 1.6, "stroke-dasharray": "4 3", class: "neighbourhood" }));
+      const [p, q] = place([x, y]);
+      add(svg("text", { x: p + 12, y: q + 16, fill: colours.text, "font-size": 12, "font-style": "italic" }, "N(p)"));
+    }
     const polygon = (points: Two[]) => points.map((p) => place(p).map((x) => x.toFixed(1)).join(",")).join(" ");
     if (now) {
       add(svg("polygon", { points: polygon(now.region), fill: colours.plane, "fill-opacity": 0.13, stroke: colours.plane, "stroke-width": 2 }));

@@ -17,6 +17,8 @@ export type Event =
 export interface Recording {
   events: Event[];
   steps: Steps;
+  /** The minimisation again in `N(p)`, around the levels of the last solution; `null` if that was none. */
+  region?: { center: Two; half: number; delta: number; steps: Steps; events: Event[] } | null;
   tracked?: { steps: Steps; from: "features" | "region" | "scratch"; events: Event[] };
 }
 
@@ -38,6 +40,8 @@ export interface Minimisation {
   steps: Step[];
   /** What is left in the end. */
   region: Two[];
+  /** The neighbourhood `N(p)` that is searched first. */
+  square?: { center: Two; half: number };
 }
 
 /** The minimisation over pairs of levels, if there was one. */

@@ -16,10 +16,13 @@ use super::{Names, assembled, contents, in_file, io, or_noted, placed_one_more};
 use crate::error::ReadError;
 use crate::part::{Assembly, Part, Piece};
 
+#[cfg(feature = "files")]
 pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
-    let bytes = std::fs::read(path).map_err(io(path))?;
-    let Gltf { document, blob } =
-        Gltf::from_slice(&bytes).map_err(|e| contents(path, "glTF", e))?;
+    parse(path, &std::fs::read(path).map_err(io(path))?)
+}
+
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Assembly, ReadError> {
+    let Gltf { document, blob } = Gltf::from_slice(bytes).map_err(|e| contents(path, "glTF", e))?;
     let buffers = buffers(path, &document, blob)?;
     let files = document.buffers().filter_map(|b| file_of(path, &b)).collect();
     let scene = document.default_scene().or_else(|| document.scenes().next());

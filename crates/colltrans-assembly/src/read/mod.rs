@@ -4,22 +4,33 @@
 //! and glTF, what a 3MF file or a manifest names); a folder of meshes does not say, and its lengths
 //! are taken as they are.
 
+#[cfg(feature = "files")]
 mod folder;
 mod gltf;
+#[cfg(feature = "files")]
 mod manifest;
+#[cfg(feature = "files")]
 mod shapes;
+#[cfg(feature = "files")]
 mod threemf;
+#[cfg(feature = "files")]
 mod urdf;
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+#[cfg(feature = "files")]
+use std::collections::BTreeMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "files")]
 use glam::DAffine3;
 
 use crate::error::{AssemblyError, ReadError};
-use crate::part::{Assembly, Part, Piece};
+#[cfg(feature = "files")]
+use crate::part::Piece;
+use crate::part::{Assembly, Part};
 
 /// Which geometry of a URDF link is read.
+#[cfg(feature = "files")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Geometry {
     /// What collision checkers use.
@@ -30,6 +41,7 @@ pub enum Geometry {
 }
 
 /// What readers need to know beside the file.
+#[cfg(feature = "files")]
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
     /// Folders in which `package://name/rest` is looked for: as `name/rest`, then as `rest`, then
@@ -48,6 +60,7 @@ pub struct ReadOptions {
 ///
 /// # Errors
 /// What cannot be read, with the file and the place.
+#[cfg(feature = "files")]
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
     let path = path.as_ref();
     if path.is_dir() {
@@ -67,6 +80,14 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, R
     }
 }
 
+/// Reads a GLB file that is in memory, of which nothing lies elsewhere.
+///
+/// # Errors
+/// What cannot be read, with the place.
+pub fn glb(name: impl AsRef<Path>, bytes: &[u8]) -> Result<Assembly, ReadError> {
+    gltf::parse(name.as_ref(), bytes)
+}
+
 fn io(path: &Path) -> impl Fn(std::io::Error) -> ReadError + '_ {
     move |source| ReadError::Io { path: path.into(), source }
 }
@@ -80,6 +101,7 @@ fn contents(path: &Path, place: impl Into<String>, reason: impl std::fmt::Displa
 }
 
 /// A mesh file as a piece.
+#[cfg(feature = "files")]
 fn piece(path: &Path, world_from_piece: DAffine3) -> Result<Piece, ReadError> {
     let mesh = colltrans_mesh::read(path)?;
     Ok(Piece { vertices: mesh.vertices, faces: mesh.faces, world_from_piece })
@@ -107,6 +129,7 @@ fn or_noted(assembly: Assembly) -> Assembly {
 }
 
 /// The file's name without its extension.
+#[cfg(feature = "files")]
 fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -1,0 +1,39 @@
+//! What comes back from a desk.
+
+use serde_json::{Value, json};
+
+/// An answer: JSON, and numbers in binary (little-endian) whose layout the JSON tells.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Answer {
+    /// JSON: an object, with a field `error` where there is no answer.
+    pub text: Vec<u8>,
+    /// Numbers that would be long as text.
+    pub numbers: Vec<u8>,
+}
+
+/// Why there is no answer.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    /// For people.
+    pub(crate) error: String,
+    /// What the same file could be taken as instead.
+    pub(crate) instead: Vec<&'static str>,
+}
+
+impl From<String> for Refusal {
+    fn from(error: String) -> Self {
+        Self { error, instead: Vec::new() }
+    }
+}
+
+impl Answer {
+    pub(crate) fn of(facts: &Value) -> Self {
+        Self { text: facts.to_string().into_bytes(), numbers: Vec::new() }
+    }
+}
+
+impl Refusal {
+    pub(crate) fn told(self) -> Answer {
+        Answer::of(&json!({ "error": self.error, "instead": self.instead }))
+    }
+}

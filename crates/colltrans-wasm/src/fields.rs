@@ -1,0 +1,51 @@
+//! Fields of objects in JSON, by hand: what derived readers add would be a third of the download.
+
+use serde_json::{Map, Value};
+
+/// The fields of an object.
+pub(crate) struct Fields<'a>(&'a Map<String, Value>);
+
+impl<'a> Fields<'a> {
+    pub(crate) fn of(value: &'a Value) -> Result<Self, String> {
+        value.as_object().map(Self).ok_or_else(|| "it is no object".into())
+    }
+
+    /// `None` for what is missing or null.
+    pub(crate) fn get(&self, key: &str) -> Option<&'a Value> {
+        self.0.get(key).filter(|value| !value.is_null())
+    }
+
+    pub(crate) fn need(&self, key: &str) -> Result<&'a Value, String> {
+        self.get(key).ok_or_else(|| format!("{key} is missing"))
+    }
+
+    pub(crate) fn object(&self, key: &str) -> Result<Self, String> {
+        let map = self.need(key)?.as_object().ok_or_else(|| format!("{key} is no object"))?;
+        Ok(Self(map))
+    }
+
+    pub(crate) fn text(&self, key: &str) -> Result<&'a str, String> {
+        self.need(key)?.as_str().ok_or_else(|| format!("{key} is no text"))
+    }
+
+    pub(crate) fn flag(&self, key: &str) -> bool {
+        self.get(key).and_then(Value::as_bool).unwrap_or(false)
+    }
+
+    pub(crate) fn number(&self, key: &str) -> Result<Option<f64>, String> {
+        let number = |value: &Value| value.as_f64().ok_or_else(|| format!("{key} is no number"));
+        self.get(key).map(number).transpose()
+    }
+
+    pub(crate) fn list(&self, key: &str) -> Result<Vec<f64>, String> {
+        numbers(self.need(key)?).ok_or_else(|| format!("{key} is no list of numbers"))
+    }
+
+    pub(crate) fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], String> {
+        self.list(key)?.try_into().map_err(|_| format!("{key} does not hold {N} numbers"))
+    }
+}
+
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    value.as_array()?.iter().map(Value::as_f64).collect()
+}

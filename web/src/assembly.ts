@@ -1,0 +1,573 @@
+// The assemblies' part of the page, read when it is asked for: several parts, who stops whom along
+// the arrow, the removal map of one of them, and how everything comes apart.
+//
+// The data's way: files -> the library in a worker of its own (parts, fit, plan) -> `Parts`, `Player`
+// and `Sphere`. Another assembly takes another worker, so that what the last one held is given back.
+
+import { ConeGeometry, CylinderGeometry, Group, type Material, Mesh, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
+import { aim, onPage, rounded } from "./aim";
+import { type Move, Parts, tint } from "./assembly/parts";
+import { Player } from "./assembly/player";
+import { type RemovalMap, Sphere } from "./assembly/sphere";
+import { palette } from "./colours";
+import { h, soon } from "./dom";
+import { Engine } from "./engine";
+import { type Vec, length, short, shown, times, unit } from "./math";
+import type { State } from "./state";
+
+const GEARBOX = [
+  "bearing_ball_0", "bearing_ball_1", "bearing_ball_2", "bearing_ball_3", "bearing_inner", "bearing_outer", "bolt_0", "bolt_1",
+  "bolt_2", "bolt_3", "cover", "gear", "housing", "rear_bush", "shaft", "spacer",
+].map((name) => `gearbox_small/${name}.off`);
+/** What is planned without being asked to. */
+const SOON = 40;
+
+interface Facts {
+  parts: { name: string; vertices: number; triangles: number; closed: boolean; defects: string[] }[];
+  unit: string | null;
+  size: number;
+}
+interface Fit {
+  tolerance: number;
+  default: number;
+  suggested: number | null;
+  overlaps: { parts: [number, number]; depth: number | null; remains: boolean }[];
+  touches: { parts: [number, number]; area: number }[];
+}
+interface Along {
+  meetings: { moving: number; fixed: number; distance: number | null; point: Vec | null }[];
+  first: { outcome: "free" | "blocked" | "overlapping"; by?: number; distance?: number }[];
+  removable: number[][];
+  closures: number[][];
+}
+interface Plan {
+  directions: number;
+  steps: { parts: number[]; direction: Vec; travel: number; within: number | null }[];
+  left: number[];
+  stuck: { parts: number[]; directions: number; overlapping: [number, number][]; holds: { part: number; by: number[][] }[] }[];
+}
+
+export class AssemblyTab {
+  readonly panel = h("div", { class: "assembly-panel" });
+  readonly stage = h("div", { class: "assembly-stage" });
+  private readonly view = h("div", { class: "assembly-view" });
+  private readonly head = h("section", { class: "said", "aria-live": "polite" });
+  private readonly list = h("div", { class: "parts" });
+  private readonly fitCard = h("div");
+  private readonly mapCard = h("div");
+  private readonly planCard = h("div");
+  private readonly fields: HTMLInputElement[];
+  private readonly tolerance = h("input", { type: "number", step: "any", min: 0, "aria-label": "Tolerance of the assembly", inputmode: "decimal" });
+  private readonly ignore = h("input", { type: "checkbox" });
+  private readonly player = new Player((t) => this.seen?.place(this.moves, t));
+  private readonly sphere: Sphere | undefined;
+  private readonly seen: Parts | undefined;
+  private readonly arrow = new Group();
+  private engine: Engine;
+  private files: { name: string; bytes: ArrayBuffer }[] = [];
+  private source = "";
+  private facts: Facts | undefined;
+  private fit: Fit | undefined;
+  private along: Along | undefined;
+  private map: RemovalMap | undefined;
+  private plan: Plan | undefined;
+  private moves: Move[] = [];
+  private error = "";
+  private busy = "";
+  /** Whether what may take long is done without being asked for. */
+  private patient = true;
+  private asking = false;
+  private again = false;
+  /** Counts assemblies and fits: what comes for an older one is of no use. */
+  private turn = 0;
+
+  constructor(
+    private readonly script: URL,
+    private readonly state: () => State,
+    private readonly remember: () => void,
+    private readonly copy: (text: string, what: string) => void,
+  ) {
+    this.engine = new Engine(script, "colltrans_assembly");
+    this.stage.append(this.view, this.player.element);
+    this.player.show([], "");
+    const number = (k: number) => {
+      const input = h("input", { type: "number", step: "any", "aria-label": `Direction ${"xyz"[k]} of the assembly`, inputmode: "decimal" });
+      input.addEventListener("input", () => {
+        if (!Number.isFinite(input.valueAsNumber)) return;
+        const d = [...this.asked.direction] as Vec;
+        d[k] = input.valueAsNumber;
+        this.turnTo(d);
+      });
+      return input;
+    };
+    this.fields = [0, 1, 2].map(number);
+    this.tolerance.addEventListener("change", () => {
+      this.asked.tolerance = this.tolerance.value === "" ? null : Math.max(0, this.tolerance.valueAsNumber);
+      void this.refit();
+    });
+    this.ignore.addEventListener("change", () => {
+      this.asked.ignore = this.ignore.checked;
+      void this.refit();
+    });
+    try {
+      this.seen = new Parts(this.view);
+      this.sphere = new Sphere(this.seen.camera);
+      this.arrange(this.seen, this.sphere);
+    } catch (error) {
+      this.view.append(h("p", { class: "lone", role: "alert" },
+        `The view in three dimensions draws with WebGL 2, which this browser does not have, or has switched off (${said(error)}). What is found is told beside it.`));
+    }
+    this.panel.append(...this.cards());
+  }
+
+  private get asked() {
+    return this.state().assembly;
+  }
+
+  private arrange(seen: Parts, sphere: Sphere) {
+    seen.scene.add(this.arrow);
+    seen.onClick = (part) => this.pick(part < 0 ? null : part);
+    seen.onRender = () => sphere.draw();
+    const ends = () => (this.facts ? { base: new Vector3(), tip: this.tip() } : undefined);
+    aim(seen.renderer.domElement, seen.camera, seen.orbit, ends, (way) => this.turnTo(rounded(way, 0.003)));
+    sphere.onDirection = (d) => this.turnTo(rounded(d, 1e-4));
+    this.stage.append(h("div", { class: "group assembly-tools" },
+      h("button", { onclick: () => this.facts && seen.fit(this.extent(this.facts)) }, "Fit"),
+      h("button", { onclick: () => this.player.set(0), title: "All parts where they belong" }, "Assembled")));
+  }
+
+  /** How wide the picture is, with what has been moved by now. */
+  private extent({ size }: Facts): number {
+    const moved = this.moves.slice(0, Math.ceil(this.player.t)).map(({ way }) => 2 * length(way));
+    return Math.max(size, 0.8 * Math.max(0, ...moved) + size / 2);
+  }
+
+  private cards(): HTMLElement[] {
+    const card = (title: string, ...content: HTMLElement[]) =>
+      h("details", { class: "card", open: true }, h("summary", {}, title), h("div", {}, ...content));
+    const axis = (text: string, d: Vec) => h("button", { class: "small", onclick: () => this.turnTo(d) }, text);
+    return [
+      this.head,
+      card("Parts", this.list,
+        h("div", { class: "row" },
+          h("button", { class: "small", onclick: () => this.choose() }, "Choose files…"),
+          h("button", { class: "small", onclick: () => void this.example() }, "Small gearbox")),
+        h("small", {}, "STL, OBJ, PLY and OFF files, one part each, or GLB; or drop them here. Up to 120 parts and 400,000 triangles: beyond that, the command line.")),
+      card("Direction",
+        h("div", { class: "fields" }, h("span", {}, "d"), ...this.fields),
+        h("div", { class: "row" },
+          axis("+x", [1, 0, 0]), axis("−x", [-1, 0, 0]), axis("+y", [0, 1, 0]), axis("−y", [0, -1, 0]), axis("+z", [0, 0, 1]), axis("−z", [0, 0, -1]))),
+      card("Removal map", this.mapCard),
+      card("How it comes apart", this.planCard),
+      card("Fit", this.fitCard),
+    ];
+  }
+
+  // --- what is asked
+
+  /** Shown for the first time: with the files of the example. */
+  async start() {
+    await this.example();
+  }
+
+  private async example() {
+    this.patient = true;
+    this.asked.tolerance ??= 0.1;
+    try {
+      const files = await Promise.all(GEARBOX.map(async (file) => {
+        const response = await fetch(new URL(`data/${file}`, document.baseURI));
+        if (!response.ok) throw new Error(`${file}: ${response.status} ${response.statusText}`);
+        return { name: file.split("/").at(-1)!, bytes: await response.arrayBuffer() };
+      }));
+      await this.load(files, "gearbox_small");
+    } catch (error) {
+      this.refuse(error);
+    }
+  }
+
+  /** Files that somebody chose or dropped make another assembly. */
+  async open(files: File[]) {
+    if (!files.length) return;
+    this.patient = true;
+    this.asked.tolerance = null;
+    this.asked.part = null;
+    try {
+      const sorted = files.sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+      const read = await Promise.all(sorted.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })));
+      await this.load(read, read.length === 1 ? read[0]!.name : "FOLDER");
+    } catch (error) {
+      this.refuse(error);
+    }
+  }
+
+  private choose() {
+    const input = h("input", { type: "file", multiple: true, accept: ".stl,.obj,.ply,.off,.glb" });
+    input.addEventListener("change", () => void this.open([...(input.files ?? [])]));
+    input.click();
+  }
+
+  private async load(files: { name: string; bytes: ArrayBuffer }[], source: string) {
+    const turn = ++this.turn;
+    const engine = new Engine(this.script, "colltrans_assembly");
+    this.wait("Reading the parts");
+    try {
+      for (const { name, bytes } of files) {
+        await engine.ask({ do: "add", name }, bytes.slice(0));
+        if (turn !== this.turn) return engine.stop("another assembly was asked for");
+      }
+      const { facts, numbers } = await engine.ask({ do: "parts" });
+      if (turn !== this.turn) return engine.stop("another assembly was asked for");
+      // What is there stays until the new one is read.
+      this.engine.stop("another assembly was asked for");
+      this.engine = engine;
+      [this.files, this.source, this.facts] = [files, source, facts as Facts];
+      this.showParts(this.facts, numbers);
+    } catch (error) {
+      engine.stop("it was refused");
+      throw error;
+    } finally {
+      if (turn === this.turn) this.wait("");
+    }
+    await this.refit();
+  }
+
+  private showParts(facts: Facts, numbers: ArrayBuffer) {
+    let at = 0;
+    const parts = facts.parts.map(({ name, vertices, triangles }, k) => {
+      const part = { name, colour: tint(k), vertices: new Float32Array(numbers, at, 3 * vertices), triangles: new Uint32Array(numbers, at + 12 * vertices, 3 * triangles) };
+      at += 12 * (vertices + triangles);
+      return part;
+    });
+    this.moves = [];
+    this.seen?.show(parts, facts.size);
+  }
+
+  /** Everything again, with the tolerance that is asked for. */
+  private async refit() {
+    if (!this.facts) return;
+    const turn = ++this.turn;
+    [this.fit, this.along, this.map, this.plan, this.moves, this.error] = [undefined, undefined, undefined, undefined, [], ""];
+    this.player.show([], "");
+    const { tolerance, ignore } = this.asked;
+    this.wait("Looking for overlaps and contacts");
+    this.remember();
+    try {
+      const { facts } = await this.engine.ask({ do: "fit", tolerance, ignore_overlaps: ignore });
+      if (turn !== this.turn) return;
+      this.fit = facts as Fit;
+      this.wait("");
+      await this.ask();
+      if (turn !== this.turn || !this.patient) return;
+      if (this.asked.part !== null) await this.askMap();
+      if (turn === this.turn && this.facts.parts.length <= SOON) await this.askPlan();
+    } catch (error) {
+      if (turn === this.turn) this.refuse(error);
+    }
+  }
+
+  /** Who stops whom along the arrow. One question is on its way at a time. */
+  private async ask(): Promise<void> {
+    if (!this.fit) return;
+    if (this.asking) {
+      this.again = true;
+      return;
+    }
+    const turn = this.turn;
+    this.asking = true;
+    try {
+      const { facts } = await this.engine.ask({ do: "along", direction: this.asked.direction });
+      if (turn === this.turn) [this.along, this.error] = [facts as Along, ""];
+    } catch (error) {
+      if (turn === this.turn) [this.along, this.error] = [undefined, said(error)];
+    }
+    this.asking = false;
+    if (this.again) {
+      this.again = false;
+      await this.ask();
+    }
+    this.show();
+  }
+
+  private async askMap() {
+    const part = this.asked.part;
+    if (!this.fit || part === null || !this.facts?.parts[part]) return;
+    const turn = this.turn;
+    this.wait("Looking in all directions");
+    try {
+      const { facts, numbers } = await this.engine.ask({ do: "map", group: [part] });
+      if (turn !== this.turn || this.asked.part !== part) return;
+      const [n, t] = [facts.directions as number, facts.triangles as number];
+      this.map = {
+        ...(facts as RemovalMap), directions: new Float32Array(numbers, 0, 3 * n), distances: new Float32Array(numbers, 12 * n, n),
+        triangles: new Uint32Array(numbers, 16 * n, 3 * t),
+      };
+    } finally {
+      if (turn === this.turn) this.wait("");
+    }
+    this.show();
+  }
+
+  private async askPlan() {
+    const turn = this.turn;
+    this.wait("Planning");
+    try {
+      const { facts } = await this.engine.ask({ do: "plan" });
+      if (turn !== this.turn || !this.facts) return;
+      const plan = (this.plan = facts as Plan);
+      const { size, unit: of } = this.facts;
+      const last = plan.steps.length - 1;
+      this.moves = plan.steps.map(({ parts, direction, travel }, k) => {
+        // The last part stays, for there is nothing to take it out of.
+        const way = k === last && travel === 0 ? 0 : travel + 0.35 * size;
+        return { parts, way: times(direction, way) };
+      });
+      this.player.show(
+        plan.steps.map(({ parts, direction, travel }) => `${this.names(parts)} along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
+        `${this.facts.parts.length} parts, ${plan.steps.length} steps; point at a part for its name.`);
+    } catch (error) {
+      if (turn === this.turn) this.refuse(error);
+    } finally {
+      if (turn === this.turn) this.wait("");
+    }
+    this.show();
+  }
+
+  /** What takes too long is given up: the worker goes, and another one reads the files again. */
+  private async giveUp() {
+    this.engine.stop("it was given up");
+    this.patient = false;
+    this.asked.part = null;
+    if (this.facts) await this.load(this.files, this.source).catch((error: unknown) => this.refuse(error));
+    else this.refuse(new Error("It was given up."));
+  }
+
+  /** The address has changed. */
+  stateChanged() {
+    if (this.facts) void this.refit();
+  }
+
+  private turnTo(d: Vec) {
+    this.asked.direction = d;
+    void this.ask();
+    this.show();
+    this.remember();
+  }
+
+  private pick(part: number | null) {
+    this.asked.part = part;
+    this.map = undefined;
+    this.show();
+    this.remember();
+    if (part !== null) this.askMap().catch((error: unknown) => this.refuse(error));
+  }
+
+  private refuse(error: unknown) {
+    this.busy = "";
+    this.error = said(error);
+    this.show();
+  }
+
+  private wait(what: string) {
+    this.busy = what;
+    this.show();
+  }
+
+  // --- what is shown
+
+  private names(parts: number[]): string {
+    return parts.map((part) => this.facts?.parts[part]?.name ?? "?").join(", ");
+  }
+
+  readonly show = soon(() => {
+    const { asked, facts } = this;
+    this.fields.forEach((input, k) => {
+      if (input !== document.activeElement) input.value = String(asked.direction[k]);
+    });
+    this.showHead();
+    if (facts) this.showList(facts);
+    this.showFit();
+    this.showMap();
+    this.showPlan();
+    this.showArrow();
+    const { part } = asked;
+    const met = part === null ? undefined : this.along?.closures[part];
+    this.seen?.fade((k) => met !== undefined && !met.includes(k));
+  });
+
+  themeChanged() {
+    this.show();
+  }
+
+  private showHead() {
+    const { along, error, busy, facts } = this;
+    const wait = busy && h("p", { class: "took busy", role: "status" }, `${busy} `, h("button", { class: "small", onclick: () => void this.giveUp() }, "Stop"));
+    if (error) {
+      this.head.className = "said care";
+      this.head.replaceChildren(h("h2", {}, "No answer"), h("p", { role: "alert" }, error));
+      return;
+    }
+    if (!along || !facts) {
+      this.head.className = "said";
+      this.head.replaceChildren(h("h2", {}, "…"), ...(wait ? [wait] : []));
+      return;
+    }
+    const free = along.first.filter(({ outcome }) => outcome === "free").length;
+    const groups = along.removable.filter((group) => group.length > 1);
+    this.head.className = `said ${free || groups.length ? "free" : "stop"}`;
+    this.head.replaceChildren(
+      h("h2", { id: "assembly-headline" }, free ? `${free} of ${facts.parts.length} parts come out along d` : "No part comes out alone along d"),
+      h("p", {}, free
+        ? `${this.names(along.first.flatMap(({ outcome }, k) => (outcome === "free" ? [k] : [])))}.`
+        : groups.length ? `As they are, these can leave together: ${groups.slice(0, 3).map((group) => this.names(group)).join("; ")}.` : "Everything is in the way of something."),
+      ...(wait ? [wait] : []));
+  }
+
+  private showList(facts: Facts) {
+    const { along, asked } = this;
+    const rows = facts.parts.map(({ name, defects, closed }, k) => {
+      const first = along?.first[k];
+      const told = !first ? "" : first.outcome === "free" ? "free"
+        : first.outcome === "overlapping" ? `overlaps ${this.names([first.by!])}`
+        : `${short(first.distance!, 4)}, then ${this.names([first.by!])}`;
+      const colour = `rgb(${tint(k).map((c) => Math.round(255 * c)).join(" ")})`;
+      const picked = asked.part === k;
+      const more = picked && along ? this.blockers(along, k) : "";
+      return h("button", {
+        class: `part ${first?.outcome ?? ""}`, "aria-pressed": String(picked), title: closed ? defects.join("; ") : `not closed; ${defects.join("; ")}`,
+        onclick: () => this.pick(picked ? null : k), onpointerenter: () => this.seen?.light(k), onpointerleave: () => this.seen?.light(-1),
+      }, h("i", { style: `background: ${colour}` }), h("strong", {}, name), h("span", {}, told), more && h("small", {}, more));
+    });
+    const focused = [...this.list.children].indexOf(document.activeElement as Element);
+    this.list.replaceChildren(...rows);
+    if (focused >= 0) rows[focused]?.focus();
+  }
+
+  private blockers(along: Along, part: number): string {
+    const met = along.meetings.filter(({ moving }) => moving === part).sort((a, b) => (a.distance ?? 0) - (b.distance ?? 0));
+    if (!met.length) return "Nothing is in its way.";
+    const each = met.map(({ fixed, distance }) => `${this.names([fixed])} ${distance === null ? "(overlap)" : `after ${short(distance, 4)}`}`).join(", ");
+    return `In its way: ${each}. With all that has to come along: ${along.closures[part]!.length} parts, in full in the view.`;
+  }
+
+  private showFit() {
+    const { fit } = this;
+    if (this.tolerance !== document.activeElement) this.tolerance.value = this.asked.tolerance === null ? "" : String(this.asked.tolerance);
+    this.ignore.checked = this.asked.ignore;
+    const fields = h("label", {}, "Tolerance (empty: from the size)", this.tolerance);
+    const remaining = fit?.overlaps.filter(({ remains }) => remains) ?? [];
+    const pairs = remaining.slice(0, 6).map(({ parts: [a, b], depth }) => `${this.names([a])} and ${this.names([b])}${depth === null ? "" : ` (${short(depth, 3)})`}`);
+    this.fitCard.replaceChildren(
+      fields,
+      h("label", { style: "display: flex; gap: 8px; align-items: center" }, this.ignore, "What overlaps at the start does not block"),
+      h("small", {}, !fit ? "" : `${fit.touches.length} pairs touch, ${fit.overlaps.length} overlap as the files have them, ${remaining.length} with a tolerance of ${short(fit.tolerance, 3)}.`),
+      ...(pairs.length ? [h("small", {}, `Overlapping, and so moving as one: ${pairs.join("; ")}${remaining.length > 6 ? "; …" : ""}.`)] : []),
+      ...(fit?.suggested && fit.suggested > fit.tolerance
+        ? [h("div", { class: "row" }, h("button", { class: "small main", onclick: () => { this.asked.tolerance = fit.suggested; void this.refit(); } }, `Use ${fit.suggested}`), h("small", {}, "no pair overlaps with it"))]
+        : []),
+      h("div", { class: "row" }, h("button", { class: "small", onclick: () => this.copy(this.asCommand(), "The command") }, "Copy as command line")));
+  }
+
+  private asCommand(): string {
+    const { direction, tolerance, part, ignore } = this.asked;
+    const words = ["colltrans", "assembly", this.source, `--direction=${direction.join(",")}`];
+    if (tolerance !== null) words.push(`--tolerance=${tolerance}`);
+    if (ignore) words.push("--ignore-overlaps");
+    if (part !== null) words.push(`--map=${this.names([part])}`);
+    return [...words, "-o", "out"].join(" ");
+  }
+
+  private showMap() {
+    const { map, sphere } = this;
+    const { part, direction } = this.asked;
+    sphere?.show(map, direction);
+    if (part === null || !this.facts) {
+      this.mapCard.replaceChildren(h("p", { class: "proof" }, "Pick a part, here or in the view: the sphere then shows how far it can go in every direction, against all others where they are."));
+      return;
+    }
+    const name = this.names([part]);
+    if (!map) {
+      this.mapCard.replaceChildren(h("p", { class: "proof" }, `${name}: looking in all directions.`));
+      return;
+    }
+    const blocked = map.distances.reduce((best, x, k) => (Number.isFinite(x) && x > map.distances[best]! || !Number.isFinite(map.distances[best]!) ? k : best), 0);
+    const go = (d: Vec, text: string) => h("button", { class: "small", onclick: () => this.turnTo(rounded(d, 1e-9)) }, text);
+    const farthest = map.distances[blocked]!;
+    const of = (k: number): Vec => [0, 1, 2].map((c) => map.directions[3 * k + c]!) as Vec;
+    this.mapCard.replaceChildren(
+      h("p", { class: "proof" }, `${name} ${freedom(map)}. The paler the rest, the farther it can go. Click for a direction.`),
+      ...(sphere ? [sphere.canvas] : []),
+      h("div", { class: "row" },
+        ...map.regions.slice(0, 4).map(({ center, solid_angle }) => go(center, `middle of ${short((100 * solid_angle) / (4 * Math.PI), 2)} %`)),
+        ...map.isolated.slice(0, 6).map((d) => go(d, arrow(d))),
+        ...(map.regions.length || map.isolated.length || !Number.isFinite(farthest) ? [] : [go(of(blocked), `farthest: ${short(farthest, 3)}`)])));
+  }
+
+  private showPlan() {
+    const { plan, facts } = this;
+    if (!facts) return;
+    if (!plan) {
+      this.planCard.replaceChildren(h("div", { class: "row" }, h("button", { class: "small main", disabled: !!this.busy || !this.fit, onclick: () => void this.askPlan() }, "Plan the disassembly")));
+      return;
+    }
+    const rows = plan.steps.map(({ parts, direction, travel, within }, k) =>
+      h("li", {}, h("button", { class: "link", onclick: () => this.player.go(k + 1) },
+        `${within === null ? "" : `of step ${within + 1}: `}${this.names(parts)} ${travel ? `along ${arrow(direction)}` : "stays"}`)));
+    const stuck = plan.stuck.map(({ parts, directions, overlapping, holds }) => h("p", { class: "proof" },
+      `Not parted along any of ${directions} directions: ${this.names(parts)}. `,
+      overlapping.length ? `They overlap: ${overlapping.slice(0, 4).map((pair) => this.names(pair)).join("; ")}.`
+        : holds.filter(({ by }) => by.length).slice(0, 4).map(({ part, by }) => `${this.names([part])} is held by ${this.names(by[0]!)}`).join("; ")));
+    this.planCard.replaceChildren(h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...stuck);
+  }
+
+  /** The tip of the arrow. */
+  private tip(): Vector3 {
+    return new Vector3(...times(unit(this.asked.direction), 0.62 * (this.facts?.size ?? 1)));
+  }
+
+  private showArrow() {
+    const { arrow: group, facts, seen } = this;
+    if (!seen || !facts) return;
+    group.traverse((object) => {
+      const { geometry, material } = object as Partial<Mesh>;
+      geometry?.dispose();
+      (material as Material | undefined)?.dispose();
+    });
+    group.clear();
+    const tip = this.tip();
+    const [long, width] = [tip.length(), 0.006 * facts.size];
+    const colour = palette().way;
+    const material = new MeshLambertMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.3, depthTest: false, transparent: true });
+    const shaft = new Mesh(new CylinderGeometry(width, width, long, 16), material);
+    shaft.position.y = long / 2;
+    const cone = new Mesh(new ConeGeometry(2.6 * width, 8 * width, 24), material);
+    cone.position.y = long - 4 * width;
+    const knob = new Mesh(new SphereGeometry(3.4 * width, 24, 16), material);
+    knob.position.y = long;
+    for (const part of [shaft, cone, knob]) part.renderOrder = 5;
+    group.add(shaft, cone, knob);
+    group.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), tip.normalize());
+    seen.render();
+  }
+
+  /** For tests. */
+  probe() {
+    const { facts, fit, along, map, plan, engine, busy, error } = this;
+    const tip = this.seen && onPage(this.seen.renderer.domElement, this.seen.camera, this.tip());
+    return { facts, fit, along, map, plan, engine, busy, error, tip, t: this.player.t };
+  }
+}
+
+const said = (error: unknown) => (error instanceof Error ? error.message : String(error));
+
+function freedom({ free_share, isolated: { length: single } }: RemovalMap): string {
+  const share = free_share > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)`;
+  const alone = single > 0 && `in ${single} single direction${single > 1 ? "s" : ""} (dots), a tight fit`;
+  if (share) return alone ? `${share}, and ${alone}` : share;
+  return alone ? `is free only ${alone}` : "is free in no direction that was looked at";
+}
+
+/** A direction for people: an axis by name. */
+function arrow(d: Vec): string {
+  const names = ["x", "y", "z"].flatMap((name, k) => (Math.abs(Math.abs(d[k]!) / length(d) - 1) < 1e-12 ? [`${d[k]! > 0 ? "+" : "−"}${name}`] : []));
+  return names[0] ?? `(${shown(d)})`;
+}

@@ -1,0 +1,169 @@
+// The parts of an assembly in three dimensions, about its middle.
+
+import {
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
+  LineSegments, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { casterAt } from "../aim";
+import { h, soon } from "../dom";
+import type { Vec } from "../math";
+
+export interface Part {
+  name: string;
+  colour: Vec;
+  /** About the middle of the assembly. */
+  vertices: Float32Array;
+  triangles: Uint32Array;
+}
+
+/** Parts that move together; `way`: how far they are moved in the picture. */
+export interface Move {
+  parts: number[];
+  way: Vec;
+}
+
+/** A colour for each part, spread by the golden angle: as in the report. */
+export function tint(part: number): Vec {
+  const hue = (part * 0.381966011250105 + 0.58) % 1;
+  const channel = (shift: number) => {
+    const ramp = Math.min(1, Math.max(0, Math.abs(((hue + shift) % 1) * 6 - 3) - 1));
+    return 0.4 + 0.48 * ramp;
+  };
+  return [channel(0), channel(2 / 3), channel(1 / 3)];
+}
+
+export class Parts {
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(30, 1, 0.01, 1e4);
+  readonly renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+  readonly orbit: OrbitControls;
+  private readonly parts: { group: Group; material: MeshLambertMaterial; line: LineBasicMaterial }[] = [];
+  private readonly name = h("div", { class: "name", hidden: true });
+  private names: string[] = [];
+  private lit = -1;
+  onClick: (part: number) => void = () => {};
+  onRender: () => void = () => {};
+
+  constructor(private readonly view: HTMLElement) {
+    const canvas = this.renderer.domElement;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "The assembly");
+    view.append(canvas, this.name);
+    const sun = new DirectionalLight(0xffffff, 2.1);
+    sun.position.set(0.6, 0.9, 1);
+    this.camera.add(sun, sun.target);
+    sun.target.position.set(0, 0, -1);
+    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.25));
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.addEventListener("change", () => this.render());
+    canvas.addEventListener("pointermove", (event) => !event.buttons && this.light(this.under(event)));
+    let down = [0, 0];
+    canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
+    canvas.addEventListener("click", (event) => {
+      this.light(this.under(event));
+      // A drag ends with a click too.
+      if (Math.hypot(event.clientX - down[0]!, event.clientY - down[1]!) < 5) this.onClick(this.lit);
+    });
+    new ResizeObserver(() => this.resize()).observe(view);
+  }
+
+  readonly render = soon(() => {
+    this.renderer.render(this.scene, this.camera);
+    this.onRender();
+  });
+
+  show(parts: Part[], size: number) {
+    for (const { group, material, line } of this.parts) {
+      group.removeFromParent();
+      for (const child of group.children) (child as Mesh).geometry.dispose();
+      material.dispose();
+      line.dispose();
+    }
+    this.parts.length = 0;
+    this.names = parts.map(({ name }) => name);
+    for (const part of parts) this.add(part);
+    this.fit(size);
+    this.resize();
+  }
+
+  fit(size: number) {
+    const far = (1.6 * size) / 2 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
+    this.camera.position.set(0.62, -0.68, 0.45).normalize().multiplyScalar(far);
+    [this.camera.near, this.camera.far] = [far / 1e3, far * 1e3];
+    this.camera.updateProjectionMatrix();
+    this.orbit.target.set(0, 0, 0);
+    this.orbit.update();
+  }
+
+  private add(part: Part) {
+    const indexed = new BufferGeometry();
+    indexed.setAttribute("position", new BufferAttribute(part.vertices, 3));
+    indexed.setIndex(new BufferAttribute(part.triangles, 1));
+    const material = new MeshLambertMaterial({
+      color: new Color().setRGB(...part.colour, "srgb"), flatShading: true, side: DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    });
+    const group = new Group();
+    const line = new LineBasicMaterial({ color: 0x1d2733, transparent: true, opacity: 0.6 });
+    group.add(new Mesh(indexed, material), new LineSegments(new EdgesGeometry(indexed, 20), line));
+    this.scene.add(group);
+    this.parts.push({ group, material, line });
+  }
+
+  /** Everything where it is after `t` of the moves. */
+  place(moves: Move[], t: number) {
+    for (const { group } of this.parts) group.position.set(0, 0, 0);
+    moves.forEach(({ parts, way }, k) => {
+      const share = Math.min(1, Math.max(0, t - k));
+      // Slow at either end.
+      const eased = share * share * (3 - 2 * share);
+      for (const part of parts) this.parts[part]?.group.position.addScaledVector(new Vector3(...way), eased);
+    });
+    this.render();
+  }
+
+  /** How each part is shown: in full, or pale. */
+  fade(pale: (part: number) => boolean) {
+    this.parts.forEach(({ material, line }, k) => {
+      const faded = pale(k);
+      material.transparent = faded;
+      material.opacity = faded ? 0.22 : 1;
+      material.depthWrite = !faded;
+      line.opacity = faded ? 0.18 : 0.6;
+      material.needsUpdate = true;
+    });
+    this.render();
+  }
+
+  private under(event: MouseEvent): number {
+    const meshes: Object3D[] = this.parts.map(({ group }) => group.children[0]!);
+    const hit = casterAt(this.renderer.domElement, this.camera, event).intersectObjects(meshes, false)[0];
+    return hit ? meshes.indexOf(hit.object) : -1;
+  }
+
+  /** Lights a part up and shows its name; -1: none. */
+  light(part: number) {
+    if (part === this.lit) return;
+    this.lit = part;
+    this.parts.forEach(({ material }, k) => material.emissive.setScalar(k === part ? 0.18 : 0));
+    this.name.hidden = part < 0;
+    this.name.textContent = this.names[part] ?? "";
+    this.render();
+  }
+
+  private resize() {
+    const { clientWidth: wide, clientHeight: high } = this.view;
+    if (!wide || !high) return;
+    const before = this.camera.aspect;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(wide, high);
+    this.camera.aspect = wide / high;
+    // A narrow window needs a larger distance.
+    const change = Math.min(1, before) / Math.min(1, this.camera.aspect);
+    if (change !== 1) this.camera.position.sub(this.orbit.target).multiplyScalar(change).add(this.orbit.target);
+    this.camera.updateProjectionMatrix();
+    this.render();
+  }
+}

@@ -1,0 +1,83 @@
+// The slider over the steps of a plan, and what each of them is.
+
+import { h } from "../dom";
+
+export class Player {
+  readonly element: HTMLElement;
+  private readonly slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": "Steps of the plan" });
+  private readonly play = h("button", { "aria-label": "Play", title: "Play" }, "▶");
+  private readonly said = h("output");
+  private steps: string[] = [];
+  private idle = "";
+  private running = 0;
+
+  /** `move`: what is shown at a step, between whole numbers on the way to the next. */
+  constructor(private readonly move: (t: number) => void) {
+    const jump = (by: 1 | -1) => () => {
+      const t = this.t;
+      this.go(Math.min(this.steps.length, Math.max(0, by > 0 ? Math.floor(t) + 1 : Math.ceil(t) - 1)));
+    };
+    this.element = h("div", { class: "bar" }, this.play,
+      h("button", { "aria-label": "Step back", onclick: jump(-1) }, "‹"), h("button", { "aria-label": "Step on", onclick: jump(1) }, "›"),
+      this.slider, this.said);
+    this.slider.addEventListener("input", () => {
+      this.stop();
+      this.place();
+    });
+    this.play.addEventListener("click", () => (this.running ? this.stop() : this.start()));
+  }
+
+  /** Another plan: what each step is, and what is said before the first. */
+  show(steps: string[], idle: string) {
+    this.stop();
+    [this.steps, this.idle] = [steps, idle];
+    this.slider.max = String(Math.max(steps.length, 1e-9));
+    this.slider.value = "0";
+    for (const control of this.element.querySelectorAll<HTMLButtonElement | HTMLInputElement>("button, input")) control.disabled = !steps.length;
+    this.place();
+  }
+
+  get t(): number {
+    return this.steps.length ? this.slider.valueAsNumber : 0;
+  }
+
+  /** At once. */
+  set(t: number) {
+    this.stop();
+    this.slider.value = String(t);
+    this.place();
+  }
+
+  private place() {
+    const step = this.steps[Math.min(this.steps.length, Math.ceil(this.t)) - 1];
+    this.said.textContent = step ? `Step ${Math.ceil(this.t)} of ${this.steps.length}: ${step}` : this.idle;
+    this.move(this.t);
+  }
+
+  go(t: number) {
+    this.stop();
+    const from = this.t;
+    const began = performance.now();
+    const move = (now: number) => {
+      const share = Math.min(1, Math.max(0, now - began) / (900 * Math.max(Math.abs(t - from), 0.3)));
+      this.slider.value = String(from + (t - from) * share);
+      this.place();
+      this.running = share < 1 ? requestAnimationFrame(move) : 0;
+      if (!this.running) this.play.textContent = "▶";
+    };
+    this.running = requestAnimationFrame(move);
+  }
+
+  private start() {
+    const end = this.steps.length;
+    if (this.t >= end) this.slider.value = "0";
+    this.go(end);
+    this.play.textContent = "❚❚";
+  }
+
+  private stop() {
+    cancelAnimationFrame(this.running);
+    this.running = 0;
+    this.play.textContent = "▶";
+  }
+}

@@ -1,0 +1,150 @@
+// The removal map of some parts: how far they can go in every direction, on a sphere that turns with
+// the view and is clicked into.
+
+import { type Camera, Vector3 } from "three";
+import { palette } from "../colours";
+import { h } from "../dom";
+import { type Vec, dot, unit } from "../math";
+
+export interface RemovalMap {
+  group: number[];
+  size: number;
+  free_share: number;
+  regions: { solid_angle: number; center: Vec }[];
+  isolated: Vec[];
+  /** Which part is in the way, by direction. */
+  by: (number | null)[];
+  /** Three numbers each. */
+  directions: Float32Array;
+  /** Infinite where nothing is in the way. */
+  distances: Float32Array;
+  /** Corners are directions. */
+  triangles: Uint32Array;
+}
+
+const SIZE = 300;
+const RADIUS = SIZE / 2 - 8;
+
+export class Sphere {
+  readonly canvas = h("canvas", {
+    width: 2 * SIZE, height: 2 * SIZE, class: "sphere", tabindex: 0, role: "img",
+    "aria-label": "Removal map: click for a direction, arrow keys turn the one that is chosen",
+  });
+  private map: RemovalMap | undefined;
+  /** The farthest that is not free. */
+  private farthest = 1;
+  private chosen: Vec = [0, 0, 1];
+  private right: Vec = [1, 0, 0];
+  private up: Vec = [0, 0, 1];
+  private towards: Vec = [0, -1, 0];
+  onDirection: (direction: Vec) => void = () => {};
+
+  constructor(private readonly camera: Camera) {
+    this.canvas.addEventListener("click", (event) => {
+      const box = this.canvas.getBoundingClientRect();
+      const x = (((event.clientX - box.left) / box.width) * SIZE - SIZE / 2) / RADIUS;
+      const y = (SIZE / 2 - ((event.clientY - box.top) / box.height) * SIZE) / RADIUS;
+      const flat = x * x + y * y;
+      if (flat < 1) this.onDirection(this.near(this.sum(x, y, Math.sqrt(1 - flat))));
+    });
+    this.canvas.addEventListener("keydown", (event) => {
+      const by: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+      const turn = by[event.key];
+      if (!turn) return;
+      event.preventDefault();
+      const step = event.shiftKey ? 0.02 : 0.1;
+      const [x, y] = turn;
+      this.onDirection(unit([0, 1, 2].map((k) => this.chosen[k]! + step * (x * this.right[k]! + y * this.up[k]!)) as Vec));
+    });
+  }
+
+  private sum(x: number, y: number, z: number): Vec {
+    return [0, 1, 2].map((k) => x * this.right[k]! + y * this.up[k]! + z * this.towards[k]!) as Vec;
+  }
+
+  /** An isolated direction that a click all but hits is meant. */
+  private near(d: Vec): Vec {
+    const close = this.map?.isolated.filter((v) => dot(v, d) > 0.996);
+    return close?.sort((a, b) => dot(b, d) - dot(a, d))[0] ?? d;
+  }
+
+  show(map: RemovalMap | undefined, chosen: Vec) {
+    if (map && map !== this.map) this.farthest = map.distances.reduce((best, x) => (Number.isFinite(x) ? Math.max(best, x) : best), 0) || map.size;
+    [this.map, this.chosen] = [map, unit(chosen)];
+    this.draw();
+  }
+
+  /** As the camera stands now. */
+  draw() {
+    const { map } = this;
+    const axis = (x: number, y: number, z: number): Vec => new Vector3(x, y, z).applyQuaternion(this.camera.quaternion).toArray() as Vec;
+    [this.right, this.up, this.towards] = [axis(1, 0, 0), axis(0, 1, 0), axis(0, 0, 1)];
+    const context = this.canvas.getContext("2d")!;
+    context.setTransform(2, 0, 0, 2, 0, 0);
+    context.clearRect(0, 0, SIZE, SIZE);
+    if (!map) return;
+    const colours = palette();
+    const { directions, distances, triangles } = map;
+    const [r, u, f] = [this.right, this.up, this.towards];
+    const count = distances.length;
+    const flat = new Float32Array(3 * count);
+    for (let k = 0; k < count; k++) {
+      const [x, y, z] = [directions[3 * k]!, directions[3 * k + 1]!, directions[3 * k + 2]!];
+      flat[3 * k] = SIZE / 2 + RADIUS * (x * r[0] + y * r[1] + z * r[2]);
+      flat[3 * k + 1] = SIZE / 2 - RADIUS * (x * u[0] + y * u[1] + z * u[2]);
+      flat[3 * k + 2] = x * f[0] + y * f[1] + z * f[2];
+    }
+    for (let t = 0; t < triangles.length; t += 3) {
+      const [a, b, c] = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!];
+      if (flat[3 * a + 2]! + flat[3 * b + 2]! + flat[3 * c + 2]! < -0.1) continue;
+      context.fillStyle = context.strokeStyle = this.tint([a, b, c].map((k) => distances[k]!), colours.dark);
+      context.lineWidth = 0.6;
+      context.beginPath();
+      context.moveTo(flat[3 * a]!, flat[3 * a + 1]!);
+      context.lineTo(flat[3 * b]!, flat[3 * b + 1]!);
+      context.lineTo(flat[3 * c]!, flat[3 * c + 1]!);
+      context.closePath();
+      context.fill();
+      context.stroke();
+    }
+    context.strokeStyle = colours.text;
+    context.lineWidth = 1;
+    context.beginPath();
+    context.arc(SIZE / 2, SIZE / 2, RADIUS, 0, 2 * Math.PI);
+    context.stroke();
+    for (const d of map.isolated) this.dot(context, d, 5, colours.plane, colours.text);
+    this.dot(context, this.chosen, 7, "rgba(0,0,0,0)", colours.normal, 3);
+    context.fillStyle = colours.text;
+    context.font = "12px sans-serif";
+    for (const [name, d] of [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]] as [string, Vec][]) {
+      const at = this.place(d);
+      if (at[2] > 0.05) context.fillText(name, at[0] + 3, at[1] - 3);
+    }
+  }
+
+  private place(d: Vec): Vec {
+    return [SIZE / 2 + RADIUS * dot(d, this.right), SIZE / 2 - RADIUS * dot(d, this.up), dot(d, this.towards)];
+  }
+
+  /** What lies behind is drawn pale. */
+  private dot(context: CanvasRenderingContext2D, d: Vec, radius: number, fill: string, line: string, width = 1.2) {
+    const [x, y, z] = this.place(d);
+    context.globalAlpha = z < 0 ? 0.35 : 1;
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    [context.fillStyle, context.strokeStyle, context.lineWidth] = [fill, line, width];
+    context.fill();
+    context.stroke();
+    context.globalAlpha = 1;
+  }
+
+  /** Green where all corners are free; else the lighter, the farther, by lightness alone. */
+  private tint(far: number[], dark: boolean): string {
+    const free = far.filter((x) => x === Infinity).length;
+    if (free === far.length) return dark ? "#35d6a6" : "#12a37c";
+    const blocked = far.filter(Number.isFinite);
+    const mean = blocked.reduce((sum, x) => sum + x, 0) / blocked.length;
+    const s = Math.sqrt(Math.min(1, mean / this.farthest));
+    return `hsl(28 ${dark ? 30 : 45}% ${dark ? 18 + 40 * s : 34 + 48 * s}%)`;
+  }
+}

@@ -1,0 +1,163 @@
+// The page's part for assemblies, in a browser, held against the same code built natively and by hand.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, readdirSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+import { serve } from "../serve.mjs";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const gearbox = join(here, "../../data/gearbox_small");
+const program = join(here, "../../crates/colltrans-wasm/target/release/examples/native_assembly");
+const executablePath = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => existsSync(path));
+const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+let server, browser, base;
+before(async () => {
+  server = await serve(join(here, "../dist"), 0, "/some/where/");
+  base = `http://127.0.0.1:${server.address().port}/some/where/`;
+  browser = await chromium.launch({ executablePath, args });
+});
+after(async () => {
+  await browser?.close();
+  server?.close();
+});
+
+async function opened(hash = "", options = {}) {
+  const context = await browser.newContext({ viewport: { width: 900, height: 640 }, ...options });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
+  page.on("pageerror", (error) => page.complaints.push(String(error)));
+  page.on("requestfailed", (request) => page.complaints.push(request.url()));
+  await page.goto(`${base}#tab=assembly${hash}`);
+  await page.waitForSelector("#assembly-headline");
+  return page;
+}
+
+const probe = (page) => page.evaluate(() => {
+  const { facts, fit, along, plan, tip, t, busy, error } = window.colltrans.probe().assembly;
+  return { facts, fit, along, plan, tip, t, busy, error };
+});
+const planned = (page) => page.waitForSelector(".assembly-panel ol li");
+
+test("the gearbox: the plan, its slider, and the native answers", async () => {
+  const page = await opened();
+  assert.match(await page.textContent("#assembly-headline"), /^4 of 16 parts come out along d$/);
+  await planned(page);
+  const { facts, plan, fit } = await probe(page);
+  assert.equal(facts.parts.length, 16);
+  assert.equal(fit.tolerance, 0.1);
+  // A ball bearing is not parted by straight moves.
+  const stuck = plan.stuck.flatMap(({ parts }) => parts.map((k) => facts.parts[k].name));
+  assert.ok(stuck.length > 0 && stuck.every((name) => name.startsWith("bearing")), stuck.join());
+  await page.click('[aria-label="Step on"]');
+  await page.waitForFunction(() => window.colltrans.probe().assembly.t === 1);
+  assert.match(await page.textContent(".assembly-stage output"), /^Step 1 of \d+: bolt_0 along \+z/);
+  await page.locator('[aria-label="Steps of the plan"]').press("End");
+  assert.match(await page.textContent(".assembly-stage output"), new RegExp(`^Step ${plan.steps.length} of`));
+  // The same questions natively.
+  const files = facts.parts.map(({ name }) => `${name}.off`);
+  const questions = [
+    ...files.map((name) => `${join(gearbox, name)}\t${JSON.stringify({ do: "add", name })}`),
+    ...[{ do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "along", direction: [0.3, -0.2, 1] }, { do: "along", direction: [0, 0, -1] }, { do: "plan" }].map((q) => JSON.stringify(q)),
+  ];
+  const native = execFileSync(program, { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 26 }).trim().split("\n").slice(files.length);
+  const told = await page.evaluate(async () => {
+    const { engine } = window.colltrans.probe().assembly;
+    const texts = [];
+    for (const question of [{ do: "fit", tolerance: 0.1 }, { do: "along", direction: [0.3, -0.2, 1] }, { do: "along", direction: [0, 0, -1] }, { do: "plan" }]) {
+      texts.push((await engine.ask(question)).text);
+    }
+    return texts;
+  });
+  told.forEach((text, k) => assert.equal(text, native[k + 1]));
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("dragging the arrow, picking a part, clicking into its map", async () => {
+  const page = await opened();
+  await planned(page);
+  const [x, y] = (await probe(page)).tip;
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 90, y + 60, { steps: 6 });
+  await page.mouse.up();
+  await page.waitForFunction(() => document.querySelector("#assembly-headline")?.textContent === "No part comes out alone along d");
+  const direction = await page.inputValue('[aria-label="Direction x of the assembly"]');
+  assert.notEqual(Number(direction), 0);
+  await page.click(".part:has-text('bolt_2')");
+  assert.match(await page.textContent(".part:has-text('bolt_2') small"), /^In its way: .*cover/);
+  await page.waitForSelector(".sphere");
+  assert.match(await page.textContent(".assembly-panel"), /bolt_2 is free only in 1 single direction/);
+  // The middle of the sphere is the way to the eye; the button, the tight fit.
+  await page.click(".sphere");
+  await page.waitForFunction((old) => document.querySelector('[aria-label="Direction x of the assembly"]').value !== old, direction);
+  const looked = (await page.evaluate(() => window.colltrans.probe().state.assembly.direction));
+  assert.ok(looked[2] > 0 && looked[1] < 0, looked.join());
+  await page.click(".assembly-panel button:text-is('+z') >> nth=-1");
+  await page.waitForFunction(() => /^4 of 16/.test(document.querySelector("#assembly-headline")?.textContent));
+  await page.locator(".sphere").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => window.colltrans.probe().state.assembly.direction[2] < 1);
+  // The address leads back.
+  await page.waitForFunction(() => {
+    const fields = new URLSearchParams(location.hash.slice(1));
+    return fields.has("apart") && fields.get("ad") === window.colltrans.probe().state.assembly.direction.join(",");
+  });
+  const again = await opened(new URL(page.url()).hash.replace(/^#/, "&").replace("&tab=assembly", ""));
+  await page.waitForFunction((along) => JSON.stringify(window.colltrans.probe().assembly.along) === along, JSON.stringify((await probe(again)).along));
+  assert.deepEqual([...page.complaints, ...again.complaints], []);
+  await page.context().close();
+  await again.context().close();
+});
+
+test("files are chosen, refused and dropped; the page stays alive", async () => {
+  const page = await opened();
+  const choose = async (files) => {
+    const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("text=Choose files…")]);
+    await chooser.setFiles(files);
+  };
+  await choose([{ name: "bad.off", mimeType: "", buffer: Buffer.from("OFF\n1 0 0\n0 zero 0\n") }]);
+  await page.waitForSelector(".assembly-panel [role=alert]");
+  assert.match(await page.textContent(".assembly-panel [role=alert]"), /^bad\.off: line 3/);
+  await choose([{ name: "bad.glb", mimeType: "", buffer: Buffer.from("glTF, but no more") }]);
+  await page.waitForFunction(() => /bad\.glb: glTF/.test(document.querySelector(".assembly-panel [role=alert]")?.textContent));
+  await choose(["housing.off", "shaft.off"].map((name) => join(gearbox, name)));
+  await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 2 && window.colltrans.probe().assembly.fit);
+  await page.waitForSelector("text=1 of 2 parts come out along d");
+  const files = readdirSync(gearbox).filter((name) => name.startsWith("bolt"));
+  assert.equal(files.length, 4);
+  // With what takes long the frames go on.
+  const frames = page.evaluate(() => new Promise((resolve) => {
+    let count = 0;
+    const began = performance.now();
+    const frame = () => (performance.now() - began > 1000 ? resolve(count) : (count++, requestAnimationFrame(frame)));
+    requestAnimationFrame(frame);
+  }));
+  await page.click("text=Small gearbox");
+  assert.ok((await frames) > 5, `${await frames} frames`);
+  await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 16);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("on a phone, and without WebGL", async () => {
+  const page = await opened("", { viewport: { width: 360, height: 640 }, hasTouch: true });
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 360);
+  await page.tap(".part:has-text('cover')");
+  await page.waitForSelector(".part[aria-pressed=true]");
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+  const without = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"] });
+  const plain = await without.newPage();
+  await plain.goto(`${base}#tab=assembly`);
+  await plain.waitForSelector("#assembly-headline");
+  await planned(plain);
+  assert.match(await plain.textContent(".assembly-view"), /WebGL 2/);
+  await without.close();
+});

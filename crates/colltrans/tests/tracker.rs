@@ -45,6 +45,23 @@ fn every_family_against_one_off_queries() {
     assert!(features > queries / 2, "{features} of {queries}");
 }
 
+/// Two boxes pass each other corner by corner, by two roundings: the corner is the nearest point of
+/// the shadow, and so is a rounded one of the edge there.
+#[test]
+fn boxes_that_pass_by_their_corners_are_apart_for_every_lane() {
+    let mut walk = Walk::new("boxes", 1_726_576_853_074);
+    let bodies = walk.setting.bodies().expect("a body");
+    let mut lanes = Lanes::new(&bodies);
+    while walk.step < 34 {
+        for finding in lanes.ask(&walk.setting, walk.step >= 29) {
+            if let Err(e) = finding.verdict {
+                panic!("{walk} {}: {e}", finding.lane);
+            }
+        }
+        walk.advance();
+    }
+}
+
 /// What a query with two casts found, as outcomes along the direction and against it.
 fn range_ends(range: &ContactRange) -> Vec<Outcome> {
     match *range {

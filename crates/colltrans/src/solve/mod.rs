@@ -134,17 +134,24 @@ impl<O: Observer> Run<'_, '_, O> {
         match enclosure {
             None => Err(stalled(Stalled::NoPortal)),
             Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
-            Some(Enclosure::Beside(found)) => {
-                if let Some(separated) = self.separated(&found, next) {
-                    return Ok(Outcome::Separated(separated));
-                }
-                let widest = portal::widest_margin(&self.difference, found, &mut self.watch);
-                if let Some(separated) = self.separated(&widest, next) {
-                    return Ok(Outcome::Separated(separated));
-                }
-                self.touching(&widest, next).map(Outcome::Grazing)
-            }
+            Some(Enclosure::Beside(found)) => self.passed(found, next),
         }
+    }
+
+    /// The line passes `M`, or its rim: separated if that can be told, else grazing.
+    fn passed(
+        &mut self,
+        found: SeparatingLine,
+        next: &mut WarmStart,
+    ) -> Result<Outcome, QueryError> {
+        if let Some(separated) = self.separated(&found, next) {
+            return Ok(Outcome::Separated(separated));
+        }
+        let widest = portal::widest_margin(&self.difference, found, &mut self.watch);
+        if let Some(separated) = self.separated(&widest, next) {
+            return Ok(Outcome::Separated(separated));
+        }
+        self.touching(&widest, next).map(Outcome::Grazing)
     }
 
     /// Feature focus: a portal, or a separating direction, from those of the last answer.
@@ -301,7 +308,7 @@ impl<O: Observer> Run<'_, '_, O> {
             Some(optimum) => optimum,
             None => match portal::refine(&self.difference, portal, most, &mut self.watch) {
                 Some(Refined::Optimum(optimum)) => optimum,
-                Some(Refined::Rim(rim)) => return self.touching(&rim, next).map(Outcome::Grazing),
+                Some(Refined::Rim(rim)) => return self.passed(rim, next),
                 None => return Err(stalled(Stalled::Cycle)),
             },
         };

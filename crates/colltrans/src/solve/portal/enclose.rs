@@ -48,6 +48,9 @@ struct Tangent {
 /// How far beyond the line the model aims, in multiples of the distance to it, try by try.
 const OVERSHOOT: [f64; 2] = [1.6, 6.0];
 
+/// Points in a row that bring the segment no nearer to the line: three are known to be needed.
+const MOST_STALLS: usize = 8;
+
 /// Bound on the number of points: far beyond what any body needs; reaching it is reported, never
 /// hidden.
 const MAX_POINTS: usize = 10_000;
@@ -242,6 +245,7 @@ pub(crate) fn widest_margin<O: Observer>(
 ) -> SeparatingLine {
     let mut segment = [found.point; 2];
     let mut best = found;
+    let mut stalls = 0;
     for _ in 0..MAX_POINTS {
         let Some((normal, distance)) = from_segment(&segment) else { break };
         let lateral: DVec3 = normal.extend(0.0);
@@ -254,7 +258,9 @@ pub(crate) fn widest_margin<O: Observer>(
         let options = [[segment[0], point], [segment[1], point]];
         let away = options.map(|s| from_segment(&s).map_or(0.0, |(_, distance)| distance));
         let nearer = usize::from(away[1] < away[0]);
-        if distance - margin <= difference.noise.point() || away[nearer] >= distance {
+        // As far up to rounding, a new segment may still have the better normal.
+        stalls = if away[nearer] < distance { 0 } else { stalls + 1 };
+        if distance - margin <= difference.noise.point() || stalls > MOST_STALLS {
             break;
         }
         segment = options[nearer];

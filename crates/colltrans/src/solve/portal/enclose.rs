@@ -49,7 +49,10 @@ struct Tangent {
 const OVERSHOOT: [f64; 2] = [1.6, 6.0];
 
 /// Points in a row that bring the segment no nearer to the line: three are known to be needed.
-const MOST_STALLS: usize = 8;
+const MOST_STALLS: usize = 4;
+
+/// What counts as nearer, in noises.
+const PROGRESS: f64 = 1.0 / 64.0;
 
 /// Bound on the number of points: far beyond what any body needs; reaching it is reported, never
 /// hidden.
@@ -245,7 +248,7 @@ pub(crate) fn widest_margin<O: Observer>(
 ) -> SeparatingLine {
     let mut segment = [found.point; 2];
     let mut best = found;
-    let mut stalls = 0;
+    let (mut nearest, mut stalls) = (f64::INFINITY, 0);
     for _ in 0..MAX_POINTS {
         let Some((normal, distance)) = from_segment(&segment) else { break };
         let lateral: DVec3 = normal.extend(0.0);
@@ -259,7 +262,8 @@ pub(crate) fn widest_margin<O: Observer>(
         let away = options.map(|s| from_segment(&s).map_or(0.0, |(_, distance)| distance));
         let nearer = usize::from(away[1] < away[0]);
         // As far up to rounding, a new segment may still have the better normal.
-        stalls = if away[nearer] < distance { 0 } else { stalls + 1 };
+        let closer = nearest - away[nearer] > PROGRESS * difference.noise.point();
+        (nearest, stalls) = if closer { (away[nearer], 0) } else { (nearest, stalls + 1) };
         if distance - margin <= difference.noise.point() || stalls > MOST_STALLS {
             break;
         }

@@ -6,7 +6,7 @@
 //!
 //! Where overlaps are ignored, parts that overlap are the costly ones: all of what crosses now has to
 //! be passed over. So facets that stopped the part at once along another direction are asked first
-//! ([`Witnesses`]), and once something stops it within [`Bodies::noise`], no more of those that it
+//! (`Witnesses`), and once something stops it within `Bodies::noise`, no more of those that it
 //! overlaps are asked: which of them stops it "at once" is a matter of the files' last digits.
 
 use colltrans::{StartOverlap, Workspace};

@@ -158,14 +158,13 @@ impl<'a> Section<'a> {
     /// The lowest vertex.
     pub(super) fn bottom(&self) -> Option<Bottom> {
         let (snapshot, lowest) = self.lowest()?;
-        let up = self.reach(snapshot.up(lowest), usize::MAX - 1, |h| h)?;
+        let up = self.reach(snapshot.up(lowest), usize::MAX, |h| h)?;
         Some(self.descend(up, self.step_limit()).unwrap_or_else(|last| last))
     }
 
-    /// The same, from an edge upwards that crosses the level before, if that is near.
+    /// The same, from an edge upwards that crosses a level nearby.
     pub(super) fn bottom_from(&self, last: u32) -> Option<Bottom> {
-        if self.is_near
-            && let Some(up) = self.reach(last, STEPS_NEAR, |h| h)
+        if let Some(up) = self.reach(last, STEPS_NEAR, |h| h)
             && let Ok(found) = self.descend(up, STEPS_NEAR)
         {
             return Some(found);
@@ -213,13 +212,9 @@ impl<'a> Section<'a> {
         let turn = self.side.turn_up(chain);
         self.side.count(snapshot.halvings());
         let index = snapshot.locate(height, (lowest, highest), turn, (h, self.x));
-        let up = self.reach(snapshot.up(index), usize::MAX - 1, |height| (height - h).abs())?;
+        let up = self.reach(snapshot.up(index), usize::MAX, |height| (height - h).abs())?;
         let start = self.crossing(up);
-        let mut bracket = if start.h() <= h {
-            Bracket::new(start, self.up(chain, &start))
-        } else {
-            Bracket::new(self.down(chain, &start), start)
-        };
+        let mut bracket = self.edge_toward(chain, start, h);
         if !chain.ascends(bracket.direction) {
             bracket = self.any_edge(chain, start);
         }
@@ -252,11 +247,7 @@ impl<'a> Section<'a> {
     /// The same in a few steps.
     fn locate_near(&self, chain: Chain, h: f64, last: u32) -> Option<Bracket> {
         let start = self.crossing(self.reach(last, STEPS_NEAR, |height| (height - h).abs())?);
-        let mut bracket = if start.h() <= h {
-            Bracket::new(start, self.up(chain, &start))
-        } else {
-            Bracket::new(self.down(chain, &start), start)
-        };
+        let mut bracket = self.edge_toward(chain, start, h);
         if !chain.ascends(bracket.direction) {
             return None;
         }
@@ -270,6 +261,15 @@ impl<'a> Section<'a> {
             bracket = self.retreat(chain, &bracket)?;
         }
         None
+    }
+
+    /// The edge at a vertex of the section that leads towards height `h`, on a chain or past its ends.
+    fn edge_toward(&self, chain: Chain, start: Crossing, h: f64) -> Bracket {
+        if start.h() <= h {
+            Bracket::new(start, self.up(chain, &start))
+        } else {
+            Bracket::new(self.down(chain, &start), start)
+        }
     }
 
     /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite

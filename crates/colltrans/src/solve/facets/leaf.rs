@@ -102,8 +102,11 @@ struct Turn {
 struct Turns([[Turn; 3]; 3]);
 
 impl Turns {
-    fn new(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
-        Self([0, 1, 2].map(|k| Self::about(scene, sides, k, corners)))
+    /// With exact signs.
+    fn exact(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
+        let mut turns = Self([0, 1, 2].map(|k| Self::about(scene, sides, k, corners)));
+        turns.resolve(scene, sides, corners);
+        turns
     }
 
     /// `None` if a side certainly has all corners on its outer side.
@@ -195,9 +198,7 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
 /// The least gap of two facets whose shadows overlap, exact but for its last roundings, and where.
 /// Corners of the common shadow that rounding says are not the lowest are left out.
 pub(super) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meeting) {
-    let (mut of_f, mut of_g) = (Turns::new(scene, f, g), Turns::new(scene, g, f));
-    of_f.resolve(scene, f, g);
-    of_g.resolve(scene, g, f);
+    let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
     let mut least = f64::INFINITY;
     each_gap(scene, f, g, &of_f, &of_g, |(value, error), _| least = least.min(value + error));
     let low = |(value, error): (f64, f64)| value - error <= least;
@@ -216,9 +217,7 @@ pub(super) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meetin
 
 /// The gap of two facets whose shadows overlap, exact but for its last roundings.
 pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
-    let (mut of_f, mut of_g) = (Turns::new(scene, f, g), Turns::new(scene, g, f));
-    of_f.resolve(scene, f, g);
-    of_g.resolve(scene, g, f);
+    let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
     exact(scene, f, g, &of_f, &of_g, |_| true)
 }
 

@@ -101,7 +101,7 @@ fn solve_near(sections: &[Section; 2], hint: &Hint) -> Option<Planar> {
         Last::Bottom { upper, vertex, between } if sections.iter().all(Section::is_near) => {
             let bottom = sections[upper].bottom_from(vertex)?;
             let problem = Problem { sections, upper, h0: bottom.vertex.h() };
-            problem.solve_between(&bottom, between)
+            problem.solve_near(&bottom, between)
         }
         Last::Nothing | Last::Bottom { .. } => None,
     }
@@ -113,37 +113,43 @@ impl Problem<'_, '_> {
         let lower = &self.sections[1 - self.upper];
         let ends = self.ends(bottom);
         let nearer = if ends[1].g() < aside { Chain::Left } else { Chain::Right };
+        self.solve_between(bottom, &ends, nearer, |chain| lower.locate(chain, self.h0))
+    }
+
+    /// With the bottom of one section, if the other one, which had these edges in the problem before,
+    /// reaches its height.
+    fn solve_near(&self, bottom: &Bottom, last: [u32; 2]) -> Option<Planar> {
+        let lower = &self.sections[1 - self.upper];
+        self.solve_between(bottom, &self.ends(bottom), Chain::Left, |chain| {
+            let last = last[usize::from(chain == Chain::Right)];
+            lower.locate_from(chain, self.h0, last).map(Located::Edge)
+        })
+    }
+
+    /// With a way to find the lower section's edges at the bottom's height, and the chain to look at
+    /// first.
+    fn solve_between(
+        &self,
+        bottom: &Bottom,
+        ends: &[Crossing; 2],
+        first: Chain,
+        locate: impl Fn(Chain) -> Option<Located>,
+    ) -> Option<Planar> {
         let mut found = [None; 2];
-        for chain in [nearer, nearer.opposite()] {
-            let edge = match lower.locate(chain, self.h0)? {
+        for chain in [first, first.opposite()] {
+            let edge = match locate(chain)? {
                 Located::Edge(edge) => edge,
                 Located::Beyond(topmost) => {
                     return Some(self.separated_by_height(&bottom.vertex, &topmost.high));
                 }
                 Located::Short => return None,
             };
-            if let Some(end) = self.beyond(chain, &edge, &ends) {
+            if let Some(end) = self.beyond(chain, &edge, ends) {
                 return self.slide(*end, chain, edge);
             }
             found[usize::from(chain == Chain::Right)] = Some(edge);
         }
-        Some(self.inside(&ends, [found[0]?, found[1]?]))
-    }
-
-    /// With the bottom of one section, if the other one, which had these edges in the problem before,
-    /// reaches its height.
-    fn solve_between(&self, bottom: &Bottom, last: [u32; 2]) -> Option<Planar> {
-        let lower = &self.sections[1 - self.upper];
-        let ends = self.ends(bottom);
-        let left = lower.locate_from(Chain::Left, self.h0, last[0])?;
-        if let Some(end) = self.beyond(Chain::Left, &left, &ends) {
-            return self.slide(*end, Chain::Left, left);
-        }
-        let right = lower.locate_from(Chain::Right, self.h0, last[1])?;
-        if let Some(end) = self.beyond(Chain::Right, &right, &ends) {
-            return self.slide(*end, Chain::Right, right);
-        }
-        Some(self.inside(&ends, [left, right]))
+        Some(self.inside(ends, [found[0]?, found[1]?]))
     }
 
     /// Both ends of the upper section's bottom, from left to right.

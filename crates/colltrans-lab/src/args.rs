@@ -14,7 +14,7 @@ Translations of Convex Polyhedra\", IEEE Transactions on Robotics 23(3), 2007, s
 Results, in the folder given by --output (files of these names are replaced):
   report.html              every figure and table beside the claims it supports or refutes, and
                            where the numbers come from; one page that needs nothing else
-  claims.csv               every claim with its numbers, intervals and verdict
+  claims.json              every claim with its numbers, intervals and verdict, for programs
   figure-NN....csv         the data: series,x,y,low,high,count
   figure-NN....svg, .png   the figure
   table-N....csv           the table

@@ -1,7 +1,6 @@
 //! Figures and tables as comma-separated values (RFC 4180, lines end with a line feed).
 
-use crate::claims::PaperClaim;
-use crate::finding::{Claim, Figure, Table};
+use crate::finding::{Figure, Table};
 
 /// The points of a figure, a row each: the measured series, then those to compare with.
 ///
@@ -24,21 +23,6 @@ pub fn table(table: &Table) -> String {
     let mut text = String::new();
     row(&mut text, table.columns.iter());
     table.rows.iter().for_each(|cells| row(&mut text, cells.iter()));
-    text
-}
-
-/// Claims, a row for each criterion: numbers with their intervals, and the verdict on the claim.
-pub fn claims<'c>(claims: impl Iterator<Item = &'c Claim>) -> String {
-    let mut text = String::from("claim,statement,paper,place,criterion,value,low,high,verdict\n");
-    for claim in claims {
-        let PaperClaim { id, statement, paper, place, criteria } = claim.paper;
-        for (criterion, measured) in criteria.iter().zip(&claim.measured) {
-            let numbers = [measured.value, measured.low, measured.high].map(number);
-            let words = [*id, statement, paper, place, criterion.what].map(str::to_owned);
-            let verdict = claim.verdict.to_string();
-            row(&mut text, words.iter().chain(&numbers).chain([&verdict]));
-        }
-    }
     text
 }
 

@@ -7,10 +7,11 @@
 //! The data's way: [`claims`] (what is to be tested) and [`plan`] (how much) -> `shapes`, `shadow`,
 //! `settings` (what on) -> `experiments` (what is measured, by `contestants`) -> [`statistics`]
 //! (intervals) -> [`finding`] (figures, tables, claims with verdicts)
-//! -> [`draw`], [`csv`], [`report`] (what a reader sees). [`run()`] goes all the way and writes the
+//! -> [`draw`], [`csv`], `claims_json`, [`report`] (what a reader sees). [`run()`] goes all the way and writes the
 //! files.
 
 pub mod claims;
+mod claims_json;
 mod contestants;
 pub mod csv;
 pub mod draw;

@@ -1,9 +1,9 @@
 //! Runs experiments and leaves what they find in a folder.
 //!
 //! The folder gets, for each figure, `ID.csv`, `ID.svg` and `ID.png`, for each table `ID.csv`, the
-//! verdicts in `claims.csv`, and one `report.html`. Everything is written as soon as it is known: a long run that is interrupted
-//! leaves a report about what was finished, and a folder that cannot be written to is found out
-//! before anything is measured.
+//! claims with their verdicts in `claims.json`, and one `report.html`. Everything is written as soon
+//! as it is known: a long run that is interrupted leaves a report about what was finished, and a
+//! folder that cannot be written to is found out before anything is measured.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::error::LabError;
 use crate::finding::Finding;
 use crate::plan::{Plan, Progress};
 use crate::report::{self, Done, Report};
-use crate::{Experiment, csv, shapes};
+use crate::{Experiment, claims_json, csv, shapes};
 use colltrans_kit::provenance::{Provenance, for_people};
 
 /// What a run found, in short: its [`Display`](fmt::Display) is for people.
@@ -51,8 +51,8 @@ pub fn run(
     let write_report = |done: &[Done]| {
         let (all, wall) = (experiments.len(), start.elapsed());
         let report = Report { provenance: &provenance, plan, done, all, wall };
-        let claims = csv::claims(done.iter().flat_map(|done| &done.finding.claims));
-        write(&directory.join("claims.csv"), claims.as_bytes())?;
+        let claims = format!("{:#}\n", claims_json::claims(&report));
+        write(&directory.join("claims.json"), claims.as_bytes())?;
         write(&path, report::html(&report).as_bytes())
     };
     std::fs::create_dir_all(directory)

@@ -34,7 +34,7 @@ fn the_folder_holds_everything() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     let expected = [
-        "claims.csv",
+        "claims.json",
         "figure-12-near.csv",
         "figure-12-near.png",
         "figure-12-near.svg",
@@ -50,10 +50,18 @@ fn the_folder_holds_everything() {
     let report = std::fs::read_to_string(&summary.report).unwrap();
     assert!(report.contains("Figure 12") && report.contains("Table 1"));
     assert!(!report.contains("were finished when"), "the last report is complete");
-    let claims = std::fs::read_to_string(results.join("claims.csv")).unwrap();
-    assert_eq!(claims.lines().count(), 1 + 8);
-    let row = "12-faster,It is faster than the others.,half,\"V-A, figure 12\",ratio,2,1.5,2.5,does not hold";
-    assert!(claims.lines().any(|line| line == row), "{claims}");
+    let text = std::fs::read_to_string(results.join("claims.json")).unwrap();
+    let read: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let claims = read["claims"].as_array().unwrap();
+    assert_eq!((claims.len(), &read["scale"], &read["seed"]), (8, &"tiny".into(), &31.into()));
+    let faster = claims.iter().find(|claim| claim["id"] == "12-faster").unwrap();
+    let expected = serde_json::json!({
+        "id": "12-faster", "statement": "It is faster than the others.", "paper": "half",
+        "place": "V-A, figure 12", "verdict": "does not hold", "why": faster["why"],
+        "measured": [{ "what": "ratio", "value": 2.0, "low": 1.5, "high": 2.5 }],
+    });
+    assert_eq!(*faster, expected);
+    assert!(faster["why"].is_string(), "{faster}");
     let table = std::fs::read_to_string(results.join("table-1-table.csv")).unwrap();
     assert!(table.ends_with("31,31,31\n"), "the plan reaches the experiments");
     let parts: Vec<_> = heard.0.iter().map(|(done, all, what)| (*done, *all, &**what)).collect();

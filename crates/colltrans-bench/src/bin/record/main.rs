@@ -3,9 +3,11 @@
 //! The runs are the JSON files that `table`, `paper`, `coherence` and `solids` write, and the text that
 //! `campaign` prints, named `YYYY-MM-DD-WHAT.json` or `.txt`. Of each kind the newest one goes into
 //! `docs/measurements.md`, the picture `docs/speed.svg` and the table of the README, so that no
-//! number there is typed by hand.
+//! number there is typed by hand. The claims of the laboratory (`claims.json` of two runs with
+//! different seeds, `laboratory` and `laboratory-again`) go into `docs/laboratory.md`.
 
 mod algorithm;
+mod laboratory;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -19,8 +21,8 @@ use colltrans_lab::draw::draw;
 use colltrans_lab::finding::{Axis, Figure, Point, Series};
 use serde_json::Value;
 
-/// Makes docs/measurements.md, docs/speed.svg and the README's table from the runs in
-/// docs/measurements
+/// Makes docs/measurements.md, docs/speed.svg, the README's table and the claims in
+/// docs/laboratory.md from the runs in docs/measurements
 #[derive(Debug, Parser)]
 struct Command {
     /// The root of the repository
@@ -111,12 +113,18 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
             )?;
         }
     }
-    let readme = fs::read_to_string(command.root.join("README.md"))?;
-    let files = [
+    let old = |name: &str| -> Result<String, Failure> {
+        Ok(fs::read_to_string(command.root.join(name)).map_err(|e| format!("{name}: {e}"))?)
+    };
+    let mut files = vec![
         ("docs/measurements.md", page),
         ("docs/speed.svg", draw(&speed(&table)).map_err(|e| format!("speed.svg: {e}"))?.svg),
-        ("README.md", with_table(&readme, &small_table(&table)?)?),
+        ("README.md", between("speed", &old("README.md")?, &small_table(&table)?)?),
     ];
+    if let [Some(run), Some(again)] = [parsed("laboratory")?, parsed("laboratory-again")?] {
+        let name = "docs/laboratory.md";
+        files.push((name, between("claims", &old(name)?, &laboratory::claims(&run, &again)?)?));
+    }
     let mut changed = Vec::new();
     for (name, text) in files {
         let path = command.root.join(name);
@@ -449,15 +457,13 @@ fn small_table(run: &Value) -> Result<String, Failure> {
     Ok(table)
 }
 
-const BEGIN: &str = "<!-- speed: begin -->\n";
-const END: &str = "<!-- speed: end -->";
-
-/// The README with another table between the markers.
-fn with_table(readme: &str, table: &str) -> Result<String, Failure> {
-    let (before, rest) = readme.split_once(BEGIN).ok_or("README.md: no marker of the table")?;
-    let (_, after) =
-        rest.split_once(END).ok_or("README.md: the marker of the table's end is missing")?;
-    Ok(format!("{before}{BEGIN}{table}{END}{after}"))
+/// A page with other text between the markers `NAME: begin` and `NAME: end`.
+fn between(name: &str, page: &str, text: &str) -> Result<String, Failure> {
+    let [begin, end] = ["begin", "end"].map(|edge| format!("<!-- {name}: {edge} -->"));
+    let missing = |marker: &str| format!("the marker {marker} is missing");
+    let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;
+    let (_, after) = rest.split_once(&end).ok_or_else(|| missing(&end))?;
+    Ok(format!("{before}{begin}\n{text}{end}{after}"))
 }
 
 #[cfg(test)]
@@ -472,10 +478,10 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_replaced_between_its_markers() {
-        let readme = format!("a\n{BEGIN}old{END}\nb\n");
-        assert_eq!(with_table(&readme, "new\n").unwrap(), format!("a\n{BEGIN}new\n{END}\nb\n"));
-        assert!(with_table("nothing", "new").is_err());
+    fn text_is_replaced_between_its_markers() {
+        let page = |text: &str| format!("a\n<!-- x: begin -->\n{text}<!-- x: end -->\nb\n");
+        assert_eq!(between("x", &page("old\n"), "new\n").unwrap(), page("new\n"));
+        assert!(between("y", &page("old\n"), "new").is_err());
     }
 
     #[test]

@@ -1,0 +1,45 @@
+//! The claims of a run for programs: where the numbers come from, and of each claim the paper's words,
+//! what was measured with its interval, the verdict and why. Numbers that are not finite are `null`.
+
+use serde_json::{Value, json};
+
+use crate::finding::Claim;
+use crate::report::Report;
+
+/// All claims of a run.
+pub(crate) fn claims(report: &Report) -> Value {
+    let here = report.provenance;
+    let claims = report.done.iter().flat_map(|done| &done.finding.claims);
+    json!({
+        "date": here.date,
+        "command": here.command,
+        "machine": { "cpu": here.processor, "cores": here.cores, "system": here.system },
+        "versions": here.versions,
+        "build": here.build,
+        "scale": report.plan.scale.name(),
+        "seed": report.plan.seed,
+        "seconds": report.wall.as_secs(),
+        "experiments": { "done": report.done.len(), "all": report.all },
+        "claims": claims.map(claim).collect::<Vec<_>>(),
+    })
+}
+
+fn claim(claim: &Claim) -> Value {
+    let measured = claim.paper.criteria.iter().zip(&claim.measured).map(|(criterion, measured)| {
+        json!({
+            "what": criterion.what,
+            "value": measured.value,
+            "low": measured.low,
+            "high": measured.high,
+        })
+    });
+    json!({
+        "id": claim.paper.id,
+        "statement": claim.paper.statement,
+        "paper": claim.paper.paper,
+        "place": claim.paper.place,
+        "measured": measured.collect::<Vec<_>>(),
+        "verdict": claim.verdict.to_string(),
+        "why": claim.why,
+    })
+}

@@ -1,29 +1,30 @@
-//! The section of a body at one level: searched in a snapshot, walked on the mesh.
-
-use std::cell::OnceCell;
+//! The section of a body at one level, walked on the mesh.
+//!
+//! Every walk has a limit, the section's: how many mesh vertices it may pass, or edges of the
+//! section. Where a walk begins is a guess, and where it ends does not depend on it.
 
 use glam::DVec2;
 
 use super::crossing::{Bracket, Chain, Crossing, is_horizontal};
 use super::side::Side;
-use crate::body::convex::sections::{Snapshot, Turn, next_clockwise, next_counter_clockwise};
-
-/// Newton's method walks so far up a chain before it searches the snapshot.
-const STEPS_BEFORE_SEARCH: usize = 2;
-
-/// Mesh vertices passed, and edges of a section walked, from the answer at other levels before the
-/// snapshot is searched.
-const STEPS_NEAR: usize = 6;
+use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
 
 /// Where a height was found on a chain.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Located {
-    /// On this edge.
+    /// On this edge, or below it if that is the chain's first.
     Edge(Bracket),
     /// The chain ends below: its topmost edge.
     Beyond(Bracket),
-    /// Further up than the walk went.
-    Short,
+}
+
+impl Located {
+    /// The edge there, or the nearest.
+    pub(super) fn edge(self) -> Bracket {
+        match self {
+            Self::Edge(edge) | Self::Beyond(edge) => edge,
+        }
+    }
 }
 
 /// The lowest vertex of a section and the directions of its polygon edges up both chains.
@@ -34,44 +35,15 @@ pub(super) struct Bottom {
 }
 
 /// The section of a body at one level.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Section<'a> {
-    side: &'a Side<'a>,
-    /// Once asked for: the nearest snapshot and its lowest entry. `None` if rounding leaves the
-    /// body no sections.
-    lowest: OnceCell<Option<(Snapshot<'a>, usize)>>,
-    /// Once asked for: its highest entry.
-    highest: OnceCell<usize>,
-    x: f64,
-    /// Whether edges that cross the level of the problem before are a few vertices away.
-    is_near: bool,
+    pub(super) side: &'a Side<'a>,
+    pub(super) x: f64,
+    /// Steps of a walk at most.
+    pub(super) limit: usize,
 }
 
-impl<'a> Section<'a> {
-    /// At level `x` of the side's range, after a problem at level `last`.
-    pub(super) fn new(side: &'a Side<'a>, x: f64, last: f64) -> Self {
-        let is_near = (x - last).abs() <= side.near;
-        Self { side, lowest: OnceCell::new(), highest: OnceCell::new(), x, is_near }
-    }
-
-    /// Whether the level of the problem before is near.
-    pub(super) fn is_near(&self) -> bool {
-        self.is_near
-    }
-
-    fn lowest(&self) -> Option<(Snapshot<'a>, usize)> {
-        *self.lowest.get_or_init(|| {
-            let snapshot = self.side.sections.snapshot(self.x);
-            let lowest = || snapshot.extreme(&self.side.height, 1.0);
-            (!snapshot.is_empty()).then(|| (snapshot, lowest()))
-        })
-    }
-
-    /// More steps along one section than this are a walk in circles.
-    pub(super) fn step_limit(&self) -> usize {
-        self.side.topology.edge_count()
-    }
-
+impl Section<'_> {
     fn crossing(&self, up: u32) -> Crossing {
         self.side.count(1);
         let topology = self.side.topology;
@@ -118,12 +90,12 @@ impl<'a> Section<'a> {
     }
 
     /// From an edge upwards along the mesh to one that crosses the level, at each vertex by the edge
-    /// whose line has the least `score` at the level. `None` if it passes more than `limit` vertices,
-    /// or if rounding hides the way.
-    fn reach(&self, from: u32, limit: usize, score: impl Fn(f64) -> f64) -> Option<u32> {
+    /// whose line has the least `score` at the level. `None` if that is too far, or if rounding hides
+    /// the way.
+    fn reach(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
         let topology = self.side.topology;
         let mut up = from;
-        for _ in 0..=limit {
+        for _ in 0..=self.limit {
             let (low, high) = (topology.half_edge(up).origin, topology.target(up));
             if self.side.level(high) <= self.x {
                 up = self.best_edge(high, 1.0, &score)?;
@@ -155,30 +127,12 @@ impl<'a> Section<'a> {
         found
     }
 
-    /// The lowest vertex.
-    pub(super) fn bottom(&self) -> Option<Bottom> {
-        let (snapshot, lowest) = self.lowest()?;
-        let up = self.reach(snapshot.up(lowest), usize::MAX, |h| h)?;
-        Some(self.descend(up, self.step_limit()).unwrap_or_else(|last| last))
-    }
-
-    /// The same, from an edge upwards that crosses a level nearby.
-    pub(super) fn bottom_from(&self, last: u32) -> Option<Bottom> {
-        if let Some(up) = self.reach(last, STEPS_NEAR, |h| h)
-            && let Ok(found) = self.descend(up, STEPS_NEAR)
-        {
-            return Some(found);
-        }
-        self.bottom()
-    }
-
-    /// Down the section from the vertex on an edge to its lowest one; where it came to, if that is
-    /// more than `limit` steps away.
-    fn descend(&self, up: u32, limit: usize) -> Result<Bottom, Bottom> {
-        let vertex = self.crossing(up);
+    /// The lowest vertex, from an edge upwards that crosses a level nearby.
+    pub(super) fn bottom(&self, from: u32) -> Option<Bottom> {
+        let vertex = self.crossing(self.reach(from, |h| h)?);
         let directions = [Chain::Left, Chain::Right].map(|chain| self.direction(chain, &vertex));
         let mut bottom = Bottom { vertex, directions };
-        for _ in 0..limit {
+        for _ in 0..self.limit {
             let [left, right] = bottom.directions;
             if !Chain::Left.ascends(left) {
                 let vertex = self.up(Chain::Left, &bottom.vertex);
@@ -189,10 +143,10 @@ impl<'a> Section<'a> {
                 let ahead = self.direction(Chain::Right, &vertex);
                 bottom = Bottom { vertex, directions: [-right, ahead] };
             } else {
-                return Ok(bottom);
+                return Some(bottom);
             }
         }
-        Err(bottom)
+        None
     }
 
     /// The end towards `chain` of the lowest edge if that is horizontal, else the lowest vertex.
@@ -204,61 +158,37 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The edge of a chain at height `h`, which is not below the bottom.
-    pub(super) fn locate(&self, chain: Chain, h: f64) -> Option<Located> {
-        let height = &self.side.height;
-        let (snapshot, lowest) = self.lowest()?;
-        let highest = *self.highest.get_or_init(|| snapshot.extreme(height, -1.0));
-        let turn = self.side.turn_up(chain);
-        self.side.count(snapshot.halvings());
-        let index = snapshot.locate(height, (lowest, highest), turn, (h, self.x));
-        let up = self.reach(snapshot.up(index), usize::MAX, |height| (height - h).abs())?;
-        let start = self.crossing(up);
+    /// The edge of a chain at height `h`, from an edge upwards that crosses a level nearby.
+    pub(super) fn locate(&self, chain: Chain, h: f64, from: u32) -> Option<Located> {
+        let start = self.crossing(self.reach(from, |height| (height - h).abs())?);
         let mut bracket = self.edge_toward(chain, start, h);
         if !chain.ascends(bracket.direction) {
-            bracket = self.any_edge(chain, start);
+            bracket = self.any_edge(chain, start)?;
         }
-        for _ in 0..self.step_limit() {
+        for _ in 0..self.limit {
             if bracket.low.h() <= h {
-                break;
+                return self.climb(chain, bracket, h);
             }
             match self.retreat(chain, &bracket) {
                 Some(below) => bracket = below,
-                None => break,
+                None => return self.climb(chain, bracket, h),
             }
         }
-        Some(self.walk(chain, bracket, h, self.step_limit()))
+        None
     }
 
-    /// The edge of a chain at height `h`, from an edge upwards that crosses the level before, if that
-    /// is near; `None` if the chain does not reach the height.
-    pub(super) fn locate_from(&self, chain: Chain, h: f64, last: u32) -> Option<Bracket> {
-        if self.is_near
-            && let Some(found) = self.locate_near(chain, h, last)
-        {
-            return Some(found);
-        }
-        match self.locate(chain, h)? {
-            Located::Edge(edge) if edge.low.h() <= h => Some(edge),
-            _ => None,
-        }
-    }
-
-    /// The same in a few steps.
-    fn locate_near(&self, chain: Chain, h: f64, last: u32) -> Option<Bracket> {
-        let start = self.crossing(self.reach(last, STEPS_NEAR, |height| (height - h).abs())?);
-        let mut bracket = self.edge_toward(chain, start, h);
-        if !chain.ascends(bracket.direction) {
-            return None;
-        }
-        for _ in 0..STEPS_NEAR {
-            if bracket.low.h() <= h {
-                return match self.walk(chain, bracket, h, STEPS_NEAR) {
-                    Located::Edge(edge) => Some(edge),
-                    Located::Beyond(_) | Located::Short => None,
-                };
+    /// From an edge that is not above height `h`, or the chain's first, up to the one there.
+    fn climb(&self, chain: Chain, from: Bracket, h: f64) -> Option<Located> {
+        let mut bracket = from;
+        for _ in 0..self.limit {
+            if bracket.high.h() > h && !is_horizontal(bracket.direction) {
+                return Some(Located::Edge(bracket));
             }
-            bracket = self.retreat(chain, &bracket)?;
+            match self.proceed(chain, &bracket) {
+                Some(above) => bracket = above,
+                None if bracket.high.h() >= h => return Some(Located::Edge(bracket)),
+                None => return Some(Located::Beyond(bracket)),
+            }
         }
         None
     }
@@ -274,50 +204,22 @@ impl<'a> Section<'a> {
 
     /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite
     /// chain.
-    fn any_edge(&self, chain: Chain, start: Crossing) -> Bracket {
-        let mut bracket = Bracket::new(self.down(chain, &start), start);
-        if chain.ascends(bracket.direction) {
-            return bracket;
-        }
-        // Down the opposite chain and around the bottom, or back over the top: whichever is shorter.
-        let (mut ahead, mut back) = (start, bracket.low);
-        for _ in 0..self.step_limit() {
-            bracket = Bracket::new(ahead, self.up(chain, &ahead));
-            if chain.ascends(bracket.direction) {
-                break;
-            }
-            ahead = bracket.high;
+    fn any_edge(&self, chain: Chain, start: Crossing) -> Option<Bracket> {
+        // Around the bottom or back over the top: whichever is shorter.
+        let (mut ahead, mut back) = (start, start);
+        for _ in 0..self.limit {
             let below = Bracket::new(self.down(chain, &back), back);
             if chain.ascends(below.direction) {
-                return below;
+                return Some(below);
             }
             back = below.low;
-        }
-        bracket
-    }
-
-    /// From `bracket` up the chain to height `h`: a few steps along the mesh, or a search from
-    /// scratch.
-    pub(super) fn advance(&self, chain: Chain, bracket: &Bracket, h: f64) -> Option<Located> {
-        match self.walk(chain, *bracket, h, STEPS_BEFORE_SEARCH) {
-            Located::Short => self.locate(chain, h),
-            found => Some(found),
-        }
-    }
-
-    fn walk(&self, chain: Chain, bracket: Bracket, h: f64, limit: usize) -> Located {
-        let mut bracket = bracket;
-        for _ in 0..limit {
-            if bracket.high.h() > h && !is_horizontal(bracket.direction) {
-                return Located::Edge(bracket);
+            let above = Bracket::new(ahead, self.up(chain, &ahead));
+            if chain.ascends(above.direction) {
+                return Some(above);
             }
-            match self.proceed(chain, &bracket) {
-                Some(above) => bracket = above,
-                None if bracket.high.h() >= h => return Located::Edge(bracket),
-                None => return Located::Beyond(bracket),
-            }
+            ahead = above.high;
         }
-        Located::Short
+        None
     }
 
     /// The edge above `bracket` on its chain, if there is one.
@@ -326,9 +228,10 @@ impl<'a> Section<'a> {
         chain.ascends(above.direction).then_some(above)
     }
 
-    /// The edge below `bracket` on its chain, if there is one.
+    /// The edge below `bracket` on its chain, if there is one; a horizontal one is none.
     pub(super) fn retreat(&self, chain: Chain, bracket: &Bracket) -> Option<Bracket> {
         let below = Bracket::new(self.down(chain, &bracket.low), bracket.low);
-        chain.ascends(below.direction).then_some(below)
+        let rises = chain.ascends(below.direction) && !is_horizontal(below.direction);
+        rises.then_some(below)
     }
 }

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use glam::{DVec2, DVec3};
 
 use super::crossing::Chain;
-use crate::body::convex::sections::{AxisSections, SectionForm, Turn};
+use crate::body::convex::sections::{AxisSections, SectionMap, Turn};
 use crate::body::topology::Topology;
 
 /// Levels that are this many mean edges apart are near (measured).
@@ -30,7 +30,8 @@ pub(super) struct Side<'a> {
     axis: DVec3,
     pub(super) shadow: [DVec3; 2],
     constant: DVec2,
-    pub(super) height: SectionForm,
+    /// Of the sections onto the shadow plane.
+    pub(super) map: SectionMap,
     /// Levels closer than this are a few vertices apart, if these are spread evenly.
     pub(super) near: f64,
     /// The turn that leads up the left chain.
@@ -58,7 +59,7 @@ impl<'a> Side<'a> {
             axis: sections.axis,
             shadow,
             constant,
-            height: sections.form(shadow[0], constant.x),
+            map: sections.map(shadow, constant),
             // (level, h, g) is right-handed if the axis points along the direction; then
             // counter-clockwise leads from +h to +g, and from the bottom, at -h, to -g: up the left
             // chain.

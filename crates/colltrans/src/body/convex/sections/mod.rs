@@ -18,7 +18,7 @@ use glam::DVec3;
 
 use crate::body::topology::Topology;
 pub(crate) use axes::{AXES, AXIS_LENGTH, AxisPair};
-pub(crate) use snapshots::{AxisSections, SectionForm, Snapshot, Turn};
+pub(crate) use snapshots::{AxisSections, SectionMap, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};
 
 /// The sections of one body across its four section axes; empty for a body of dimension below 3.

@@ -1,23 +1,34 @@
-//! Snapshots: the whole section, in cyclic order, at chosen levels.
+//! Snapshots: edges of the section, in cyclic order, at chosen levels.
 //!
 //! The first snapshot is at the lowest level. The next one comes after the vertices passed have as
-//! many edges as [`EDGES_PER_ENTRY`] times the edges of the current section, so all snapshots
-//! together have `O(n)` entries, and a vertex of very many edges (the apex of a cone) gets a
-//! snapshot of its own. A query at level `x` starts from the last snapshot at or below `x`: no such
-//! vertex lies between. An entry holds a crossing edge and, as `f32`, where it crosses, and its
-//! *way*: how a climb from it, at each vertex along the edge that leads highest, moves per level up
-//! to the next snapshot. Where faces are thin, corners of the section pass many vertices between two
-//! snapshots, so that only the way tells where they are. Positions and ways only guide a search,
-//! whose end is decided on the mesh.
+//! many edges as [`EDGES_PER_ENTRY`] times its entries, so all snapshots together have `O(n)`
+//! entries, and a vertex of very many edges (the apex of a cone) gets a snapshot of its own. A query
+//! at level `x` starts from the last snapshot at or below `x`: no such vertex lies between.
+//!
+//! A walk from a snapshot passes the vertices between its level and `x`, and the edges between two
+//! entries. A snapshot of every `s`-th edge makes the next one come `s` times as soon: the first
+//! become fewer and the second more, in the same space. Where the faces are round, a section of `m`
+//! edges passes few vertices until the next one; where they are thin or large, a corner of the
+//! section passes a share of `m`. A stride `s` in proportion to the root of `m` suits both.
+//!
+//! An entry holds a crossing edge and, as `f32`, where it crosses, and its *way*: how a climb from
+//! it, at each vertex along the edge that leads highest, moves per level up to the next snapshot.
+//! Where faces are thin, corners of the section pass many vertices between two snapshots, so that only
+//! the way tells where they are. Positions and ways only guide a search, whose end is decided on the
+//! mesh.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::walk::next_counter_clockwise;
 use crate::body::topology::Topology;
 
-/// Edges of vertices passed per entry of a snapshot: about two vertices' worth of upward and
-/// downward edges.
+/// Edges of vertices passed per entry of a snapshot: about a vertex's worth of upward and downward
+/// edges.
 const EDGES_PER_ENTRY: usize = 4;
+
+/// A snapshot holds every `s`-th edge of the section, `s` being this share of the root of how many
+/// there are (measured).
+const STRIDE: f64 = 1.0 / 3.0;
 
 /// Candidates of one round of the search for an extreme entry.
 const CANDIDATES: usize = 16;
@@ -167,6 +178,8 @@ impl AxisSections {
         let Mesh { topology, levels: vertex_levels, .. } = *mesh;
         let mut edges_passed = 0;
         let mut edges_due = 0;
+        // The edges of one section.
+        let mut ring = Vec::new();
         for (rank, &(level, vertex)) in order.iter().enumerate() {
             edges_passed += topology.neighbours(vertex).len();
             let Some(&(next_level, _)) = order.get(rank + 1) else { break };
@@ -180,7 +193,7 @@ impl AxisSections {
                 outgoing.find(|&h| vertex_levels[topology.target(h) as usize] > level)
             });
             if let Some(first) = first {
-                self.take_snapshot(mesh, first, [level, next_level]);
+                self.take_snapshot(mesh, first, [level, next_level], &mut ring);
                 edges_due = EDGES_PER_ENTRY
                     * (self.entries.len() - self.starts[self.starts.len() - 2] as usize);
                 edges_passed = 0;
@@ -188,21 +201,33 @@ impl AxisSections {
         }
     }
 
-    /// Appends the section between two successive levels of vertices, which `first` crosses.
-    fn take_snapshot(&mut self, mesh: &Mesh, first: u32, [level, next_level]: [f64; 2]) {
+    /// Appends a snapshot of the section between two successive levels of vertices, which `first`
+    /// crosses.
+    fn take_snapshot(
+        &mut self,
+        mesh: &Mesh,
+        first: u32,
+        [level, next_level]: [f64; 2],
+        ring: &mut Vec<u32>,
+    ) {
         let topology = mesh.topology;
         // Halfway no two of its vertices coincide.
         let halfway = f64::midpoint(level, next_level);
         let mut up = first;
+        ring.clear();
         // A section has no more entries than there are edges; rounding in the levels could make the
         // walk miss its start.
         for _ in 0..topology.edge_count() {
-            let position = self.position(mesh.crossing(up, halfway));
-            self.entries.push(Entry { up, position, way: [0.0; 2] });
+            ring.push(up);
             up = next_counter_clockwise(topology, up, |v| mesh.levels[v as usize] > level);
             if up == first {
                 break;
             }
+        }
+        let stride = ((ring.len() as f64).sqrt() * STRIDE).max(1.0) as usize;
+        for &up in ring.iter().step_by(stride) {
+            let position = self.position(mesh.crossing(up, halfway));
+            self.entries.push(Entry { up, position, way: [0.0; 2] });
         }
         self.levels.push(level);
         self.halfway.push(halfway);
@@ -229,25 +254,31 @@ impl AxisSections {
         [0, 1].map(|i| (self.plane[i].dot(v) - self.origin[i]) as f32)
     }
 
-    /// The last snapshot at or below level `x >= range[0]`.
-    pub(crate) fn snapshot(&self, x: f64) -> Snapshot<'_> {
+    /// The last snapshot at or below level `x >= range[0]`, as a map shows it at that level.
+    pub(crate) fn snapshot<'a>(&'a self, map: &'a SectionMap, x: f64) -> Snapshot<'a> {
         let index = self.levels.partition_point(|&level| level <= x).max(1) - 1;
         let end = self.starts.get(index + 1).map_or(0, |&end| end as usize);
-        let above = self.halfway.get(index).map_or(0.0, |halfway| (x - halfway) as f32);
-        Snapshot { entries: &self.entries[self.starts[index] as usize..end], above }
+        Snapshot {
+            entries: &self.entries[self.starts[index] as usize..end],
+            map,
+            above: self.halfway.get(index).map_or(0.0, |halfway| (x - halfway) as f32),
+            base: map.constant + map.per_level * x,
+        }
     }
 
-    /// The linear form `covector . v + constant` of the body frame, on this axis' sections.
-    pub(crate) fn form(&self, covector: DVec3, constant: f64) -> SectionForm {
+    /// The affine map `(covectors . v) + constants` of the body frame, on this axis' sections.
+    pub(crate) fn map(&self, covectors: [DVec3; 2], constants: DVec2) -> SectionMap {
         // The plane's coordinate vectors are orthogonal and equally long.
         let scale_squared = self.plane[0].length_squared();
-        let slope = self.plane.map(|p| p.dot(covector) / scale_squared);
-        let size = slope[0].abs().max(slope[1].abs());
-        SectionForm {
-            slope: slope.map(|s| (s / size) as f32),
-            per_unit: 1.0 / size,
-            per_level: covector.dot(self.axis) / self.axis.length_squared(),
-            constant: constant + slope[0] * self.origin[0] + slope[1] * self.origin[1],
+        let of = |v: DVec3| DVec2::from_array(covectors.map(|covector| covector.dot(v)));
+        let slopes = self.plane.map(|p| of(p) / scale_squared);
+        let height = slopes.map(|slope| slope.x);
+        let size = height[0].abs().max(height[1].abs());
+        SectionMap {
+            slopes,
+            per_level: of(self.axis) / self.axis.length_squared(),
+            constant: constants + slopes[0] * self.origin[0] + slopes[1] * self.origin[1],
+            height: height.map(|slope| (slope / size) as f32),
         }
     }
 
@@ -278,26 +309,15 @@ fn scaled_plane(vertices: &[DVec3], axis: DVec3) -> ([DVec3; 2], [f64; 2]) {
     (plane.map(|p| p * scale), origin)
 }
 
-/// A linear form on the sections across one axis, scaled so that `f32` can hold it.
+/// An affine map of the sections across one axis to a plane.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SectionForm {
-    slope: [f32; 2],
-    /// Scaled units per unit of the form.
-    per_unit: f64,
-    per_level: f64,
-    constant: f64,
-}
-
-impl SectionForm {
-    /// Where the form has `value` on the section at level `x`, in scaled units.
-    fn scaled(&self, value: f64, x: f64) -> f32 {
-        ((value - self.constant - self.per_level * x) * self.per_unit) as f32
-    }
-
-    /// The form in scaled units at a position.
-    fn at(&self, [u, v]: [f32; 2]) -> f32 {
-        self.slope[0] * u + self.slope[1] * v
-    }
+pub(crate) struct SectionMap {
+    /// Per unit of either position, and of the level.
+    slopes: [DVec2; 2],
+    per_level: DVec2,
+    constant: DVec2,
+    /// The slopes of the first coordinate, scaled so that `f32` can hold them.
+    height: [f32; 2],
 }
 
 /// The two ways along a section.
@@ -316,22 +336,21 @@ impl Turn {
     }
 }
 
-/// One snapshot: its entries in cyclic order, and searches in it.
+/// One snapshot as it seems to be at a level: its entries in cyclic order, and points of a plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Snapshot<'a> {
     entries: &'a [Entry],
+    map: &'a SectionMap,
     /// How far the level in question is above it.
     above: f32,
+    /// What the level adds to every point.
+    base: DVec2,
 }
 
 impl Snapshot<'_> {
-    pub(crate) fn is_empty(&self) -> bool {
-        self.entries.is_empty()
-    }
-
-    /// How often its entries can be halved.
-    pub(crate) fn halvings(&self) -> u32 {
-        self.entries.len().max(1).ilog2()
+    /// How many entries it has.
+    pub(crate) fn len(&self) -> usize {
+        self.entries.len()
     }
 
     /// The crossing edge of entry `index`.
@@ -339,18 +358,21 @@ impl Snapshot<'_> {
         self.entries[index].up
     }
 
-    fn value(&self, form: &SectionForm, index: usize) -> f32 {
-        form.at(self.entries[index].at(self.above))
+    /// Where entry `index` seems to be.
+    #[inline]
+    pub(crate) fn point(&self, index: usize) -> DVec2 {
+        let [u, v] = self.entries[index].at(self.above);
+        self.base + self.map.slopes[0] * f64::from(u) + self.map.slopes[1] * f64::from(v)
     }
 
-    /// The entry where `sign * form` is least, `sign` being 1 or -1.
+    /// The entry whose point's first coordinate, times `sign`, is least; `sign` is 1 or -1.
     ///
     /// On a convex polygon the minimum lies within one stride of the best of every `stride`-th
     /// entry. All candidates of a round are compared, without branches that hardware could not
     /// predict.
-    pub(crate) fn extreme(&self, form: &SectionForm, sign: f32) -> usize {
+    pub(crate) fn extreme(&self, sign: f32) -> usize {
         let count = self.entries.len();
-        let slope = form.slope.map(|s| sign * s);
+        let slope = self.map.height.map(|s| sign * s);
         let value = |i: usize| {
             let [u, v] = self.entries[i].at(self.above);
             slope[0] * u + slope[1] * v
@@ -383,39 +405,6 @@ impl Snapshot<'_> {
         }
         centre
     }
-
-    /// The last entry on the way from `bottom` to `top`, which `form` ascends, where it is at most
-    /// `value` on the section at level `x`.
-    pub(crate) fn locate(
-        &self,
-        form: &SectionForm,
-        (bottom, top): (usize, usize),
-        turn: Turn,
-        (value, x): (f64, f64),
-    ) -> usize {
-        let count = self.entries.len();
-        let target = form.scaled(value, x);
-        let (from, to) = match turn {
-            Turn::CounterClockwise => (bottom, top),
-            Turn::Clockwise => (top, bottom),
-        };
-        let steps = if to >= from { to - from } else { to + count - from };
-        let entry = |offset: usize| match turn {
-            Turn::CounterClockwise if bottom + offset >= count => bottom + offset - count,
-            Turn::CounterClockwise => bottom + offset,
-            Turn::Clockwise if offset > bottom => bottom + count - offset,
-            Turn::Clockwise => bottom - offset,
-        };
-        // Halves the number of candidates without branches on the values.
-        let (mut low, mut candidates) = (0, steps + 1);
-        while candidates > 1 {
-            let half = candidates / 2;
-            let passed = self.value(form, entry(low + half)) <= target;
-            low += if passed { half } else { 0 };
-            candidates -= half;
-        }
-        entry(low)
-    }
 }
 
 #[cfg(test)]
@@ -423,21 +412,7 @@ impl AxisSections {
     /// Level and crossing edges of the snapshot for `x`.
     pub(crate) fn snapshot_for_test(&self, x: f64) -> (f64, Vec<u32>) {
         let index = self.levels.partition_point(|&level| level <= x) - 1;
-        (self.levels[index], self.snapshot(x).entries.iter().map(|entry| entry.up).collect())
-    }
-}
-
-#[cfg(test)]
-impl Snapshot<'_> {
-    pub(crate) fn values_for_test(&self, form: &SectionForm) -> Vec<f32> {
-        (0..self.entries.len()).map(|i| self.value(form, i)).collect()
-    }
-}
-
-#[cfg(test)]
-impl SectionForm {
-    /// The value that [`Self::scaled`] scales to `scaled`.
-    pub(crate) fn value_for_test(&self, scaled: f32, x: f64) -> f64 {
-        f64::from(scaled) / self.per_unit + self.constant + self.per_level * x
+        let of = self.starts[index] as usize..self.starts[index + 1] as usize;
+        (self.levels[index], self.entries[of].iter().map(|entry| entry.up).collect())
     }
 }

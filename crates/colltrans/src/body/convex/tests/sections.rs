@@ -1,8 +1,8 @@
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::bodies::{Random, cone, cuboid, ellipsoid, prism};
 use crate::body::ConvexPolyhedron;
-use crate::body::convex::sections::{SectionIndex, Turn, next_clockwise, next_counter_clockwise};
+use crate::body::convex::sections::{SectionIndex, next_clockwise, next_counter_clockwise};
 
 fn bodies() -> Vec<ConvexPolyhedron> {
     vec![
@@ -98,10 +98,11 @@ fn walks_are_counter_clockwise_from_the_tip_of_the_axis() {
 }
 
 #[test]
-fn snapshots_hold_every_crossing_edge_in_linear_space() {
+fn snapshots_hold_crossing_edges_in_order_at_even_strides_in_linear_space() {
     let mut random = Random(2);
     for body in bodies() {
-        let index = SectionIndex::build(body.vertices(), body.topology());
+        let topology = body.topology();
+        let index = SectionIndex::build(body.vertices(), topology);
         let per_vertex = index.heap_bytes() as f64 / body.vertices().len() as f64;
         assert!(body.vertices().len() < 100 || per_vertex < 95.0, "{per_vertex} bytes per vertex");
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
@@ -109,42 +110,77 @@ fn snapshots_hold_every_crossing_edge_in_linear_space() {
             for x in levels(&body, axis, &mut random) {
                 let (level, entries) = sections.snapshot_for_test(x);
                 assert!(level <= x);
-                let mut entries = entries;
-                entries.sort_unstable();
-                assert_eq!(entries, crossing(&body, axis, level));
+                let above = |v: u32| axis.dot(body.vertices()[v as usize]) > level;
+                let mut strides = Vec::new();
+                let mut stride = 0;
+                let mut up = entries[0];
+                for k in 0..crossing(&body, axis, level).len() {
+                    if up == entries[(strides.len() + 1) % entries.len()] && k > 0 {
+                        strides.push(stride);
+                        stride = 0;
+                    }
+                    up = next_counter_clockwise(topology, up, above);
+                    stride += 1;
+                }
+                // All entries were met in order, and the walk is where it began.
+                assert_eq!((strides.len() + 1, up), (entries.len(), entries[0]));
+                assert!(strides.iter().all(|&other| other == strides[0] && other >= stride));
             }
         }
     }
 }
 
 #[test]
-fn snapshot_searches_agree_with_a_scan() {
+fn the_extremes_of_a_snapshot_agree_with_a_scan() {
     let mut random = Random(3);
     for body in bodies() {
         let index = SectionIndex::build(body.vertices(), body.topology());
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
             for x in levels(&body, axis, &mut random) {
-                let form = index.axis(i).form(random.unit(), random.signed());
-                let snapshot = index.axis(i).snapshot(x);
-                let values = snapshot.values_for_test(&form);
-                let least = values.iter().copied().fold(f32::INFINITY, f32::min);
-                let greatest = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-                let (bottom, top) = (snapshot.extreme(&form, 1.0), snapshot.extreme(&form, -1.0));
+                let constants = DVec2::new(random.signed(), random.signed());
+                let map = index.axis(i).map([random.unit(), random.unit()], constants);
+                let snapshot = index.axis(i).snapshot(&map, x);
+                let height = |i: usize| snapshot.point(i).x;
+                let heights: Vec<f64> = (0..snapshot.len()).map(height).collect();
+                let least = heights.iter().copied().fold(f64::INFINITY, f64::min);
+                let greatest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 // Positions are rounded to f32, so neighbours of the extreme may seem to rise
                 // again.
-                assert!(values[bottom] <= least + 1e-5, "{} {least}", values[bottom]);
-                assert!(values[top] >= greatest - 1e-5, "{} {greatest}", values[top]);
-                for turn in [Turn::CounterClockwise, Turn::Clockwise] {
-                    for target in [bottom, top, random.index(values.len())] {
-                        let h = form.value_for_test(values[target], x);
-                        let found = snapshot.locate(&form, (bottom, top), turn, (h, x));
-                        let next = match turn {
-                            Turn::CounterClockwise => (found + 1) % values.len(),
-                            Turn::Clockwise => (found + values.len() - 1) % values.len(),
-                        };
-                        assert!(values[found] <= values[target] + 1e-5);
-                        assert!(found == top || values[next] >= values[target] - 1e-5);
-                    }
+                let size = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+                assert!(height(snapshot.extreme(1.0)) <= least + 1e-5 * size);
+                assert!(height(snapshot.extreme(-1.0)) >= greatest - 1e-5 * size);
+            }
+        }
+    }
+}
+
+#[test]
+fn snapshots_show_the_points_of_their_own_level() {
+    let mut random = Random(4);
+    for body in bodies() {
+        let index = SectionIndex::build(body.vertices(), body.topology());
+        let size = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+        for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
+            for x in levels(&body, axis, &mut random) {
+                let (level, entries) = index.axis(i).snapshot_for_test(x);
+                let covectors = [random.unit(), random.unit()];
+                let constants = DVec2::new(random.signed(), random.signed());
+                let map = index.axis(i).map(covectors, constants);
+                let above = body.vertices().iter().map(|v| axis.dot(*v)).filter(|&l| l > level);
+                let next = above.fold(f64::INFINITY, f64::min);
+                // Between levels that rounding alone tells apart edges have no points.
+                if next - level < 1e-6 * size {
+                    continue;
+                }
+                let halfway = f64::midpoint(level, next);
+                let snapshot = index.axis(i).snapshot(&map, halfway);
+                for (k, up) in entries.into_iter().enumerate() {
+                    let ends = [body.topology().half_edge(up).origin, body.topology().target(up)];
+                    let [low, high] = ends.map(|v| body.vertices()[v as usize]);
+                    let share = (halfway - axis.dot(low)) / axis.dot(high - low);
+                    let point = low + (high - low) * share;
+                    let expected = constants + DVec2::from_array(covectors.map(|c| c.dot(point)));
+                    assert!((snapshot.point(k) - expected).length() < 1e-5 * size);
                 }
             }
         }

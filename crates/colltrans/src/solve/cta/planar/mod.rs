@@ -4,12 +4,14 @@
 //! Notation. Body 0 is P with its section at `x`, body 1 is Q with its section at `y`, in the
 //! shadow plane `w = (h, g)`. The *upper* section is the one with the higher bottom, at height
 //! `h0`. If that bottom lies in the other section it is the answer. Otherwise one section is to the
-//! left of the other at `h0`, and with the left chain `l` of the one on the right (convex) and the
-//! right chain `r` of the one on the left (concave) `gap(h) = l(h) - r(h)` is convex and positive
-//! at `h0`: Newton's method from there never overshoots and ends on the pair of edges that meet
-//! first, or where the gap no longer falls. Pieces found
-//! earlier bound the answer from below: then Newton's method starts at that height.
+//! left of the other at `h0`, and the answer is where the two chains that face each other meet
+//! first, or where the gap between them is least.
+//!
+//! An answer can be told from the edges that it rests on, so it is sought near edges that are
+//! guessed: those of the problem before, if its levels are near and they are, else those of a
+//! [`sketch()`].
 
+mod sketch;
 mod slide;
 
 use glam::DVec2;
@@ -17,7 +19,11 @@ use glam::DVec2;
 use super::crossing::{Bracket, Chain, Crossing};
 use super::section::{Bottom, Located, Section};
 use super::side::Side;
-use slide::{Slide, crossing_edges};
+use sketch::sketch;
+use slide::{Slid, Slide, crossing_edges};
+
+/// Steps of a walk from the answer of the problem before.
+const STEPS_NEAR: usize = 8;
 
 /// What the planar problem found.
 #[derive(Debug, Clone, Copy)]
@@ -29,13 +35,6 @@ pub(super) enum Planar {
     /// Nothing in common: along `u` every point of section 1 is beyond every point of section 0;
     /// `supports` are the closest.
     Separated { u: DVec2, supports: [Crossing; 2] },
-}
-
-struct Problem<'a, 'b> {
-    sections: &'a [Section<'b>; 2],
-    upper: usize,
-    /// The height of its bottom.
-    h0: f64,
 }
 
 /// What pieces and the planar problem before tell about an answer.
@@ -74,133 +73,141 @@ impl Hint {
 /// Solves the planar problem for the sections at `levels`, each in its body's range. `None` if
 /// rounding errors of the mesh hide a section.
 pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], hint: &Hint) -> Option<Planar> {
-    let section = |body: usize| Section::new(&sides[body], levels[body], hint.levels[body]);
-    let sections = [section(0), section(1)];
-    if let Some(found) = solve_near(&sections, hint) {
+    let problem = |limit: usize| {
+        let section = |body: usize| Section { side: &sides[body], x: levels[body], limit };
+        Problem { sections: [section(0), section(1)] }
+    };
+    let near = |body: usize| (levels[body] - hint.levels[body]).abs() <= sides[body].near;
+    if near(0)
+        && near(1)
+        && let Some(found) = problem(STEPS_NEAR).solve(&hint.last, hint.height)
+    {
         return Some(found);
     }
-    let bottoms = [sections[0].bottom()?, sections[1].bottom()?];
-    let upper = usize::from(bottoms[1].vertex.h() > bottoms[0].vertex.h());
-    let h0 = bottoms[upper].vertex.h();
-    if hint.height > h0 && !matches!(hint.last, Last::Facing { .. }) {
-        let right = usize::from(bottoms[1].vertex.g() > bottoms[0].vertex.g());
-        let lows = bottoms.each_ref().map(|bottom| bottom.vertex.up);
-        if let Some(found) = Slide::new(&sections, right).solve_from(hint.height, lows) {
-            return Some(found);
-        }
-    }
-    let problem = Problem { sections: &sections, upper, h0 };
-    problem.solve(&bottoms[upper], bottoms[1 - upper].vertex.g())
+    // More steps than this along one section are a walk in circles.
+    let [p, q] = sides.each_ref().map(|side| side.topology.edge_count());
+    let problem = problem(p + q);
+    let (guess, height) = sketch(&problem.sections)?;
+    problem.solve(&guess, height)
 }
 
-/// From the answer of the problem before. Where what it tells still holds, the bottoms of both
-/// sections need not be known.
-fn solve_near(sections: &[Section; 2], hint: &Hint) -> Option<Planar> {
-    match hint.last {
-        Last::Facing { right, edges } => Slide::new(sections, right).solve_from(hint.height, edges),
-        Last::Bottom { upper, vertex, between } if sections.iter().all(Section::is_near) => {
-            let bottom = sections[upper].bottom_from(vertex)?;
-            let problem = Problem { sections, upper, h0: bottom.vertex.h() };
-            problem.solve_near(&bottom, between)
-        }
-        Last::Nothing | Last::Bottom { .. } => None,
-    }
+struct Problem<'a> {
+    sections: [Section<'a>; 2],
 }
 
-impl Problem<'_, '_> {
-    /// With the bottom of the upper section, and where the other one's is sideways.
-    fn solve(&self, bottom: &Bottom, aside: f64) -> Option<Planar> {
-        let lower = &self.sections[1 - self.upper];
-        let ends = self.ends(bottom);
-        let nearer = if ends[1].g() < aside { Chain::Left } else { Chain::Right };
-        self.solve_between(bottom, &ends, nearer, |chain| lower.locate(chain, self.h0))
-    }
-
-    /// With the bottom of one section, if the other one, which had these edges in the problem before,
-    /// reaches its height.
-    fn solve_near(&self, bottom: &Bottom, last: [u32; 2]) -> Option<Planar> {
-        let lower = &self.sections[1 - self.upper];
-        self.solve_between(bottom, &self.ends(bottom), Chain::Left, |chain| {
-            let last = last[usize::from(chain == Chain::Right)];
-            lower.locate_from(chain, self.h0, last).map(Located::Edge)
-        })
-    }
-
-    /// With a way to find the lower section's edges at the bottom's height, and the chain to look at
-    /// first.
-    fn solve_between(
-        &self,
-        bottom: &Bottom,
-        ends: &[Crossing; 2],
-        first: Chain,
-        locate: impl Fn(Chain) -> Option<Located>,
-    ) -> Option<Planar> {
-        let mut found = [None; 2];
-        for chain in [first, first.opposite()] {
-            let edge = match locate(chain)? {
-                Located::Edge(edge) => edge,
-                Located::Beyond(topmost) => {
-                    return Some(self.separated_by_height(&bottom.vertex, &topmost.high));
+impl Problem<'_> {
+    /// From edges that the answer may rest on, at some height.
+    fn solve(&self, guess: &Last, height: f64) -> Option<Planar> {
+        match *guess {
+            Last::Nothing => None,
+            Last::Facing { right, edges } => {
+                let slide = Slide::new(&self.sections, right);
+                match slide.settle(&slide.edges_at(height, edges)?)? {
+                    Slid::Solved(found) => Some(found),
+                    Slid::Within(upper, edges) => {
+                        let between = [edges[1 - upper].low.up; 2];
+                        self.at_bottom(upper, edges[upper].low.up, between, true)
+                    }
                 }
-                Located::Short => return None,
-            };
-            if let Some(end) = self.beyond(chain, &edge, ends) {
-                return self.slide(*end, chain, edge);
             }
-            found[usize::from(chain == Chain::Right)] = Some(edge);
+            Last::Bottom { upper, vertex, between } => {
+                self.at_bottom(upper, vertex, between, false)
+            }
         }
-        Some(self.inside(ends, [found[0]?, found[1]?]))
     }
 
-    /// Both ends of the upper section's bottom, from left to right.
-    fn ends(&self, bottom: &Bottom) -> [Crossing; 2] {
-        [Chain::Left, Chain::Right].map(|chain| self.sections[self.upper].bottom_end(bottom, chain))
-    }
-
-    /// The end of the bottom that faces a chain of the lower section, if all of it is beyond.
-    fn beyond<'c>(
+    /// The bottom of one section, and the edges of the other at its height; if the other bottom turns
+    /// out to be higher, the other way round, unless that was said to be `known`.
+    fn at_bottom(
         &self,
-        chain: Chain,
-        edge: &Bracket,
-        [left, right]: &'c [Crossing; 2],
-    ) -> Option<&'c Crossing> {
-        let g = edge.g_at(self.h0);
-        match chain {
-            Chain::Left => (right.g() < g).then_some(right),
-            Chain::Right => (left.g() > g).then_some(left),
+        upper: usize,
+        vertex: u32,
+        between: [u32; 2],
+        known: bool,
+    ) -> Option<Planar> {
+        let lower = &self.sections[1 - upper];
+        let bottom = self.sections[upper].bottom(vertex)?;
+        let h0 = bottom.vertex.h();
+        let ends = self.ends(upper, &bottom);
+        let mut found = [None; 2];
+        for (chain, from) in [Chain::Left, Chain::Right].into_iter().zip(between) {
+            match lower.locate(chain, h0, from)? {
+                Located::Beyond(topmost) => {
+                    return Some(Planar::by_height(upper, &bottom.vertex, &topmost.high));
+                }
+                Located::Edge(edge) if edge.low.h() > h0 && !known => {
+                    return self.at_bottom(1 - upper, edge.low.up, [vertex; 2], true);
+                }
+                Located::Edge(edge) => {
+                    if let Some(end) = beyond(chain, &edge, h0, &ends) {
+                        return self.slide(upper, *end, chain, edge);
+                    }
+                    found[usize::from(chain == Chain::Right)] = Some(edge);
+                }
+            }
         }
+        Some(inside(upper, &ends, [found[0]?, found[1]?], h0))
     }
 
-    /// The bottom lies between two edges of the lower section, or reaches beyond both.
-    fn inside(&self, ends: &[Crossing; 2], [left, right]: [Bracket; 2]) -> Planar {
-        let inside =
-            |end: &&Crossing| left.g_at(self.h0) <= end.g() && end.g() <= right.g_at(self.h0);
-        if let Some(&vertex) = ends.iter().find(inside) {
-            return Planar::Vertex { upper: self.upper, vertex, left, right };
-        }
-        // The lower section is narrower than the flat bottom of the upper one.
-        let flat = Bracket::new(ends[0], ends[1]);
-        crossing_edges(&self.by_body(flat, left))
-    }
-
-    /// What belongs to the upper and to the lower section, by body.
-    fn by_body<T>(&self, of_upper: T, of_lower: T) -> [T; 2] {
-        if self.upper == 0 { [of_upper, of_lower] } else { [of_lower, of_upper] }
-    }
-
-    fn separated_by_height(&self, bottom: &Crossing, top: &Crossing) -> Planar {
-        let sign = if self.upper == 1 { 1.0 } else { -1.0 };
-        Planar::Separated { u: DVec2::new(sign, 0.0), supports: self.by_body(*bottom, *top) }
+    /// Both ends of a section's bottom, from left to right.
+    fn ends(&self, upper: usize, bottom: &Bottom) -> [Crossing; 2] {
+        [Chain::Left, Chain::Right].map(|chain| self.sections[upper].bottom_end(bottom, chain))
     }
 
     /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose
-    /// edge at `h0` is `edge`.
-    fn slide(&self, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
+    /// edge at its height is `edge`.
+    fn slide(&self, upper: usize, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
         let facing = chain.opposite();
-        let first = Bracket::new(end, self.sections[self.upper].up(facing, &end));
+        let first = Bracket::new(end, self.sections[upper].up(facing, &end));
         // The body that shows its left chain is the one on the right.
-        let right = if chain == Chain::Left { 1 - self.upper } else { self.upper };
-        Slide::new(self.sections, right).solve(&self.by_body(first, edge), self.h0)
+        let right = if chain == Chain::Left { 1 - upper } else { upper };
+        let slide = Slide::new(&self.sections, right);
+        let edges = by_body(upper, first, edge);
+        if slide.closes(&edges) {
+            slide.rise(&edges)
+        } else {
+            Some(slide.separated(&edge, by_body(upper, end, edge.low)))
+        }
+    }
+}
+
+/// The end of the upper section's bottom that faces a chain of the lower one, if all of it is
+/// beyond.
+fn beyond<'c>(
+    chain: Chain,
+    edge: &Bracket,
+    h0: f64,
+    [left, right]: &'c [Crossing; 2],
+) -> Option<&'c Crossing> {
+    let g = edge.g_at(h0);
+    match chain {
+        Chain::Left => (right.g() < g).then_some(right),
+        Chain::Right => (left.g() > g).then_some(left),
+    }
+}
+
+/// The upper section's bottom lies between two edges of the lower one, or reaches beyond both.
+fn inside(upper: usize, ends: &[Crossing; 2], [left, right]: [Bracket; 2], h0: f64) -> Planar {
+    let inside = |end: &&Crossing| left.g_at(h0) <= end.g() && end.g() <= right.g_at(h0);
+    if let Some(&vertex) = ends.iter().find(inside) {
+        return Planar::Vertex { upper, vertex, left, right };
+    }
+    // The lower section is narrower than the flat bottom of the upper one.
+    let flat = Bracket::new(ends[0], ends[1]);
+    crossing_edges(&by_body(upper, flat, left))
+}
+
+/// What belongs to the upper and to the lower section, by body.
+fn by_body<T>(upper: usize, of_upper: T, of_lower: T) -> [T; 2] {
+    if upper == 0 { [of_upper, of_lower] } else { [of_lower, of_upper] }
+}
+
+impl Planar {
+    /// The bottom of the upper section is above the top of the lower one.
+    fn by_height(upper: usize, bottom: &Crossing, top: &Crossing) -> Self {
+        let sign = if upper == 1 { 1.0 } else { -1.0 };
+        let supports = by_body(upper, *bottom, *top);
+        Self::Separated { u: DVec2::new(sign, 0.0), supports }
     }
 }
 
@@ -229,14 +236,6 @@ impl Planar {
                 let last = Last::Facing { right: usize::from(u.y > 0.0), edges };
                 Hint { height: moved[0].max(moved[1]), levels: at, last }
             }
-        }
-    }
-
-    /// Whether this is a separation, by more than nothing.
-    fn misses(&self) -> bool {
-        match self {
-            Self::Separated { u, supports } => u.dot(supports[1].w - supports[0].w) > 0.0,
-            Self::Vertex { .. } | Self::Edges { .. } => false,
         }
     }
 }

@@ -1,25 +1,17 @@
-//! Newton's method up two chains that face each other.
+//! Steps along two chains that face each other, edge by edge, to where the gap closes or is least.
 //!
 //! With the left chain `l` of the section on the right (convex) and the right chain `r` of the one
-//! on the left (concave) `gap(h) = l(h) - r(h)` is convex: from a height where it is positive
-//! Newton's method never overshoots, and ends on the pair of edges that meet first, or where the gap
-//! no longer falls.
+//! on the left (concave) `gap(h) = l(h) - r(h)` is convex. Where it is positive and falls, the answer
+//! is above; where it is not positive, or grows, below. So the answer is known from the edges that
+//! meet there, wherever the steps began: the first pair that crosses coming from below, or a vertex
+//! past which the gap grows.
 
 use glam::DVec2;
 
-use super::Planar;
+use super::{Crossing, Planar};
 use crate::number::noise;
 use crate::solve::cta::crossing::{Bracket, Chain};
-use crate::solve::cta::section::{Located, Section};
-
-/// Halvings of a height: none are left between two numbers after so many.
-const HALVINGS: usize = 64;
-
-/// Steps from a guess of the edges that cross before the problem is solved from scratch.
-const STEPS_NEAR: usize = 24;
-
-/// Newton's method walks so far back down a chain before it searches the snapshot.
-const STEPS_DOWN: usize = 4;
+use crate::solve::cta::section::Section;
 
 /// Two edges that cross, and where.
 pub(super) fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
@@ -37,13 +29,21 @@ fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
     r.low.w + r.direction * step
 }
 
-/// Newton's method up two chains that face each other.
+/// Two chains that face each other.
 pub(super) struct Slide<'a, 'b> {
-    pub(super) sections: &'a [Section<'b>; 2],
+    sections: &'a [Section<'b>; 2],
     /// The chain that each body shows to the other.
-    pub(super) chains: [Chain; 2],
+    chains: [Chain; 2],
     /// The body on the right.
     right: usize,
+}
+
+/// Where steps along two chains led.
+pub(super) enum Slid {
+    Solved(Planar),
+    /// The bottom of this body's section, from which this edge begins, is not beyond the other's
+    /// edge.
+    Within(usize, [Bracket; 2]),
 }
 
 impl<'a, 'b> Slide<'a, 'b> {
@@ -53,32 +53,86 @@ impl<'a, 'b> Slide<'a, 'b> {
         Self { sections, chains, right }
     }
 
-    /// From a height that both sections reach, with the edges there sought from those of the problem
-    /// before: up by Newton's method if the gap is positive and falls there, down to where it is
-    /// least if it is positive and grows. If the sections overlap there, a step of Newton's method
-    /// leads down to where they do not, because the gap is convex.
-    pub(super) fn solve_from(&self, height: f64, last: [u32; 2]) -> Option<Planar> {
-        let edge =
-            |body: usize| self.sections[body].locate_from(self.chains[body], height, last[body]);
-        let mut edges = [edge(0)?, edge(1)?];
-        let mut h = height;
-        let gap = self.gap(&edges, h);
-        if gap <= 0.0 {
+    /// The edges at a height, or where the chains are nearest to it, sought from edges upwards.
+    pub(super) fn edges_at(&self, height: f64, from: [u32; 2]) -> Option<[Bracket; 2]> {
+        let edge = |body: usize| {
+            let section = &self.sections[body];
+            Some(section.locate(self.chains[body], height, from[body])?.edge())
+        };
+        Some([edge(0)?, edge(1)?])
+    }
+
+    /// From any edges, down to where the gap is positive and falls, and up from there.
+    pub(super) fn settle(&self, from: &[Bracket; 2]) -> Option<Slid> {
+        let mut edges = *from;
+        for _ in 0..self.limit() {
+            let upper = higher(&edges);
+            let lower = 1 - upper;
+            let below = self.retreat(upper, &edges[upper]);
+            if edges[upper].low.h() > edges[lower].high.h() {
+                if let Some(below) = below {
+                    edges[upper] = below;
+                } else if let Some(above) = self.proceed(lower, &edges[lower]) {
+                    edges[lower] = above;
+                } else {
+                    let [bottom, top] = [&edges[upper].low, &edges[lower].high];
+                    return Some(Slid::Solved(Planar::by_height(upper, bottom, top)));
+                }
+                continue;
+            }
+            let apart = self.is_beyond(upper, &edges[upper].low, &edges);
+            if apart && self.closes(&edges) {
+                return self.rise(&edges).map(Slid::Solved);
+            }
+            let Some(below) = below else {
+                return Some(if apart {
+                    Slid::Solved(self.separated(&edges[lower], edges.map(|edge| edge.low)))
+                } else {
+                    Slid::Within(upper, edges)
+                });
+            };
+            let supports = edges.map(|edge| edge.low);
+            edges[upper] = below;
+            if apart && self.closes(&edges) {
+                return Some(Slid::Solved(self.separated(&edges[lower], supports)));
+            }
+        }
+        None
+    }
+
+    /// From edges where the gap is positive, upwards.
+    pub(super) fn rise(&self, from: &[Bracket; 2]) -> Option<Planar> {
+        let mut edges = *from;
+        // The body whose vertex was passed last.
+        let mut passed = higher(&edges);
+        for _ in 0..self.limit() {
             if !self.closes(&edges) {
-                return None;
+                return Some(self.separated(&edges[1 - passed], edges.map(|edge| edge.low)));
             }
-            h -= gap.abs() / self.slope(&edges).abs();
-            edges = [self.down_to(0, edges[0], h)?, self.down_to(1, edges[1], h)?];
-            let covers = |edge: &Bracket| edge.low.h() <= h;
-            if !edges.iter().all(covers) || self.gap(&edges, h) <= 0.0 {
-                return None;
+            // The edge that ends first decides whether they have met, without a quotient.
+            let ending = usize::from(edges[1].high.h() < edges[0].high.h());
+            if !self.is_beyond(ending, &edges[ending].high, &edges) {
+                return Some(crossing_edges(&edges));
             }
+            let Some(above) = self.proceed(ending, &edges[ending]) else {
+                let mut supports = edges.map(|edge| edge.low);
+                supports[ending] = edges[ending].high;
+                return Some(self.separated(&edges[1 - ending], supports));
+            };
+            edges[ending] = above;
+            passed = ending;
         }
-        if self.closes(&edges) {
-            return self.solve(&edges, h);
-        }
-        let found = self.separated_at_least_gap(&edges, STEPS_NEAR)?;
-        found.misses().then_some(found)
+        None
+    }
+
+    fn limit(&self) -> usize {
+        self.sections[0].limit.saturating_add(self.sections[1].limit)
+    }
+
+    /// Whether a vertex of a body's chain is on its own side of the other's edge.
+    fn is_beyond(&self, body: usize, vertex: &Crossing, edges: &[Bracket; 2]) -> bool {
+        let side = edges[1 - body].side_of(vertex.w);
+        if body == self.right { side > 0.0 } else { side < 0.0 }
     }
 
     /// Whether the gap falls along these edges.
@@ -90,65 +144,6 @@ impl<'a, 'b> Slide<'a, 'b> {
                 > noise::SECTION * noise::SECTION * r.length_squared() * s.length_squared()
     }
 
-    /// From the edges at height `start`, where the gap is positive.
-    pub(super) fn solve(&self, edges: &[Bracket; 2], start: f64) -> Option<Planar> {
-        let mut edges = *edges;
-        let mut h = start;
-        let mut closing = start;
-        for _ in 0..self.step_limit() {
-            if !self.closes(&edges) {
-                return self.separated_between(&edges, closing, h);
-            }
-            closing = h;
-            // The edge that ends first decides whether they have met, without a quotient.
-            let ending = usize::from(edges[1].high.h() < edges[0].high.h());
-            let end = &edges[ending].high;
-            let beyond = edges[1 - ending].side_of(end.w);
-            if if ending == self.right { beyond <= 0.0 } else { beyond >= 0.0 } {
-                return Some(crossing_edges(&edges));
-            }
-            let meet = (h - self.gap(&edges, h) / self.slope(&edges)).max(end.h());
-            let Some(next) = self.proceed(ending, &edges[ending]) else {
-                return Some(self.separated_at_top(ending, &edges));
-            };
-            edges[ending] = next;
-            h = meet;
-            for (body, edge) in edges.iter_mut().enumerate() {
-                let section = &self.sections[body];
-                *edge = match section.advance(self.chains[body], edge, meet)? {
-                    Located::Edge(edge) => edge,
-                    Located::Beyond(edge) => {
-                        h = h.min(edge.high.h());
-                        edge
-                    }
-                    Located::Short => return None,
-                };
-            }
-            if h < meet {
-                for (body, edge) in edges.iter_mut().enumerate() {
-                    *edge = self.down_to(body, *edge, h)?;
-                }
-            }
-            // NaN: an edge too flat for its slope to be a number.
-            if h.is_nan() {
-                return None;
-            }
-        }
-        None
-    }
-
-    fn step_limit(&self) -> usize {
-        self.sections[0].step_limit() + self.sections[1].step_limit()
-    }
-
-    fn slope(&self, edges: &[Bracket; 2]) -> f64 {
-        edges[self.right].slope() - edges[1 - self.right].slope()
-    }
-
-    pub(super) fn gap(&self, edges: &[Bracket; 2], h: f64) -> f64 {
-        edges[self.right].g_at(h) - edges[1 - self.right].g_at(h)
-    }
-
     fn proceed(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
         self.sections[body].proceed(self.chains[body], edge)
     }
@@ -157,79 +152,8 @@ impl<'a, 'b> Slide<'a, 'b> {
         self.sections[body].retreat(self.chains[body], edge)
     }
 
-    /// Down to height `h`: a few steps along the mesh, or a search from scratch.
-    fn down_to(&self, body: usize, edge: Bracket, h: f64) -> Option<Bracket> {
-        let mut edge = edge;
-        for _ in 0..STEPS_DOWN {
-            if edge.low.h() <= h {
-                return Some(edge);
-            }
-            match self.retreat(body, &edge) {
-                Some(below) => edge = below,
-                None => return Some(edge),
-            }
-        }
-        match self.sections[body].locate(self.chains[body], h)? {
-            Located::Edge(edge) | Located::Beyond(edge) => Some(edge),
-            Located::Short => None,
-        }
-    }
-
-    /// The gap grows at height `high`, where `edges` are, falls at height `low`, and is positive
-    /// between: to where it is least, by halving and at the end in steps.
-    fn separated_between(
-        &self,
-        edges: &[Bracket; 2],
-        mut low: f64,
-        mut high: f64,
-    ) -> Option<Planar> {
-        let mut edges = *edges;
-        let mut lowered = true;
-        for _ in 0..HALVINGS {
-            if lowered && let Some(found) = self.separated_at_least_gap(&edges, STEPS_NEAR) {
-                return Some(found);
-            }
-            let h = f64::midpoint(low, high);
-            let locate = |body: usize| self.sections[body].locate(self.chains[body], h);
-            let (Located::Edge(p), Located::Edge(q)) = (locate(0)?, locate(1)?) else { break };
-            lowered = !self.closes(&[p, q]);
-            if lowered {
-                (edges, high) = ([p, q], h);
-            } else {
-                low = h;
-            }
-        }
-        self.separated_at_least_gap(&edges, self.step_limit())
-    }
-
-    /// The gap grows along `edges` and is positive: back to where it is least, at a vertex of one
-    /// chain, where a line along the other's edge separates best. `None` if that is more than
-    /// `limit` steps away.
-    fn separated_at_least_gap(&self, edges: &[Bracket; 2], limit: usize) -> Option<Planar> {
-        let mut edges = *edges;
-        for _ in 0..limit {
-            let body = higher(&edges);
-            let mut candidate = edges;
-            let below = self.retreat(body, &edges[body]);
-            if let Some(below) = below {
-                candidate[body] = below;
-            }
-            if below.is_none() || self.closes(&candidate) {
-                return Some(self.separated(&edges[1 - body], edges.map(|edge| edge.low)));
-            }
-            edges = candidate;
-        }
-        None
-    }
-
-    /// `body`'s chain ends, at the top of its section, before the gap closes.
-    fn separated_at_top(&self, body: usize, edges: &[Bracket; 2]) -> Planar {
-        let mut supports = edges.map(|edge| edge.low);
-        supports[body] = edges[body].high;
-        self.separated(&edges[1 - body], supports)
-    }
-
-    fn separated(&self, along: &Bracket, supports: [super::Crossing; 2]) -> Planar {
+    /// A vertex of one chain and an edge of the other, along which a line separates.
+    pub(super) fn separated(&self, along: &Bracket, supports: [Crossing; 2]) -> Planar {
         // Points to the right, where g grows, and from body 0 to body 1.
         let sign = if self.right == 1 { 1.0 } else { -1.0 };
         let u = sign * DVec2::new(-along.direction.y, along.direction.x).normalize();

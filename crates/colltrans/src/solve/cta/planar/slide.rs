@@ -68,9 +68,8 @@ impl<'a, 'b> Slide<'a, 'b> {
         for _ in 0..self.limit() {
             let upper = higher(&edges);
             let lower = 1 - upper;
-            let below = self.retreat(upper, &edges[upper]);
             if edges[upper].low.h() > edges[lower].high.h() {
-                if let Some(below) = below {
+                if let Some(below) = self.retreat(upper, &edges[upper]) {
                     edges[upper] = below;
                 } else if let Some(above) = self.proceed(lower, &edges[lower]) {
                     edges[lower] = above;
@@ -84,7 +83,7 @@ impl<'a, 'b> Slide<'a, 'b> {
             if apart && self.closes(&edges) {
                 return self.rise(&edges).map(Slid::Solved);
             }
-            let Some(below) = below else {
+            let Some(below) = self.retreat(upper, &edges[upper]) else {
                 return Some(if apart {
                     Slid::Solved(self.separated(&edges[lower], edges.map(|edge| edge.low)))
                 } else {

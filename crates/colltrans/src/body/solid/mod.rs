@@ -4,6 +4,7 @@
 //! there are, which are inside out) -> [`tree`] (what a search goes down). [`shrink`] is made when it
 //! is first asked for.
 
+pub(crate) mod cuts;
 mod door;
 pub(crate) mod edges;
 mod error;

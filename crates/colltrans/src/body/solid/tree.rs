@@ -1,11 +1,10 @@
 //! A binary tree over the facets of a solid.
 //!
-//! A node covers consecutive facets and holds what bounds them, in the body frame: a box; an axis
-//! `n` (the mean unit normal) with the sine of the largest angle between it and a facet's normal;
-//! the slab `low <= n . x <= high` of all their vertices; and how far they are, at most, from the line
-//! along `n` through the middle of the box. Boxes are exact. The sine is an upper bound, and exactly 0
-//! for facets whose computed normals are exact and equal; the distance is an upper bound up to the
-//! rounding of a coordinate, as slabs are, and whoever reads them allows for that.
+//! A node covers consecutive facets and holds what bounds them, in the body frame: a box; how much of
+//! its corners and edges can be [cut off](super::cuts); an axis `n` (the mean unit normal) with the
+//! sine of the largest angle between it and a facet's normal; and the slab `low <= n . x <= high` of
+//! all their vertices. Boxes are exact. The sine is an upper bound, and exactly 0 for facets whose
+//! computed normals are exact and equal; slabs are rounded, and whoever reads them allows for that.
 //!
 //! Built from the top: up to 16 bins along each axis and the surface-area heuristic; halves by count where
 //! that finds nothing. The children of node `i` are at `i + skip` and the place behind, for a search
@@ -16,6 +15,8 @@
 use std::thread;
 
 use glam::{DVec3, Vec3Swizzles};
+
+use super::cuts::{CUTS, Reach};
 
 /// Facets of a leaf, at most.
 pub(crate) const LEAF: usize = 4;
@@ -34,9 +35,6 @@ pub(crate) struct Node {
     pub(crate) high: DVec3,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
-    /// Largest distance of a vertex from the line along `axis` through the middle of the box, or from
-    /// that point where there is no axis.
-    pub(crate) radius: f32,
     /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on.
     pub(crate) spread: f32,
     /// The first child is so far behind; 0 for a leaf.
@@ -45,6 +43,8 @@ pub(crate) struct Node {
     pub(crate) first: u32,
     /// How many.
     pub(crate) count: u32,
+    /// What the facets leave free of the box's corners and edges.
+    pub(crate) cuts: [u8; CUTS],
 }
 
 impl Node {
@@ -135,7 +135,8 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Appends what is below node `at`, which covers `items`, the first of them at `first`.
+    /// Appends what is below node `at`, which covers `items`, the first of them at `first`, and cuts
+    /// its box; how far they reach.
     fn grow(
         &self,
         items: &mut [Item],
@@ -143,10 +144,34 @@ impl Builder<'_> {
         first: u32,
         threads: usize,
         nodes: &mut Vec<Node>,
-    ) {
-        if items.len() <= LEAF {
-            return;
+    ) -> Reach {
+        let reach = if items.len() <= LEAF {
+            self.reach(items)
+        } else {
+            self.grow_children(items, at, first, threads, nodes)
+        };
+        let Node { low, high, cuts, .. } = &mut nodes[at];
+        *cuts = reach.below(*low, *high);
+        reach
+    }
+
+    /// How far facets reach.
+    fn reach(&self, items: &[Item]) -> Reach {
+        let mut reach = Reach::NONE;
+        for v in items.iter().flat_map(|item| self.triangles[item.facet as usize]) {
+            reach.add(self.vertices[v as usize]);
         }
+        reach
+    }
+
+    fn grow_children(
+        &self,
+        items: &mut [Item],
+        at: usize,
+        first: u32,
+        threads: usize,
+        nodes: &mut Vec<Node>,
+    ) -> Reach {
         let middle = split(items);
         let (left, right) = items.split_at_mut(middle);
         let second = first + middle as u32;
@@ -154,14 +179,17 @@ impl Builder<'_> {
         nodes[at].skip = (child - at) as u32;
         if threads > 1 && left.len().min(right.len()) >= FORK {
             let mut behind = Vec::with_capacity(right.len());
+            let mut reach = Reach::NONE;
+            let mut other = Reach::NONE;
             thread::scope(|scope| {
                 scope.spawn(|| {
                     behind.push(self.node(right, second));
-                    self.grow(right, 0, second, threads / 2, &mut behind);
+                    other = self.grow(right, 0, second, threads / 2, &mut behind);
                 });
                 nodes.extend([self.node(left, first); 2]);
-                self.grow(left, child, first, threads - threads / 2, nodes);
+                reach = self.grow(left, child, first, threads - threads / 2, nodes);
             });
+            reach.join(&other);
             // The second child goes to its place, the rest to the end.
             let root = &mut behind[0];
             if root.skip != 0 {
@@ -169,10 +197,12 @@ impl Builder<'_> {
             }
             nodes[child + 1] = *root;
             nodes.extend_from_slice(&behind[1..]);
+            reach
         } else {
             nodes.extend([self.node(left, first), self.node(right, second)]);
-            self.grow(left, child, first, 1, nodes);
-            self.grow(right, child + 1, second, 1, nodes);
+            let mut reach = self.grow(left, child, first, 1, nodes);
+            reach.join(&self.grow(right, child + 1, second, 1, nodes));
+            reach
         }
     }
 
@@ -190,11 +220,11 @@ impl Builder<'_> {
             high,
             axis: DVec3::ZERO,
             slab: [f64::NEG_INFINITY, f64::INFINITY],
-            radius: round_up((high - low).length() * 0.5),
             spread: ANY as f32,
             skip: 0,
             first,
             count: items.len() as u32,
+            cuts: [0; CUTS],
         };
         // A surface that looks to all sides has no axis to speak of.
         if sum.length() > 0.25 * total {
@@ -221,18 +251,14 @@ impl Builder<'_> {
             node.axis = DVec3::ZERO;
             return;
         }
-        let (mut low, mut high, mut aside) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let middle = (node.low + node.high) * 0.5;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for item in items {
             for v in self.triangles[item.facet as usize] {
-                let at = self.vertices[v as usize];
-                let height = node.axis.dot(at);
+                let height = node.axis.dot(self.vertices[v as usize]);
                 (low, high) = (low.min(height), high.max(height));
-                aside = aside.max(node.axis.cross(at - middle).length_squared());
             }
         }
         node.slab = [low, high];
-        node.radius = round_up(aside.sqrt());
         node.spread = round_up(spread);
     }
 }

@@ -31,6 +31,8 @@ pub(super) struct Facet {
     pub(super) corners: [Corner; 3],
     pub(super) low: DVec3,
     pub(super) high: DVec3,
+    /// Its plane.
+    slope: Slope,
 }
 
 impl Facet {
@@ -48,9 +50,23 @@ impl Facet {
         if wanted == Ordering::Less {
             corners.swap(1, 2);
         }
-        let [a, b, c] = corners.map(|c| c.at);
+        let places = corners.map(|c| c.at);
+        let [a, b, c] = places;
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        Some(Self { triangle: triangle as u32, corners, low, high })
+        let slope = Slope::new(scene, places);
+        Some(Self { triangle: triangle as u32, corners, low, high, slope })
+    }
+
+    /// Bounds of how far the corners of another facet lie below the plane, rounding included.
+    fn least_above(&self, other: &Self) -> f64 {
+        let above = |c: &Corner| self.slope.height_above(c.at);
+        other.corners.iter().map(above).map(|(h, error)| h - error).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same, above the plane.
+    fn least_below(&self, other: &Self) -> f64 {
+        let above = |c: &Corner| self.slope.height_above(c.at);
+        other.corners.iter().map(above).map(|(h, error)| -h - error).fold(f64::INFINITY, f64::min)
     }
 
     fn side(&self, k: usize) -> [&Corner; 2] {
@@ -171,6 +187,10 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     let blur = 4.0 * scene.blur;
     let apart = |k: usize| g.low[k] - f.high[k] > blur || f.low[k] - g.high[k] > blur;
     if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {
+        return None;
+    }
+    // A gap is linear over either facet: nowhere less than at the corners of one.
+    if f.least_below(g).max(g.least_above(f)) >= limit {
         return None;
     }
     let mut of_f = Turns::unless_apart(scene, f, g)?;
@@ -304,7 +324,7 @@ fn each_gap(
     of_g: &Turns,
     mut add: impl FnMut((f64, f64), Meeting),
 ) {
-    let (under, over) = (Slope::new(scene, g), Slope::new(scene, f));
+    let (under, over) = (&g.slope, &f.slope);
     for k in 0..3 {
         if of_g.contain(k) {
             add(under.height_above(f.corners[k].at), Meeting::Corner(k as u8));
@@ -355,6 +375,7 @@ fn crossing(
 }
 
 /// The plane of a facet as heights over the shadow.
+#[derive(Debug, Clone, Copy)]
 struct Slope {
     origin: DVec3,
     normal: DVec3,
@@ -364,8 +385,7 @@ struct Slope {
 }
 
 impl Slope {
-    fn new(scene: &Scene, facet: &Facet) -> Self {
-        let [a, b, c] = facet.corners.map(|c| c.at);
+    fn new(scene: &Scene, [a, b, c]: [DVec3; 3]) -> Self {
         // From the two shorter sides, which determine the plane best.
         let sides = [b - a, c - b, a - c];
         let lengths = sides.map(DVec3::length_squared);

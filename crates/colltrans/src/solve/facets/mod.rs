@@ -8,6 +8,7 @@
 mod bound;
 mod clearance;
 mod contact;
+mod fan;
 mod inside;
 mod leaf;
 mod overlap;
@@ -18,7 +19,6 @@ mod scene;
 mod search;
 mod separate;
 mod sign;
-mod sweep;
 mod verify;
 mod wide;
 

@@ -11,8 +11,9 @@
 
 use std::collections::HashMap;
 
-use super::bound::{Reason, Shade, holds};
+use super::bound::{Profile, Reason, Shade, holds};
 use super::clearance::{SolidOptions, StartOverlap};
+use super::fan::Fan;
 use super::leaf::{self, Facet, Gap};
 use super::overlap::{self, Overlap};
 use super::scene::Scene;
@@ -285,20 +286,20 @@ pub(super) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
 
 /// Whether an entry of the cover that is no pair of leaves holds.
 pub(super) fn cut_holds(
-    scene: &Scene,
+    (scene, fan): (&Scene, &Fan),
     aim: Aim,
     nodes: [u32; 2],
     reason: Reason,
     lower: f64,
 ) -> bool {
-    let [a, b] = [
-        Shade::new(scene, &scene.moving, nodes[0] as usize),
-        Shade::new(scene, &scene.fixed, nodes[1] as usize),
-    ];
+    let [p, q] = [&scene.moving, &scene.fixed];
+    let shades = [Shade::new(scene, p, nodes[0] as usize), Shade::new(scene, q, nodes[1] as usize)];
+    let reaches = [fan.reach(p, &shades[0]), fan.reach(q, &shades[1])];
+    let [a, b] = [0, 1].map(|k| Profile { shade: &shades[k], reach: Some(&reaches[k]) });
     match reason {
         Reason::NotBefore if lower <= 0.0 => aim != Aim::Least,
         Reason::Disjoint | Reason::FaceToFace | Reason::Examined => false,
         Reason::Parting if aim == Aim::Least => false,
-        _ => holds(scene, &a, &b, reason, lower + node_rounding(scene)),
+        _ => holds(scene, a, b, reason, lower + node_rounding(scene)),
     }
 }

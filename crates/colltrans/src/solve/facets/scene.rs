@@ -13,7 +13,6 @@
 
 use glam::{DMat3, DVec3};
 
-use super::sweep::Sweep;
 use super::wide::Wide;
 use crate::body::Pose;
 use crate::body::solid::{Shrinking, Solid, displace};
@@ -53,8 +52,6 @@ pub(crate) struct Scene<'a> {
     pub(super) frame: DMat3,
     /// Bound of the rounding error of a coordinate in the query frame.
     pub(super) blur: f64,
-    /// The axes that both bodies have, if they do.
-    pub(super) sweep: Option<Sweep>,
 }
 
 impl<'a> Scene<'a> {
@@ -76,7 +73,6 @@ impl<'a> Scene<'a> {
         let fixed = place(fixed, false, fixed_amount, fixed_pose.matrix(), [offset, lost]);
         let size = moving.reach() + fixed.reach() + offset.length();
         Self {
-            sweep: Sweep::new(&moving, &fixed),
             moving,
             fixed,
             direction,
@@ -95,7 +91,6 @@ impl<'a> Scene<'a> {
         };
         let (moving, fixed) = (turn(&self.moving), turn(&self.fixed));
         Self {
-            sweep: Sweep::new(&moving, &fixed),
             moving,
             fixed,
             direction: -self.direction,
@@ -112,6 +107,11 @@ impl<'a> Scene<'a> {
             Side { amount, shrinking, ..*side }
         };
         Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
+    }
+
+    /// Whether both bodies have the axes of the query frame.
+    pub(super) fn is_aligned(&self) -> bool {
+        self.moving.aligned == [true; 3] && self.fixed.aligned == [true; 3]
     }
 
     pub(super) fn side(&self, moving: bool) -> &Side<'a> {
@@ -154,8 +154,12 @@ impl<'a> Side<'a> {
 
     /// The largest distance of a point of the body from its origin.
     fn reach(&self) -> f64 {
-        let farthest = self.shrinking.map_or(0.0, |s| s.farthest);
-        self.solid.reach() + farthest * self.amount.abs()
+        self.solid.reach() + self.moved()
+    }
+
+    /// How far shrinking moves a vertex, at most.
+    pub(super) fn moved(&self) -> f64 {
+        self.shrinking.map_or(0.0, |s| s.farthest * self.amount.abs())
     }
 
     pub(super) fn vertex(&self, v: u32) -> DVec3 {

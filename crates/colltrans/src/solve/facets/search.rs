@@ -6,11 +6,13 @@
 //! Every pair that is not split is a *cut*, with its reason: together they are the proof that nothing
 //! blocks earlier.
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use super::bound::{Reason, Shade, least_gap};
+use super::bound::{Profile, Reason, Shade, dismissed, least_gap};
+use super::fan::{Fan, Reach};
 use super::leaf::{self, Facet, Gap, Meeting, Wanted};
 use super::scene::{Scene, Side};
 use crate::body::solid::tree::Node;
@@ -88,10 +90,18 @@ pub struct Workspace {
     seen: [Seen; 2],
 }
 
+/// What all of a search is about.
+struct Query<'s, 'a> {
+    scene: &'s Scene<'a>,
+    /// Made when boxes alone do not tell.
+    fan: OnceCell<Fan>,
+}
+
 /// The nodes of a body that a search has come to, and the facets of leaves: each is in many pairs.
 #[derive(Debug, Clone, Default)]
 struct Seen {
     views: Vec<View>,
+    reaches: Vec<Reach>,
     facets: Vec<Facet>,
 }
 
@@ -99,7 +109,8 @@ struct Seen {
 #[derive(Debug, Clone, Copy)]
 struct View {
     shade: Shade,
-    node: u32,
+    /// Where its reach is among the reaches, once it has been asked for.
+    reach: Option<u32>,
     leaf: bool,
     size: f64,
     /// Where its children are among the views, or those of its facets that matter among the facets,
@@ -108,33 +119,50 @@ struct View {
 }
 
 impl Seen {
-    fn start(&mut self, scene: &Scene, side: &Side) {
+    fn start(&mut self, query: &Query, moving: bool) {
         self.views.clear();
+        self.reaches.clear();
         self.facets.clear();
-        self.look(scene, side, 0);
+        self.look(query, moving, 0);
     }
 
-    fn look(&mut self, scene: &Scene, side: &Side, at: u32) {
+    fn look(&mut self, query: &Query, moving: bool, at: u32) {
+        let side = query.scene.side(moving);
         let node = &side.solid.nodes()[at as usize];
         let (leaf, size) = (node.is_leaf(), size(node));
         self.views.push(View {
-            shade: Shade::new(scene, side, at as usize),
-            node: at,
+            shade: Shade::new(query.scene, side, at as usize),
+            reach: None,
             leaf,
             size,
             parts: None,
         });
     }
 
+    /// Where the reach of a view is; `None` where boxes say all that it could.
+    fn reach(&mut self, query: &Query, moving: bool, view: u32) -> Option<usize> {
+        if query.scene.is_aligned() {
+            return None;
+        }
+        let View { shade, reach, .. } = &mut self.views[view as usize];
+        let at = *reach.get_or_insert_with(|| {
+            let fan = query.fan.get_or_init(|| Fan::new(query.scene));
+            self.reaches.push(fan.reach(query.scene.side(moving), shade));
+            self.reaches.len() as u32 - 1
+        });
+        Some(at as usize)
+    }
+
     /// The first of the two children of a view.
-    fn children(&mut self, scene: &Scene, side: &Side, view: u32) -> u32 {
-        let View { node, parts, .. } = self.views[view as usize];
+    fn children(&mut self, query: &Query, moving: bool, view: u32) -> u32 {
+        let &View { shade: Shade { node, .. }, parts, .. } = &self.views[view as usize];
         if let Some([first, _]) = parts {
             return first;
         }
         let first = self.views.len() as u32;
-        for part in children(&side.solid.nodes()[node as usize], node) {
-            self.look(scene, side, part);
+        let nodes = query.scene.side(moving).solid.nodes();
+        for part in children(&nodes[node as usize], node) {
+            self.look(query, moving, part);
         }
         self.views[view as usize].parts = Some([first, 2]);
         first
@@ -142,7 +170,7 @@ impl Seen {
 
     /// The facets of a leaf that look the right way.
     fn leaf(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
-        let View { node, parts, .. } = self.views[view as usize];
+        let &View { shade: Shade { node, .. }, parts, .. } = &self.views[view as usize];
         let [first, count] = parts.unwrap_or_else(|| {
             let wanted = if side.moving { Ordering::Greater } else { Ordering::Less };
             let facing = |t| Facet::facing(scene, side.moving, t, wanted);
@@ -215,9 +243,11 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
     pub(super) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
-        seen[0].start(self.scene, &self.scene.moving);
-        seen[1].start(self.scene, &self.scene.fixed);
-        let mut next = self.judge(seen, [0, 0], 0);
+        let scene = self.scene;
+        let query = Query { scene, fan: OnceCell::new() };
+        seen[0].start(&query, true);
+        seen[1].start(&query, false);
+        let mut next = self.judge(&query, seen, [0, 0], 0);
         let mut number = 0;
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
@@ -236,9 +266,9 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
                 continue;
             }
             let split_moving = !a.leaf && (b.leaf || a.size >= b.size);
-            for views in self.split(seen, entry.views, split_moving) {
+            for views in split(&query, seen, entry.views, split_moving) {
                 number += 1;
-                let Some(child) = self.judge(seen, views, number) else { continue };
+                let Some(child) = self.judge(&query, seen, views, number) else { continue };
                 // The better child goes on without a detour through the queue.
                 match next {
                     Some(best) if best.bound < child.bound => queue.push(child),
@@ -261,27 +291,34 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
     }
 
     /// A pair with its bound, unless it is cut.
-    fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
+    fn judge(
+        &mut self,
+        query: &Query,
+        seen: &mut [Seen; 2],
+        views: [u32; 2],
+        number: u32,
+    ) -> Option<Entry> {
         self.steps[0] += 1;
-        let [a, b] = [0, 1].map(|k| &seen[k].views[views[k] as usize]);
-        match least_gap(self.scene, &a.shade, &b.shade, self.limit, self.aim != Aim::Least) {
+        match self.bound(query, seen, views) {
             Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, views }),
             Err(reason) => {
-                (self.cut)([a.node, b.node], reason);
+                (self.cut)(nodes(seen, views), reason);
                 None
             }
         }
     }
 
-    /// The two pairs that a pair is split into.
-    fn split(&self, seen: &mut [Seen; 2], [a, b]: [u32; 2], moving: bool) -> [[u32; 2]; 2] {
-        if moving {
-            let first = seen[0].children(self.scene, &self.scene.moving, a);
-            [[first, b], [first + 1, b]]
-        } else {
-            let first = seen[1].children(self.scene, &self.scene.fixed, b);
-            [[a, first], [a, first + 1]]
+    fn bound(&self, query: &Query, seen: &mut [Seen; 2], [a, b]: [u32; 2]) -> Result<f64, Reason> {
+        let parting = self.aim != Aim::Least;
+        let [p, q] = seen;
+        let shades = [&p.views[a as usize].shade, &q.views[b as usize].shade];
+        if let Some(reason) = dismissed(shades[0], shades[1], self.limit, parting) {
+            return Err(reason);
         }
+        let (i, j) = (p.reach(query, true, a), q.reach(query, false, b));
+        let a = Profile { shade: &p.views[a as usize].shade, reach: i.map(|i| &p.reaches[i]) };
+        let b = Profile { shade: &q.views[b as usize].shade, reach: j.map(|j| &q.reaches[j]) };
+        least_gap(self.scene, a, b, self.limit, parting)
     }
 
     /// All pairs of facets of two leaves.
@@ -309,5 +346,16 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
 
 /// The nodes of a pair.
 fn nodes(seen: &[Seen; 2], views: [u32; 2]) -> [u32; 2] {
-    [0, 1].map(|k| seen[k].views[views[k] as usize].node)
+    [0, 1].map(|k| seen[k].views[views[k] as usize].shade.node)
+}
+
+/// The two pairs that a pair is split into.
+fn split(query: &Query, seen: &mut [Seen; 2], [a, b]: [u32; 2], moving: bool) -> [[u32; 2]; 2] {
+    if moving {
+        let first = seen[0].children(query, true, a);
+        [[first, b], [first + 1, b]]
+    } else {
+        let first = seen[1].children(query, false, b);
+        [[a, first], [a, first + 1]]
+    }
 }

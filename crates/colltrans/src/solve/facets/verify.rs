@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::bound::{Reason, Shade, holds};
+use super::bound::{Reason, Shade, apart};
+use super::fan::Fan;
 use super::leaf::{self, Facet};
 use super::overlap::{is_overlap, leaves_apart, nested, never_overlap};
 use super::proof::{
@@ -105,9 +106,8 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
     let whole = never_overlap(scene, &shade(true, 0), &shade(false, 0));
     let walked = cover.walk(bodies, |_, nodes, reason| match reason {
         Reason::Disjoint if nodes == [0, 0] && whole => true,
-        Reason::Disjoint | Reason::FaceToFace => {
-            holds(scene, &shade(true, nodes[0]), &shade(false, nodes[1]), reason, 0.0)
-        }
+        Reason::Disjoint => apart(scene, &shade(true, nodes[0]), &shade(false, nodes[1])),
+        Reason::FaceToFace => shade(true, nodes[0]).is_face_to_face(&shade(false, nodes[1])),
         Reason::Examined => {
             let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
             a.is_leaf() && b.is_leaf() && leaves_apart(scene, a, b)
@@ -134,9 +134,10 @@ fn verify_cover(
     let bodies = [scene.moving.solid, scene.fixed.solid];
     // One rounding of the division, and one of this product.
     let least = (lower * scene.length) * (1.0 - 2.0 * f64::EPSILON);
+    let fan = Fan::new(scene);
     let walked = cover.walk(bodies, |_, nodes, reason| {
         if reason != Reason::Examined {
-            return cut_holds(scene, aim, nodes, reason, least);
+            return cut_holds((scene, &fan), aim, nodes, reason, least);
         }
         let leaf = |k: usize| bodies[k].nodes()[nodes[k] as usize].is_leaf();
         leaf(0) && leaf(1) && (least <= 0.0 || least_of_leaves(scene, aim, nodes, least) >= least)

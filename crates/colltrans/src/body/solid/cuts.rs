@@ -1,0 +1,187 @@
+//! Corners and edges cut off a box: a polytope of 26 sides around facets (Klosowski et al., "Efficient
+//! collision detection using bounding volume hierarchies of k-DOPs", IEEE TVCG 4(1), 1998).
+//!
+//! A corner of a box is named by its signs `s = (+-1, +-1, +-1)`, an edge by the same with one sign 0.
+//! Along `s` no facet reaches as far as the box by a *depth*, which is kept as a share of the box's
+//! extents along `s`, in steps of `1/256`, rounded down.
+//!
+//! A normal with `|n_i| >= |n_j| >= |n_k|` is the sum of `|n_i| - |n_j|` times an axis, `|n_j| - |n_k|`
+//! times an edge and `|n_k|` times a corner. So no facet reaches farther along it than the box, less
+//! the last two times the depths there.
+
+use glam::{BVec3, DVec3};
+
+/// Eight corners, and four edges along each axis.
+pub(crate) const CUTS: usize = 20;
+const STEPS: f64 = 256.0;
+/// For the roundings of a share on its way in and out; those of coordinates are up to whoever reads
+/// it.
+const SHARE: f64 = 1.0 - 1e-9;
+
+/// A corner, its negative signs as bits.
+fn corner(n: DVec3) -> usize {
+    n.is_negative_bitmask() as usize
+}
+
+/// The same of an edge along an axis, for the two other axes in cyclic order.
+fn edge(axis: usize, n: DVec3) -> usize {
+    let negative = |k: usize| usize::from(n[(axis + k) % 3].is_sign_negative());
+    8 + 4 * axis + (negative(1) | negative(2) << 1)
+}
+
+/// How far points reach along the signs of all corners and edges.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach([f64; CUTS]);
+
+impl Reach {
+    pub(super) const NONE: Self = Self([f64::NEG_INFINITY; CUTS]);
+
+    pub(super) fn add(&mut self, p: DVec3) {
+        let DVec3 { x, y, z } = p;
+        let along = [x + y + z, -x + y + z, x - y + z, -x - y + z];
+        for (k, h) in along.into_iter().enumerate() {
+            self.raise(k, h);
+            self.raise(7 - k, -h);
+        }
+        for (axis, [a, b]) in [[y, z], [z, x], [x, y]].into_iter().enumerate() {
+            let first = 8 + 4 * axis;
+            for (k, h) in [a + b, b - a].into_iter().enumerate() {
+                self.raise(first + k, h);
+                self.raise(first + 3 - k, -h);
+            }
+        }
+    }
+
+    pub(super) fn join(&mut self, other: &Self) {
+        for (k, h) in other.0.into_iter().enumerate() {
+            self.raise(k, h);
+        }
+    }
+
+    fn raise(&mut self, k: usize, height: f64) {
+        if height > self.0[k] {
+            self.0[k] = height;
+        }
+    }
+
+    /// The depths below the corners and edges of a box, as shares.
+    pub(super) fn below(&self, low: DVec3, high: DVec3) -> [u8; CUTS] {
+        let sums = extents(high - low);
+        let mut ends = Self::NONE;
+        for c in 0..8 {
+            let lower = BVec3::new(c & 1 != 0, c & 2 != 0, c & 4 != 0);
+            ends.add(DVec3::select(lower, low, high));
+        }
+        std::array::from_fn(|k| {
+            let depth = ends.0[k] - self.0[k];
+            // Saturates, and is 0 where the box has no extent.
+            (depth / sums[k] * (STEPS * SHARE)) as u8
+        })
+    }
+}
+
+/// The extents of a box along the signs of corners and edges.
+fn extents(e: DVec3) -> [f64; CUTS] {
+    let mut sums = [e.element_sum(); CUTS];
+    for axis in 0..3 {
+        sums[8 + 4 * axis..12 + 4 * axis].fill(e[(axis + 1) % 3] + e[(axis + 2) % 3]);
+    }
+    sums
+}
+
+/// A table of depths, with places to spare so that no index is out of bounds.
+pub(crate) type Depths = [f64; 32];
+
+/// The depths of a box with these extents, of facets that have moved by at most `moved`: its sides as
+/// much, three of them at a corner, and what is below it by no more than `sqrt(3)` times that.
+#[inline]
+pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
+    let extents = extents(size * STEPS.recip());
+    let mut depths = [0.0; 32];
+    for k in 0..CUTS {
+        let rest = extents[k] * f64::from(cuts[k]) - 5.0 * moved;
+        depths[k] = if rest > 0.0 { rest } else { 0.0 };
+    }
+    depths
+}
+
+/// A normal as a sum of an axis, an edge and a corner; see the module's head.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Parts {
+    corner: u8,
+    edge: u8,
+    /// How much of each.
+    weights: [f64; 2],
+}
+
+impl Parts {
+    pub(crate) fn new(n: DVec3) -> Self {
+        let size = n.abs();
+        let least = size.min_position();
+        let second = size[(least + 1) % 3].min(size[(least + 2) % 3]);
+        let weights = [size[least], second - size[least]];
+        Self { corner: corner(n) as u8, edge: edge(least, n) as u8, weights }
+    }
+
+    /// Those of the opposite normal.
+    #[inline]
+    pub(crate) fn opposite(self) -> Self {
+        // Corners are listed backwards as a whole, the edges of each axis by themselves.
+        Self { corner: 7 - self.corner, edge: self.edge ^ 3, ..self }
+    }
+
+    /// What depths take from the box's reach along the normal.
+    #[inline]
+    pub(crate) fn gain(&self, depths: &Depths) -> f64 {
+        let [w, v] = self.weights;
+        w * depths[usize::from(self.corner & 31)] + v * depths[usize::from(self.edge & 31)]
+    }
+
+    /// The same of a node's cuts, as for [`depths`], without a table.
+    pub(crate) fn gain_of(&self, cuts: &[u8; CUTS], size: DVec3, moved: f64) -> f64 {
+        let [w, v] = self.weights;
+        let (corner, edge) = (usize::from(self.corner), usize::from(self.edge));
+        let all = size.element_sum();
+        let depth =
+            |k: usize, extent: f64| (f64::from(cuts[k]) * (extent / STEPS) - 5.0 * moved).max(0.0);
+        w * depth(corner, all) + v * depth(edge, all - size[(edge - 8) / 4])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_point_is_beyond_its_box_less_the_cuts() {
+        // Points of a tilted ring, which leaves all corners of its box free but touches its sides.
+        let points: Vec<DVec3> = (0..60)
+            .map(|k| {
+                let (s, c) = (0.1 * f64::from(k)).sin_cos();
+                DVec3::new(3.0 * c, 2.0 * s - c, 0.5 * s + 1.5 * c)
+            })
+            .collect();
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut reach = Reach::NONE;
+        for p in &points {
+            (low, high) = (low.min(*p), high.max(*p));
+            reach.add(*p);
+        }
+        let cuts = reach.below(low, high);
+        assert!(cuts.iter().any(|&c| c > 64));
+        let depths = depths(&cuts, high - low, 0.0);
+        let mut gained = 0.0;
+        for k in 0..400 {
+            let (a, b) = (0.37 * f64::from(k), 0.11 * f64::from(k));
+            let n = DVec3::new(a.cos() * b.sin(), a.sin() * b.sin(), b.cos());
+            for n in [n, -n] {
+                let gain = Parts::new(n).gain(&depths);
+                let end = n.dot(DVec3::select(n.cmpgt(DVec3::ZERO), high, low));
+                let farthest = points.iter().map(|p| n.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
+                assert!(farthest <= end - gain + 1e-12, "{n}: {farthest} {end} {gain}");
+                gained += gain;
+            }
+        }
+        assert!(gained > 100.0, "{gained}");
+    }
+}

@@ -162,3 +162,54 @@ fn magnitudes_at_the_limits() {
         assert!(error < 1e-13, "2^{exponent}: {error:e}");
     }
 }
+
+/// A polygon with corners on a circle, or anywhere on an ellipse, as the ends of a prism.
+fn prism(corners: u32, radii: [f64; 2], rng: Option<&mut Rng>) -> Vec<DVec3> {
+    let mut angles_rad: Vec<f64> =
+        (0..corners).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(corners)).collect();
+    if let Some(rng) = rng {
+        for angle_rad in &mut angles_rad {
+            *angle_rad = rng.range(0.0, std::f64::consts::TAU);
+        }
+    }
+    let corner = |z: f64| move |a: &f64| DVec3::new(radii[0] * a.cos(), radii[1] * a.sin(), z);
+    angles_rad.iter().map(corner(-0.5)).chain(angles_rad.iter().map(corner(0.5))).collect()
+}
+
+#[test]
+fn prisms_stand_on_prisms() {
+    let mut rng = Rng::new(5);
+    let mut at_once = 0;
+    for case in 0..400 {
+        let ends = [9, 12, 24, 25, 31].map(|n| n + (case % 3));
+        let mut any = |k: u32| {
+            let n = ends[(case + k) as usize % ends.len()];
+            let radii = [rng.range(0.5, 1.5), rng.range(0.5, 1.5)];
+            if case % 2 == 0 { prism(n, radii, None) } else { prism(n, radii, Some(&mut rng)) }
+        };
+        let (below, above) = (body(&any(0)), body(&any(case % 5)));
+        // Centred, by quarters, and anywhere.
+        let place = |rng: &mut Rng| match case % 3 {
+            0 => 0.0,
+            1 => 0.25 * (rng.range(-4.0, 4.0)).round(),
+            _ => rng.range(-1.0, 1.0),
+        };
+        let offset = DVec3::new(place(&mut rng), place(&mut rng), 3.0);
+        let turn = if case % 4 < 2 { DQuat::IDENTITY } else { rng.rotation() };
+        let pose = |offset| Pose::new(turn, turn * offset).expect("a pose");
+        let (up, down) = (pose(offset), pose(DVec3::ZERO));
+        let cast = Cast::new(above.at(up), below.at(down), turn * DVec3::NEG_Z).expect("a query");
+        let judge = Judge::new(cast);
+        for solver in [Solver::Cta, Solver::Portal] {
+            let cast = cast.with_solver(solver);
+            let outcome = cast.first_contact().unwrap_or_else(|e| panic!("case {case}: {e}"));
+            judge.check(&outcome).unwrap_or_else(|e| panic!("case {case}: {e}"));
+            if let Outcome::Contact(contact) = outcome {
+                assert!((contact.translation - 2.0).abs() < 1e-13, "case {case}: {contact:?}");
+                let once = contact.steps.supports == 1 && solver == Solver::Portal;
+                at_once += u32::from(once);
+            }
+        }
+    }
+    assert!(at_once > 200, "{at_once} answered by the faces");
+}

@@ -181,8 +181,8 @@ pub(crate) struct Along {
 }
 
 impl Along {
-    /// For a unit normal, also in the frames of the moving and of the fixed body, and the support
-    /// points along it.
+    /// For a unit normal, also in the frames of the moving and of the fixed body, the support points
+    /// along it, and what the bodies reach beyond them.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(crate) fn new(
@@ -191,11 +191,10 @@ impl Along {
         normal: DVec3,
         normals: &[DVec3; 2],
         support: VertexPair,
+        beyond: f64,
     ) -> Self {
         let [p, q] = setting.vertices(support);
         let distance = (normals[1].dot(q) - normals[0].dot(p)) + normal.dot(setting.offset);
-        let beyond = setting.moving.excess(normals[0], support.moving)
-            + setting.fixed.excess(-normals[1], support.fixed);
         Self { distance, error: noise.lowered() + beyond }
     }
 
@@ -308,7 +307,8 @@ fn derived_tolerance(setting: &Setting, normal: DVec3) -> f64 {
         moving: setting.moving.support(normals[0]),
         fixed: setting.fixed.support(-normals[1]),
     };
-    let along = Along::new(setting, noise, normal, &normals, support);
+    let beyond = setting.excess(&normals, support);
+    let along = Along::new(setting, noise, normal, &normals, support, beyond);
     let rounding = (noise.raised() + along.error) / normal.dot(setting.direction);
     2.0 * (gap_tolerance(setting, normal, noise, noise.widest()) + rounding)
 }

@@ -8,6 +8,7 @@ mod pose;
 pub(crate) mod solid;
 pub(crate) mod topology;
 
+pub(crate) use convex::LargeFace;
 pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
 pub use feature::Feature;
 pub(crate) use feature::feature;

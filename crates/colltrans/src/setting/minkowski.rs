@@ -137,6 +137,18 @@ impl<'a> MinkowskiDifference<'a> {
         self.moving_from_shadow * normal
     }
 
+    /// A normal of the moving body's frame in the shadow frame.
+    #[inline]
+    pub(crate) fn shadow_of_moving(&self, normal: DVec3) -> DVec3 {
+        transposed(&self.moving_from_shadow, normal)
+    }
+
+    /// A normal of the fixed body's frame in the shadow frame.
+    #[inline]
+    pub(crate) fn shadow_of_fixed(&self, normal: DVec3) -> DVec3 {
+        transposed(&self.fixed_from_shadow, normal)
+    }
+
     /// One normal of an earlier query, kept in the frames of the moving and of the fixed body, in
     /// the shadow frame: what each body has made of it since. `None` if the bodies have turned so
     /// far against each other that nothing follows from it.

@@ -154,6 +154,14 @@ impl Setting<'_> {
         self.fixed_matrix.transpose() * normal
     }
 
+    /// How far the bodies may reach towards each other beyond a pair of support points along a unit
+    /// normal, given in both bodies' frames.
+    #[inline]
+    pub(crate) fn excess(&self, normals: &[DVec3; 2], support: VertexPair) -> f64 {
+        self.moving.excess(normals[0], support.moving)
+            + self.fixed.excess(-normals[1], support.fixed)
+    }
+
     /// `q - p` for a pair of vertices, as the sum of products that defines it.
     pub(crate) fn terms(&self, pair: VertexPair) -> Terms<'_> {
         let [p, q] = self.vertices(pair);

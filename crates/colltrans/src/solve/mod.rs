@@ -1,10 +1,14 @@
 //! One cast: from a setting, and what is left of the one before, to an outcome.
 //!
 //! The way: *features* (the portal or the separating direction of the last answer, if there is one)
-//! -> *narrowing* (a guess of the normal, from ellipsoids or by the collision translation
-//! algorithm, which may confine itself to the *region* of the last solution) -> a first portal ->
-//! the lowest face. The first two only save work: whatever they propose passes through the same
-//! enclosure and refinement, so a wrong proposal costs time and nothing else.
+//! -> *narrowing* (large faces that face each other, or a guess of the normal, from ellipsoids or by
+//! the collision translation algorithm, which may confine itself to the *region* of the last solution)
+//! -> a first portal -> the lowest face. The first two only save work: whatever they propose has to be
+//! proven, or passes through the same enclosure and refinement, so a wrong proposal costs time and
+//! nothing else.
+//!
+//! A proposal is a plane through vertices of `M`. Whether it supports `M` is asked first where it is
+//! ([`Plane::at`], which is also the proof), and a support point is searched only if it does not.
 
 pub(crate) mod cta;
 pub(crate) mod facets;
@@ -14,7 +18,7 @@ pub(crate) mod portal;
 mod proof;
 mod warm_start;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use crate::answer::{Grazing, Outcome, Separated, Separation, Solver, StartedFrom};
 use crate::error::{QueryError, Stalled};
@@ -23,7 +27,10 @@ use crate::setting::{Setting, VertexPair};
 use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
-use portal::{Enclosure, FirstNormal, Followed, Optimum, Overlap, Portal, Refined, SeparatingLine};
+use portal::{
+    Enclosure, Face, FirstNormal, Followed, Optimum, Overlap, Plane, Portal, Refined,
+    SeparatingLine,
+};
 use proof::Proven;
 pub(crate) use warm_start::WarmStart;
 
@@ -47,6 +54,8 @@ pub(crate) fn search<O: Observer>(
         solver,
         narrowing: options.narrowing,
         optimum: None,
+        face: None,
+        is_wrapped: false,
         watch: Watch::new(observer),
     };
     let mut answer = first.run(focus, &last, warm_start);
@@ -109,6 +118,10 @@ struct Run<'a, 'o, O> {
     narrowing: Narrowing,
     /// The optimum in the first portal, if that is known to be the lowest.
     optimum: Option<Optimum>,
+    /// The first portal as a face, if that is proven to be the lowest.
+    face: Option<Face>,
+    /// Whether the first portal was reached face by face, so that it probably is the lowest.
+    is_wrapped: bool,
     watch: Watch<'o, O>,
 }
 
@@ -123,6 +136,11 @@ impl<O: Observer> Run<'_, '_, O> {
             world_from_shadow: self.difference.setting_from_shadow,
             noise: self.difference.noise.point(),
         });
+        if focus.features
+            && let Some(separated) = self.still_apart(last, next)
+        {
+            return Ok(Outcome::Separated(separated));
+        }
         let followed = if focus.features { self.follow(last) } else { None };
         let enclosure = if followed.is_some() {
             self.watch.steps.started_from = StartedFrom::Features;
@@ -161,7 +179,7 @@ impl<O: Observer> Run<'_, '_, O> {
             WarmStart::Contact(portal) => {
                 let optimum = &mut self.optimum;
                 match portal::follow(&self.difference, portal, optimum, &mut self.watch) {
-                    Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
+                    Followed::Portal(portal) => Some(self.wrapped(portal)),
                     Followed::Rim { outward, near } => self.beside(-outward, near),
                     Followed::Lost => None,
                 }
@@ -194,10 +212,17 @@ impl<O: Observer> Run<'_, '_, O> {
         }
         let optimum = &mut self.optimum;
         match portal::approach(&self.difference, start, optimum, &mut self.watch) {
-            Followed::Portal(portal) => Some(Enclosure::Portal(portal)),
+            Followed::Portal(portal) => Some(self.wrapped(portal)),
             Followed::Rim { outward, near } => self.beside(-outward, near),
             Followed::Lost => None,
         }
+    }
+
+    /// A portal that was reached face by face.
+    #[inline]
+    fn wrapped(&mut self, portal: Portal) -> Enclosure {
+        self.is_wrapped = true;
+        Enclosure::Portal(portal)
     }
 
     /// Whether all of `M` lies beyond a lateral direction.
@@ -222,7 +247,12 @@ impl<O: Observer> Run<'_, '_, O> {
         let setting = self.difference.setting;
         let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
         if self.solver != Solver::Cta || !solid {
-            return Start::Normal(FirstNormal::new(&self.difference));
+            let facing = portal::facing(&self.difference, &mut self.watch);
+            let Some((portal, face)) = facing else {
+                return Start::Normal(FirstNormal::new(&self.difference));
+            };
+            self.face = Some(face);
+            return Start::Enclosed(Enclosure::Portal(portal));
         }
         let ellipsoids = FirstNormal::from_ellipsoids(&self.difference);
         if let Some(focus) = self.region(region, last) {
@@ -300,22 +330,23 @@ impl<O: Observer> Run<'_, '_, O> {
         portal: &mut Portal,
         next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
-        let most = match self.watch.steps.started_from {
-            StartedFrom::Features => MOST_AFTER_FOLLOWING,
-            StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
-        };
-        let optimum = match self.optimum.take() {
-            Some(optimum) => optimum,
-            None => match portal::refine(&self.difference, portal, most, &mut self.watch) {
-                Some(Refined::Optimum(optimum)) => optimum,
+        let Face { plane, weights } = if let Some(face) = self.face.take() {
+            face
+        } else if let Some(optimum) = self.optimum.take() {
+            self.proven(&optimum)
+        } else if let Some(face) = self.first_face(portal) {
+            face
+        } else {
+            match self.refine(portal) {
+                Some(Refined::Optimum(optimum)) => self.proven(&optimum),
                 Some(Refined::Rim(rim)) => return self.passed(rim, next),
                 None => return Err(stalled(Stalled::Cycle)),
-            },
+            }
         };
         let tolerance = self.graze_tolerance.max(self.difference.touching());
         let overlap = portal::overlap(&self.difference, portal, tolerance, &mut self.watch);
         self.watch.ended(Phase::Finish);
-        let proven = Proven::new(&self.difference, portal, &optimum)?;
+        let proven = Proven::new(&self.difference, portal, &plane, weights)?;
         *next = WarmStart::Contact(proven.contact_portal());
         match overlap {
             Overlap::Ample => Ok(Outcome::Contact(proven.contact(self.solver, self.watch.steps))),
@@ -325,6 +356,31 @@ impl<O: Observer> Run<'_, '_, O> {
                 Ok(Outcome::Grazing(grazing))
             }
         }
+    }
+
+    /// The first portal as a face, if it is the lowest.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    fn first_face(&mut self, portal: &Portal) -> Option<Face> {
+        let may_be = std::mem::take(&mut self.is_wrapped);
+        if may_be { portal::face(&self.difference, portal, &mut self.watch) } else { None }
+    }
+
+    /// The face of an optimum.
+    #[inline]
+    fn proven(&self, optimum: &Optimum) -> Face {
+        let Optimum { normal, lowest, weights } = *optimum;
+        Face { plane: Plane::of(&self.difference, normal, lowest), weights }
+    }
+
+    /// The lowest face, and its portal in place of the one that leads there.
+    #[inline(never)]
+    fn refine(&mut self, portal: &mut Portal) -> Option<Refined> {
+        let most = match self.watch.steps.started_from {
+            StartedFrom::Features => MOST_AFTER_FOLLOWING,
+            StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
+        };
+        portal::refine(&self.difference, portal, most, &mut self.watch)
     }
 
     /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
@@ -347,10 +403,12 @@ impl<O: Observer> Run<'_, '_, O> {
         else {
             return Err(stalled(Stalled::Cycle));
         };
-        let proven = Proven::new(&self.difference, &portal, &optimum)?;
+        let Face { plane, weights } = self.proven(&optimum);
+        let proven = Proven::new(&self.difference, &portal, &plane, weights)?;
         let contact = proven.contact(self.solver, self.watch.steps);
         let grazing = proof::grazing(&self.difference, rim.normal, -rim.margin, contact);
-        *next = self.apart(grazing.separating_direction, rim).0;
+        let plane = Plane::of(&self.difference, rim.normal.extend(0.0), rim.point.pair);
+        *next = proof::separation(&self.difference, &plane, rim.margin).1;
         Ok(grazing)
     }
 
@@ -360,15 +418,42 @@ impl<O: Observer> Run<'_, '_, O> {
         if found.margin <= self.difference.noise.lowered() {
             return None;
         }
-        let normal = (self.difference.setting_from_shadow * found.normal.extend(0.0)).normalize();
-        let (start, normals) = self.apart(normal, found);
-        let margin = proof::safe_margin(&self.difference, found, &normals);
-        let certificate = Separation { normal, margin };
-        if margin <= 0.0 || !self.others_agree(&certificate) {
+        let plane = Plane::of(&self.difference, found.normal.extend(0.0), found.point.pair);
+        self.separated_by(&plane, found.margin, next)
+    }
+
+    /// The separation that a plane parallel to the direction proves.
+    #[inline]
+    fn separated_by(&self, plane: &Plane, margin: f64, next: &mut WarmStart) -> Option<Separated> {
+        let (certificate, start) = proof::separation(&self.difference, plane, margin);
+        if certificate.margin <= 0.0 || !self.others_agree(&certificate) {
             return None;
         }
         *next = start;
         Some(Separated { certificate, solver: self.solver, steps: self.watch.steps })
+    }
+
+    /// The separation that the plane between the bodies of the last answer proves, turned with them,
+    /// if its pair is still the nearest.
+    #[inline]
+    fn still_apart(&mut self, last: &WarmStart, next: &mut WarmStart) -> Option<Separated> {
+        let WarmStart::Apart { normals, pair } = last else { return None };
+        let [p, q] = self.difference.shadow_from_bodies(*normals)?;
+        let lateral = (p + q).truncate();
+        // Of a length fit to be squared.
+        if lateral.length_squared() <= f64::MIN_POSITIVE {
+            return None;
+        }
+        let normal = lateral.extend(0.0);
+        let plane = Plane::at(&self.difference, normal, *pair)?;
+        let point = self.difference.vertex(plane.lowest);
+        self.watch.support(|| Support::of(normal, &point));
+        self.watch.steps.started_from = StartedFrom::Features;
+        let found = self.separated_by(&plane, normal.dot(point.at) / lateral.length(), next);
+        if found.is_none() {
+            self.watch.steps.started_from = StartedFrom::Scratch;
+        }
+        found
     }
 
     /// Whether who checks a separation will find it proven, too.
@@ -379,14 +464,6 @@ impl<O: Observer> Run<'_, '_, O> {
     fn others_agree(&self, certificate: &Separation) -> bool {
         certificate.margin > 2.0 * self.difference.noise.touching()
             || certificate.verify(self.difference.setting).is_ok()
-    }
-
-    /// What is left to the next query, and the normal in both bodies' frames.
-    #[inline]
-    fn apart(&self, normal: DVec3, found: &SeparatingLine) -> (WarmStart, [DVec3; 2]) {
-        let setting = self.difference.setting;
-        let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        (WarmStart::Apart { normals, pair: found.point.pair }, normals)
     }
 }
 

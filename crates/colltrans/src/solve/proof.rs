@@ -1,21 +1,21 @@
 //! From what a solver found to the answer: bounds, and where they come from, in the world.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use crate::answer::{Along, Certificate, Contact, Grazing, Solver, Steps, gap_tolerance};
+use crate::answer::{
+    Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_tolerance,
+};
 use crate::error::{QueryError, Stalled};
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::portal::{ContactPortal, Optimum, Portal, SeparatingLine};
+use crate::solve::WarmStart;
+use crate::solve::portal::{ContactPortal, Plane, Portal};
 
-/// An optimum and what it proves, in the world. Small and passed by reference: moved about, an outcome
-/// goes through memory.
+/// The lowest face of `M` on the line and what it proves, in the world. Small and passed by reference:
+/// moved about, an outcome goes through memory.
 pub(crate) struct Proven<'a> {
     portal: &'a Portal,
-    optimum: &'a Optimum,
-    /// The unit contact normal, in the world.
-    normal: DVec3,
-    /// The same in the frames of the moving and of the fixed body.
-    normals: [DVec3; 2],
+    plane: &'a Plane,
+    weights: [f64; 3],
     /// The estimate of the collision translation.
     translation: f64,
     lower: f64,
@@ -31,15 +31,15 @@ impl<'a> Proven<'a> {
     pub(crate) fn new(
         difference: &MinkowskiDifference,
         portal: &'a Portal,
-        optimum: &'a Optimum,
+        plane: &'a Plane,
+        weights: [f64; 3],
     ) -> Result<Self, QueryError> {
         let setting = difference.setting;
         let noise = difference.noise;
-        let normal = (difference.setting_from_shadow * optimum.normal).normalize();
-        let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
+        let &Plane { normal, ref normals, lowest, beyond } = plane;
         let steepness = normal.dot(setting.direction);
-        let along = Along::new(setting, noise, normal, &normals, optimum.lowest);
-        let [u, v, w] = optimum.weights;
+        let along = Along::new(setting, noise, normal, normals, lowest, beyond);
+        let [u, v, w] = weights;
         let [a, b, c] = portal.each_ref().map(Point::height);
         let estimate = (a * u + b * v + c * w) / setting.length;
         let tolerance = gap_tolerance(setting, normal, noise, difference.widening);
@@ -58,17 +58,16 @@ impl<'a> Proven<'a> {
         };
         let tolerance = tolerance + (noise.raised() + along.error) / steepness;
         let translation = estimate.max(lower);
-        Ok(Self { portal, optimum, normal, normals, translation, lower, upper, tolerance })
+        Ok(Self { portal, plane, weights, translation, lower, upper, tolerance })
     }
 
     /// What a later query may start from.
     #[inline]
     pub(crate) fn contact_portal(&self) -> ContactPortal {
-        let weights = self.optimum.weights;
         ContactPortal {
             pairs: self.portal.each_ref().map(|p| p.pair),
-            weights,
-            normals: self.normals,
+            weights: self.weights,
+            normals: self.plane.normals,
         }
     }
 
@@ -77,13 +76,13 @@ impl<'a> Proven<'a> {
     pub(crate) fn contact(&self, solver: Solver, steps: Steps) -> Contact {
         Contact {
             translation: self.translation,
-            normal: self.normal,
-            support: self.optimum.lowest,
+            normal: self.plane.normal,
+            support: self.plane.lowest,
             certificate: Certificate {
-                normal: self.normal,
+                normal: self.plane.normal,
                 lower: self.lower,
                 pairs: self.portal.each_ref().map(|p| p.pair),
-                weights: self.optimum.weights,
+                weights: self.weights,
                 upper: self.upper,
                 tolerance: self.tolerance,
             },
@@ -103,16 +102,15 @@ pub(crate) fn grazing(
     Grazing { separating_direction, overlap, contact }
 }
 
-/// The margin of a separating line, given in both bodies' frames, less what rounding and bodies that
-/// reach beyond the support points may take from it.
+/// What a plane parallel to the direction proves: the margin along it, less what rounding and bodies
+/// that reach beyond the support points may take from it; and where a later query may begin.
 #[inline]
-pub(crate) fn safe_margin(
+pub(crate) fn separation(
     difference: &MinkowskiDifference,
-    found: &SeparatingLine,
-    normals: &[DVec3; 2],
-) -> f64 {
-    let (setting, pair) = (difference.setting, found.point.pair);
-    let beyond = setting.moving.excess(normals[0], pair.moving)
-        + setting.fixed.excess(-normals[1], pair.fixed);
-    found.margin - difference.noise.lowered() - beyond
+    plane: &Plane,
+    margin: f64,
+) -> (Separation, WarmStart) {
+    let margin = margin - difference.noise.lowered() - plane.beyond;
+    let start = WarmStart::Apart { normals: plane.normals, pair: plane.lowest };
+    (Separation { normal: plane.normal, margin }, start)
 }

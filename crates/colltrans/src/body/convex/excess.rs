@@ -15,6 +15,9 @@
 //! b + l_c c` with `|l_c| <= 1`, `|l_b| <= 2`, `|l_a| <= 4`, up to `8 f`, so it gains at most 7 times
 //! what one of the three does; and where all edges that leave the face go down more steeply than the
 //! normal can be tilted, nothing off the face belongs to the plateau.
+//!
+//! All this holds for any vertex, so it also tells whether one that was not found by a climb is a
+//! support point: if nothing gains more than is asked for.
 
 use glam::DVec3;
 
@@ -31,16 +34,25 @@ const SMALL: usize = 48;
 /// A face with more corners is measured at three.
 const FEW: usize = 8;
 
+/// Of bodies with up to this many such faces each may be looked at.
+const MOST_LARGE: usize = 8;
+
+/// Cosine of the largest angle between a normal and that of a face which is looked at for it.
+const ACROSS: f64 = 0.9;
+
 /// Sum of the magnitudes of the weights over three corners.
 const WEIGHTS: f64 = 7.0;
 
 /// A face with many corners.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LargeFace {
+pub(crate) struct LargeFace {
     face: u32,
     /// Three that span it.
-    corners: [u32; 3],
-    normal: DVec3,
+    pub(crate) corners: [u32; 3],
+    /// The half-edges that leave these along the face.
+    pub(crate) half_edges: [u32; 3],
+    /// Its unit normal, outwards.
+    pub(crate) normal: DVec3,
     /// Of the triangle of the three.
     height: f64,
     /// The least slope, downwards, of the edges that leave the face.
@@ -53,14 +65,52 @@ impl ConvexPolyhedron {
     #[inline]
     pub(crate) fn excess(&self, normal: DVec3, vertex: u32) -> f64 {
         if self.support.is_scanned() {
-            // The largest of the rounded products was taken: both may be off.
-            return 2.0 * noise::GAIN * self.inertia.reach;
+            return self.excess_of_scan();
         }
+        let excess = self.excess_up_to(normal, 1.0, vertex, f64::INFINITY);
+        excess.unwrap_or_else(|| self.excess_of_all(normal, 1.0, vertex))
+    }
+
+    /// A support point along `normal`, of this length, and the excess beyond it, if `near` is one as
+    /// well: if nothing is seen to gain more than `most` beyond it.
+    ///
+    /// Lengths are compared with that of the normal, so that nothing waits for it.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+    pub(crate) fn support_at(
+        &self,
+        normal: DVec3,
+        length: f64,
+        near: u32,
+        most: f64,
+    ) -> Option<(u32, f64)> {
+        if self.support.is_scanned() {
+            let found = self.support_from(normal, near);
+            let gain = normal.dot(self.vertices[found as usize] - self.vertices[near as usize]);
+            return (gain <= most * length).then(|| (found, self.excess_of_scan()));
+        }
+        self.excess_up_to(normal, length, near, most).map(|excess| (near, excess))
+    }
+
+    /// Of a support point that was found by a look at each vertex: the largest of the rounded
+    /// products was taken, and both may be off.
+    #[inline]
+    fn excess_of_scan(&self) -> f64 {
+        2.0 * noise::GAIN * self.inertia.reach
+    }
+
+    /// The excess beyond a vertex; `None` if something gains more than `most`, or the plateau is
+    /// larger than can be visited.
+    #[inline]
+    fn excess_up_to(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {
         let here = self.vertices[vertex as usize];
-        let least = -self.plateau_depth();
-        let neighbours = self.neighbours(vertex);
-        let ties = |w: &u32| normal.dot(self.vertices[*w as usize] - here) > least;
-        if neighbours.iter().any(ties) { self.excess_of_plateau(normal, vertex) } else { 0.0 }
+        let gain = |w: &u32| normal.dot(self.vertices[*w as usize] - here);
+        let highest = self.neighbours(vertex).iter().map(gain).fold(f64::NEG_INFINITY, f64::max);
+        if highest <= -self.plateau_depth() * length {
+            return Some(0.0);
+        }
+        let may = highest <= most * length;
+        if may { self.excess_of_plateau(normal, length, vertex, most) } else { None }
     }
 
     /// How far below a vertex its plateau is visited.
@@ -70,67 +120,100 @@ impl ConvexPolyhedron {
     }
 
     #[inline(never)]
-    fn excess_of_plateau(&self, normal: DVec3, vertex: u32) -> f64 {
+    fn excess_of_plateau(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {
         if self.vertices.len() <= SMALL {
-            return self.excess_of_all(normal, vertex);
+            let excess = self.excess_of_all(normal, length, vertex);
+            return (excess <= most).then_some(excess);
         }
         if !self.large_faces.is_empty()
-            && let Some(excess) = self.excess_of_large_face(normal, vertex)
+            && let Some(excess) = self.excess_of_large_face(normal, length, vertex, most)
         {
-            return excess;
+            return Some(excess);
         }
         let here = self.vertices[vertex as usize];
-        let least = -self.plateau_depth();
+        let [least, most] = [-self.plateau_depth(), most].map(|limit| limit * length);
         let gain = |w: u32| normal.dot(self.vertices[w as usize] - here);
         let mut plateau = [vertex; VISITED];
-        let (mut count, mut next, mut most) = (1, 0, 0.0_f64);
+        let (mut count, mut next, mut highest) = (1, 0, 0.0_f64);
         while next < count {
             for &w in self.neighbours(plateau[next]) {
                 let gained = gain(w);
                 if gained <= least || plateau[..count].contains(&w) {
                     continue;
                 }
-                if count == VISITED {
-                    return self.excess_of_all(normal, vertex);
+                if count == VISITED || gained > most {
+                    return None;
                 }
                 plateau[count] = w;
                 count += 1;
-                most = most.max(gained);
+                highest = highest.max(gained);
             }
             next += 1;
         }
-        most + noise::GAIN * self.inertia.reach
+        Some(highest / length + noise::GAIN * self.inertia.reach)
     }
 
     /// The same by a look at all vertices.
-    fn excess_of_all(&self, normal: DVec3, vertex: u32) -> f64 {
+    fn excess_of_all(&self, normal: DVec3, length: f64, vertex: u32) -> f64 {
         let here = self.vertices[vertex as usize];
         let mut most = 0.0;
         for v in &self.vertices {
             let gain = normal.dot(*v - here);
             most = if gain > most { gain } else { most };
         }
-        most + noise::GAIN * self.inertia.reach
+        most / length + noise::GAIN * self.inertia.reach
     }
 
     /// The same where the plateau is, at most, one face with many corners.
-    fn excess_of_large_face(&self, normal: DVec3, vertex: u32) -> Option<f64> {
-        let here = self.vertices[vertex as usize];
-        let gain = |w: u32| normal.dot(self.vertices[w as usize] - here);
+    fn excess_of_large_face(
+        &self,
+        normal: DVec3,
+        length: f64,
+        vertex: u32,
+        most: f64,
+    ) -> Option<f64> {
         let around = self.topology.outgoing(vertex).iter();
         let large = around.map(|&h| self.topology.half_edge(h).face).filter_map(|face| {
             let found = self.large_faces.binary_search_by_key(&face, |large| large.face);
             found.ok().map(|k| &self.large_faces[k])
         });
-        let near = large.filter(|large| normal.dot(large.normal) > 0.9);
-        for LargeFace { corners, height, descent, .. } in near {
-            let gains = corners.map(|w| gain(w).abs());
-            let most = gains[0].max(gains[1]).max(gains[2]) + noise::GAIN * self.inertia.reach;
-            if 8.0 * most < descent * height {
-                return Some(WEIGHTS * most + 8.0 * self.flatness);
-            }
-        }
-        None
+        let mut near = large.filter(|large| normal.dot(large.normal) > ACROSS * length);
+        near.find_map(|large| self.excess_of_face(large, normal, length, vertex, most))
+    }
+
+    /// The same where the plateau is, at most, this face.
+    #[inline]
+    pub(crate) fn excess_of_face(
+        &self,
+        large: &LargeFace,
+        normal: DVec3,
+        length: f64,
+        vertex: u32,
+        most: f64,
+    ) -> Option<f64> {
+        let here = self.vertices[vertex as usize];
+        let gain = |w: u32| normal.dot(self.vertices[w as usize] - here).abs();
+        let [a, b, c] = large.corners;
+        let highest = gain(a).max(gain(b)).max(gain(c)) / length;
+        let reached = highest + noise::GAIN * self.inertia.reach;
+        let only = 8.0 * reached < large.descent * large.height;
+        (only && WEIGHTS * highest <= most).then_some(WEIGHTS * reached + 8.0 * self.flatness)
+    }
+
+    /// Whether there are faces with many corners, but few.
+    #[inline]
+    pub(crate) fn has_large_faces(&self) -> bool {
+        (1..=MOST_LARGE).contains(&self.large_faces.len())
+    }
+
+    /// Of the faces with many corners, the one most nearly across a direction (body frame, any
+    /// length), outwards.
+    #[inline]
+    pub(crate) fn large_face_toward(&self, direction: DVec3) -> Option<&LargeFace> {
+        let (first, others) = self.large_faces.split_first()?;
+        let along = |large: &LargeFace| direction.dot(large.normal);
+        let farther = |best, large| if along(large) > along(best) { large } else { best };
+        Some(others.iter().fold(first, farther))
     }
 
     /// Measures how flat the polygons are, and those with many corners.
@@ -161,6 +244,8 @@ impl ConvexPolyhedron {
                 if value > best.1 { (v, value) } else { best }
             })
         };
+        let first = self.topology.face(face).start;
+        let along = |v: u32| first + corners.iter().position(|&w| w == v).unwrap_or(0) as u32;
         let a = corners[0];
         let (b, length) = farthest(&|p| p.distance(at(a)));
         let axis = (at(b) - at(a)) / length;
@@ -176,6 +261,7 @@ impl ConvexPolyhedron {
         LargeFace {
             face,
             corners: [a, b, c],
+            half_edges: [a, b, c].map(along),
             normal,
             height,
             descent: leaving.fold(f64::INFINITY, f64::min),

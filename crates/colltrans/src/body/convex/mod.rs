@@ -20,7 +20,7 @@ use crate::body::solid::{Solid, SolidError};
 use crate::body::topology::Topology;
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, convexity_defect};
-use excess::LargeFace;
+pub(crate) use excess::LargeFace;
 use sections::SectionIndex;
 use support::SupportIndex;
 

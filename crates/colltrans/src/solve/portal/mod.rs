@@ -5,16 +5,19 @@
 //! the line. With `f(a) = min_M n.m` (concave, piecewise linear) the collision translation is `max
 //! f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
 //!
-//! The way: [`mod@start`] guesses a slope, [`mod@enclose`] finds a first portal or a separating
+//! The way: [`mod@facing`] answers for parts that stand on each other; else [`mod@start`] guesses a
+//! slope, [`mod@follow`] goes face by face from there to the line, or [`mod@enclose`] finds a first portal or a separating
 //! direction, [`mod@refine`] exchanges one point of the portal after another until its plane
 //! supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
 mod edge;
 mod enclose;
+mod facing;
 mod flat;
 mod follow;
 mod graze;
+mod plane;
 mod refine;
 mod start;
 mod tied;
@@ -23,9 +26,11 @@ mod wrap;
 use glam::{DVec2, DVec3};
 
 pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, widest_margin};
+pub(crate) use facing::facing;
 pub(crate) use follow::{ContactPortal, Followed, approach, follow};
 pub(crate) use graze::{Overlap, overlap};
-pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, refine};
+pub(crate) use plane::{Face, Plane};
+pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, face, refine};
 pub(crate) use start::FirstNormal;
 
 use crate::setting::minkowski::Point;

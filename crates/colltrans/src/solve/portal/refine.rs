@@ -11,6 +11,7 @@ use glam::{DVec2, DVec3};
 use super::Portal;
 use super::enclose::{Enclosure, Guide, SeparatingLine, complete, nearest_share};
 use super::graze::{Overlap, overlap};
+use super::plane::{Face, Plane};
 use crate::number::determinant::accurate_det;
 use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
@@ -42,6 +43,22 @@ pub(crate) enum Refined {
     Optimum(Optimum),
     /// The line passes the rim of the shadow of `M`.
     Rim(SeparatingLine),
+}
+
+/// A portal as a face, if it is seen to be in the lowest: as it is after gift wrapping, and mostly if it
+/// was followed.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+pub(crate) fn face<O: Observer>(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    watch: &mut Watch<O>,
+) -> Option<Face> {
+    let normal = plane_normal(difference, portal)?;
+    let plane = Plane::at(difference, normal, portal[2].pair)?;
+    watch.portal(|| portal.map(|p| p.at));
+    watch.support(|| Support::of(normal, &difference.vertex(plane.lowest)));
+    Some(Face { plane, weights: weights(portal) })
 }
 
 /// Follows portals down to the optimum, and leaves the last one in place of the first. `None` if
@@ -172,13 +189,18 @@ fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -
 /// have one.
 #[inline]
 pub(super) fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
-    let [a, b, c] = portal.map(|p| p.shadow());
+    let normal = triangle_normal(portal.map(|p| p.at));
+    is_wide(difference, portal, normal.z).then_some(normal)
+}
+
+/// Whether a portal, with twice this area, is wider than what counts as touching.
+#[inline]
+pub(super) fn is_wide(difference: &MinkowskiDifference, portal: &Portal, area: f64) -> bool {
+    let [a, b, c] = portal.each_ref().map(Point::shadow);
     let longest = (b - a).length_squared().max((c - b).length_squared());
     let longest = longest.max((a - c).length_squared());
-    let normal = triangle_normal(portal.map(|p| p.at));
     let least = difference.touching();
-    let wide = normal.z > 0.0 && normal.z * normal.z > least * least * longest;
-    wide.then_some(normal)
+    area > 0.0 && area * area > least * least * longest
 }
 
 /// Barycentric coordinates of the line in the shadow of the portal.

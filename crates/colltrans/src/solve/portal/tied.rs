@@ -9,9 +9,9 @@
 use glam::{DVec2, DVec3};
 
 use super::enclose::nearest_share;
-use super::refine::{Optimum, depth_below, largest, plane_normal, weights};
+use super::refine::{Optimum, largest, plane_normal, weights};
 use super::wrap::{Neighbour, Tilt, first_met};
-use super::{Portal, normal_of};
+use super::{Plane, Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -152,21 +152,27 @@ pub(super) fn lowest_edge<O: Observer>(
     normal: DVec3,
     watch: &mut Watch<O>,
 ) -> Option<(Portal, Optimum)> {
+    let share = met_share(difference, [from, to], normal)?;
+    let portal = corner(difference, from, to)?;
+    let plane = Plane::at(difference, normal, from.pair)?;
+    watch.support(|| Support::of(normal, &difference.vertex(plane.lowest)));
+    let weights = weights_of(&portal, from, share);
+    Some((portal, Optimum { normal, lowest: plane.lowest, weights }))
+}
+
+/// Where on an edge the line meets it up to rounding, from 0 at its start to 1 at its end, if the line
+/// is so deep inside the shadow of `M` that rounding does not matter in a plane across `normal`.
+pub(super) fn met_share(
+    difference: &MinkowskiDifference,
+    [from, to]: [&Point; 2],
+    normal: DVec3,
+) -> Option<f64> {
     let share = nearest_share([from.shadow(), to.shadow()]);
     let contact = from.at + (to.at - from.at) * share;
     let residual = contact.truncate().length();
-    let noise = difference.noise.point();
-    if residual > noise || !difference.is_met_on([from, to], contact, residual, normal) {
-        return None;
-    }
-    let portal = corner(difference, from, to)?;
-    let point = difference.support_from(normal, from.pair);
-    watch.support(|| Support::of(normal, &point));
-    if normal.dot(contact - point.at) > noise * normal.length() {
-        return None;
-    }
-    let weights = weights_of(&portal, from, share);
-    Some((portal, Optimum { normal, lowest: point.pair, weights }))
+    let is_met = residual <= difference.noise.point()
+        && difference.is_met_on([from, to], contact, residual, normal);
+    is_met.then_some(share)
 }
 
 /// The optimum in a portal that contains the line up to rounding, if its plane supports `M` and the
@@ -186,11 +192,9 @@ fn lowest_face<O: Observer>(
     {
         return None;
     }
-    let point = difference.support_from(normal, portal[2].pair);
-    watch.support(|| Support::of(normal, &point));
-    let is_lowest =
-        depth_below(portal, normal, &point) <= difference.noise.point() * normal.length();
-    is_lowest.then_some(Optimum { normal, lowest: point.pair, weights })
+    let plane = Plane::at(difference, normal, portal[2].pair)?;
+    watch.support(|| Support::of(normal, &difference.vertex(plane.lowest)));
+    Some(Optimum { normal, lowest: plane.lowest, weights })
 }
 
 /// The face of `M` at the support point `vertex` along a slope, in the direction of the line, with

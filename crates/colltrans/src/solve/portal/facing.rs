@@ -1,0 +1,95 @@
+//! Large faces that face each other, as those of parts that stand on each other do.
+//!
+//! Notation. `f` and `g` are faces with many corners of `P` and of `Q`, those most nearly across the
+//! direction. Where one plane supports both bodies in them, `g - f` is a face of `M`. Its boundary is
+//! gone round by going round those of both; a quarter of the way at a time this leads to four points
+//! of `g - f`, wide apart if one begins at corners opposite each other. If the line meets `g - f`
+//! between them, that is the answer, without a search.
+
+use glam::DVec3;
+
+use super::Portal;
+use super::plane::{Face, Plane};
+use super::refine::{is_wide, weights};
+use super::tied::met_share;
+use crate::body::ConvexPolyhedron;
+use crate::setting::VertexPair;
+use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::solve::observe::{Observer, Support, Watch};
+
+/// Least cosine of the angle between normals of faces that may be parallel: whether they are is seen
+/// by how far the bodies reach beyond a plane through both.
+const PARALLEL: f64 = 1.0 - 1e-12;
+
+/// The lowest face and a portal in it, if it is the difference of two large faces and the line passes
+/// well inside.
+#[inline]
+pub(crate) fn facing<O: Observer>(
+    difference: &MinkowskiDifference,
+    watch: &mut Watch<O>,
+) -> Option<(Portal, Face)> {
+    let setting = difference.setting;
+    if !setting.moving.has_large_faces() || !setting.fixed.has_large_faces() {
+        return None;
+    }
+    let (portal, face) = between(difference)?;
+    let plane = &face.plane;
+    watch.portal(|| portal.map(|p| p.at));
+    let normal = || difference.setting_from_shadow.transpose() * plane.normal;
+    watch.support(|| Support::of(normal(), &difference.vertex(plane.lowest)));
+    Some((portal, face))
+}
+
+#[inline(never)]
+fn between(difference: &MinkowskiDifference) -> Option<(Portal, Face)> {
+    let setting = difference.setting;
+    let f = setting.moving.large_face_toward(difference.in_moving(DVec3::Z))?;
+    let g = setting.fixed.large_face_toward(-difference.in_fixed(DVec3::Z))?;
+    let normal = difference.shadow_of_moving(f.normal);
+    let parallel = normal.dot(difference.shadow_of_fixed(g.normal)) < -PARALLEL;
+    if !parallel || normal.z <= 0.0 {
+        return None;
+    }
+    let corner = |moving: u32, fixed: u32| {
+        let origin = |body: &ConvexPolyhedron, h: u32| body.topology().half_edge(h).origin;
+        let (moving, fixed) = (origin(setting.moving, moving), origin(setting.fixed, fixed));
+        difference.vertex(VertexPair { moving, fixed })
+    };
+    // The farther of two that are opposite each other, seen from the middle.
+    let ([p, ..], [q, opposite, _]) = (f.half_edges, g.half_edges);
+    let (lowest, other) = (corner(p, q), corner(p, opposite));
+    let middle = difference.center().truncate();
+    let away = |point: &Point| (point.shadow() - middle).length_squared();
+    let (a, q) = if away(&lowest) > away(&other) { (lowest, q) } else { (other, opposite) };
+    let after = |quarters: u32| {
+        let moving = quarters_round(setting.moving, p, quarters);
+        corner(moving, quarters_round(setting.fixed, q, 4 - quarters))
+    };
+    let c = after(2);
+    let (portal, weights) = if let Some(left) = difference.is_left_rounded(&a, &c) {
+        let portal = if left { [a, c, after(3)] } else { [c, a, after(1)] };
+        let [from, to, third] = &portal;
+        let inside = difference.is_left_rounded(to, third) == Some(true)
+            && difference.is_left_rounded(third, from) == Some(true);
+        inside.then(|| (portal, weights(&portal)))?
+    } else {
+        let share = met_share(difference, [&a, &c], normal)?;
+        ([a, after(1), c], [1.0 - share, 0.0, share])
+    };
+    let is_level = |p: &Point| normal.dot(p.at - lowest.at).abs() <= difference.noise.point();
+    let [from, to, third] = portal.each_ref().map(Point::shadow);
+    let area = (to - from).perp_dot(third - from);
+    if !portal.iter().all(is_level) || !is_wide(difference, &portal, area) {
+        return None;
+    }
+    let plane = Plane::of_faces(difference, normal, f, g)?;
+    Some((portal, Face { plane, weights }))
+}
+
+/// The half-edge along a face that begins some quarters of the way round after another.
+fn quarters_round(body: &ConvexPolyhedron, h: u32, quarters: u32) -> u32 {
+    let topology = body.topology();
+    let range = topology.face(topology.half_edge(h).face);
+    let count = range.end - range.start;
+    range.start + (h - range.start + quarters * count / 4) % count
+}

@@ -11,7 +11,8 @@ import { Graph, type Grid } from "./found/graph";
 import { type Minimisation, type Recording, below, minimisation, portals } from "./found/recording";
 import { type Vec, add, cross, dot, hull, length, placed, short, sub, times, unit } from "./math";
 import type { State } from "./state";
-import type { Drawn, View } from "./view";
+import type { View } from "./view";
+import type { Drawn } from "./view/body";
 
 type Two = [number, number];
 const GRID = 44;

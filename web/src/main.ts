@@ -15,7 +15,9 @@ import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
-import { type Bodies, type Tool, View, drawn, forget } from "./view";
+import { View } from "./view";
+import { type Bodies, drawn, forget } from "./view/body";
+import type { Tool } from "./view/handles";
 
 const TABS: Tab[] = ["answer", "found", "assembly"];
 /** Up to so many triangles of both bodies together. */

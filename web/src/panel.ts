@@ -5,7 +5,7 @@ import type { Answer, Certificate, Claims, Slot, SolidAnswer, SolidProof, Take }
 import { type Vec, length, short } from "./math";
 import { asCommand, asPython, asRust } from "./share";
 import type { Solver, State } from "./state";
-import type { Drawn } from "./view";
+import type { Drawn } from "./view/body";
 import { say } from "./words";
 
 /** The view as pixels, the shadows, the view as a drawing. */

@@ -50,7 +50,7 @@ export class View {
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     const canvas = this.renderer.domElement;
-    canvas.setAttribute("aria-label", "The two bodies, the direction and the contact");
+    canvas.setAttribute("aria-label", "The two bodies, the direction and the contact; arrow keys move the view, with Shift they turn it");
     canvas.setAttribute("role", "img");
     canvas.tabIndex = 0;
     host.prepend(canvas);
@@ -204,8 +204,9 @@ export class View {
   /** The picture as lines and areas: text of an SVG file. */
   async drawing(): Promise<string> {
     const { drawing } = await import("./view/drawing");
-    const { scene, camera, shown, labels, host, frame } = this;
-    return drawing({ scene, camera, shown, labels, host, colour: frame.colours.text });
+    const { scene, camera, labels, host, frame } = this;
+    const { clientWidth: wide, clientHeight: high } = host;
+    return drawing({ scene, camera, labels, size: frame.size, wide, high, ground: getComputedStyle(host).backgroundColor, text: frame.colours.text });
   }
 
   /** The picture as it is shown, on the page's ground. */

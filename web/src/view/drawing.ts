@@ -1,109 +1,218 @@
-// The picture as lines and areas, the nearer over the farther: text of an SVG file.
+// The picture as areas and lines: text of an SVG file.
+//
+// The data's way: the scene's triangles and lines -> the page (`Eye`) -> areas in the `order` in which
+// the nearer cover the farther, and of the lines what no opaque area hides (`depths`). What is above
+// everything, the arrow, comes last.
 
-import { BufferGeometry, type DirectionalLight, DoubleSide, FrontSide, type Group, type LineSegments, type Material, type Mesh, type Object3D, type PerspectiveCamera, type Scene, Vector3 } from "three";
-import { SVGRenderer } from "three/addons/renderers/SVGRenderer.js";
+import {
+  type AmbientLight, type BufferGeometry, Color, type DirectionalLight, DoubleSide, type Line, type LineBasicMaterial,
+  type LineDashedMaterial, type Mesh, type MeshLambertMaterial, type Object3D, type PerspectiveCamera, type Scene, Vector3,
+} from "three";
 import { svg } from "../dom";
+import type { Body } from "../engine";
 import type { Drawn } from "./body";
+import { type Corners, Depths, type Point } from "./depths";
+import { type Facet, ordered } from "./order";
 import type { Label } from "./shapes";
 
 /** Triangles of a file. */
 const MOST_DRAWN = 40_000;
+/** Lengths along the view that are no difference, as a part of the size of what is shown. */
+const SLACK = 2e-4;
+/** The width of an area's rim. */
+const RIM = 0.7;
 
-interface Picture {
+export interface Picture {
   scene: Scene;
   camera: PerspectiveCamera;
-  shown: Group;
   labels: Label[];
-  host: HTMLElement;
-  colour: string;
+  size: number;
+  wide: number;
+  high: number;
+  ground: string;
+  text: string;
 }
 
-export function drawing({ scene, camera, shown, labels, host, colour }: Picture): string {
-  let triangles = 0;
+export function drawing({ scene, camera, labels, size, wide, high, ground, text }: Picture): string {
+  scene.updateMatrixWorld();
+  const eye = new Eye(camera, wide, high);
+  const [meshes, lines]: [Mesh[], Line[]] = [[], []];
   scene.traverseVisible((object) => {
-    const { geometry } = object as Partial<Mesh>;
-    if ((object as Mesh).isMesh) triangles += (geometry?.index ?? geometry?.getAttribute("position"))!.count / 3;
+    if ((object as Mesh).isMesh) meshes.push(object as Mesh);
+    else if ((object as Line).isLine) lines.push(object as Line);
   });
+  const triangles = meshes.reduce((sum, { geometry }) => sum + countOf(geometry) / 3, 0);
   if (triangles > MOST_DRAWN) throw new Error(`${Math.round(triangles)} triangles are too many for an SVG file: the PNG has them`);
-  const drawing = new SVGRenderer();
-  const { clientWidth: wide, clientHeight: high } = host;
-  drawing.setSize(wide, high);
-  drawing.setPrecision(2);
-  const back = prepare(scene, shown, camera.position);
-  drawing.render(scene, camera);
-  back();
-  const picture = drawing.domElement as unknown as SVGSVGElement;
-  picture.setAttribute("xmlns", "http://www.w3.org/2000/svg");
-  picture.style.background = getComputedStyle(host).backgroundColor;
-  for (const { text, at } of labels) {
-    const place = at.clone().project(camera);
-    picture.append(svg("text", { x: (place.x * wide) / 2, y: (-place.y * high) / 2, "font-size": 14, "font-style": "italic", "text-anchor": "middle", fill: colour }, text));
+  const slack = SLACK * size;
+  const light = new Light(scene, eye);
+  const depths = new Depths(wide, high, slack);
+  /** Of each body, where its triangles are among the owners of depths. */
+  const owners = new Map<Object3D, number>();
+  const [within, above]: [Facet[], Facet[]] = [[], []];
+  let owner = 0;
+  for (const mesh of meshes) {
+    if (mesh.parent) owners.set(mesh.parent, owner);
+    const hides = (mesh.material as MeshLambertMaterial).depthTest;
+    for (const facet of facetsOf(mesh, eye, light, slack)) {
+      (hides ? within : above).push(facet);
+      if (hides && facet.opaque) depths.draw(facet.corners, owner + facet.triangle);
+    }
+    owner += countOf(mesh.geometry) / 3;
   }
+  const grid = lines.filter((line) => line.type === "LineSegments" && !line.parent?.userData.body);
+  const areas = (facets: Facet[]) => areasOf(ordered(facets, wide, high, slack));
+  const strokes = (some: Line[]) => some.flatMap((line) => strokeOf(line, eye, depths, owners));
+  const words = labels.map(({ text: word, at }) => {
+    const place = at.clone().project(camera);
+    const [x, y] = [((place.x + 1) / 2) * wide, ((1 - place.y) / 2) * high + 4].map(written);
+    return svg("text", { x, y, "font-family": "sans-serif", "font-size": 14, "font-style": "italic", "text-anchor": "middle", fill: text }, word);
+  });
+  const picture = svg("svg", { xmlns: "http://www.w3.org/2000/svg", viewBox: `0 0 ${wide} ${high}`, width: wide, height: high, "stroke-linejoin": "round" },
+    svg("rect", { width: wide, height: high, fill: ground }),
+    ...strokes(grid), ...areas(within), ...strokes(lines.filter((line) => !grid.includes(line))), ...areas(above), ...words);
   return new XMLSerializer().serializeToString(picture);
 }
 
-/** For a renderer that draws facet after facet: what faces away is left out, edges are drawn after
- * the facets of their body, the nearer body after the farther. Returns what takes that back. */
-function prepare(scene: Scene, shown: Group, eye: Vector3): () => void {
-  const undo: (() => void)[] = [];
-  scene.traverse((object) => {
-    // Light is counted otherwise there: without the division by pi, and clipped.
-    const light = object as Partial<DirectionalLight>;
-    if (light.isLight) {
-      const { intensity } = light;
-      light.intensity = intensity! / 4;
-      undo.push(() => (light.intensity = intensity!));
-    }
-  });
-  const groups = shown.children.filter(({ userData }) => userData.how === "solid");
-  const far = (group: Object3D) => new Vector3().setFromMatrixPosition(group.matrix).distanceTo(eye);
-  groups.sort((a, b) => far(b) - far(a)).forEach((group, k) => {
-    const drawn = group.userData.body as Drawn;
-    const { body } = drawn;
-    const [mesh, lines] = group.children as [Mesh, LineSegments];
-    const [old, material] = [lines.geometry, mesh.material as Material];
-    const facing = eye.clone().applyMatrix4(group.matrix.clone().invert());
-    const seen = new BufferGeometry().setFromPoints(seenEdges(drawn, facing));
-    lines.geometry = seen;
-    if (body.facts.closed) material.side = FrontSide;
-    // Bodies that are not convex may stand in each other: there depth alone decides.
-    const convex = body.facts.kind === "convex";
-    mesh.renderOrder = convex ? 1 + k : 1;
-    lines.renderOrder = convex ? 1.5 + k : 1;
-    undo.push(() => {
-      seen.dispose();
-      lines.geometry = old;
-      material.side = DoubleSide;
-      mesh.renderOrder = lines.renderOrder = 0;
-    });
-  });
-  for (const object of shown.children) {
-    if (groups.includes(object as Group) || object.type === "LineSegments") continue;
-    object.traverse((part) => {
-      const { renderOrder } = part;
-      part.renderOrder = 20 + renderOrder;
-      undo.push(() => (part.renderOrder = renderOrder));
+const countOf = (geometry: BufferGeometry): number => (geometry.index ?? geometry.getAttribute("position")).count;
+const written = (x: number): string => String(Math.round(100 * x) / 100);
+
+/** Who looks: from the world to the page. */
+class Eye {
+  constructor(readonly camera: PerspectiveCamera, private readonly wide: number, private readonly high: number) {}
+
+  /** The corners of a triangle or the ends of a segment, before the eye. */
+  before(points: Vector3[], closed: boolean): Vector3[] {
+    const near = this.camera.near;
+    return points.flatMap((a, k) => {
+      const b = points[k + 1] ?? (closed ? points[0]! : a);
+      const [here, there] = [-a.z >= near, -b.z >= near];
+      return [...(here ? [a] : []), ...(here !== there ? [a.clone().lerp(b, (-near - a.z) / (b.z - a.z))] : [])];
     });
   }
-  return () => undo.forEach((f) => f());
+
+  /** Pixels of a length at a depth. */
+  scale(q: number): number {
+    return (this.camera.projectionMatrix.elements[5]! * q * this.high) / 2;
+  }
+
+  place({ x, y, z }: Vector3, nearer = 0): Point {
+    const e = this.camera.projectionMatrix.elements;
+    return { x: ((1 - (e[0]! * x) / z) / 2) * this.wide, y: ((1 + (e[5]! * y) / z) / 2) * this.high, q: 1 / (-z - nearer) };
+  }
+
+  /** Points of an object, as the eye has them: x right, y up, z backwards. */
+  sees({ geometry, matrixWorld }: Mesh | Line): Vector3[] {
+    const position = geometry.getAttribute("position");
+    const all = Array.from({ length: position.count }, (_, k) =>
+      new Vector3().fromBufferAttribute(position, k).applyMatrix4(matrixWorld).applyMatrix4(this.camera.matrixWorldInverse));
+    const { index } = geometry;
+    return index ? Array.from(index.array, (k) => all[k]!) : all;
+  }
 }
 
-/** Ends of the edges at a facet that looks at the eye; of a body about its middle. */
-function seenEdges({ body, middle }: Drawn, eye: Vector3): Vector3[] {
-  const { vertices, triangles, edges } = body;
-  const at = (v: number) => new Vector3(vertices[3 * v]! - middle[0], vertices[3 * v + 1]! - middle[1], vertices[3 * v + 2]! - middle[2]);
+/** Shades as the renderer of the view has them, after Lambert. */
+class Light {
+  private ambient = 0;
+  private readonly suns: { toward: Vector3; intensity: number }[] = [];
+
+  constructor(scene: Scene, { camera }: Eye) {
+    scene.traverse((object) => {
+      if ((object as AmbientLight).isAmbientLight) this.ambient += (object as AmbientLight).intensity;
+      const sun = object as DirectionalLight;
+      if (!sun.isDirectionalLight) return;
+      const toward = sun.getWorldPosition(new Vector3()).sub(sun.target.getWorldPosition(new Vector3()));
+      this.suns.push({ toward: toward.transformDirection(camera.matrixWorldInverse), intensity: sun.intensity });
+    });
+  }
+
+  colour({ color, emissive, emissiveIntensity, isMeshLambertMaterial }: MeshLambertMaterial, normal: Vector3): string {
+    // Other materials show their colour.
+    if (!isMeshLambertMaterial) return color.getStyle();
+    const sum = this.suns.reduce((sum, { toward, intensity }) => sum + intensity * Math.max(0, normal.dot(toward)), this.ambient);
+    const shaded = color.clone().multiplyScalar(sum / Math.PI).add(emissive.clone().multiplyScalar(emissiveIntensity));
+    return new Color(...(shaded.toArray().map((x) => Math.min(1, x)) as [number, number, number])).getStyle();
+  }
+}
+
+/** What looks at the eye, and both sides of sheets. */
+function facetsOf(mesh: Mesh, eye: Eye, light: Light, slack: number): (Facet & { triangle: number })[] {
+  const material = mesh.material as MeshLambertMaterial;
+  const closed = (mesh.parent?.userData.body as Drawn | undefined)?.body.facts.closed;
+  const bothSides = material.side === DoubleSide && !closed;
+  const nearer = material.polygonOffset ? -2 * slack * material.polygonOffsetFactor : 0;
+  const corners = eye.sees(mesh);
+  const facets: (Facet & { triangle: number })[] = [];
+  for (let k = 0; k < corners.length; k += 3) {
+    const [a, b, c] = [corners[k]!, corners[k + 1]!, corners[k + 2]!];
+    const normal = b.clone().sub(a).cross(c.clone().sub(a)).normalize();
+    if (normal.dot(a) >= 0) {
+      if (!bothSides) continue;
+      normal.negate();
+    }
+    const style = `${light.colour(material, normal)};${material.opacity}`;
+    const [first, ...rest] = eye.before([a, b, c], true).map((v) => eye.place(v, nearer));
+    for (let i = 1; i < rest.length; i++) {
+      const fan = [first!, rest[i - 1]!, rest[i]!] as Corners;
+      facets.push({ corners: fan, style, opaque: material.opacity === 1, triangle: k / 3 });
+    }
+  }
+  return facets;
+}
+
+/** Neighbours of one style are one path; opaque ones have a thin rim, so that nothing shines through. */
+function areasOf(facets: Facet[]): SVGElement[] {
+  const paths: { style: string; opaque: boolean; d: string }[] = [];
+  for (const { style, opaque, corners } of facets) {
+    const [a, b, c] = corners;
+    const turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    // All of them the same way round: then overlaps add up and nothing is a hole.
+    const d = `M${(turn > 0 ? [a, b, c] : [a, c, b]).map(({ x, y }) => `${written(x)} ${written(y)}`).join("L")}Z`;
+    const last = paths.at(-1);
+    if (last?.style === style) last.d += d;
+    else paths.push({ style, opaque, d });
+  }
+  return paths.map(({ style, opaque, d }) => {
+    const [fill, opacity] = style.split(";") as [string, string];
+    return svg("path", opaque ? { d, fill, stroke: fill, "stroke-width": RIM } : { d, fill, "fill-opacity": opacity });
+  });
+}
+
+/** What is seen of a line. */
+function strokeOf(line: Line, eye: Eye, depths: Depths, owners: Map<Object3D, number>): SVGElement[] {
+  const points = eye.sees(line);
+  const apart = line.type === "LineSegments";
+  const last = line.type === "LineLoop" ? points.length : points.length - 1;
+  const body = (line.parent?.userData.how === "solid" ? line.parent.userData.body : undefined) as Drawn | undefined;
+  const beside = body && trianglesBeside(body.body, owners.get(line.parent!) ?? 0);
+  const away = (edge: number) => body?.body.facts.closed && !beside![edge]!.some((triangle) => depths.has(triangle));
+  let d = "";
+  let near = 0;
+  for (let k = 0; k < last; k += apart ? 2 : 1) {
+    if (away(k / 2)) continue;
+    const ends = eye.before([points[k]!, points[(k + 1) % points.length]!], false);
+    if (ends.length < 2) continue;
+    const [a, b] = ends.map((v) => eye.place(v)) as [Point, Point];
+    near = Math.max(near, a.q, b.q);
+    const at = (s: number) => `${written(a.x + s * (b.x - a.x))} ${written(a.y + s * (b.y - a.y))}`;
+    for (const [from, to] of depths.seen(a, b, beside?.[k / 2])) d += `M${at(from)}L${at(to)}`;
+  }
+  if (!d) return [];
+  const { color, opacity, ...material } = line.material as LineBasicMaterial & Partial<LineDashedMaterial>;
+  const dash = material.dashSize && written(material.dashSize * eye.scale(near));
+  return [svg("path", { d, fill: "none", stroke: color.getStyle(), "stroke-opacity": opacity, "stroke-linecap": dash ? "butt" : "round", "stroke-dasharray": dash || undefined })];
+}
+
+/** Of each edge the triangles that meet there. */
+function trianglesBeside({ vertices, triangles, edges }: Body, first: number): number[][] {
   const key = (a: number, b: number) => Math.min(a, b) * (vertices.length / 3) + Math.max(a, b);
-  const seen = new Set<number>();
-  for (let t = 0; t < triangles.length; t += 3) {
-    const corners = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!] as const;
-    const [a, b, c] = corners.map(at) as [Vector3, Vector3, Vector3];
-    const normal = b.clone().sub(a).cross(c.clone().sub(a));
-    if (body.facts.closed && normal.dot(eye.clone().sub(a)) <= 0) continue;
-    corners.forEach((v, k) => seen.add(key(v, corners[(k + 1) % 3]!)));
+  const beside = new Map<number, number[]>();
+  for (let t = 0; t < triangles.length; t++) {
+    const corner = triangles[t]!;
+    const next = triangles[t % 3 === 2 ? t - 2 : t + 1]!;
+    const at = beside.get(key(corner, next));
+    const owner = first + Math.floor(t / 3);
+    if (at) at.push(owner);
+    else beside.set(key(corner, next), [owner]);
   }
-  const ends: Vector3[] = [];
-  for (let k = 0; k < edges.length; k += 2) {
-    if (seen.has(key(edges[k]!, edges[k + 1]!))) ends.push(at(edges[k]!), at(edges[k + 1]!));
-  }
-  return ends;
+  return Array.from({ length: edges.length / 2 }, (_, k) => beside.get(key(edges[2 * k]!, edges[2 * k + 1]!)) ?? []);
 }

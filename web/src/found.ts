@@ -5,7 +5,7 @@
 
 import { BufferGeometry, DoubleSide, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { palette } from "./colours";
-import { h, svg } from "./dom";
+import { h, refill, svg } from "./dom";
 import type { Engine, Pair } from "./engine";
 import { Graph, type Grid } from "./found/graph";
 import { type Minimisation, type Recording, below, minimisation, portals } from "./found/recording";
@@ -213,7 +213,7 @@ export class Found {
         h("button", { class: "small", "aria-pressed": String(k === now), onclick: () => pick(k) }, String(k + 1)));
     if (found) {
       this.graph.show(found, this.grid, this.step);
-      this.steps.replaceChildren(...buttons(found.steps.length, this.step, (k) => this.pick(k)));
+      refill(this.steps, ...buttons(found.steps.length, this.step, (k) => this.pick(k)));
       this.tellStep(found);
     } else {
       this.told.textContent = this.from.value === "guess"
@@ -225,7 +225,7 @@ export class Found {
     for (const part of [this.graph.element, this.steps, this.planar.parentElement!]) part.hidden = !found;
     this.drawPlanar();
     this.drawPortals();
-    this.portalSteps.replaceChildren(...buttons(this.refined?.steps.length ?? 0, this.portal, (k) => {
+    refill(this.portalSteps, ...buttons(this.refined?.steps.length ?? 0, this.portal, (k) => {
       this.portal = k;
       this.draw();
     }));

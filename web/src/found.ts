@@ -57,7 +57,7 @@ export class Found {
     /** The question before. */
     private readonly before: () => Pair | undefined,
   ) {
-    this.from.append(h("option", { value: "center" }, "from the centre of all levels, as in the paper"), h("option", { value: "guess" }, "from where ellipsoids would meet, as by default"), h("option", { value: "region" }, "in N(p), around the solution of the question before"));
+    this.from.append(h("option", { value: "center" }, "from the centre, as in the paper"), h("option", { value: "guess" }, "from where ellipsoids would meet"), h("option", { value: "region" }, "in N(p), around the last solution"));
     this.from.addEventListener("change", () => this.refresh());
     this.graph.onStep = (step) => this.pick(step);
     this.body = h("div", { style: "display: contents" },
@@ -140,7 +140,7 @@ export class Found {
     this.say(
       "Two ways to one proof",
       `The bodies have ${p} and ${q} vertices, their difference up to ${(p * q).toLocaleString("en")}, and it is never built. ` +
-        `The collision translation algorithm solved ${cta.steps.planar_problems} planar problems, portal refinement computed ${portal.steps.supports} supporting planes.`,
+        `The collision translation algorithm solved ${count(cta.steps.planar_problems, "planar problem")}, portal refinement computed ${count(portal.steps.supports, "supporting plane")}.`,
     );
   }
 
@@ -238,7 +238,7 @@ export class Found {
     const l = length(this.pair().direction);
     const where = `At x = ${short(step.levels[0], 4)}, y = ${short(step.levels[1], 4)}`;
     const cut = step.cut
-      ? ` Proven by now: between ${short(step.cut.lower / l, 7)} and ${Number.isFinite(step.cut.upper) && step.cut.upper !== null ? short(step.cut.upper / l, 7) : "?"}; what lies behind the cut, pale, is left out.`
+      ? ` Proven by now: ${Number.isFinite(step.cut.upper) && step.cut.upper !== null ? `between ${short(step.cut.lower / l, 7)} and ${short(step.cut.upper / l, 7)}` : `at least ${short(step.cut.lower / l, 7)}`}; what lies behind the cut, pale, is left out.`
       : "";
     this.told.textContent = step.meets
       ? `${where} the sections meet at t = ${short(step.value / l, 7)}. Within the cell where the same features touch, φ is linear and goes down to ${short(step.shifted / l, 7)} (the cell shift).${cut}`

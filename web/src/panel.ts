@@ -75,7 +75,7 @@ export class AnswerPanel {
     this.solver.addEventListener("change", () => act.change((s) => (s.solver = this.solver.value as Solver)));
     this.ignore.addEventListener("change", () => act.change((s) => (s.ignore = this.ignore.checked)));
     this.graze = h(
-      "div", { class: "fields", style: "grid-template-columns: 1fr 1fr 1fr" },
+      "div", { class: "fields", style: "grid-template-columns: 1fr 1fr 1fr; align-items: end" },
       h("label", {}, "Graze tolerance", this.number("Graze tolerance", (s) => s.graze, (s, x) => (s.graze = Math.max(0, x)))),
       h("label", { style: "grid-column: span 2" }, "Solver", this.solver),
     );

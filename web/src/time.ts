@@ -47,7 +47,7 @@ export class Timeline {
     if (first !== undefined) parts.push(...mark(first, answer?.outcome === "grazing" ? "touches" : "first contact", "stop"));
     if (first !== undefined && exit !== undefined && exit > first) {
       parts.push(...mark(exit, answer?.kind === "solid" ? "out" : "last contact", "low"));
-      parts.push(h("b", { style: `left: ${place(first)}; right: calc(100% - ${place(exit).slice(5, -1)})` }));
+      parts.push(h("b", { style: `left: ${place(first)}; right: calc(100% - ${place(exit)})` }));
     }
     refill(this.marks, ...parts);
   }

@@ -22,5 +22,5 @@ export function arrow(frame: Frame, moving: Drawn, fixed: Drawn, pose: Pose, dir
   const group = new Group().add(rod(base, tip, colours.way, 0.0065 * size), ball(tip, 0.024 * size, new MeshLambertMaterial(look)));
   // It is seen through the body it starts in.
   above(group);
-  return { group, base, tip, label: { text: "d", at: at(1.07 * reach), kind: "way" } };
+  return { group, base, tip, label: { text: "d", start: base, end: tip, kind: "way" } };
 }

@@ -33,7 +33,7 @@ export function contact(frame: Frame, first: Touch, answer: Answer, state: State
     feature(first.moving, moving, matrixOf(poses.moving, moving.middle, origin, along), colours.movingMark, size),
   ];
   if (answer.kind === "convex" && first.proof) parts.push(...witness(frame, first.proof.pairs, along, poses, bodies));
-  return { parts, label: { text: "n", at: back(0.7), kind: "normal" } };
+  return { parts, label: { text: "n", start: point, end: back(0.62), kind: "normal" } };
 }
 
 /** The supporting plane that proves the lower bound. */

@@ -13,6 +13,7 @@ import type { Body } from "../engine";
 import type { Drawn } from "./body";
 import { type Corners, Depths, type Point } from "./depths";
 import { type Facet, ordered } from "./order";
+import { placeOf } from "./overlay";
 import type { Label } from "./shapes";
 
 /** Triangles of a file. */
@@ -62,10 +63,10 @@ export function drawing({ scene, camera, labels, size, wide, high, ground, text 
   const grid = lines.filter((line) => line.type === "LineSegments" && !line.parent?.userData.body);
   const areas = (facets: Facet[]) => areasOf(ordered(facets, wide, high, slack));
   const strokes = (some: Line[]) => some.flatMap((line) => strokeOf(line, eye, depths, owners));
-  const words = labels.map(({ text: word, at }) => {
-    const place = at.clone().project(camera);
-    const [x, y] = [((place.x + 1) / 2) * wide, ((1 - place.y) / 2) * high + 4].map(written);
-    return svg("text", { x, y, "font-family": "sans-serif", "font-size": 14, "font-style": "italic", "text-anchor": "middle", fill: text }, word);
+  const words = labels.flatMap((label) => {
+    const at = placeOf(label, camera, wide, high);
+    const look = { "font-family": "sans-serif", "font-size": 14, "font-style": "italic", "text-anchor": "middle", fill: text };
+    return at ? [svg("text", { x: written(at[0]), y: written(at[1] + 4), ...look }, label.text)] : [];
   });
   const picture = svg("svg", { xmlns: "http://www.w3.org/2000/svg", viewBox: `0 0 ${wide} ${high}`, width: wide, height: high, "stroke-linejoin": "round" },
     svg("rect", { width: wide, height: high, fill: ground }),

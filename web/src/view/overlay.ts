@@ -4,6 +4,21 @@ import { type Camera, Vector3 } from "three";
 import { h, svg } from "../dom";
 import type { Label } from "./shapes";
 
+/** Pixels from the end of what a label belongs to. */
+const AWAY = 18;
+
+/** The middle of a label on the page; none for what is behind the eye. */
+export function placeOf({ start, end }: Label, camera: Camera, wide: number, high: number): [number, number] | undefined {
+  const at = end.clone().project(camera);
+  if (at.z > 1) return undefined;
+  const from = start.clone().project(camera);
+  const [x, y] = [((at.x + 1) / 2) * wide, ((1 - at.y) / 2) * high];
+  const [u, v] = [((at.x - from.x) / 2) * wide, ((from.y - at.y) / 2) * high];
+  // What is seen from its end has its word above.
+  const l = Math.hypot(u, v);
+  return l > 4 ? [x + (AWAY * u) / l, y + (AWAY * v) / l] : [x, y - AWAY];
+}
+
 export class Overlay {
   private readonly labels = h("div", { class: "labels", "aria-hidden": "true" });
   private readonly axes = svg("svg", { class: "axes", viewBox: "-40 -40 80 96", "aria-hidden": "true" });
@@ -20,11 +35,11 @@ export class Overlay {
       const label = labels[k];
       span.hidden = !label;
       if (!label) return;
-      const at = label.at.clone().project(camera);
-      span.hidden = at.z > 1;
+      const at = placeOf(label, camera, wide, high);
+      span.hidden = !at;
       span.className = label.kind;
       span.textContent = label.text;
-      span.style.transform = `translate(${((at.x + 1) / 2) * wide}px, ${((1 - at.y) / 2) * high}px) translate(-50%, -50%)`;
+      if (at) span.style.transform = `translate(${at[0]}px, ${at[1]}px) translate(-50%, -50%)`;
     });
     this.placeAxes(camera, note);
   }

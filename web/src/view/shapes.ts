@@ -17,10 +17,11 @@ export interface Frame {
   colours: Palette;
 }
 
-/** A word beside the picture. */
+/** A word beside the picture, a little farther out than the end of what starts somewhere. */
 export interface Label {
   text: string;
-  at: Vector3;
+  start: Vector3;
+  end: Vector3;
   kind: string;
 }
 

@@ -97,7 +97,7 @@ test("of a line is drawn what nothing hides; an edge is not hidden by its own fa
 });
 
 test("the drawing of bodies that are not convex is as the picture is", async () => {
-  for (const hash of ["", "#example=plate", "#example=plate&t=6", "#example=shaft", "#example=shaft&t=20&d=1,0.2,0.3"]) {
+  for (const hash of ["", "#example=plate&t=6", "#example=shaft", "#example=shaft&t=20&d=1,0.2,0.3"]) {
     const page = await at.open(hash);
     const { share, edges, broken } = await page.evaluate(async () => {
       const { view } = window.colltrans.probe();

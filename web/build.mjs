@@ -24,14 +24,16 @@ function found() {
 }
 
 const here = dirname(fileURLToPath(import.meta.url));
-const crate = join(here, "../crates/colltrans-wasm");
-const data = join(here, "../data");
+const root = join(here, "..");
+const data = join(root, "data");
 const out = join(here, "dist");
 
 if (!process.argv.includes("--no-wasm")) {
   const { args, env } = found();
-  execFileSync("cargo", ["build", "--profile", "page", "--workspace", "--lib", "--target", "wasm32-unknown-unknown", ...args], {
-    cwd: crate,
+  const modules = ["-p", "colltrans-wasm", "--example", "page", "-p", "colltrans-wasm-assembly", "--example", "page_assembly"];
+  // Both at once: what they have in common is built once.
+  execFileSync("cargo", ["build", "--profile", "page", ...modules, "--target", "wasm32-unknown-unknown", ...args], {
+    cwd: root,
     env: { ...process.env, ...env },
     stdio: "inherit",
   });
@@ -39,9 +41,9 @@ if (!process.argv.includes("--no-wasm")) {
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-const built = join(crate, "target/wasm32-unknown-unknown/page");
-copyFileSync(join(built, "colltrans_wasm.wasm"), join(out, "colltrans.wasm"));
-copyFileSync(join(built, "colltrans_wasm_assembly.wasm"), join(out, "colltrans_assembly.wasm"));
+const built = join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "wasm32-unknown-unknown/page/examples");
+copyFileSync(join(built, "page.wasm"), join(out, "colltrans.wasm"));
+copyFileSync(join(built, "page_assembly.wasm"), join(out, "colltrans_assembly.wasm"));
 for (const file of ["index.html", "style.css"]) copyFileSync(join(here, "src", file), join(out, file));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 await build({

@@ -10,8 +10,8 @@ import { type Move, Parts, tint } from "./assembly/parts";
 import { Player } from "./assembly/player";
 import { type RemovalMap, Sphere } from "./assembly/sphere";
 import { palette } from "./colours";
-import { h, soon } from "./dom";
-import { Engine } from "./engine";
+import { h, refill, soon } from "./dom";
+import { Engine, bytesOf } from "./engine";
 import { type Vec, length, short, shown, times, unit } from "./math";
 import type { State } from "./state";
 
@@ -59,6 +59,10 @@ export class AssemblyTab {
   private readonly fields: HTMLInputElement[];
   private readonly tolerance = h("input", { type: "number", step: "any", min: 0, "aria-label": "Tolerance of the assembly", inputmode: "decimal" });
   private readonly ignore = h("input", { type: "checkbox" });
+  private readonly fitFields = [
+    h("label", {}, "Tolerance (empty: from the size)", this.tolerance),
+    h("label", { style: "display: flex; gap: 8px; align-items: center" }, this.ignore, "What overlaps at the start does not block"),
+  ];
   private readonly player = new Player((t) => this.seen?.place(this.moves, t));
   private readonly sphere: Sphere | undefined;
   private readonly seen: Parts | undefined;
@@ -193,7 +197,7 @@ export class AssemblyTab {
     this.asked.part = null;
     try {
       const sorted = files.sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
-      const read = await Promise.all(sorted.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })));
+      const read = await Promise.all(sorted.map(async (file) => ({ name: file.name, bytes: await bytesOf(file) })));
       await this.load(read, read.length === 1 ? read[0]!.name : "FOLDER");
     } catch (error) {
       this.refuse(error);
@@ -403,18 +407,18 @@ export class AssemblyTab {
     const wait = busy && h("p", { class: "took busy", role: "status" }, `${busy} `, h("button", { class: "small", onclick: () => void this.giveUp() }, "Stop"));
     if (error) {
       this.head.className = "said care";
-      this.head.replaceChildren(h("h2", {}, "No answer"), h("p", { role: "alert" }, error));
+      refill(this.head, h("h2", {}, "No answer"), h("p", { role: "alert" }, error));
       return;
     }
     if (!along || !facts) {
       this.head.className = "said";
-      this.head.replaceChildren(h("h2", {}, "…"), ...(wait ? [wait] : []));
+      refill(this.head, h("h2", {}, "…"), ...(wait ? [wait] : []));
       return;
     }
     const free = along.first.filter(({ outcome }) => outcome === "free").length;
     const groups = along.removable.filter((group) => group.length > 1);
     this.head.className = `said ${free || groups.length ? "free" : "stop"}`;
-    this.head.replaceChildren(
+    refill(this.head,
       h("h2", { id: "assembly-headline" }, free ? `${free} of ${facts.parts.length} parts come out along d` : "No part comes out alone along d"),
       h("p", {}, free
         ? `${this.names(along.first.flatMap(({ outcome }, k) => (outcome === "free" ? [k] : [])))}.`
@@ -437,9 +441,7 @@ export class AssemblyTab {
         onclick: () => this.pick(picked ? null : k), onpointerenter: () => this.seen?.light(k), onpointerleave: () => this.seen?.light(-1),
       }, h("i", { style: `background: ${colour}` }), h("strong", {}, name), h("span", {}, told), more && h("small", {}, more));
     });
-    const focused = [...this.list.children].indexOf(document.activeElement as Element);
-    this.list.replaceChildren(...rows);
-    if (focused >= 0) rows[focused]?.focus();
+    refill(this.list, ...rows);
   }
 
   private blockers(along: Along, part: number): string {
@@ -453,12 +455,10 @@ export class AssemblyTab {
     const { fit } = this;
     if (this.tolerance !== document.activeElement) this.tolerance.value = this.asked.tolerance === null ? "" : String(this.asked.tolerance);
     this.ignore.checked = this.asked.ignore;
-    const fields = h("label", {}, "Tolerance (empty: from the size)", this.tolerance);
     const remaining = fit?.overlaps.filter(({ remains }) => remains) ?? [];
     const pairs = remaining.slice(0, 6).map(({ parts: [a, b], depth }) => `${this.names([a])} and ${this.names([b])}${depth === null ? "" : ` (${short(depth, 3)})`}`);
-    this.fitCard.replaceChildren(
-      fields,
-      h("label", { style: "display: flex; gap: 8px; align-items: center" }, this.ignore, "What overlaps at the start does not block"),
+    refill(this.fitCard,
+      ...this.fitFields,
       h("small", {}, !fit ? "" : `${fit.touches.length} pairs touch, ${fit.overlaps.length} overlap as the files have them, ${remaining.length} with a tolerance of ${short(fit.tolerance, 3)}.`),
       ...(pairs.length ? [h("small", {}, `Overlapping, and so moving as one: ${pairs.join("; ")}${remaining.length > 6 ? "; …" : ""}.`)] : []),
       ...(fit?.suggested && fit.suggested > fit.tolerance
@@ -481,19 +481,19 @@ export class AssemblyTab {
     const { part, direction } = this.asked;
     sphere?.show(map, direction);
     if (part === null || !this.facts) {
-      this.mapCard.replaceChildren(h("p", { class: "proof" }, "Pick a part, here or in the view: the sphere then shows how far it can go in every direction, against all others where they are."));
+      refill(this.mapCard, h("p", { class: "proof" }, "Pick a part, here or in the view: the sphere then shows how far it can go in every direction, against all others where they are."));
       return;
     }
     const name = this.names([part]);
     if (!map) {
-      this.mapCard.replaceChildren(h("p", { class: "proof" }, `${name}: looking in all directions.`));
+      refill(this.mapCard, h("p", { class: "proof" }, `${name}: looking in all directions.`));
       return;
     }
     const blocked = map.distances.reduce((best, x, k) => (Number.isFinite(x) && x > map.distances[best]! || !Number.isFinite(map.distances[best]!) ? k : best), 0);
     const go = (d: Vec, text: string) => h("button", { class: "small", onclick: () => this.turnTo(rounded(d, 1e-9)) }, text);
     const farthest = map.distances[blocked]!;
     const of = (k: number): Vec => [0, 1, 2].map((c) => map.directions[3 * k + c]!) as Vec;
-    this.mapCard.replaceChildren(
+    refill(this.mapCard,
       h("p", { class: "proof" }, `${name} ${freedom(map)}. The paler the rest, the farther it can go. Click for a direction.`),
       ...(sphere ? [sphere.canvas] : []),
       h("div", { class: "row" },
@@ -506,7 +506,7 @@ export class AssemblyTab {
     const { plan, facts } = this;
     if (!facts) return;
     if (!plan) {
-      this.planCard.replaceChildren(h("div", { class: "row" }, h("button", { class: "small main", disabled: !!this.busy || !this.fit, onclick: () => void this.askPlan() }, "Plan the disassembly")));
+      refill(this.planCard, h("div", { class: "row" }, h("button", { class: "small main", disabled: !!this.busy || !this.fit, onclick: () => void this.askPlan() }, "Plan the disassembly")));
       return;
     }
     const rows = plan.steps.map(({ parts, direction, travel, within }, k) =>
@@ -516,7 +516,7 @@ export class AssemblyTab {
       `Not parted along any of ${directions} directions: ${this.names(parts)}. `,
       overlapping.length ? `They overlap: ${overlapping.slice(0, 4).map((pair) => this.names(pair)).join("; ")}.`
         : holds.filter(({ by }) => by.length).slice(0, 4).map(({ part, by }) => `${this.names([part])} is held by ${this.names(by[0]!)}`).join("; ")));
-    this.planCard.replaceChildren(h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...stuck);
+    refill(this.planCard, h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...stuck);
   }
 
   /** The tip of the arrow. */

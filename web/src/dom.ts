@@ -32,6 +32,16 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
+/** Other children; what is in focus stays so, or what is there instead of it. What was a child and is to be
+ * one again comes as it is, not in a wrapper: moving it there would have ended its focus before. */
+export function refill(host: Element, ...children: Child[]) {
+  const controls = () => [...host.querySelectorAll<HTMLElement | SVGElement>("button, input, select, [tabindex]")];
+  const focused = document.activeElement as HTMLElement | SVGElement | null;
+  const at = focused ? controls().indexOf(focused) : -1;
+  host.replaceChildren(...children.filter((child): child is Node | string => !!child));
+  if (at >= 0) (host.contains(focused) ? focused : controls()[at])?.focus({ preventScroll: true });
+}
+
 /** The element of the page with a name. */
 export function named<T extends Element = HTMLElement>(id: string): T {
   const found = document.getElementById(id);

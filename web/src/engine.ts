@@ -134,6 +134,16 @@ export class Refused extends Error {
   }
 }
 
+/** What 32-bit memory holds, with the body that is built of it. */
+export const MOST_MIB = 400;
+
+/** Those of a file that somebody gave. */
+export async function bytesOf(file: File): Promise<ArrayBuffer> {
+  const mib = file.size / 2 ** 20;
+  if (mib > MOST_MIB) throw new Refused(`${file.name}: ${Math.ceil(mib)} MiB; a page takes files up to ${MOST_MIB} MiB, the command line larger ones`);
+  return file.arrayBuffer();
+}
+
 /** An answer as the worker sends it. */
 export interface Reply {
   id: number;

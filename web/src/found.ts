@@ -5,13 +5,14 @@
 
 import { BufferGeometry, DoubleSide, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { palette } from "./colours";
-import { h, svg } from "./dom";
+import { h, refill, svg } from "./dom";
 import type { Engine, Pair } from "./engine";
 import { Graph, type Grid } from "./found/graph";
 import { type Minimisation, type Recording, below, minimisation, portals } from "./found/recording";
 import { type Vec, add, cross, dot, hull, length, placed, short, sub, times, unit } from "./math";
 import type { State } from "./state";
-import type { Drawn, View } from "./view";
+import type { View } from "./view";
+import type { Drawn } from "./view/body";
 
 type Two = [number, number];
 const GRID = 44;
@@ -56,7 +57,7 @@ export class Found {
     /** The question before. */
     private readonly before: () => Pair | undefined,
   ) {
-    this.from.append(h("option", { value: "center" }, "from the centre of all levels, as in the paper"), h("option", { value: "guess" }, "from where ellipsoids would meet, as by default"), h("option", { value: "region" }, "in N(p), around the solution of the question before"));
+    this.from.append(h("option", { value: "center" }, "from the centre, as in the paper"), h("option", { value: "guess" }, "from where ellipsoids would meet"), h("option", { value: "region" }, "in N(p), around the last solution"));
     this.from.addEventListener("change", () => this.refresh());
     this.graph.onStep = (step) => this.pick(step);
     this.body = h("div", { style: "display: contents" },
@@ -139,7 +140,7 @@ export class Found {
     this.say(
       "Two ways to one proof",
       `The bodies have ${p} and ${q} vertices, their difference up to ${(p * q).toLocaleString("en")}, and it is never built. ` +
-        `The collision translation algorithm solved ${cta.steps.planar_problems} planar problems, portal refinement computed ${portal.steps.supports} supporting planes.`,
+        `The collision translation algorithm solved ${count(cta.steps.planar_problems, "planar problem")}, portal refinement computed ${count(portal.steps.supports, "supporting plane")}.`,
     );
   }
 
@@ -212,7 +213,7 @@ export class Found {
         h("button", { class: "small", "aria-pressed": String(k === now), onclick: () => pick(k) }, String(k + 1)));
     if (found) {
       this.graph.show(found, this.grid, this.step);
-      this.steps.replaceChildren(...buttons(found.steps.length, this.step, (k) => this.pick(k)));
+      refill(this.steps, ...buttons(found.steps.length, this.step, (k) => this.pick(k)));
       this.tellStep(found);
     } else {
       this.told.textContent = this.from.value === "guess"
@@ -224,7 +225,7 @@ export class Found {
     for (const part of [this.graph.element, this.steps, this.planar.parentElement!]) part.hidden = !found;
     this.drawPlanar();
     this.drawPortals();
-    this.portalSteps.replaceChildren(...buttons(this.refined?.steps.length ?? 0, this.portal, (k) => {
+    refill(this.portalSteps, ...buttons(this.refined?.steps.length ?? 0, this.portal, (k) => {
       this.portal = k;
       this.draw();
     }));
@@ -237,7 +238,7 @@ export class Found {
     const l = length(this.pair().direction);
     const where = `At x = ${short(step.levels[0], 4)}, y = ${short(step.levels[1], 4)}`;
     const cut = step.cut
-      ? ` Proven by now: between ${short(step.cut.lower / l, 7)} and ${Number.isFinite(step.cut.upper) && step.cut.upper !== null ? short(step.cut.upper / l, 7) : "?"}; what lies behind the cut, pale, is left out.`
+      ? ` Proven by now: ${Number.isFinite(step.cut.upper) && step.cut.upper !== null ? `between ${short(step.cut.lower / l, 7)} and ${short(step.cut.upper / l, 7)}` : `at least ${short(step.cut.lower / l, 7)}`}; what lies behind the cut, pale, is left out.`
       : "";
     this.told.textContent = step.meets
       ? `${where} the sections meet at t = ${short(step.value / l, 7)}. Within the cell where the same features touch, φ is linear and goes down to ${short(step.shifted / l, 7)} (the cell shift).${cut}`

@@ -6,7 +6,7 @@
 
 import { onChange } from "./colours";
 import { h, named, soon } from "./dom";
-import { type Answer, Engine, type Pair, Refused, type Slot, type SolidAnswer, type SolidProof, type Take } from "./engine";
+import { type Answer, Engine, type Pair, Refused, type Slot, type SolidAnswer, type SolidProof, type Take, bytesOf } from "./engine";
 import { EXAMPLES, SLOTS } from "./examples";
 import { dot, length, placed, sub } from "./math";
 import type { AssemblyTab } from "./assembly";
@@ -15,7 +15,9 @@ import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
-import { type Bodies, type Tool, View, drawn, forget } from "./view";
+import { View } from "./view";
+import { type Bodies, drawn, forget } from "./view/body";
+import type { Tool } from "./view/handles";
 
 const TABS: Tab[] = ["answer", "found", "assembly"];
 /** Up to so many triangles of both bodies together. */
@@ -281,7 +283,7 @@ class Page {
   /** A file that somebody chose or dropped. */
   private async open(slot: Slot, file: File) {
     try {
-      await this.load(slot, file.name, "convex", await file.arrayBuffer());
+      await this.load(slot, file.name, "convex", await bytesOf(file));
       await this.changedBody();
     } catch (error) {
       this.refuse(slot, file.name, error);
@@ -334,7 +336,11 @@ class Page {
     const { state, answer, view } = this;
     const { moving, fixed } = this.bodies;
     document.body.dataset.tab = state.tab;
-    for (const tab of TABS) named(`tab-${tab}`).setAttribute("aria-selected", String(state.tab === tab));
+    for (const tab of TABS) {
+      const element = named(`tab-${tab}`);
+      element.setAttribute("aria-selected", String(state.tab === tab));
+      element.tabIndex = state.tab === tab ? 0 : -1;
+    }
     const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof?.told, verdict: this.verdict };
     this.panel.show(shown);
     if (state.tab !== "answer") void this.openTab(state.tab);
@@ -373,7 +379,7 @@ class Page {
       this.fit();
       this.remember();
     });
-    for (const tab of TABS) named(`tab-${tab}`).addEventListener("click", () => this.change((s) => (s.tab = tab), false));
+    this.tabs();
     named("theme").addEventListener("click", () => {
       const root = document.documentElement;
       const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
@@ -386,6 +392,23 @@ class Page {
       this.state = fromHash(location.hash);
       void this.loadBoth().then(() => this.fit());
       this.assembly?.stateChanged();
+    });
+  }
+
+  /** One of them is in the order of focus; arrow keys go to the others. */
+  private tabs() {
+    const pick = (k: number) => this.change((s) => (s.tab = TABS[k]!), false);
+    TABS.forEach((tab, k) => {
+      const element = named(`tab-${tab}`);
+      element.addEventListener("click", () => pick(k));
+      element.addEventListener("keydown", (event) => {
+        const last = TABS.length - 1;
+        const next = { ArrowRight: k === last ? 0 : k + 1, ArrowLeft: k === 0 ? last : k - 1, Home: 0, End: last }[event.key];
+        if (next === undefined) return;
+        event.preventDefault();
+        pick(next);
+        named(`tab-${TABS[next]!}`).focus();
+      });
     });
   }
 
@@ -420,6 +443,9 @@ class Page {
         button("Along d", "Look along the direction", () => this.fit(true))),
     );
     pick(0);
+    addEventListener("keydown", (event) => {
+      if (event.key === "Escape" && this.tool !== "look") pick(0);
+    });
   }
 
   private drops() {
@@ -437,6 +463,9 @@ class Page {
     });
     addEventListener("dragleave", (event) => {
       if (!event.relatedTarget) zone.hidden = true;
+    });
+    addEventListener("keydown", (event) => {
+      if (event.key === "Escape") zone.hidden = true;
     });
     addEventListener("drop", (event) => {
       event.preventDefault();

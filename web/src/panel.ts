@@ -1,11 +1,11 @@
 // What is said and what can be set, beside the view.
 
-import { h, svg } from "./dom";
-import type { Answer, Certificate, Claims, Slot, SolidAnswer, SolidProof, Take } from "./engine";
+import { h, refill, svg } from "./dom";
+import { type Answer, type Certificate, type Claims, type ConvexAnswer, MOST_MIB, type Slot, type SolidAnswer, type SolidProof, type Take } from "./engine";
 import { type Vec, length, short } from "./math";
 import { asCommand, asPython, asRust } from "./share";
 import type { Solver, State } from "./state";
-import type { Drawn } from "./view";
+import type { Drawn } from "./view/body";
 import { say } from "./words";
 
 /** The view as pixels, the shadows, the view as a drawing. */
@@ -52,9 +52,10 @@ const OFFER: Record<Take, string> = {
 
 export class AnswerPanel {
   readonly element = h("div", { class: "panel-parts", style: "display: contents" });
-  private readonly said = h("section", { class: "said" });
+  private readonly said = h("section", { class: "said", "aria-live": "polite" });
   private readonly facts = h("dl");
   private readonly proof = h("div");
+  private readonly verdict = h("span", { role: "status" });
   private readonly proofCard: HTMLDetailsElement;
   private readonly parts = h("div");
   private readonly fields: { input: HTMLInputElement; read: (state: State) => number | null }[] = [];
@@ -74,7 +75,7 @@ export class AnswerPanel {
     this.solver.addEventListener("change", () => act.change((s) => (s.solver = this.solver.value as Solver)));
     this.ignore.addEventListener("change", () => act.change((s) => (s.ignore = this.ignore.checked)));
     this.graze = h(
-      "div", { class: "fields", style: "grid-template-columns: 1fr 1fr 1fr" },
+      "div", { class: "fields", style: "grid-template-columns: 1fr 1fr 1fr; align-items: end" },
       h("label", {}, "Graze tolerance", this.number("Graze tolerance", (s) => s.graze, (s, x) => (s.graze = Math.max(0, x)))),
       h("label", { style: "grid-column: span 2" }, "Solver", this.solver),
     );
@@ -84,7 +85,7 @@ export class AnswerPanel {
         h("label", {}, "Tolerance (empty: from the files)", this.number("Tolerance", (s) => s.tolerance, (s, x) => (s.tolerance = Math.max(0, x)), (s) => (s.tolerance = null)))),
       h("label", { style: "display: flex; gap: 8px; align-items: center; margin-top: 8px" }, this.ignore, "What overlaps at the start does not block"),
     );
-    this.proofCard = this.card("Proof", true, this.proof);
+    this.proofCard = this.card("Proof", true, this.proof, h("div", { class: "row" }, this.check, this.verdict));
     this.element.append(
       this.said,
       h("section", { class: "card" }, this.facts),
@@ -155,7 +156,7 @@ export class AnswerPanel {
           if (l > 0) s.direction = s.direction.map((x) => x / l) as Vec;
         }) }, "length 1")),
       ...pose("moving"), ...pose("fixed"), this.graze, this.solid,
-      h("small", { style: "color: var(--soft)" }, "Lengths are in the unit of the files; t counts in multiples of d."),
+      h("small", { style: "color: var(--soft)" }, "Lengths are in the unit of the files; t counts in multiples of d. In a field the keys ↑ and ↓ change the number, with Shift by ten times as much."),
     );
   }
 
@@ -249,35 +250,31 @@ export class AnswerPanel {
             h("button", { class: "small", onclick: () => this.act.dismiss(slot) }, "Leave it"))),
       );
     });
-    this.parts.replaceChildren(...rows, h("small", { style: "color: var(--soft)" }, "STL, OBJ, PLY or OFF; or drop files on the view."));
+    refill(this.parts, ...rows, h("small", { style: "color: var(--soft)" }, `STL, OBJ, PLY or OFF, up to ${MOST_MIB} MiB; or drop files on the view.`));
   }
 
   private showProof(answer: Answer, shown: Shown) {
     const { verdict } = shown;
     if (!this.fresh("proof", [answer, verdict, shown.solidProof])) return;
-    const { check } = this;
-    const judged = verdict && h("span", { class: `verdict ${verdict.holds ? "yes" : "no"}`, role: "status" }, verdict.text);
-    if (answer.kind === "solid") {
-      this.proof.replaceChildren(...solidProof(answer, shown), h("div", { class: "row" }, check, judged));
-      return;
-    }
-    if (answer.outcome === "separated") {
-      this.proof.replaceChildren(
-        h("p", { class: "proof" }, "A plane along d lies between the bodies. All of the moving one is on one side, all of the fixed one on the other."),
-        h("div", { class: "row" }, check, judged));
-      return;
-    }
-    const proof = answer.first!.proof!;
-    const gap = proof.upper === null ? undefined : proof.upper - proof.lower;
-    this.proof.replaceChildren(
-      bounds(proof),
-      h("p", { class: "proof" },
-        "The green plane proves that nothing touches before ", h("b", {}, String(proof.lower)),
-        proof.upper === null ? "." : "; the two triangles meet in one point, which proves that something does by ",
-        proof.upper === null ? null : h("b", {}, String(proof.upper)),
-        gap === undefined ? "" : `. The gap of ${short(gap, 2)} is rounding.`),
-      h("div", { class: "row" }, check, judged));
+    this.verdict.className = verdict ? `verdict ${verdict.holds ? "yes" : "no"}` : "";
+    this.verdict.textContent = verdict?.text ?? "";
+    refill(this.proof, ...(answer.kind === "solid" ? solidProof(answer, shown) : convexProof(answer)));
   }
+}
+
+/** The proof between convex bodies. */
+function convexProof({ outcome, first }: ConvexAnswer): Element[] {
+  const text = (...children: (string | HTMLElement | null)[]) => h("p", { class: "proof" }, ...children);
+  if (outcome === "separated") return [text("A plane along d lies between the bodies. All of the moving one is on one side, all of the fixed one on the other.")];
+  const proof = first!.proof!;
+  const upper = proof.upper === null ? undefined : String(proof.upper);
+  return [
+    bounds(proof),
+    text("The green plane proves that nothing touches before ", h("b", {}, String(proof.lower)),
+      upper ? "; the two triangles meet in one point, which proves that something does by " : ".",
+      upper ? h("b", {}, upper) : null,
+      upper ? `. The gap of ${short(proof.upper! - proof.lower, 2)} is rounding.` : ""),
+  ];
 }
 
 /** The proof between solids: what stops the body, and why none of all pairs of facets does before. */

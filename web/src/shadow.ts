@@ -5,7 +5,7 @@ import { h, svg } from "./dom";
 import type { Answer, Slot } from "./engine";
 import { type Pose, type Vec, add, cross, dot, hull, placed, short, times, unit } from "./math";
 import type { State } from "./state";
-import type { Drawn } from "./view";
+import type { Drawn } from "./view/body";
 
 type Flat = [number, number];
 /** Solids with more triangles than this are drawn when the question has stood still for a moment. */

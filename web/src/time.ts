@@ -1,6 +1,6 @@
 // The slider along `t`: from the start over the first contact to the last.
 
-import { h } from "./dom";
+import { h, refill } from "./dom";
 import type { Answer } from "./engine";
 import { short } from "./math";
 import type { State } from "./state";
@@ -40,16 +40,16 @@ export class Timeline {
       return `calc(8px + (100% - 16px) * ${share.toFixed(5)})`;
     };
     const mark = (t: number, text: string, kind = "") => [
-      h("span", { class: kind, role: "button", tabindex: 0, style: `left: ${place(t)}`, onclick: () => this.jump(t), onkeydown: ((e: KeyboardEvent) => e.key === "Enter" && this.jump(t)) as EventListener }, text),
+      h("button", { class: kind, style: `left: ${place(t)}`, onclick: () => this.jump(t) }, text),
       h("i", { class: kind, style: `left: ${place(t)}` }),
     ];
     const parts = [...mark(0, "start", "low")];
     if (first !== undefined) parts.push(...mark(first, answer?.outcome === "grazing" ? "touches" : "first contact", "stop"));
     if (first !== undefined && exit !== undefined && exit > first) {
       parts.push(...mark(exit, answer?.kind === "solid" ? "out" : "last contact", "low"));
-      parts.push(h("b", { style: `left: ${place(first)}; right: calc(100% - ${place(exit).slice(5, -1)})` }));
+      parts.push(h("b", { style: `left: ${place(first)}; right: calc(100% - ${place(exit)})` }));
     }
-    this.marks.replaceChildren(...parts);
+    refill(this.marks, ...parts);
   }
 
   private jump(t: number) {

@@ -1,42 +1,18 @@
 // The page's part for assemblies, in a browser, held against the same code built natively and by hand.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { existsSync, readdirSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { readdirSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
-import { serve } from "../serve.mjs";
+import { answers, data, launchPlain, site } from "../browser.mjs";
 
-const here = dirname(fileURLToPath(import.meta.url));
-const gearbox = join(here, "../../data/gearbox_small");
-const program = join(here, "../../crates/colltrans-wasm/target/release/examples/native_assembly");
-const executablePath = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => existsSync(path));
-const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const gearbox = join(data, "gearbox_small");
 
-let server, browser, base;
-before(async () => {
-  server = await serve(join(here, "../dist"), 0, "/some/where/");
-  base = `http://127.0.0.1:${server.address().port}/some/where/`;
-  browser = await chromium.launch({ executablePath, args });
-});
-after(async () => {
-  await browser?.close();
-  server?.close();
-});
+let at;
+before(async () => (at = await site()));
+after(() => at?.close());
 
-async function opened(hash = "", options = {}) {
-  const context = await browser.newContext({ viewport: { width: 900, height: 640 }, ...options });
-  const page = await context.newPage();
-  page.complaints = [];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
-  page.on("pageerror", (error) => page.complaints.push(String(error)));
-  page.on("requestfailed", (request) => page.complaints.push(request.url()));
-  await page.goto(`${base}#tab=assembly${hash}`);
-  await page.waitForSelector("#assembly-headline");
-  return page;
-}
+const opened = (hash = "", options = {}) => at.open(`#tab=assembly${hash}`, options, ["#assembly-headline"]);
 
 const probe = (page) => page.evaluate(() => {
   const { facts, fit, along, plan, tip, t, busy, error } = window.colltrans.probe().assembly;
@@ -65,7 +41,7 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
     ...files.map((name) => `${join(gearbox, name)}\t${JSON.stringify({ do: "add", name })}`),
     ...[{ do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "along", direction: [0.3, -0.2, 1] }, { do: "along", direction: [0, 0, -1] }, { do: "plan" }].map((q) => JSON.stringify(q)),
   ];
-  const native = execFileSync(program, { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 26 }).trim().split("\n").slice(files.length);
+  const native = answers("native_assembly", questions).slice(files.length);
   const told = await page.evaluate(async () => {
     const { engine } = window.colltrans.probe().assembly;
     const texts = [];
@@ -153,9 +129,9 @@ test("on a phone, and without WebGL", async () => {
   await page.waitForSelector(".part[aria-pressed=true]");
   assert.deepEqual(page.complaints, []);
   await page.context().close();
-  const without = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"] });
+  const without = await launchPlain();
   const plain = await without.newPage();
-  await plain.goto(`${base}#tab=assembly`);
+  await plain.goto(`${at.base}#tab=assembly`);
   await plain.waitForSelector("#assembly-headline");
   await planned(plain);
   assert.match(await plain.textContent(".assembly-view"), /WebGL 2/);

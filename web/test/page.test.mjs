@@ -1,61 +1,28 @@
-// The page in a browser, held against the same code built natively. Needs `npm run build` before.
+// The page in a browser, held against the same code built natively. Needs `npm run build` before, and the example `native`.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, extname, join } from "node:path";
+import { extname, join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
 import { brotliCompressSync } from "node:zlib";
-import { chromium } from "playwright-core";
-import { serve } from "../serve.mjs";
+import { answers as nativeAnswers, data, dist, launchPlain, site } from "../browser.mjs";
 
-const here = dirname(fileURLToPath(import.meta.url));
-const dist = join(here, "../dist");
-const crate = join(here, "../../crates/colltrans-wasm");
-const data = join(here, "../../data");
-const executablePath = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => existsSync(path));
-const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-
-let server, browser, base, folder;
+let at, folder;
 before(async () => {
-  // Under a path of its own, as on a page among others.
-  server = await serve(dist, 0, "/some/where/");
-  base = `http://127.0.0.1:${server.address().port}/some/where/`;
-  browser = await chromium.launch({ executablePath, args });
+  at = await site();
   folder = mkdtempSync(join(tmpdir(), "page-"));
 });
 after(async () => {
-  await browser?.close();
-  server?.close();
+  await at?.close();
   if (folder) rmSync(folder, { recursive: true });
 });
 
-/** A page that has answered; what it complains about is gathered. */
-async function opened(hash = "", options = {}) {
-  const context = await browser.newContext({ viewport: { width: 900, height: 640 }, ...options });
-  const page = await context.newPage();
-  page.complaints = [];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
-  page.on("pageerror", (error) => page.complaints.push(String(error)));
-  page.read = [];
-  page.on("request", (request) => page.read.push(request.url()));
-  page.on("requestfailed", (request) => page.complaints.push(request.url()));
-  await page.goto(base + hash);
-  await page.waitForSelector("#headline");
-  await page.waitForSelector("#tools button");
-  return page;
-}
+/** A page that has answered. */
+const opened = (hash, options) => at.open(hash, options);
 
 const headline = (page) => page.textContent("#headline");
 const answered = (page) => page.evaluate(() => window.colltrans.probe().answer);
-
-/** The answers of the native program. */
-function native(lines) {
-  const program = join(crate, "target/release/examples/native");
-  return execFileSync(program, { input: lines.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
-}
 
 test("it opens solved, without a complaint, and is small", async () => {
   const page = await opened();
@@ -114,7 +81,7 @@ test("1,000 answers are the native ones, bit for bit", async () => {
     }
   }
   const lines = asked.map(({ file, question }) => (file ? `${join(data, file)}\t` : "") + JSON.stringify(question));
-  const expected = native(lines);
+  const expected = nativeAnswers("native", lines);
   const page = await opened();
   const answers = await page.evaluate(async (asked) => {
     const { engine } = window.colltrans.probe();
@@ -284,18 +251,15 @@ test("a bad file gives its message, one that is not convex two ways on", async (
 });
 
 test("what a direction cannot be is said", async () => {
-  const context = await browser.newContext();
-  const zero = await context.newPage();
-  await zero.goto(`${base}#d=0,0,0`);
-  await zero.waitForSelector("text=No answer");
-  assert.match(await zero.textContent(".said"), /direction/);
-  await context.close();
+  const page = await at.open("#d=0,0,0", {}, ["text=No answer"]);
+  assert.match(await page.textContent(".said"), /direction/);
+  await page.context().close();
 });
 
 test("without WebGL it says so", async () => {
-  const without = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"] });
+  const without = await launchPlain();
   const page = await without.newPage();
-  await page.goto(base);
+  await page.goto(at.base);
   await page.waitForSelector("text=draws with WebGL 2");
   assert.equal(await headline(page), "Contact at t = 4.31674");
   await page.fill('[aria-label="moving position z"]', "12.5");
@@ -323,6 +287,6 @@ test("without a network after loading, everything of the first part works on", a
   // What has not been read yet says so, once, and the rest stays.
   await page.click("#tab-assembly");
   await page.waitForSelector("text=This part of the page could not be read");
-  assert.equal(await page.getAttribute("#tab-answer", "aria-selected"), "true");
+  await page.waitForSelector("#tab-answer[aria-selected=true]");
   await page.context().close();
 });

@@ -1,29 +1,21 @@
-// The viewer in an assembly's report, opened as a file. Needs `cargo build --release` before.
+// The viewer in an assembly's report, opened as a file. Needs the example `report`.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { join } from "node:path";
 import { test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { pathToFileURL } from "node:url";
+import { data, launch, program, watch } from "../browser.mjs";
 
-const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
-const program = join(root, "target/release/colltrans");
-const executablePath = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => existsSync(path));
-const skip = existsSync(program) ? false : "the command is not built: cargo build --release";
-
-test("a report shows its plan from all sides", { skip }, async () => {
+test("a report shows its plan from all sides", async () => {
   const folder = mkdtempSync(join(tmpdir(), "report-"));
-  execFileSync(program, ["assembly", join(root, "data/gearbox_small"), "--tolerance", "0.1", "-o", folder], { stdio: "ignore" });
-  const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+  const parts = readdirSync(join(data, "gearbox_small")).map((name) => join(data, "gearbox_small", name));
+  execFileSync(program("report"), ["0.1", join(folder, "report.html"), ...parts]);
+  const browser = await launch();
   try {
-    const page = await browser.newPage({ viewport: { width: 1100, height: 900 } });
-    const complaints = [];
-    page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
-    page.on("pageerror", (error) => complaints.push(String(error)));
-    page.on("request", (request) => request.url().startsWith("http") && complaints.push(request.url()));
+    const page = watch(await browser.newPage({ viewport: { width: 1100, height: 900 } }));
     await page.goto(pathToFileURL(join(folder, "report.html")).href);
     await page.waitForSelector("#viewer canvas");
     assert.match(await page.textContent("#viewer output"), /^16 parts, \d+ steps/);
@@ -35,7 +27,8 @@ test("a report shows its plan from all sides", { skip }, async () => {
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.waitForSelector("#viewer .name:not([hidden])");
     assert.ok((await page.textContent("#viewer .name")).length > 2);
-    assert.deepEqual(complaints, []);
+    assert.deepEqual(page.complaints, []);
+    assert.ok(page.read.every((url) => url.startsWith("file:") || url.startsWith("data:") || url.startsWith("blob:")), page.read.join());
   } finally {
     await browser.close();
     rmSync(folder, { recursive: true });

@@ -95,7 +95,8 @@ fn fault(error: &ParseError, text: bool) -> Fault {
     };
     let first = message.lines().next().unwrap_or_default().trim();
     let reason = message.lines().last().unwrap_or_default().trim();
-    if first == reason {
+    // What the parser's generator tells of its own state helps nobody.
+    if first == reason || reason.starts_with("Error: ParseError") {
         Fault::new(place, first)
     } else {
         Fault::new(place, format!("{first} {reason}"))

@@ -20,6 +20,12 @@ fn place(format: Format, text: impl AsRef<[u8]>) -> Place {
     }
 }
 
+#[test]
+fn words_in_a_ply_file_are_told_as_such() {
+    let error = read(Format::Ply, "ply-like words\n").unwrap_err().to_string();
+    assert_eq!(error, "part: line 1: Expected magic number 'ply'.");
+}
+
 fn tetrahedron() -> Mesh {
     Mesh::new(
         vec![

@@ -19,8 +19,6 @@ use crate::question::Take;
 const CONVEX_TOLERANCE: f64 = 1e-5;
 /// Edges of a solid whose faces make a smaller angle are not drawn: its cosine.
 const SMOOTH: f64 = 0.94;
-/// A file with more bytes is refused: what 32-bit memory holds, with the body built of it.
-const MOST_BYTES: usize = 400 << 20;
 
 /// A body in use.
 #[derive(Debug)]
@@ -87,13 +85,6 @@ struct Drawn {
 pub(crate) fn read(name: &str, file: Vec<u8>) -> Result<Mesh, Refusal> {
     let path = Path::new(name);
     let format = Format::of_path(path).map_err(|error| error.to_string())?;
-    if file.len() > MOST_BYTES {
-        let (bytes, most) = (file.len() >> 20, MOST_BYTES >> 20);
-        return Err(format!(
-            "{name}: {bytes} MiB; a page takes files up to {most} MiB, the command line larger ones"
-        )
-        .into());
-    }
     colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string().into())
 }
 

@@ -1,8 +1,8 @@
 //! The library in a browser.
 //!
-//! The data's way: a page writes a question, JSON and perhaps the bytes of a file, to the [`door`] ->
-//! [`Desk::ask`] reads it as a [`question::Question`] -> [`body`] (files become bodies, which stay on
-//! the desk), [`convex`] and [`solid`] (casts), [`certify`] (proofs between solids), [`search`] (how an answer was found) -> an
+//! The data's way: a page writes a question, JSON and perhaps the bytes of a file, to the `door` ->
+//! [`Desk::ask`] reads it as a `question::Question` -> `body` (files become bodies, which stay on
+//! the desk), `convex` and `solid` (casts), `certify` (proofs between solids), `search` (how an answer was found) -> an
 //! [`Answer`]: JSON, and perhaps numbers in binary for large things.
 //!
 //! The part for assemblies is a module of its own, read when it is asked for (`assembly/`); it has the

@@ -54,7 +54,9 @@ export class Sphere {
       event.preventDefault();
       const step = event.shiftKey ? 0.02 : 0.1;
       const [x, y] = turn;
-      this.onDirection(unit([0, 1, 2].map((k) => this.chosen[k]! + step * (x * this.right[k]! + y * this.up[k]!)) as Vec));
+      // Known at once: the next key may come before the next frame.
+      this.chosen = unit([0, 1, 2].map((k) => this.chosen[k]! + step * (x * this.right[k]! + y * this.up[k]!)) as Vec);
+      this.onDirection(this.chosen);
     });
   }
 

@@ -1,7 +1,7 @@
 // The graph of `phi` over pairs of levels: contours, or a surface to turn; with the steps upon it.
 
 import { palette } from "../colours";
-import { h, svg } from "../dom";
+import { h, refill, svg } from "../dom";
 import { short } from "../math";
 import type { Minimisation } from "./recording";
 
@@ -74,8 +74,8 @@ export class Graph {
     context.clearRect(0, 0, SIZE, SIZE);
     const place = this.place(found);
     if (grid) this.fillGrid(context, grid, colours.dark);
-    this.marks.replaceChildren();
-    const add = (element: SVGElement) => this.marks.append(element);
+    const marks: SVGElement[] = [];
+    const add = (element: SVGElement) => marks.push(element);
     add(svg("rect", { x: EDGE, y: 10, width: INNER, height: INNER, fill: "none", stroke: colours.text, "stroke-opacity": 0.5 }));
     const now = found.steps[step];
     if (found.square) {
@@ -103,7 +103,7 @@ export class Graph {
       add(dot);
       add(svg("text", { x: x + 8, y: y - 6, fill: colours.text, "font-size": 12, "font-weight": k === step ? 700 : 400 }, String(k + 1)));
     });
-    if (now) this.arrow(place, now.levels, now.gradient, found, colours.text);
+    if (now) marks.push(...this.arrow(place, now.levels, now.gradient, found, colours.text));
     const text = (x: number, y: number, what: string, more: Record<string, string> = {}) =>
       add(svg("text", { x, y, fill: colours.text, "font-size": 12, ...more }, what));
     text(EDGE + INNER / 2, SIZE - 4, "level x of the moving body", { "text-anchor": "middle" });
@@ -113,20 +113,19 @@ export class Graph {
     text(EDGE + INNER, SIZE - 4, short(b, 3), { "text-anchor": "end" });
     text(EDGE - 4, 10 + INNER, short(c, 3), { "text-anchor": "end" });
     text(EDGE - 4, 20, short(d, 3), { "text-anchor": "end" });
+    refill(this.marks, ...marks);
   }
 
   /** Down the gradient. */
-  private arrow(place: (p: Two) => Two, at: Two, gradient: Two, found: Minimisation, colour: string) {
+  private arrow(place: (p: Two) => Two, at: Two, gradient: Two, found: Minimisation, colour: string): SVGElement[] {
     const [[a, b], [c, d]] = found.ranges;
     const [u, v] = [gradient[0] / (d - c), gradient[1] / (b - a)];
     const l = Math.hypot(u, v);
-    if (!l) return;
+    if (!l) return [];
     const [x, y] = place(at);
     const [e, f] = [x - (u / l) * 38, y + (v / l) * 38];
     const [p, q] = [(u / l) * 8, -(v / l) * 8];
-    this.marks.append(
-      svg("path", { d: `M${x} ${y}L${e} ${f}M${e + p - q * 0.6} ${f + q + p * 0.6}L${e} ${f}L${e + p + q * 0.6} ${f + q - p * 0.6}`, stroke: colour, "stroke-width": 2, fill: "none" }),
-    );
+    return [svg("path", { d: `M${x} ${y}L${e} ${f}M${e + p - q * 0.6} ${f + q + p * 0.6}L${e} ${f}L${e + p + q * 0.6} ${f + q - p * 0.6}`, stroke: colour, "stroke-width": 2, fill: "none" })];
   }
 
   private bounds({ values }: Grid): Two {

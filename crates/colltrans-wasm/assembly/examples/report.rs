@@ -1,0 +1,55 @@
+//! The report of an assembly as the command writes it with `-o`, for the test of its viewer: parts in a
+//! tolerance, and where to write.
+//!
+//! `cargo run --release -p colltrans-wasm-assembly --features report --example report -- 0.1 report.html *.off`
+
+use std::error::Error;
+use std::path::Path;
+
+use colltrans::StartOverlap;
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::report::{Findings, html};
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
+use glam::DAffine3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [tolerance, target, files @ ..] = &arguments[..] else {
+        return Err("give a tolerance, where to write, and files".into());
+    };
+    let (watch, overlap) = (Watch::default(), StartOverlap::Refuse);
+    let assembly = assembly(files)?;
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance.parse()?))?;
+    let start = Start::new(&bodies, watch)?;
+    let liaisons = liaisons(&bodies, watch)?;
+    let found = candidates(&bodies, &liaisons, &Choice::default())?;
+    let all = vec![true; bodies.len()];
+    let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
+    let options = PlanOptions { start: overlap, ..PlanOptions::default() };
+    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
+    let findings = Findings {
+        bodies: &bodies,
+        start: &start,
+        liaisons: &liaisons,
+        candidates: &found.main,
+        matrix: &matrix,
+        more: &[],
+        plan: &plan,
+        maps: &[],
+    };
+    Ok(std::fs::write(target, html::page(&findings, "parts"))?)
+}
+
+fn assembly(files: &[String]) -> Result<Assembly, Box<dyn Error>> {
+    let parts = files.iter().map(|file| {
+        let colltrans_mesh::Mesh { vertices, faces, .. } = colltrans_mesh::read(file)?;
+        let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+        let piece = Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY };
+        Ok(Part::new(name, &[piece])?)
+    });
+    Ok(Assembly::new(parts.collect::<Result<_, Box<dyn Error>>>()?)?)
+}

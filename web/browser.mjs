@@ -1,0 +1,62 @@
+// For the tests: the page as it was built, in a browser; and programs that answer the same natively.
+
+import { execFileSync } from "node:child_process";
+import { existsSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+import { serve } from "./serve.mjs";
+
+const root = join(dirname(fileURLToPath(import.meta.url)), "..");
+export const data = join(root, "data");
+export const dist = join(root, "web/dist");
+
+/** An example of the Rust workspace: cargo build --release --workspace --example NAME. */
+export const program = (name) => join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "release/examples", name);
+
+/** Its answers, a line each. */
+export function answers(name, questions) {
+  return execFileSync(program(name), { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
+}
+
+export function launch(args = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]) {
+  const executablePath = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => existsSync(path));
+  return chromium.launch({ executablePath, args: ["--no-sandbox", ...args] });
+}
+
+/** Without graphics. */
+export const launchPlain = () => launch(["--disable-gpu", "--disable-3d-apis"]);
+
+/** What a page complains about, and what it reads. */
+export function watch(page) {
+  page.complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
+  page.on("pageerror", (error) => page.complaints.push(String(error)));
+  page.read = [];
+  page.on("request", (request) => page.read.push(request.url()));
+  page.on("requestfailed", (request) => page.complaints.push(request.url()));
+  return page;
+}
+
+/** The page, served under a path of its own as on a site among others, in a browser. */
+export async function site() {
+  const server = await serve(dist, 0, "/some/where/");
+  const browser = await launch();
+  const base = `http://127.0.0.1:${server.address().port}/some/where/`;
+  return {
+    base,
+    browser,
+    /** A page of a context of its own, once it shows what is waited for. */
+    async open(hash = "", options = {}, ready = ["#headline", "#tools button"]) {
+      const context = await browser.newContext({ viewport: { width: 900, height: 640 }, ...options });
+      const page = watch(await context.newPage());
+      await page.goto(base + hash);
+      for (const selector of ready) await page.waitForSelector(selector);
+      return page;
+    },
+    async close() {
+      await browser.close();
+      server.close();
+    },
+  };
+}

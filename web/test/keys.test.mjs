@@ -1,0 +1,193 @@
+// Everything that a pointer does, by keys; and that what is in focus stays in focus.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { site } from "../browser.mjs";
+
+let at;
+before(async () => (at = await site()));
+after(() => at?.close());
+
+/** What is in focus, as it is named. */
+const focused = (page) => page.evaluate(() => {
+  const { activeElement: e } = document;
+  return e?.getAttribute("aria-label") ?? (e?.id || e?.textContent?.trim()) ?? "";
+});
+const probed = (page, what) => page.evaluate((what) => {
+  const { state, answer, view } = window.colltrans.probe();
+  return { t: state.t, d: state.direction, first: answer?.first?.t, eye: view.camera.position.toArray(), tab: state.tab }[what];
+}, what);
+const done = async (page) => {
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+};
+
+test("focus goes over the page in the order in which it is read", async () => {
+  const page = await at.open();
+  const seen = [];
+  for (let k = 0; k < 40; k++) {
+    await page.keyboard.press("Tab");
+    seen.push(await focused(page));
+    const outlined = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle !== "none");
+    assert.ok(outlined, `${seen.at(-1)} has no outline`);
+  }
+  const order = [
+    "example", "tab-answer", "Light or dark", /^The two bodies/, "Turn view", "Move", "Rotate", "Fit", "Along d", "Play", "start", "first contact",
+    "last contact", /^Where the moving body is shown/, "Proof", "Verify", "Bodies", /^Choose a file for the moving/, /^Choose a file for the fixed/,
+    "Question", "Direction x", "Direction y", "Direction z", "+x",
+  ];
+  order.forEach((name, k) => assert.match(seen[k], name instanceof RegExp ? name : new RegExp(`^${name.replace("+", "\\+")}$`), `${k}: ${seen.join(", ")}`));
+  // The other tabs are reached by arrow keys.
+  assert.ok(!seen.includes("tab-found"));
+  await done(page);
+});
+
+test("tabs: arrow keys, the first and the last", async () => {
+  const page = await at.open();
+  await page.focus("#tab-answer");
+  for (const [key, tab] of [["ArrowRight", "found"], ["Home", "answer"], ["ArrowLeft", "assembly"], ["ArrowRight", "answer"], ["End", "assembly"], ["ArrowLeft", "found"]]) {
+    await page.keyboard.press(key);
+    await page.waitForSelector(`#tab-${tab}[aria-selected=true]`);
+    assert.equal(await focused(page), `tab-${tab}`);
+    assert.equal(await page.locator("[role=tab][tabindex='0']").count(), 1);
+  }
+  await done(page);
+});
+
+test("numbers: up and down, with shift by ten times as much", async () => {
+  const page = await at.open();
+  const field = page.locator('[aria-label="Direction x"]');
+  await field.focus();
+  for (const [key, value] of [["ArrowUp", -0.29], ["ArrowDown", -0.3], ["Shift+ArrowUp", -0.2], ["Shift+ArrowDown", -0.3], ["ArrowDown", -0.31]]) {
+    await page.keyboard.press(key);
+    assert.equal(Number(await field.inputValue()), value);
+    assert.equal((await probed(page, "d"))[0], value);
+  }
+  await page.waitForFunction(() => Math.abs(window.colltrans.probe().answer.first.t - 4.31674) > 1e-3);
+  await page.locator("button:text-is('turn round')").press("Enter");
+  assert.deepEqual(await probed(page, "d"), [0.31, -0.1, 1]);
+  await page.selectOption('[aria-label="Solver"]', "cta");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.steps.solver === "cta");
+  await done(page);
+});
+
+test("the way: its slider, its marks, playing", async () => {
+  const page = await at.open();
+  const first = await probed(page, "first");
+  const slider = page.locator('[aria-label^="Where the moving body is shown"]');
+  await slider.focus();
+  await page.keyboard.press("ArrowRight");
+  const t = await probed(page, "t");
+  assert.ok(t > 0 && t < first / 10, `${t}`);
+  await page.keyboard.press("End");
+  assert.ok((await probed(page, "t")) > first);
+  await page.keyboard.press("Home");
+  assert.equal(await probed(page, "t"), 0);
+  for (const key of ["Enter", "Space"]) {
+    await page.locator(".marks button:text-is('first contact')").focus();
+    await page.keyboard.press(key);
+    await page.waitForFunction((t) => window.colltrans.probe().state.t === t, first);
+    await page.waitForFunction(() => document.activeElement?.textContent === "first contact");
+    await page.locator(".marks button:text-is('start')").press(key);
+    await page.waitForFunction(() => window.colltrans.probe().state.t === 0);
+  }
+  await page.focus('[aria-label="Play"]');
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => window.colltrans.probe().state.t > 0.1);
+  await page.keyboard.press("Space");
+  const stopped = await probed(page, "t");
+  await page.waitForTimeout(200);
+  assert.equal(await probed(page, "t"), stopped);
+  await done(page);
+});
+
+test("the view: arrow keys move and turn it, Escape puts the handles away", async () => {
+  const page = await at.open();
+  await page.focus("#view canvas");
+  const eyes = [await probed(page, "eye")];
+  for (const key of ["ArrowLeft", "Shift+ArrowLeft", "Shift+ArrowUp"]) {
+    await page.keyboard.press(key);
+    eyes.push(await probed(page, "eye"));
+    assert.notDeepEqual(eyes.at(-1), eyes.at(-2), key);
+  }
+  await page.locator("#tools button:text-is('Fit')").press("Enter");
+  assert.ok((await probed(page, "eye")).every((x, k) => Math.abs(x - eyes[0][k]) < 1e-9));
+  await page.locator("#tools button:text-is('Rotate')").press("Enter");
+  assert.equal(await page.locator("#tools [aria-pressed=true]").textContent(), "Rotate");
+  await page.locator("#tools button:text-is('moving')").press("Enter");
+  assert.equal(await focused(page), "fixed");
+  await page.keyboard.press("Escape");
+  assert.equal(await page.locator("#tools [aria-pressed=true]").textContent(), "Turn view");
+  // What is dragged over the page covers it until it is dropped or given up.
+  await page.evaluate(() => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File(["x"], "x.off"));
+    window.dispatchEvent(new DragEvent("dragenter", { dataTransfer }));
+  });
+  await page.waitForSelector("#drop:not([hidden])");
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("#drop", { state: "hidden" });
+  await done(page);
+});
+
+test("cards and buttons", async () => {
+  const page = await at.open();
+  await page.focus("button:text-is('Verify')");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".verdict.yes");
+  assert.equal(await focused(page), "Verify");
+  await page.focus("summary:has-text('Share')");
+  await page.keyboard.press("Enter");
+  await page.locator("button:text-is('Copy as Rust')").waitFor();
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("button:text-is('Save the view (PNG)')").press("Space")]);
+  assert.equal(download.suggestedFilename(), "contact.png");
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator('[aria-label="Choose a file for the fixed body"]').press("Enter")]);
+  await chooser.setFiles({ name: "bad.off", mimeType: "", buffer: Buffer.from("OFF\n1 0 0\n0 zero 0\n") });
+  await page.locator("button:text-is('Leave it')").press("Enter");
+  await page.waitForSelector(".refused", { state: "detached" });
+  await page.focus("#theme");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.getAttribute("html", "data-theme"), "dark");
+  await done(page);
+});
+
+test("how it was found: steps and the graph keep the focus", async () => {
+  const page = await at.open("#tab=found", {}, [".stack .pick", ".steps button"]);
+  const step = page.locator(".found .steps").first().locator("button").nth(1);
+  await step.focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector(".found .steps button:nth-child(2)").getAttribute("aria-pressed") === "true");
+  assert.equal(await focused(page), "2");
+  await page.locator('.stack [aria-label="step 1"]').focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector(".found .steps button").getAttribute("aria-pressed") === "true");
+  await done(page);
+});
+
+test("assemblies: parts, the sphere, the steps", async () => {
+  const page = await at.open("#tab=assembly", {}, ["#assembly-headline", ".assembly-panel ol li"]);
+  const part = page.locator(".part", { has: page.locator("strong:text-is('cover')") });
+  await part.focus();
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".part[aria-pressed=true]");
+  assert.match(await focused(page), /^cover/);
+  await page.waitForSelector(".sphere");
+  await page.focus(".sphere");
+  const way = () => page.evaluate(() => window.colltrans.probe().state.assembly.direction.join());
+  for (const key of ["ArrowRight", "ArrowRight", "ArrowUp", "Shift+ArrowLeft", "ArrowDown"]) {
+    const old = await way();
+    await page.keyboard.press(key);
+    await page.waitForFunction((old) => window.colltrans.probe().state.assembly.direction.join() !== old, old);
+    await page.waitForFunction(() => document.activeElement?.classList.contains("sphere"));
+  }
+  await page.focus('[aria-label="Step on"]');
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => window.colltrans.probe().assembly.t === 1);
+  await page.focus('[aria-label="Steps of the plan"]');
+  await page.keyboard.press("End");
+  assert.match(await page.textContent(".assembly-stage output"), /^Step (\d+) of \1:/);
+  await page.focus(".assembly-panel ol button");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => window.colltrans.probe().assembly.t === 1);
+  await done(page);
+});

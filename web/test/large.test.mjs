@@ -1,0 +1,105 @@
+// Files as large as scans are, and larger than is taken: the page stays alive, says what it does, and answers.
+
+import assert from "node:assert/strict";
+import { closeSync, ftruncateSync, mkdtempSync, openSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { site } from "../browser.mjs";
+
+/** COLLTRANS_FACETS=1000000 takes longer, by the same way. */
+const FACETS = Number(process.env.COLLTRANS_FACETS ?? 200_000);
+
+let at, folder;
+before(async () => {
+  at = await site();
+  folder = mkdtempSync(join(tmpdir(), "large-"));
+});
+after(async () => {
+  await at?.close();
+  if (folder) rmSync(folder, { recursive: true });
+});
+
+/** A binary STL file of a ball with `waves` around it, closed, with so many facets. */
+function ball(facets, waves) {
+  const around = 2 * Math.round(Math.sqrt(facets) / 2);
+  const rings = Math.round(facets / 2 / around) + 1;
+  const bytes = Buffer.alloc(84 + 50 * 2 * around * (rings - 1));
+  const point = (i, j) => {
+    const [theta, phi] = [(Math.PI * i) / rings, (2 * Math.PI * (j % around)) / around];
+    const r = 1 + (waves ? 0.15 * Math.sin(theta) * Math.cos(waves * phi) : 0);
+    if (i === 0 || i === rings) return [0, 0, i ? -1 : 1];
+    return [r * Math.sin(theta) * Math.cos(phi), r * Math.sin(theta) * Math.sin(phi), r * Math.cos(theta)];
+  };
+  let count = 0;
+  const facet = (...corners) => {
+    corners.flat().forEach((x, k) => bytes.writeFloatLE(x, 84 + 50 * count + 12 + 4 * k));
+    count++;
+  };
+  for (let i = 0; i < rings; i++) {
+    for (let j = 0; j < around; j++) {
+      if (i > 0) facet(point(i, j), point(i + 1, j), point(i, j + 1));
+      if (i + 1 < rings) facet(point(i, j + 1), point(i + 1, j), point(i + 1, j + 1));
+    }
+  }
+  bytes.writeUInt32LE(count, 80);
+  return bytes;
+}
+
+async function choose(page, slot, file) {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click(`[aria-label="Choose a file for the ${slot} body"]`)]);
+  await chooser.setFiles(file);
+}
+
+test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, the answer comes`, async () => {
+  const file = join(folder, "waves.stl");
+  writeFileSync(file, ball(FACETS, 7));
+  const page = await at.open();
+  await page.evaluate(() => {
+    window.longest = 0;
+    window.notices = new Set();
+    let last = performance.now();
+    const frame = (now) => {
+      window.longest = Math.max(window.longest, now - last);
+      last = now;
+      const wait = document.getElementById("wait");
+      if (!wait.hidden) window.notices.add(wait.textContent);
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  });
+  const began = performance.now();
+  await choose(page, "moving", file);
+  // What is wrong with it is said after all of it was read; what was there stays.
+  await page.waitForSelector(".refused", { timeout: 60_000 });
+  assert.match(await page.textContent(".refused"), /^waves\.stl: .*convex/);
+  assert.equal(await page.textContent("#headline"), "Contact at t = 4.31674");
+  await page.click("text=As a solid");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid", undefined, { timeout: 60_000 });
+  const { triangles, outcome, longest, notices } = await page.evaluate(() => {
+    const { view, answer } = window.colltrans.probe();
+    return { triangles: view.bodyOf("moving").body.facts.triangles, outcome: answer.outcome, longest: window.longest, notices: [...window.notices] };
+  });
+  console.log(`${triangles} triangles answered after ${Math.round(performance.now() - began)} ms, the longest frame ${Math.round(longest)} ms`);
+  assert.ok(Math.abs(triangles / FACETS - 1) < 0.02, `${triangles}`);
+  assert.equal(outcome, "blocked");
+  assert.deepEqual(notices, ["Reading the mesh"]);
+  // Nothing of what reads and builds runs where frames are made: what does only draws the result.
+  assert.ok(longest < 2_000, `${longest} ms`);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a file beyond the limit is refused before it is read", async () => {
+  const file = join(folder, "huge.stl");
+  const handle = openSync(file, "w");
+  ftruncateSync(handle, 401 * 2 ** 20);
+  closeSync(handle);
+  const page = await at.open();
+  await choose(page, "fixed", file);
+  await page.waitForSelector(".refused");
+  assert.match(await page.textContent(".refused"), /^huge\.stl: 401 MiB; a page takes files up to 400 MiB, the command line larger ones/);
+  assert.equal(await page.textContent("#headline"), "Contact at t = 4.31674");
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});

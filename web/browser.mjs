@@ -11,7 +11,7 @@ const root = join(dirname(fileURLToPath(import.meta.url)), "..");
 export const data = join(root, "data");
 export const dist = join(root, "web/dist");
 
-/** An example of the Rust workspace: cargo build --release --workspace --example NAME. */
+/** An example of crates/colltrans-wasm: there, cargo build --release --workspace --example NAME. */
 export const program = (name) => join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "release/examples", name);
 
 /** Its answers, a line each. */

@@ -33,7 +33,7 @@ if (!process.argv.includes("--no-wasm")) {
   const modules = ["-p", "colltrans-wasm", "--example", "page", "-p", "colltrans-wasm-assembly", "--example", "page_assembly"];
   // Both at once: what they have in common is built once.
   execFileSync("cargo", ["build", "--profile", "page", ...modules, "--target", "wasm32-unknown-unknown", ...args], {
-    cwd: root,
+    cwd: join(root, "crates/colltrans-wasm"),
     env: { ...process.env, ...env },
     stdio: "inherit",
   });

@@ -1,7 +1,8 @@
 //! The report of an assembly as the command writes it with `-o`, for the test of its viewer: parts in a
 //! tolerance, and where to write.
 //!
-//! `cargo run --release -p colltrans-wasm-assembly --features report --example report -- 0.1 report.html *.off`
+//! In `crates/colltrans-wasm/assembly`: `cargo run --release --features report --example report -- 0.1
+//! report.html *.off`
 
 use std::error::Error;
 use std::path::Path;

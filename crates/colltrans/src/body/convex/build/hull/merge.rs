@@ -43,7 +43,7 @@ pub(super) fn regions(points: &[DVec3], simplicial: &Simplicial, tolerance: f64)
         if regions.of[seed as usize] == NONE {
             members.clear();
             grow(points, simplicial, tolerance, seed, &mut regions, &mut members);
-            if members.len() > 1 && !is_disk(simplicial, &regions, &members) {
+            if members.len() > 1 && !is_polygon(points, simplicial, &regions, &members, tolerance) {
                 split(&mut regions, &members);
             }
         }
@@ -80,11 +80,28 @@ fn grow(
     regions.count += 1;
 }
 
-/// Whether triangles form one disk: their Euler characteristic is 1 and their rim is one loop.
-fn is_disk(simplicial: &Simplicial, regions: &Regions, members: &[u32]) -> bool {
+/// Whether triangles form one disk, their Euler characteristic 1 and their rim one loop, without a
+/// corner that points inwards by more than the tolerance: a climb would end there, for the edges that
+/// lead on are inside.
+fn is_polygon(
+    points: &[DVec3],
+    simplicial: &Simplicial,
+    regions: &Regions,
+    members: &[u32],
+    tolerance: f64,
+) -> bool {
     let rim = rim_edges(simplicial, regions, members);
-    let starts = rim.len();
-    starts >= 3 && trace(simplicial, regions, rim[0]).is_some_and(|corners| corners.len() == starts)
+    let Some(corners) = rim.first().and_then(|&start| trace(simplicial, regions, start)) else {
+        return false;
+    };
+    let normal = simplicial.triangles[members[0] as usize].normal;
+    let at = |k: usize| points[corners[k % corners.len()] as usize];
+    let is_inward = |k: usize| {
+        let [from, corner, to] = [at(k), at(k + 1), at(k + 2)];
+        let chord = to - from;
+        normal.dot(chord.cross(corner - from)) > tolerance * chord.length()
+    };
+    corners.len() >= 3 && corners.len() == rim.len() && !(0..corners.len()).any(is_inward)
 }
 
 /// The edges `(triangle, side)` of a region across which another region lies.

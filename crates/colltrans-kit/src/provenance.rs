@@ -4,6 +4,7 @@ use std::thread::available_parallelism;
 use std::time::{Duration, SystemTime};
 
 use chrono::{DateTime, Utc};
+use serde_json::{Value, json};
 
 /// The circumstances of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +42,18 @@ impl Provenance {
             command: command(std::env::args()),
             is_optimised: !cfg!(debug_assertions),
         }
+    }
+
+    /// An object that the report of a run begins with: `date`, `command`, `machine` (`cpu`, `cores`,
+    /// `system`), `versions`, `build`.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "date": self.date,
+            "command": self.command,
+            "machine": { "cpu": self.processor, "cores": self.cores, "system": self.system },
+            "versions": self.versions,
+            "build": self.build,
+        })
     }
 }
 

@@ -8,20 +8,14 @@ use crate::report::Report;
 
 /// All claims of a run.
 pub(crate) fn claims(report: &Report) -> Value {
-    let here = report.provenance;
     let claims = report.done.iter().flat_map(|done| &done.finding.claims);
-    json!({
-        "date": here.date,
-        "command": here.command,
-        "machine": { "cpu": here.processor, "cores": here.cores, "system": here.system },
-        "versions": here.versions,
-        "build": here.build,
-        "scale": report.plan.scale.name(),
-        "seed": report.plan.seed,
-        "seconds": report.wall.as_secs(),
-        "experiments": { "done": report.done.len(), "all": report.all },
-        "claims": claims.map(claim).collect::<Vec<_>>(),
-    })
+    let mut value = report.provenance.to_json();
+    value["scale"] = json!(report.plan.scale.name());
+    value["seed"] = json!(report.plan.seed);
+    value["seconds"] = json!(report.wall.as_secs());
+    value["experiments"] = json!({ "done": report.done.len(), "all": report.all });
+    value["claims"] = claims.map(claim).collect();
+    value
 }
 
 fn claim(claim: &Claim) -> Value {

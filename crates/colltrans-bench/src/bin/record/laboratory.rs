@@ -2,12 +2,15 @@
 
 use std::fmt::Write as _;
 
+use colltrans_lab::claims::Verdict;
+use colltrans_lab::statistics::Estimate;
 use serde_json::Value;
 
 use super::{Failure, number, text};
 
 /// The verdicts in the order in which they are counted.
-const VERDICTS: [&str; 4] = ["holds", "better than the paper", "undecided", "does not hold"];
+const VERDICTS: [Verdict; 4] =
+    [Verdict::Holds, Verdict::Better, Verdict::Undecided, Verdict::Fails];
 
 /// Where the numbers come from, every claim of the first run, and why some do not hold. Runs that were
 /// broken off before all claims were tested are refused.
@@ -55,7 +58,7 @@ fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(
             );
         }
     }
-    let counts = VERDICTS.map(|verdict| {
+    let counts = VERDICTS.map(|verdict| verdict.to_string()).map(|verdict| {
         let count = list(run).iter().filter(|claim| text(claim, "verdict") == verdict).count();
         format!("{count} {verdict}")
     });
@@ -82,8 +85,8 @@ fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(
 
 fn measured(claim: &Value) -> String {
     let numbers = claim["measured"].as_array().map_or(&[][..], Vec::as_slice).iter().map(|one| {
-        let [value, low, high] = ["value", "low", "high"].map(|key| short(number(one, &[key])));
-        format!("{value} ({low} to {high}) {}", text(one, "what"))
+        let [value, low, high] = ["value", "low", "high"].map(|key| number(one, &[key]));
+        format!("{} {}", Estimate { value, low, high }, text(one, "what"))
     });
     numbers.collect::<Vec<_>>().join("; ")
 }
@@ -93,15 +96,6 @@ fn verdict(claim: &Value, again: &Value) -> String {
     match of_again(claim, again) {
         Some(second) if second != first => format!("{first} (again: {second})"),
         _ => first.into(),
-    }
-}
-
-/// A number with about three digits.
-fn short(value: f64) -> String {
-    match value.abs() {
-        size if size >= 99.5 => format!("{value:.0}"),
-        size if size >= 9.95 => format!("{value:.1}"),
-        _ => format!("{value:.2}"),
     }
 }
 

@@ -92,15 +92,21 @@ fn extents(e: DVec3) -> [f64; CUTS] {
 /// A table of depths, with places to spare so that no index is out of bounds.
 pub(crate) type Depths = [f64; 32];
 
-/// The depths of a box with these extents, of facets that have moved by at most `moved`: its sides as
+/// One depth, by a step of its extent, of facets that have moved by at most `moved`: the box's sides as
 /// much, three of them at a corner, and what is below it by no more than `sqrt(3)` times that.
+#[inline]
+fn depth(cut: u8, step: f64, moved: f64) -> f64 {
+    let rest = step * f64::from(cut) - 5.0 * moved;
+    if rest > 0.0 { rest } else { 0.0 }
+}
+
+/// All depths of a box with these extents.
 #[inline]
 pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
     let extents = extents(size * STEPS.recip());
     let mut depths = [0.0; 32];
     for k in 0..CUTS {
-        let rest = extents[k] * f64::from(cuts[k]) - 5.0 * moved;
-        depths[k] = if rest > 0.0 { rest } else { 0.0 };
+        depths[k] = depth(cuts[k], extents[k], moved);
     }
     depths
 }
@@ -142,9 +148,8 @@ impl Parts {
         let [w, v] = self.weights;
         let (corner, edge) = (usize::from(self.corner), usize::from(self.edge));
         let all = size.element_sum();
-        let depth =
-            |k: usize, extent: f64| (f64::from(cuts[k]) * (extent / STEPS) - 5.0 * moved).max(0.0);
-        w * depth(corner, all) + v * depth(edge, all - size[(edge - 8) / 4])
+        let of = |k: usize, extent: f64| depth(cuts[k], extent * STEPS.recip(), moved);
+        w * of(corner, all) + v * of(edge, all - size[(edge - 8) / 4])
     }
 }
 

@@ -57,16 +57,16 @@ impl Facet {
         Some(Self { triangle: triangle as u32, corners, low, high, slope })
     }
 
-    /// Bounds of how far the corners of another facet lie below the plane, rounding included.
-    fn least_above(&self, other: &Self) -> f64 {
-        let above = |c: &Corner| self.slope.height_above(c.at);
-        other.corners.iter().map(above).map(|(h, error)| h - error).fold(f64::INFINITY, f64::min)
-    }
-
-    /// The same, above the plane.
-    fn least_below(&self, other: &Self) -> f64 {
-        let above = |c: &Corner| self.slope.height_above(c.at);
-        other.corners.iter().map(above).map(|(h, error)| -h - error).fold(f64::INFINITY, f64::min)
+    /// At least so far all corners of another facet lie below the plane, for a `sign` of 1, or above it,
+    /// for -1.
+    fn least_off(&self, other: &Self, sign: f64) -> f64 {
+        let off = |c: &Corner| self.slope.height_above(c.at);
+        other
+            .corners
+            .iter()
+            .map(off)
+            .map(|(h, error)| sign * h - error)
+            .fold(f64::INFINITY, f64::min)
     }
 
     fn side(&self, k: usize) -> [&Corner; 2] {
@@ -190,7 +190,7 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
         return None;
     }
     // A gap is linear over either facet: nowhere less than at the corners of one.
-    if f.least_below(g).max(g.least_above(f)) >= limit {
+    if f.least_off(g, -1.0).max(g.least_off(f, 1.0)) >= limit {
         return None;
     }
     let mut of_f = Turns::unless_apart(scene, f, g)?;

@@ -209,9 +209,7 @@ impl Planar {
         let supports = by_body(upper, *bottom, *top);
         Self::Separated { u: DVec2::new(sign, 0.0), supports }
     }
-}
 
-impl Planar {
     /// What this answer, at levels `at`, tells about that at others, which is not below `height`.
     pub(super) fn hint(&self, at: [f64; 2], levels: [f64; 2], height: f64) -> Hint {
         match self {

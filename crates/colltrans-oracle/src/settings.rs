@@ -200,6 +200,7 @@ pub const FAMILIES: &[Family] = &[
     ("thin", thin),
     ("cylinders", cylinders),
     ("magnitude", magnitude),
+    ("narrow-rings", nearly_flat_faces),
 ];
 
 /// A setting before it is turned and scaled as a whole.
@@ -634,4 +635,48 @@ fn magnitude(rng: &mut Rng) -> Draft {
     draft.moving_at *= factor;
     draft.fixed_at *= factor;
     draft
+}
+
+/// Rings of a narrow ellipse, the upper ones with corners a few roundings off their plane, above a
+/// chamfer and a base: faces with many corners that are flat only nearly, beside edges of any length.
+pub fn narrow_rings(rng: &mut Rng) -> Vec<DVec3> {
+    let ten = |rng: &mut Rng, low, high| 10_f64.powf(rng.range(low, high));
+    let corners = rng.int(9, 12) as u32;
+    let turn = TAU / f64::from(corners);
+    let angles: Vec<f64> =
+        (0..corners).map(|k| turn * (f64::from(k) + rng.range(-0.3, 0.3))).collect();
+    let (width, bump) = (ten(rng, -6.0, 0.0), rng.range(0.0, 200.0) * f64::EPSILON * 0.5);
+    let mut slope = ten(rng, -15.0, -6.0);
+    let (mut out, mut z, mut points) = (0.0, 0.0, Vec::new());
+    for ring in 0..4 {
+        let off = if ring < 2 { bump } else { 0.0 };
+        points.extend(angles.iter().map(|a| {
+            DVec3::new((1.0 + out) * a.cos(), (width + out) * a.sin(), z + rng.range(-off, off))
+        }));
+        let step = ten(rng, -12.0, 0.0);
+        (out, z) = (out + step, z - step * slope);
+        slope *= ten(rng, 0.0, 3.0);
+    }
+    let base = z - ten(rng, -8.0, 1.0);
+    points.extend(
+        angles.iter().map(|a| DVec3::new((1.0 + out) * a.cos(), (width + out) * a.sin(), base)),
+    );
+    points
+}
+
+/// Narrow rings whose tops face each other, or that of one a cloud, tilted a little.
+fn nearly_flat_faces(rng: &mut Rng) -> Draft {
+    let tilt = |rng: &mut Rng| {
+        let angle = 10_f64.powf(rng.range(-17.0, -1.0));
+        let axis = DVec3::new(rng.range(-1.0, 1.0), rng.range(-1.0, 1.0), 0.0);
+        DQuat::from_scaled_axis(axis * angle)
+    };
+    let over = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
+    let moving = narrow_rings(rng);
+    let fixed = if rng.one_in(4) { cloud(rng) } else { narrow_rings(rng) };
+    let tilts = [(); 2].map(|()| if rng.one_in(4) { DQuat::IDENTITY } else { tilt(rng) });
+    let spin = DQuat::from_rotation_z(if rng.one_in(2) { 0.0 } else { rng.range(0.0, TAU) });
+    let aside = rng.pick(&[0.0, 1e-9, 1e-3, 0.5, 1.0, 2.0]);
+    let at = DVec3::new(rng.range(-aside, aside), rng.range(-aside, aside), rng.range(-1.0, 4.0));
+    Draft::new(moving, fixed, at, DVec3::Z).turned(tilts[0], tilts[1] * spin * over)
 }

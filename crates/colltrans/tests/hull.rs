@@ -2,6 +2,7 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{BuildError, ConvexPolyhedron, TopologyError, convexity_defect};
+use colltrans_oracle::settings::{Rng, narrow_rings};
 use proptest::prelude::*;
 
 /// A small generator of numbers in `[0, 1)` with a fixed seed.
@@ -21,10 +22,6 @@ impl Random {
     fn rotation(&mut self) -> DQuat {
         let v = self.vector();
         DQuat::from_xyzw(v.x, v.y, v.z, self.unit() - 0.5).normalize()
-    }
-
-    fn range(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
     }
 }
 
@@ -562,37 +559,10 @@ fn convex_meshes_give_the_hull_of_their_vertices() {
     }
 }
 
-/// Rings of a narrow ellipse, the upper ones with corners a few roundings off their plane, above a
-/// chamfer and a base.
-fn narrow_rings(rng: &mut Random) -> Vec<DVec3> {
-    let ten = |rng: &mut Random, low, high| 10_f64.powf(rng.range(low, high));
-    let corners = rng.range(9.0, 32.0) as u32;
-    let turn = std::f64::consts::TAU / f64::from(corners);
-    let angles: Vec<f64> =
-        (0..corners).map(|k| turn * (f64::from(k) + rng.range(-0.3, 0.3))).collect();
-    let (width, bump) = (ten(rng, -6.0, 0.0), rng.range(0.0, 200.0) * f64::EPSILON * 0.5);
-    let mut slope = ten(rng, -15.0, -6.0);
-    let (mut out, mut z, mut points) = (0.0, 0.0, Vec::new());
-    for ring in 0..4 {
-        let off = if ring < 2 { bump } else { 0.0 };
-        points.extend(angles.iter().map(|a| {
-            DVec3::new((1.0 + out) * a.cos(), (width + out) * a.sin(), z + rng.range(-off, off))
-        }));
-        let step = ten(rng, -12.0, 0.0);
-        (out, z) = (out + step, z - step * slope);
-        slope *= ten(rng, 0.0, 3.0);
-    }
-    let base = z - ten(rng, -8.0, 1.0);
-    points.extend(
-        angles.iter().map(|a| DVec3::new((1.0 + out) * a.cos(), (width + out) * a.sin(), base)),
-    );
-    points
-}
-
 /// A corner of a face that points inwards ends a climb, for the edges that lead on are inside the face.
 #[test]
 fn faces_have_no_corner_that_points_inwards() {
-    let mut rng = Random(5);
+    let mut rng = Rng::new(5);
     for case in 0..2_000 {
         let Ok(body) = ConvexPolyhedron::from_points(&narrow_rings(&mut rng)) else { continue };
         let reach = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);

@@ -303,11 +303,11 @@ fn proven_lower(setting: &Setting, normal: DVec3) -> Result<f64, CertificateErro
 fn derived_tolerance(setting: &Setting, normal: DVec3) -> f64 {
     let noise = setting.noise();
     let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-    let support = VertexPair {
+    let found = VertexPair {
         moving: setting.moving.support(normals[0]),
         fixed: setting.fixed.support(-normals[1]),
     };
-    let beyond = setting.excess(&normals, support);
+    let (support, beyond) = setting.settled(&normals, found);
     let along = Along::new(setting, noise, normal, &normals, support, beyond);
     let rounding = (noise.raised() + along.error) / normal.dot(setting.direction);
     2.0 * (gap_tolerance(setting, normal, noise, noise.widest()) + rounding)

@@ -46,8 +46,9 @@ impl Feature {
 #[inline]
 pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
     let vertices = body.vertices();
-    let least = outward.dot(vertices[vertex as usize]) - (noise + body.hull_error());
-    let in_plane = |w: u32| outward.dot(vertices[w as usize]) >= least;
+    let height = outward.dot(vertices[vertex as usize]);
+    let slack = noise + body.hull_error();
+    let in_plane = |w: u32| outward.dot(vertices[w as usize]) >= height - slack;
     let topology = body.topology();
     let neighbours = topology.neighbours(vertex);
     let (first, count) = body.plane_candidates(vertex, outward);
@@ -70,7 +71,9 @@ pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, nois
         let face = topology.half_edge(outgoing[next]).face;
         // Of the two faces of a flat polygon, the one that looks there.
         let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
-        if looks && spread(topology.face_vertices(face), in_plane) {
+        // A face that is flat only nearly may have corners above the plane, too.
+        let near_plane = |w: u32| (outward.dot(vertices[w as usize]) - height).abs() <= slack;
+        if looks && spread(topology.face_vertices(face), near_plane) {
             return Feature::Face(face);
         }
         corners &= corners - 1;

@@ -154,12 +154,13 @@ impl Setting<'_> {
         self.fixed_matrix.transpose() * normal
     }
 
-    /// How far the bodies may reach towards each other beyond a pair of support points along a unit
-    /// normal, given in both bodies' frames.
+    /// A pair of support points along a unit normal, given in both bodies' frames, from one that climbs
+    /// have found; and how far the bodies may reach towards each other beyond it.
     #[inline]
-    pub(crate) fn excess(&self, normals: &[DVec3; 2], support: VertexPair) -> f64 {
-        self.moving.excess(normals[0], support.moving)
-            + self.fixed.excess(-normals[1], support.fixed)
+    pub(crate) fn settled(&self, normals: &[DVec3; 2], found: VertexPair) -> (VertexPair, f64) {
+        let (moving, p) = self.moving.settled(normals[0], found.moving);
+        let (fixed, q) = self.fixed.settled(-normals[1], found.fixed);
+        (VertexPair { moving, fixed }, p + q)
     }
 
     /// `q - p` for a pair of vertices, as the sum of products that defines it.

@@ -330,15 +330,11 @@ impl<O: Observer> Run<'_, '_, O> {
         portal: &mut Portal,
         next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
-        let Face { plane, weights } = if let Some(face) = self.face.take() {
-            face
-        } else if let Some(optimum) = self.optimum.take() {
-            self.proven(&optimum)
-        } else if let Some(face) = self.first_face(portal) {
+        let Face { plane, weights } = if let Some(face) = self.known_face(portal) {
             face
         } else {
             match self.refine(portal) {
-                Some(Refined::Optimum(optimum)) => self.proven(&optimum),
+                Some(Refined::Lowest(face)) => face,
                 Some(Refined::Rim(rim)) => return self.passed(rim, next),
                 None => return Err(stalled(Stalled::Cycle)),
             }
@@ -358,19 +354,18 @@ impl<O: Observer> Run<'_, '_, O> {
         }
     }
 
-    /// The first portal as a face, if it is the lowest.
+    /// The lowest face, if the start has found it, or it is the first portal's.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    fn first_face(&mut self, portal: &Portal) -> Option<Face> {
+    fn known_face(&mut self, portal: &Portal) -> Option<Face> {
+        if let Some(face) = self.face.take() {
+            return Some(face);
+        }
+        if let Some(optimum) = self.optimum.take() {
+            return portal::proven(&self.difference, portal, &optimum);
+        }
         let may_be = std::mem::take(&mut self.is_wrapped);
         if may_be { portal::face(&self.difference, portal, &mut self.watch) } else { None }
-    }
-
-    /// The face of an optimum.
-    #[inline]
-    fn proven(&self, optimum: &Optimum) -> Face {
-        let Optimum { normal, lowest, weights } = *optimum;
-        Face { plane: Plane::of(&self.difference, normal, lowest), weights }
     }
 
     /// The lowest face, and its portal in place of the one that leads there.
@@ -398,12 +393,11 @@ impl<O: Observer> Run<'_, '_, O> {
         else {
             return Err(stalled(Stalled::NoPortal));
         };
-        let Some(Refined::Optimum(optimum)) =
+        let Some(Refined::Lowest(Face { plane, weights })) =
             portal::refine(&self.difference, &mut portal, portal::MAX_PORTALS, &mut self.watch)
         else {
             return Err(stalled(Stalled::Cycle));
         };
-        let Face { plane, weights } = self.proven(&optimum);
         let proven = Proven::new(&self.difference, &portal, &plane, weights)?;
         let contact = proven.contact(self.solver, self.watch.steps);
         let grazing = proof::grazing(&self.difference, rim.normal, -rim.margin, contact);
@@ -419,7 +413,8 @@ impl<O: Observer> Run<'_, '_, O> {
             return None;
         }
         let plane = Plane::of(&self.difference, found.normal.extend(0.0), found.point.pair);
-        self.separated_by(&plane, found.margin, next)
+        let settled = found.normal.dot(self.difference.vertex(plane.lowest).shadow());
+        self.separated_by(&plane, found.margin.min(settled), next)
     }
 
     /// The separation that a plane parallel to the direction proves.

@@ -14,10 +14,13 @@
 //! farthest from `a`, and `c` the one farthest from the line through both. Any corner is `l_a a + l_b
 //! b + l_c c` with `|l_c| <= 1`, `|l_b| <= 2`, `|l_a| <= 4`, up to `8 f`, so it gains at most 7 times
 //! what one of the three does; and where all edges that leave the face go down more steeply than the
-//! normal can be tilted, nothing off the face belongs to the plateau.
+//! normal can be tilted, nothing off the face belongs to the plateau. Where the face is so uneven that
+//! this says too little, its corners are looked at one by one.
 //!
 //! All this holds for any vertex, so it also tells whether one that was not found by a climb is a
-//! support point: if nothing gains more than is asked for.
+//! support point: if nothing gains more than is asked for. And a climb may stick: next to edges as short
+//! as `f` a vertex can be higher than its neighbours and yet lower than the support point, by `f` times
+//! as much as the body is longer than they are. It is seen on the plateau, and goes on from there.
 
 use glam::DVec3;
 
@@ -34,6 +37,12 @@ const SMALL: usize = 48;
 /// A face with more corners is measured at three.
 const FEW: usize = 8;
 
+/// What may be hidden by measuring at three corners, in `GAIN reach`: an exactly flat face hides half of it.
+const ENOUGH: f64 = 32.0;
+
+/// A face with more corners is measured at three even if that hides more.
+const SCANNED: usize = 64;
+
 /// Of bodies with up to this many such faces each may be looked at.
 const MOST_LARGE: usize = 8;
 
@@ -42,6 +51,12 @@ const ACROSS: f64 = 0.9;
 
 /// Sum of the magnitudes of the weights over three corners.
 const WEIGHTS: f64 = 7.0;
+
+/// The highest vertex of a plateau, and how far the body may reach beyond the one it was seen from.
+struct Summit {
+    vertex: u32,
+    excess: f64,
+}
 
 /// A face with many corners.
 #[derive(Debug, Clone, Copy)]
@@ -60,15 +75,29 @@ pub(crate) struct LargeFace {
 }
 
 impl ConvexPolyhedron {
-    /// Bound on how far the body reaches beyond `vertex`, a support point found along the unit vector
-    /// `normal` (body frame).
+    /// The support point along the unit vector `normal` (body frame), given the one that a climb has
+    /// found, and a bound on how far the body reaches beyond it.
     #[inline]
-    pub(crate) fn excess(&self, normal: DVec3, vertex: u32) -> f64 {
+    pub(crate) fn settled(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
         if self.support.is_scanned() {
-            return self.excess_of_scan();
+            return (vertex, self.excess_of_scan());
         }
-        let excess = self.excess_up_to(normal, 1.0, vertex, f64::INFINITY);
-        excess.unwrap_or_else(|| self.excess_of_all(normal, 1.0, vertex))
+        let highest = self.highest_around(normal, vertex);
+        if highest <= -self.plateau_depth() { (vertex, 0.0) } else { self.settle(normal, vertex) }
+    }
+
+    /// The same where a plateau has to be visited. Each vertex on the way is higher than the one before
+    /// by more than rounding.
+    #[inline(never)]
+    fn settle(&self, normal: DVec3, mut vertex: u32) -> (u32, f64) {
+        loop {
+            let found = self.summit(normal, 1.0, vertex, f64::INFINITY);
+            let summit = found.unwrap_or_else(|| self.summit_of_all(normal, 1.0, vertex));
+            if summit.excess <= 3.0 * noise::GAIN * self.inertia.reach || summit.vertex == vertex {
+                return (vertex, summit.excess);
+            }
+            vertex = summit.vertex;
+        }
     }
 
     /// A support point along `normal`, of this length, and the excess beyond it, if `near` is one as
@@ -103,14 +132,24 @@ impl ConvexPolyhedron {
     /// larger than can be visited.
     #[inline]
     fn excess_up_to(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {
-        let here = self.vertices[vertex as usize];
-        let gain = |w: &u32| normal.dot(self.vertices[*w as usize] - here);
-        let highest = self.neighbours(vertex).iter().map(gain).fold(f64::NEG_INFINITY, f64::max);
+        let highest = self.highest_around(normal, vertex);
         if highest <= -self.plateau_depth() * length {
             return Some(0.0);
         }
         let may = highest <= most * length;
-        if may { self.excess_of_plateau(normal, length, vertex, most) } else { None }
+        if may {
+            self.summit(normal, length, vertex, most).map(|summit| summit.excess)
+        } else {
+            None
+        }
+    }
+
+    /// What the neighbour that gains most gains.
+    #[inline]
+    fn highest_around(&self, normal: DVec3, vertex: u32) -> f64 {
+        let here = self.vertices[vertex as usize];
+        let gain = |w: &u32| normal.dot(self.vertices[*w as usize] - here);
+        self.neighbours(vertex).iter().map(gain).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// How far below a vertex its plateau is visited.
@@ -119,22 +158,25 @@ impl ConvexPolyhedron {
         2.0 * noise::GAIN * self.inertia.reach + 4.0 * self.flatness
     }
 
+    /// The summit of a vertex's plateau; `None` if something gains more than `most`, or the plateau is
+    /// larger than can be visited.
     #[inline(never)]
-    fn excess_of_plateau(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {
+    fn summit(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<Summit> {
         if self.vertices.len() <= SMALL {
-            let excess = self.excess_of_all(normal, length, vertex);
-            return (excess <= most).then_some(excess);
+            let summit = self.summit_of_all(normal, length, vertex);
+            return (summit.excess <= most).then_some(summit);
         }
         if !self.large_faces.is_empty()
-            && let Some(excess) = self.excess_of_large_face(normal, length, vertex, most)
+            && let Some(summit) = self.summit_of_large_face(normal, length, vertex, most)
         {
-            return Some(excess);
+            return Some(summit);
         }
         let here = self.vertices[vertex as usize];
         let [least, most] = [-self.plateau_depth(), most].map(|limit| limit * length);
         let gain = |w: u32| normal.dot(self.vertices[w as usize] - here);
         let mut plateau = [vertex; VISITED];
-        let (mut count, mut next, mut highest) = (1, 0, 0.0_f64);
+        let (mut count, mut next) = (1, 0);
+        let (mut highest, mut summit) = (0.0, vertex);
         while next < count {
             for &w in self.neighbours(plateau[next]) {
                 let gained = gain(w);
@@ -146,39 +188,63 @@ impl ConvexPolyhedron {
                 }
                 plateau[count] = w;
                 count += 1;
-                highest = highest.max(gained);
+                if gained > highest {
+                    (highest, summit) = (gained, w);
+                }
             }
             next += 1;
         }
-        Some(highest / length + noise::GAIN * self.inertia.reach)
+        let excess = highest / length + noise::GAIN * self.inertia.reach;
+        Some(Summit { vertex: summit, excess })
     }
 
     /// The same by a look at all vertices.
-    fn excess_of_all(&self, normal: DVec3, length: f64, vertex: u32) -> f64 {
-        let here = self.vertices[vertex as usize];
-        let mut most = 0.0;
-        for v in &self.vertices {
-            let gain = normal.dot(*v - here);
-            most = if gain > most { gain } else { most };
-        }
-        most / length + noise::GAIN * self.inertia.reach
+    fn summit_of_all(&self, normal: DVec3, length: f64, vertex: u32) -> Summit {
+        self.highest(0..self.vertices.len() as u32, normal, length, vertex)
     }
 
-    /// The same where the plateau is, at most, one face with many corners.
-    fn excess_of_large_face(
+    /// The highest of some vertices, which contain the plateau.
+    fn highest(
+        &self,
+        vertices: impl Iterator<Item = u32>,
+        normal: DVec3,
+        length: f64,
+        vertex: u32,
+    ) -> Summit {
+        let here = self.vertices[vertex as usize];
+        let (mut highest, mut summit) = (0.0, vertex);
+        for w in vertices {
+            let gain = normal.dot(self.vertices[w as usize] - here);
+            summit = if gain > highest { w } else { summit };
+            highest = if gain > highest { gain } else { highest };
+        }
+        Summit { vertex: summit, excess: highest / length + noise::GAIN * self.inertia.reach }
+    }
+
+    /// The same where the plateau is, at most, one face with many corners: they are looked at one by
+    /// one where three do not tell enough.
+    fn summit_of_large_face(
         &self,
         normal: DVec3,
         length: f64,
         vertex: u32,
         most: f64,
-    ) -> Option<f64> {
+    ) -> Option<Summit> {
         let around = self.topology.outgoing(vertex).iter();
         let large = around.map(|&h| self.topology.half_edge(h).face).filter_map(|face| {
             let found = self.large_faces.binary_search_by_key(&face, |large| large.face);
             found.ok().map(|k| &self.large_faces[k])
         });
         let mut near = large.filter(|large| normal.dot(large.normal) > ACROSS * length);
-        near.find_map(|large| self.excess_of_face(large, normal, length, vertex, most))
+        let excess_of = |large| self.excess_of_face(large, normal, length, vertex, most);
+        let (face, excess) = near.find_map(|large| Some((large.face, excess_of(large)?)))?;
+        let corners = self.face_vertices(face);
+        let gain = noise::GAIN * self.inertia.reach;
+        if excess <= ENOUGH * gain || corners.len() > SCANNED {
+            return Some(Summit { vertex, excess });
+        }
+        let summit = self.highest(corners, normal, length, vertex);
+        (summit.excess <= most + gain).then_some(summit)
     }
 
     /// The same where the plateau is, at most, this face.
@@ -197,7 +263,8 @@ impl ConvexPolyhedron {
         let highest = gain(a).max(gain(b)).max(gain(c)) / length;
         let reached = highest + noise::GAIN * self.inertia.reach;
         let only = 8.0 * reached < large.descent * large.height;
-        (only && WEIGHTS * highest <= most).then_some(WEIGHTS * reached + 8.0 * self.flatness)
+        (only && highest <= self.plateau_depth() && WEIGHTS * highest <= most)
+            .then_some(WEIGHTS * reached + 8.0 * self.flatness)
     }
 
     /// Whether there are faces with many corners, but few.

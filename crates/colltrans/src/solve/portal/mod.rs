@@ -30,7 +30,7 @@ pub(crate) use facing::facing;
 pub(crate) use follow::{ContactPortal, Followed, approach, follow};
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use plane::{Face, Plane};
-pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, face, refine};
+pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, face, proven, refine};
 pub(crate) use start::FirstNormal;
 
 use crate::setting::minkowski::Point;

@@ -2,7 +2,7 @@
 //!
 //! Whoever has a plane through vertices of `M` need not search for the support point along its normal:
 //! a look around one of them tells whether it is the support point, and how far beyond the plane the
-//! bodies may reach ([`excess`](crate::body::ConvexPolyhedron::excess)), which a proof has to know in
+//! bodies may reach ([`settled`](crate::body::ConvexPolyhedron::settled)), which a proof has to know in
 //! any case.
 
 use glam::DVec3;
@@ -37,14 +37,14 @@ pub(crate) struct Face {
 }
 
 impl Plane {
-    /// Across a normal (shadow frame, any length), with a pair that is known to be lowest along it.
+    /// Across a normal (shadow frame, any length), with a pair that was found to be lowest along it.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    pub(crate) fn of(difference: &MinkowskiDifference, normal: DVec3, lowest: VertexPair) -> Self {
+    pub(crate) fn of(difference: &MinkowskiDifference, normal: DVec3, found: VertexPair) -> Self {
         let setting = difference.setting;
         let normal = (difference.setting_from_shadow * normal).normalize();
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        let beyond = setting.excess(&normals, lowest);
+        let (lowest, beyond) = setting.settled(&normals, found);
         Self { normal, normals, lowest, beyond }
     }
 

@@ -40,7 +40,7 @@ pub(crate) const MAX_PORTALS: usize = 10_000;
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Refined {
     /// The lowest face.
-    Optimum(Optimum),
+    Lowest(Face),
     /// The line passes the rim of the shadow of `M`.
     Rim(SeparatingLine),
 }
@@ -83,13 +83,49 @@ pub(crate) fn refine<O: Observer>(
         let point = difference.support_from(plane, portal[newest].pair);
         watch.support(|| Support::of(plane, &point));
         let rounding = difference.noise.plane(round >= LONG);
-        if depth_below(portal, plane, &point) <= rounding * plane.length() {
-            let weights = weights(portal);
-            return Some(Refined::Optimum(Optimum { normal: plane, lowest: point.pair, weights }));
-        }
-        newest = exchange(difference, portal, point);
+        let below = match lowest(difference, portal, plane, point, rounding) {
+            Ok(plane) => return Some(Refined::Lowest(Face { plane, weights: weights(portal) })),
+            Err(point) => point,
+        };
+        newest = exchange(difference, portal, below);
     }
     None
+}
+
+/// The plane of a portal, if no point of `M` lies below it by more than rounding, given the support
+/// point that a climb has found; else a point that does.
+#[inline]
+fn lowest(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    normal: DVec3,
+    found: Point,
+    rounding: f64,
+) -> Result<Plane, Point> {
+    let is_below = |point: &Point| depth_below(portal, normal, point) > rounding * normal.length();
+    if is_below(&found) {
+        return Err(found);
+    }
+    let plane = Plane::of(difference, normal, found.pair);
+    // The climb may have stuck.
+    let point = if plane.lowest == found.pair { found } else { difference.vertex(plane.lowest) };
+    if is_below(&point) { Err(point) } else { Ok(plane) }
+}
+
+/// The face of an optimum that is not the portal's own, if nothing lies below it.
+#[inline]
+pub(crate) fn proven(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    optimum: &Optimum,
+) -> Option<Face> {
+    let Optimum { normal, lowest, weights } = *optimum;
+    let plane = Plane::of(difference, normal, lowest);
+    let is_settled = plane.lowest == lowest || {
+        let point = difference.vertex(plane.lowest);
+        depth_below(portal, normal, &point) <= difference.noise.plane(false) * normal.length()
+    };
+    is_settled.then_some(Face { plane, weights })
 }
 
 /// A portal with a plane in place of one too narrow to have one: over the edge that the line passes

@@ -6,13 +6,14 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 import { serve } from "./serve.mjs";
+import { built } from "./toolchain.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "..");
 export const data = join(root, "data");
 export const dist = join(root, "web/dist");
 
 /** An example of crates/colltrans-wasm: there, cargo build --release --workspace --example NAME. */
-export const program = (name) => join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "release/examples", name);
+export const program = (name) => join(built, "release/examples", name);
 
 /** Its answers, a line each. */
 export function answers(name, questions) {
@@ -27,8 +28,10 @@ export function launch(args = ["--use-angle=swiftshader", "--enable-unsafe-swift
 /** Without graphics. */
 export const launchPlain = () => launch(["--disable-gpu", "--disable-3d-apis"]);
 
-/** What a page complains about, and what it reads. */
+/** What a page complains about, and what it reads. Waits end with a failure late: graphics are computed here, and
+ * pages of several tests at once. */
 export function watch(page) {
+  page.setDefaultTimeout(120_000);
   page.complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && page.complaints.push(message.text()));
   page.on("pageerror", (error) => page.complaints.push(String(error)));

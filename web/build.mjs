@@ -11,7 +11,7 @@ import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 import { shaders } from "./shaders.mjs";
 import { serve } from "./serve.mjs";
-import { Missing, toolchain } from "./toolchain.mjs";
+import { Missing, built, toolchain } from "./toolchain.mjs";
 
 /** Without a compiler for the target it ends with 3, to be told from a failure. */
 function found() {
@@ -30,9 +30,9 @@ const out = join(here, "dist");
 
 if (!process.argv.includes("--no-wasm")) {
   const { args, env } = found();
-  const modules = ["-p", "colltrans-wasm", "--example", "page", "-p", "colltrans-wasm-assembly", "--example", "page_assembly"];
+  const packages = ["-p", "colltrans-wasm", "--example", "page", "-p", "colltrans-wasm-assembly", "--example", "page_assembly"];
   // Both at once: what they have in common is built once.
-  execFileSync("cargo", ["build", "--profile", "page", ...modules, "--target", "wasm32-unknown-unknown", ...args], {
+  execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown", ...args], {
     cwd: join(root, "crates/colltrans-wasm"),
     env: { ...process.env, ...env },
     stdio: "inherit",
@@ -41,9 +41,9 @@ if (!process.argv.includes("--no-wasm")) {
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-const built = join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "wasm32-unknown-unknown/page/examples");
-copyFileSync(join(built, "page.wasm"), join(out, "colltrans.wasm"));
-copyFileSync(join(built, "page_assembly.wasm"), join(out, "colltrans_assembly.wasm"));
+const modules = join(built, "wasm32-unknown-unknown/page/examples");
+copyFileSync(join(modules, "page.wasm"), join(out, "colltrans.wasm"));
+copyFileSync(join(modules, "page_assembly.wasm"), join(out, "colltrans_assembly.wasm"));
 for (const file of ["index.html", "style.css"]) copyFileSync(join(here, "src", file), join(out, file));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 await build({

@@ -4,7 +4,7 @@
 // The data's way: files -> the library in a worker of its own (parts, fit, plan) -> `Parts`, `Player`
 // and `Sphere`. Another assembly takes another worker, so that what the last one held is given back.
 
-import { ConeGeometry, CylinderGeometry, Group, type Material, Mesh, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
+import { Group, MeshLambertMaterial, Vector3 } from "three";
 import { aim, onPage, rounded } from "./aim";
 import { type Move, Parts, tint } from "./assembly/parts";
 import { Player } from "./assembly/player";
@@ -14,6 +14,7 @@ import { h, refill, soon } from "./dom";
 import { Engine, bytesOf } from "./engine";
 import { type Vec, length, short, shown, times, unit } from "./math";
 import type { State } from "./state";
+import { above, ball, clear, rod } from "./view/shapes";
 
 const GEARBOX = [
   "bearing_ball_0", "bearing_ball_1", "bearing_ball_2", "bearing_ball_3", "bearing_inner", "bearing_outer", "bolt_0", "bolt_1",
@@ -527,25 +528,11 @@ export class AssemblyTab {
   private showArrow() {
     const { arrow: group, facts, seen } = this;
     if (!seen || !facts) return;
-    group.traverse((object) => {
-      const { geometry, material } = object as Partial<Mesh>;
-      geometry?.dispose();
-      (material as Material | undefined)?.dispose();
-    });
-    group.clear();
-    const tip = this.tip();
-    const [long, width] = [tip.length(), 0.006 * facts.size];
-    const colour = palette().way;
-    const material = new MeshLambertMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.3, depthTest: false, transparent: true });
-    const shaft = new Mesh(new CylinderGeometry(width, width, long, 16), material);
-    shaft.position.y = long / 2;
-    const cone = new Mesh(new ConeGeometry(2.6 * width, 8 * width, 24), material);
-    cone.position.y = long - 4 * width;
-    const knob = new Mesh(new SphereGeometry(3.4 * width, 24, 16), material);
-    knob.position.y = long;
-    for (const part of [shaft, cone, knob]) part.renderOrder = 5;
-    group.add(shaft, cone, knob);
-    group.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), tip.normalize());
+    const [tip, width, colour] = [this.tip(), 0.006 * facts.size, palette().way];
+    clear(group);
+    const look = { color: colour, emissive: colour, emissiveIntensity: 0.35 };
+    group.add(rod(new Vector3(), tip, colour, width), ball(tip, 3.4 * width, new MeshLambertMaterial(look)));
+    above(group);
     seen.render();
   }
 

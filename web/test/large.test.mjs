@@ -46,6 +46,15 @@ function ball(facets, waves) {
   return bytes;
 }
 
+/** How much of a processor the page's own thread has used from now on, in milliseconds. */
+async function processor(page) {
+  const session = await page.context().newCDPSession(page);
+  await session.send("Performance.enable", { timeDomain: "threadTicks" });
+  const used = async () => 1_000 * (await session.send("Performance.getMetrics")).metrics.find(({ name }) => name === "TaskDuration").value;
+  const before = await used();
+  return async () => (await used()) - before;
+}
+
 async function choose(page, slot, file) {
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click(`[aria-label="Choose a file for the ${slot} body"]`)]);
   await chooser.setFiles(file);
@@ -55,6 +64,7 @@ test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, th
   const file = join(folder, "waves.stl");
   writeFileSync(file, ball(FACETS, 7));
   const page = await at.open();
+  const working = await processor(page);
   await page.evaluate(() => {
     window.longest = 0;
     window.notices = new Set();
@@ -80,12 +90,16 @@ test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, th
     const { view, answer } = window.colltrans.probe();
     return { triangles: view.bodyOf("moving").body.facts.triangles, outcome: answer.outcome, longest: window.longest, notices: [...window.notices] };
   });
-  console.log(`${triangles} triangles answered after ${Math.round(performance.now() - began)} ms, the longest frame ${Math.round(longest)} ms`);
+  const took = performance.now() - began;
+  const worked = await working();
+  console.log(`${triangles} triangles answered after ${Math.round(took)} ms, the longest frame ${Math.round(longest)} ms, ${Math.round(worked)} ms of work between frames`);
   assert.ok(Math.abs(triangles / FACETS - 1) < 0.02, `${triangles}`);
   assert.equal(outcome, "blocked");
   assert.deepEqual(notices, ["Reading the mesh"]);
   // Nothing of what reads and builds runs where frames are made: what does only draws the result.
-  assert.ok(longest < 2_000, `${longest} ms`);
+  assert.ok(worked < 2_000, `${worked} ms`);
+  // Whoever else uses the machine makes all of it longer.
+  assert.ok(longest < took / 2, `${longest} ms of ${took}`);
   assert.deepEqual(page.complaints, []);
   await page.context().close();
 });

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { extname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { brotliCompressSync } from "node:zlib";
-import { answers as nativeAnswers, data, dist, launchPlain, site } from "../browser.mjs";
+import { answers as nativeAnswers, data, dist, launchPlain, site, watch } from "../browser.mjs";
 
 let at, folder;
 before(async () => {
@@ -151,7 +151,8 @@ test("how it was found: planar problems, portals, and what a tracker saves", asy
 
 test("dragging the arrow's tip changes the answer", async () => {
   const page = await opened();
-  await page.waitForTimeout(300);
+  // Once the picture is drawn the arrow is where it is said to be.
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   const old = await answered(page);
   const [x, y] = await page.evaluate(() => window.colltrans.probe().view.tipOnPage());
   await page.mouse.move(x, y);
@@ -258,7 +259,7 @@ test("what a direction cannot be is said", async () => {
 
 test("without WebGL it says so", async () => {
   const without = await launchPlain();
-  const page = await without.newPage();
+  const page = watch(await without.newPage());
   await page.goto(at.base);
   await page.waitForSelector("text=draws with WebGL 2");
   assert.equal(await headline(page), "Contact at t = 4.31674");

@@ -128,11 +128,12 @@ export class Parts {
   fade(pale: (part: number) => boolean) {
     this.parts.forEach(({ material, line }, k) => {
       const faded = pale(k);
+      // Its program is another one.
+      if (material.transparent !== faded) material.needsUpdate = true;
       material.transparent = faded;
       material.opacity = faded ? 0.22 : 1;
       material.depthWrite = !faded;
       line.opacity = faded ? 0.18 : 0.6;
-      material.needsUpdate = true;
     });
     this.render();
   }

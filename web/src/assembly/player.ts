@@ -54,12 +54,13 @@ export class Player {
     this.move(this.t);
   }
 
-  go(t: number) {
+  /** To a step, however far it is, while one looks. */
+  go(t: number, ms = Math.min(1800, this.lasts(t))) {
     this.stop();
     const from = this.t;
     const began = performance.now();
     const move = (now: number) => {
-      const share = Math.min(1, Math.max(0, now - began) / (900 * Math.max(Math.abs(t - from), 0.3)));
+      const share = Math.min(1, Math.max(0, now - began) / ms);
       this.slider.value = String(from + (t - from) * share);
       this.place();
       this.running = share < 1 ? requestAnimationFrame(move) : 0;
@@ -68,10 +69,15 @@ export class Player {
     this.running = requestAnimationFrame(move);
   }
 
+  /** Milliseconds for all steps on the way to one, each to be seen. */
+  private lasts(t: number): number {
+    return 900 * Math.max(Math.abs(t - this.t), 0.3);
+  }
+
   private start() {
     const end = this.steps.length;
     if (this.t >= end) this.slider.value = "0";
-    this.go(end);
+    this.go(end, this.lasts(end));
     this.play.textContent = "❚❚";
   }
 

@@ -81,12 +81,15 @@ export function above(object: Object3D) {
   });
 }
 
-/** Empties a group, and gives back the graphics memory of all but what is kept. */
-export function clear(group: Group, kept: Set<BufferGeometry>) {
+/** Empties a group, and gives back the graphics memory of all but what is kept. Materials go when the next picture
+ * has been drawn: what it shows instead has the same programs, which would be compiled again. */
+export function clear(group: Group, kept = new Set<BufferGeometry>()) {
+  const materials: Material[] = [];
   group.traverse((object) => {
     const { geometry, material } = object as Partial<Mesh>;
     if (geometry && !kept.has(geometry)) geometry.dispose();
-    if (material) for (const one of [material].flat() as Material[]) one.dispose();
+    if (material) materials.push(...[material].flat());
   });
   group.clear();
+  requestAnimationFrame(() => requestAnimationFrame(() => materials.forEach((one) => one.dispose())));
 }

@@ -18,17 +18,6 @@ const STEPS: f64 = 256.0;
 /// it.
 const SHARE: f64 = 1.0 - 1e-9;
 
-/// A corner, its negative signs as bits.
-fn corner(n: DVec3) -> usize {
-    n.is_negative_bitmask() as usize
-}
-
-/// The same of an edge along an axis, for the two other axes in cyclic order.
-fn edge(axis: usize, n: DVec3) -> usize {
-    let negative = |k: usize| usize::from(n[(axis + k) % 3].is_sign_negative());
-    8 + 4 * axis + (negative(1) | negative(2) << 1)
-}
-
 /// How far points reach along the signs of all corners and edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach([f64; CUTS]);
@@ -95,8 +84,8 @@ pub(crate) type Depths = [f64; 32];
 /// One depth, by a step of its extent, of facets that have moved by at most `moved`: the box's sides as
 /// much, three of them at a corner, and what is below it by no more than `sqrt(3)` times that.
 #[inline]
-fn depth(cut: u8, step: f64, moved: f64) -> f64 {
-    let rest = step * f64::from(cut) - 5.0 * moved;
+fn depth(cut: f64, step: f64, moved: f64) -> f64 {
+    let rest = step * cut - 5.0 * moved;
     if rest > 0.0 { rest } else { 0.0 }
 }
 
@@ -104,9 +93,10 @@ fn depth(cut: u8, step: f64, moved: f64) -> f64 {
 #[inline]
 pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
     let extents = extents(size * STEPS.recip());
+    let shares = cuts.map(f64::from);
     let mut depths = [0.0; 32];
     for k in 0..CUTS {
-        depths[k] = depth(cuts[k], extents[k], moved);
+        depths[k] = depth(shares[k], extents[k], moved);
     }
     depths
 }
@@ -121,19 +111,19 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    pub(crate) fn new(n: DVec3) -> Self {
-        let size = n.abs();
-        let least = size.min_position();
-        let second = size[(least + 1) % 3].min(size[(least + 2) % 3]);
-        let weights = [size[least], second - size[least]];
-        Self { corner: corner(n) as u8, edge: edge(least, n) as u8, weights }
-    }
-
-    /// Those of the opposite normal.
     #[inline]
-    pub(crate) fn opposite(self) -> Self {
-        // Corners are listed backwards as a whole, the edges of each axis by themselves.
-        Self { corner: 7 - self.corner, edge: self.edge ^ 3, ..self }
+    pub(crate) fn new(n: DVec3) -> Self {
+        // Without branches, which would be guessed.
+        let DVec3 { x, y, z } = n.abs();
+        let lower = |a: f64, b: f64| if a < b { a } else { b };
+        let upper = |a: f64, b: f64| if a < b { b } else { a };
+        let (low, high) = (lower(x, y), upper(x, y));
+        let (least, second) = (lower(low, z), lower(high, upper(low, z)));
+        let axis = if z < low { 2 } else { u32::from(y < x) };
+        // A corner's negative signs are bits; an edge's are those of the two other axes, in cyclic order.
+        let corner = n.is_negative_bitmask();
+        let edge = 8 + 4 * axis + ((corner | corner << 3) >> (axis + 1) & 3);
+        Self { corner: corner as u8, edge: edge as u8, weights: [least, second - least] }
     }
 
     /// What depths take from the box's reach along the normal.
@@ -143,12 +133,19 @@ impl Parts {
         w * depths[usize::from(self.corner & 31)] + v * depths[usize::from(self.edge & 31)]
     }
 
+    /// Less than that, by the edge alone.
+    #[inline]
+    pub(crate) fn edge_gain(&self, depths: &Depths) -> f64 {
+        self.weights[1] * depths[usize::from(self.edge & 31)]
+    }
+
     /// The same of a node's cuts, as for [`depths`], without a table.
+    #[inline]
     pub(crate) fn gain_of(&self, cuts: &[u8; CUTS], size: DVec3, moved: f64) -> f64 {
         let [w, v] = self.weights;
         let (corner, edge) = (usize::from(self.corner), usize::from(self.edge));
         let all = size.element_sum();
-        let of = |k: usize, extent: f64| depth(cuts[k], extent * STEPS.recip(), moved);
+        let of = |k: usize, extent: f64| depth(f64::from(cuts[k]), extent * STEPS.recip(), moved);
         w * of(corner, all) + v * of(edge, all - size[(edge - 8) / 4])
     }
 }

@@ -113,24 +113,26 @@ impl Shade {
         [self.local[0][k] + shift, self.local[1][k] + shift]
     }
 
-    /// The range of `m.x` over the node, `m` a unit vector, by its cut box: of what is left of `m` next
-    /// to its part along the slab, if that is most of it.
+    /// The range of `m.x` over the node, `m` a unit vector.
     fn range(&self, side: &Side, m: DVec3, blur: f64) -> [f64; 2] {
+        [self.least_along(side, m, blur), -self.least_along(side, -m, blur)]
+    }
+
+    /// The least `m.x` over the node, `m` a unit vector, by its cut box: of what is left of `m` next to
+    /// its part along the slab, if that is most of it.
+    fn least_along(&self, side: &Side, m: DVec3, blur: f64) -> f64 {
         let along = self.axis.dot(m);
-        let (mut rest, mut slab) = (m, [0.0; 2]);
+        let (mut rest, mut slab) = (m, 0.0);
         if along.abs() > PARALLEL && self.slab[1] < f64::INFINITY {
             rest -= self.axis * along;
-            let [x, y] = self.slab.map(|s| s * along);
-            slab = [x.min(y), x.max(y)];
+            slab = self.slab[usize::from(along < 0.0)] * along;
         }
         let (local, [low, high]) = (side.view.transpose() * rest, self.local);
         let middle = local.dot((low + high) * 0.5) + rest.dot(side.view_offset);
         let spread = local.abs().dot((high - low) * 0.5) + blur;
-        let parts = Parts::new(local);
         let node = &side.solid.nodes()[self.node as usize];
-        let (size, moved) = (node.high - node.low, side.moved());
-        let [down, up] = [parts.opposite(), parts].map(|p| p.gain_of(&node.cuts, size, moved));
-        [slab[0] + middle - spread + down, slab[1] + middle + spread - up]
+        let gain = Parts::new(-local).gain_of(&node.cuts, node.high - node.low, side.moved());
+        slab + middle - spread + gain
     }
 
     /// Whether its slab bounds heights.
@@ -220,30 +222,39 @@ pub(super) fn dismissed(a: &Shade, b: &Shade, limit: f64, parting: bool) -> Opti
     (parting && largest < 0.0).then_some(Reason::Parting)
 }
 
-/// The least gap that a pair of facets under two nodes can have, as a length, of nodes that are not
-/// dismissed.
+/// The least gap that a pair of facets under two nodes can have, as a length.
 ///
 /// # Errors
 /// Why no pair of facets counts for less than `limit`.
 pub(super) fn least_gap(
     scene: &Scene,
-    a: Profile,
-    b: Profile,
+    p: Profile,
+    q: Profile,
     limit: f64,
     parting: bool,
 ) -> Result<f64, Reason> {
-    let fanned = a.fanned_gap(b);
-    if fanned >= limit {
+    let (a, b) = (p.shade, q.shade);
+    if let Some(reason) = dismissed(a, b, limit, parting) {
+        return Err(reason);
+    }
+    let rough = p.fanned_gap(q).max(box_gaps(a, b)[0]);
+    if rough >= limit {
         return Err(Reason::NotBefore);
     }
-    if a.is_fanned_apart(b) {
+    if p.is_fanned_apart(q) {
         return Err(Reason::ShadowsApart);
     }
-    let [least, largest] = slab_gaps(scene, a.shade, b.shade);
-    if parting && largest < 0.0 {
-        return Err(Reason::Parting);
-    }
-    let least = least.max(fanned).max(box_gaps(a.shade, b.shade)[0]);
+    // Gaps that are not negative do not part: then there is no need to look from above.
+    let least = if parting && rough < 0.0 {
+        let [least, largest] = slab_gaps(scene, a, b);
+        if largest < 0.0 {
+            return Err(Reason::Parting);
+        }
+        least
+    } else {
+        least_slab_gap(scene, a, b)
+    };
+    let least = least.max(rough);
     if least >= limit { Err(Reason::NotBefore) } else { Ok(least) }
 }
 
@@ -257,7 +268,7 @@ pub(super) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit
         Reason::Parting => box_gaps(a, b)[1] < 0.0 || slab_gaps(scene, a, b)[1] < 0.0,
         Reason::NotBefore => {
             let fanned = p.fanned_gap(q);
-            fanned.max(box_gaps(a, b)[0]).max(slab_gaps(scene, a, b)[0]) >= limit
+            fanned.max(box_gaps(a, b)[0]).max(least_slab_gap(scene, a, b)) >= limit
         }
         Reason::Disjoint | Reason::FaceToFace | Reason::Examined => false,
     }
@@ -292,6 +303,24 @@ fn slab_gaps(scene: &Scene, a: &Shade, b: &Shade) -> [f64; 2] {
         add(b.slab[0] - high, b.slab[1] - low, b.axis.z);
     }
     [least, largest]
+}
+
+/// The lower of these bounds.
+fn least_slab_gap(scene: &Scene, a: &Shade, b: &Shade) -> f64 {
+    let blur = 2.0 * scene.blur;
+    let mut least = f64::NEG_INFINITY;
+    if a.has_heights() {
+        let up = a.axis.z.signum();
+        let top = if up > 0.0 { a.slab[1] } else { -a.slab[0] };
+        least = (b.least_along(&scene.fixed, a.axis * up, blur) - top) / a.axis.z.abs();
+    }
+    if b.has_heights() {
+        let up = b.axis.z.signum();
+        let bottom = if up > 0.0 { b.slab[0] } else { -b.slab[1] };
+        let rest = a.least_along(&scene.moving, b.axis * -up, blur);
+        least = least.max((rest + bottom) / b.axis.z.abs());
+    }
+    least
 }
 
 /// Whether no point of one node is a point of the other, by boxes and slabs.

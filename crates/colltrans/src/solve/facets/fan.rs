@@ -16,18 +16,24 @@
 //!
 //! Rounding. A point's coordinates in the query frame are off by a blur each, and computing how far a
 //! node reaches along `n` by less than another `|n|_1` blurs: `n` in the body frame is off by
-//! `4 u |n|_1`, products with the box and the offset by `8 u |n|_1` times their sizes, the cuts by
-//! `8 u |n|_1` times the body's.
+//! `4 u |n|_1`, the box's middle and half extents, products with them and sums with the offset by
+//! `15 u |n|_1` times their sizes, the cuts by `8 u |n|_1` times the body's.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::bound::Shade;
 use super::scene::{Scene, Side};
-use crate::body::solid::cuts::{Parts, depths};
+use crate::body::solid::cuts::{Depths, Parts, depths};
 
+/// Normals orthogonal to an axis of each box, the direction, and the axes of the moving and the fixed
+/// one.
+const EDGES: usize = 9;
+const AXES: [usize; 2] = [EDGES + 1, EDGES + 4];
 /// Normals of planes that bound gaps.
 const NORMALS: usize = 16;
-/// These, and six lines from both sides.
+/// Lines across the shadows of the axes, in the same order; each is a direction on both sides.
+const LINES: [usize; 2] = [NORMALS, NORMALS + 3];
+const SHARED: usize = NORMALS + 6;
 const ALL: usize = NORMALS + 12;
 /// Planes steeper than this say little.
 const STEEP: f64 = 1.0 / 1024.0;
@@ -39,26 +45,68 @@ pub(super) struct Fan([View; 2]);
 
 /// Directions in a body's frame, by coordinates.
 struct View {
-    /// The positive parts of their coordinates and the negative ones, which meet the upper and the
-    /// lower sides of boxes.
-    upper: [[f64; ALL]; 3],
-    lower: [[f64; ALL]; 3],
+    /// Their coordinates, which meet the middles of boxes, and by size half their extents.
+    local: [[f64; SHARED]; 3],
     /// The body's offset along each, and what rounding may add.
-    offset: [f64; ALL],
+    offset: [f64; SHARED],
+    slack: [f64; SHARED],
     /// Which cuts are along each, and how much of them.
     parts: [Parts; ALL],
+    /// The first of the other body's axes, and of the lines of its own and of the other one.
+    others: usize,
+    lines: [usize; 2],
 }
 
 impl View {
-    fn new(side: &Side, all: &[DVec3; ALL], blur: f64) -> Self {
+    fn new(side: &Side, all: &[DVec3; SHARED], blur: f64) -> Self {
         let turn = if side.moving { 1.0 } else { -1.0 };
         let local = all.map(|n| side.view.transpose() * (n * turn));
-        let offset = |n: DVec3| turn * n.dot(side.view_offset) + 2.0 * blur * n.abs().element_sum();
+        let parts = |k: usize| Parts::new(if k < SHARED { local[k] } else { -local[k - 6] });
+        let [own, other] = if side.moving { [0, 1] } else { [1, 0] };
         Self {
-            upper: [0, 1, 2].map(|k| local.map(|n| n[k].max(0.0))),
-            lower: [0, 1, 2].map(|k| local.map(|n| n[k].min(0.0))),
-            offset: all.map(offset),
-            parts: local.map(Parts::new),
+            local: [0, 1, 2].map(|axis| local.map(|n| n[axis])),
+            offset: all.map(|n| turn * n.dot(side.view_offset)),
+            slack: all.map(|n| 2.0 * blur * n.abs().element_sum()),
+            parts: std::array::from_fn(parts),
+            others: AXES[other],
+            lines: [LINES[own], LINES[other]],
+        }
+    }
+
+    /// How far a box reaches, by its middle and half its extents.
+    #[inline]
+    fn box_reach(&self, middle: DVec3, half: DVec3, reach: &mut [f64; ALL]) {
+        let (mut at, mut width) = (self.offset, self.slack);
+        for axis in 0..3 {
+            let local = &self.local[axis];
+            for k in 0..SHARED {
+                at[k] += local[k] * middle[axis];
+                width[k] += local[k].abs() * half[axis];
+            }
+        }
+        for k in 0..SHARED {
+            reach[k] = width[k] + at[k];
+        }
+        for k in NORMALS..SHARED {
+            reach[k + 6] = width[k] - at[k];
+        }
+    }
+
+    /// Takes off what the cuts leave free. A body's own axes are along no cut; what is orthogonal to
+    /// one of them is along edges alone.
+    #[inline]
+    fn cut(&self, depths: &Depths, reach: &mut [f64; ALL]) {
+        let [own, other] = self.lines;
+        for first in [0, 3, 6, own, own + 6] {
+            for (r, p) in reach[first..first + 3].iter_mut().zip(&self.parts[first..first + 3]) {
+                *r -= p.edge_gain(depths);
+            }
+        }
+        reach[EDGES] -= self.parts[EDGES].gain(depths);
+        for first in [self.others, other, other + 6] {
+            for (r, p) in reach[first..first + 3].iter_mut().zip(&self.parts[first..first + 3]) {
+                *r -= p.gain(depths);
+            }
         }
     }
 }
@@ -67,17 +115,17 @@ impl Fan {
     pub(super) fn new(scene: &Scene) -> Self {
         let axes = |side: &Side| [side.view.x_axis, side.view.y_axis, side.view.z_axis];
         let (p, q) = (axes(&scene.moving), axes(&scene.fixed));
-        let mut all = [DVec3::Z; ALL];
+        let mut all = [DVec3::Z; SHARED];
         let edges = p.into_iter().flat_map(|a| q.map(|b| a.cross(b)));
-        for (k, n) in p.into_iter().chain(q).chain(edges).enumerate() {
+        let normals = edges.chain([DVec3::Z]).chain(p).chain(q);
+        for (n, place) in normals.zip(&mut all) {
             let length = n.length();
             if length > PARALLEL && n.z.abs() > STEEP * length {
-                all[k] = n / n.z;
+                *place = n / n.z;
             }
         }
-        for (k, axis) in p.into_iter().chain(q).enumerate() {
-            let line = axis.xy().perp().try_normalize().unwrap_or(DVec2::X).extend(0.0);
-            (all[NORMALS + 2 * k], all[NORMALS + 2 * k + 1]) = (line, -line);
+        for (axis, place) in p.into_iter().chain(q).zip(&mut all[NORMALS..]) {
+            *place = axis.xy().perp().try_normalize().unwrap_or(DVec2::X).extend(0.0);
         }
         Self([&scene.moving, &scene.fixed].map(|side| View::new(side, &all, scene.blur)))
     }
@@ -86,19 +134,11 @@ impl Fan {
     #[inline]
     pub(super) fn reach(&self, side: &Side, shade: &Shade) -> Reach {
         let [low, high] = shade.local;
-        let View { upper, lower, offset, parts } = &self.0[usize::from(!side.moving)];
-        let mut reach = *offset;
-        for axis in 0..3 {
-            let (up, down) = (&upper[axis], &lower[axis]);
-            for k in 0..ALL {
-                reach[k] += up[k] * high[axis] + down[k] * low[axis];
-            }
-        }
+        let view = &self.0[usize::from(!side.moving)];
+        let mut reach = [0.0; ALL];
+        view.box_reach((low + high) * 0.5, (high - low) * 0.5, &mut reach);
         let node = &side.solid.nodes()[shade.node as usize];
-        let depths = depths(&node.cuts, node.high - node.low, side.moved());
-        for k in 0..ALL {
-            reach[k] -= parts[k].gain(&depths);
-        }
+        view.cut(&depths(&node.cuts, node.high - node.low, side.moved()), &mut reach);
         Reach(reach)
     }
 }
@@ -121,7 +161,7 @@ impl Reach {
     }
 }
 
-/// Four at a time, as processors do.
+/// Four at a time, as processors do; sums that are no numbers are none of them.
 #[inline]
 fn least_sum(a: &[f64], b: &[f64]) -> f64 {
     let mut least = [f64::INFINITY; 4];
@@ -131,6 +171,5 @@ fn least_sum(a: &[f64], b: &[f64]) -> f64 {
             least[k] = if sum < least[k] { sum } else { least[k] };
         }
     }
-    let [p, q, r, s] = least;
-    p.min(q).min(r.min(s))
+    least.into_iter().reduce(|a, b| if b < a { b } else { a }).unwrap_or(f64::INFINITY)
 }

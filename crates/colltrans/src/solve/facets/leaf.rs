@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use super::scene::{Corner, Scene};
 use super::sign::rough_turn;
-use super::wide::{LARGE, SMALL, Wide};
+use super::wide::{LARGE, SMALL, Wide, determinant, difference};
 
 /// Rounded gaps are used while their error is below so many times the blur of coordinates, `2e-10 S`;
 /// the one that decides is taken again exactly if its error is not below [`FINE`] times the blur.
@@ -455,29 +455,29 @@ fn exact_in<const N: usize>(
     of_g: &Turns,
     keep: &impl Fn(Meeting) -> bool,
 ) -> Option<Gap> {
-    let [p, q, r] = &f.corners;
-    let [b, c, e] = &g.corners;
+    let direction = scene.direction.to_array().map(Wide::number);
+    // Of a corner above a facet, the plane through the facet turning counter-clockwise from below.
+    let above = |facet: &Facet, corner: &Corner| {
+        let [a, b, c] = facet.corners.each_ref();
+        let [x, y, z] = scene.spans_wide::<N>(a, [b, c, corner]);
+        Above::new(&determinant(&x, &y, &z), &determinant(&x, &y, &direction))
+    };
     let mut gap = NO_GAP;
     for k in 0..3 {
         if of_g.contain(k) && keep(Meeting::Corner(k as u8)) {
-            // `g` runs backwards here: its normal points along the direction.
-            let volume = scene.outside_wide::<N>(b, e, c, &f.corners[k]);
-            let above = Above::new(&volume, &scene.turn_wide(b, c, e))?;
-            gap.add(scene, above, Meeting::Corner(k as u8));
+            gap.add(scene, above(g, &f.corners[k])?.reversed(), Meeting::Corner(k as u8));
         }
         if of_f.contain(k) && keep(Meeting::Under(k as u8)) {
-            let volume = scene.outside_wide::<N>(p, q, r, &g.corners[k]);
-            let above = Above::new(&volume, &scene.turn_wide(p, q, r))?;
-            gap.add(scene, above, Meeting::Under(k as u8));
+            gap.add(scene, above(f, &g.corners[k])?, Meeting::Under(k as u8));
         }
     }
     for k in 0..3 {
         for j in 0..3 {
             if cross(of_f, of_g, [k, j]) && keep(Meeting::Sides(k as u8, j as u8)) {
                 let ([a, b], [c, e]) = (f.side(k), g.side(j));
-                let volume = scene.outside_wide::<N>(a, b, c, e).negate();
-                let plane = scene.turn_wide::<N>(a, b, e).subtract(&scene.turn_wide(a, b, c));
-                let above = Above::new(&volume, &plane)?;
+                let [x, y, z] = scene.spans_wide::<N>(a, [b, c, e]);
+                let plane = determinant(&x, &difference(&z, &y), &direction);
+                let above = Above::new(&determinant(&x, &y, &z), &plane)?.reversed();
                 gap.add(scene, above, Meeting::Sides(k as u8, j as u8));
             }
         }
@@ -500,6 +500,10 @@ impl Above {
             _ => volume.sign()?,
         };
         Some(Self { sign, value: volume.ratio(plane)? })
+    }
+
+    fn reversed(self) -> Self {
+        Self { sign: self.sign.reverse(), value: -self.value }
     }
 }
 

@@ -6,7 +6,6 @@
 //! Every pair that is not split is a *cut*, with its reason: together they are the proof that nothing
 //! blocks earlier.
 
-use std::cell::OnceCell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -93,14 +92,15 @@ pub struct Workspace {
 /// What all of a search is about.
 struct Query<'s, 'a> {
     scene: &'s Scene<'a>,
-    /// Made when boxes alone do not tell.
-    fan: OnceCell<Fan>,
+    /// `None` where boxes say all that it could.
+    fan: Option<Fan>,
 }
 
 /// The nodes of a body that a search has come to, and the facets of leaves: each is in many pairs.
 #[derive(Debug, Clone, Default)]
 struct Seen {
     views: Vec<View>,
+    /// Of all views, or of none.
     reaches: Vec<Reach>,
     facets: Vec<Facet>,
 }
@@ -109,8 +109,6 @@ struct Seen {
 #[derive(Debug, Clone, Copy)]
 struct View {
     shade: Shade,
-    /// Where its reach is among the reaches, once it has been asked for.
-    reach: Option<u32>,
     leaf: bool,
     size: f64,
     /// Where its children are among the views, or those of its facets that matter among the facets,
@@ -130,27 +128,16 @@ impl Seen {
         let side = query.scene.side(moving);
         let node = &side.solid.nodes()[at as usize];
         let (leaf, size) = (node.is_leaf(), size(node));
-        self.views.push(View {
-            shade: Shade::new(query.scene, side, at as usize),
-            reach: None,
-            leaf,
-            size,
-            parts: None,
-        });
+        let shade = Shade::new(query.scene, side, at as usize);
+        if let Some(fan) = &query.fan {
+            self.reaches.push(fan.reach(side, &shade));
+        }
+        self.views.push(View { shade, leaf, size, parts: None });
     }
 
-    /// Where the reach of a view is; `None` where boxes say all that it could.
-    fn reach(&mut self, query: &Query, moving: bool, view: u32) -> Option<usize> {
-        if query.scene.is_aligned() {
-            return None;
-        }
-        let View { shade, reach, .. } = &mut self.views[view as usize];
-        let at = *reach.get_or_insert_with(|| {
-            let fan = query.fan.get_or_init(|| Fan::new(query.scene));
-            self.reaches.push(fan.reach(query.scene.side(moving), shade));
-            self.reaches.len() as u32 - 1
-        });
-        Some(at as usize)
+    fn profile(&self, view: u32) -> Profile<'_> {
+        let at = view as usize;
+        Profile { shade: &self.views[at].shade, reach: self.reaches.get(at) }
     }
 
     /// The first of the two children of a view.
@@ -244,10 +231,17 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
         let scene = self.scene;
-        let query = Query { scene, fan: OnceCell::new() };
+        let [p, q] = [&scene.moving, &scene.fixed].map(|side| Shade::new(scene, side, 0));
+        if let Some(reason) = dismissed(&p, &q, self.limit, self.aim != Aim::Least) {
+            // Most pairs of parts: no need for the directions of the query.
+            self.steps[0] += 1;
+            (self.cut)([0, 0], reason);
+            return None;
+        }
+        let query = Query { scene, fan: (!scene.is_aligned()).then(|| Fan::new(scene)) };
         seen[0].start(&query, true);
         seen[1].start(&query, false);
-        let mut next = self.judge(&query, seen, [0, 0], 0);
+        let mut next = self.judge(seen, [0, 0], 0);
         let mut number = 0;
         while let Some(entry) = next.take().or_else(|| queue.pop()) {
             if entry.bound >= self.limit {
@@ -268,7 +262,7 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
             let split_moving = !a.leaf && (b.leaf || a.size >= b.size);
             for views in split(&query, seen, entry.views, split_moving) {
                 number += 1;
-                let Some(child) = self.judge(&query, seen, views, number) else { continue };
+                let Some(child) = self.judge(seen, views, number) else { continue };
                 // The better child goes on without a detour through the queue.
                 match next {
                     Some(best) if best.bound < child.bound => queue.push(child),
@@ -291,15 +285,9 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
     }
 
     /// A pair with its bound, unless it is cut.
-    fn judge(
-        &mut self,
-        query: &Query,
-        seen: &mut [Seen; 2],
-        views: [u32; 2],
-        number: u32,
-    ) -> Option<Entry> {
+    fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
         self.steps[0] += 1;
-        match self.bound(query, seen, views) {
+        match self.bound(seen, views) {
             Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, views }),
             Err(reason) => {
                 (self.cut)(nodes(seen, views), reason);
@@ -308,16 +296,9 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
         }
     }
 
-    fn bound(&self, query: &Query, seen: &mut [Seen; 2], [a, b]: [u32; 2]) -> Result<f64, Reason> {
+    fn bound(&self, seen: &[Seen; 2], [a, b]: [u32; 2]) -> Result<f64, Reason> {
         let parting = self.aim != Aim::Least;
-        let [p, q] = seen;
-        let shades = [&p.views[a as usize].shade, &q.views[b as usize].shade];
-        if let Some(reason) = dismissed(shades[0], shades[1], self.limit, parting) {
-            return Err(reason);
-        }
-        let (i, j) = (p.reach(query, true, a), q.reach(query, false, b));
-        let a = Profile { shade: &p.views[a as usize].shade, reach: i.map(|i| &p.reaches[i]) };
-        let b = Profile { shade: &q.views[b as usize].shade, reach: j.map(|j| &q.reaches[j]) };
+        let (a, b) = (seen[0].profile(a), seen[1].profile(b));
         least_gap(self.scene, a, b, self.limit, parting)
     }
 

@@ -90,8 +90,18 @@ impl Scene<'_> {
         small.unwrap_or_else(|| decided(&self.outside_wide::<LARGE>(a, b, c, e)))
     }
 
+    /// Points as seen from another, itself.
+    pub(super) fn spans_wide<const N: usize>(
+        &self,
+        from: &impl Spot,
+        points: [&impl Spot; 3],
+    ) -> [[Wide<N>; 3]; 3] {
+        let p = from.wide(self);
+        points.map(|q| difference(&q.wide(self), &p))
+    }
+
     /// `det[b - a, c - a, e - a]` itself.
-    pub(super) fn outside_wide<const N: usize>(
+    fn outside_wide<const N: usize>(
         &self,
         a: &impl Spot,
         b: &impl Spot,
@@ -104,12 +114,7 @@ impl Scene<'_> {
     }
 
     /// `det[b - a, c - a, d]` itself.
-    pub(super) fn turn_wide<const N: usize>(
-        &self,
-        a: &impl Spot,
-        b: &impl Spot,
-        c: &impl Spot,
-    ) -> Wide<N> {
+    fn turn_wide<const N: usize>(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Wide<N> {
         let (p, d) = (a.wide(self), self.direction.to_array().map(Wide::number));
         let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
         determinant(&x, &y, &d)

@@ -75,11 +75,6 @@ impl<const N: usize> Wide<N> {
         }
     }
 
-    pub(super) fn negate(mut self) -> Self {
-        self.negative = !self.negative && self.len > 0;
-        self
-    }
-
     /// One past the exponent of the highest limb.
     fn top(&self) -> i16 {
         self.base + self.len as i16

@@ -13,14 +13,14 @@ use glam::DVec2;
 use super::crossing::{Bracket, Crossing, is_horizontal};
 use super::piece::{Affine, contact_motion, unit};
 use super::planar::Planar;
-use super::side::Side;
+use super::side::{Point, Side};
 use crate::number::noise;
 
 /// At most so many half-planes bound a cell: those of a vertex contact.
 const CELL_SIDES: usize = 2 + 2 * (1 + FACE_SIDES);
 
 /// A face with more vertices is replaced by the part between two mesh edges.
-const FACE_SIDES: usize = 6;
+pub(super) const FACE_SIDES: usize = 6;
 
 /// What ends at a side of a cell, for a body by its index.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -48,7 +48,7 @@ pub(super) struct Cell {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Best {
     /// Where it is.
-    at: DVec2,
+    pub(super) at: DVec2,
     /// The change of the piece's value up to there.
     pub(super) change: f64,
     /// The sides on which the simplex method ended.
@@ -92,32 +92,51 @@ impl Cell {
 
     /// The side that a ray hits first, and after which multiple of `way`.
     fn ray(&self, at: DVec2, way: DVec2, on: Option<usize>) -> Option<(usize, f64)> {
-        // Without branches in the first pass: they would be unpredictable.
-        let mut steps = [f64::INFINITY; CELL_SIDES];
-        for (step, side) in steps.iter_mut().zip(&self.sides[..self.count]) {
+        let (mut nearest, mut least) = (0, f64::INFINITY);
+        for (index, side) in self.sides[..self.count].iter().enumerate() {
             let rate = -side.gradient.dot(way);
             let slack = (side.value + side.gradient.dot(at)).max(0.0);
-            *step = if rate > 0.0 { slack / rate } else { f64::INFINITY };
+            let ahead = rate > 0.0 && on != Some(index);
+            // Without branches: they would be unpredictable.
+            let step = if ahead { slack / rate } else { f64::INFINITY };
+            nearest = if step < least { index } else { nearest };
+            least = least.min(step);
         }
-        if let Some(side) = on {
-            steps[side] = f64::INFINITY;
-        }
-        let least = steps
-            .iter()
-            .fold(f64::INFINITY, |least, &step| if step < least { step } else { least });
-        let side = steps.iter().position(|&step| step == least)?;
-        (least < f64::INFINITY).then_some((side, least))
+        (least < f64::INFINITY).then_some((nearest, least))
     }
 
     /// What ends at the sides that meet in the best point, up to rounding.
-    pub(super) fn ends_at<'a>(&'a self, best: &'a Best) -> impl Iterator<Item = End> + 'a {
-        let meets = |(index, side): (usize, &Affine)| {
+    pub(super) fn ends_at(&self, best: &Best) -> Ends<'_> {
+        let far = best.at.abs().element_sum();
+        let mut meet = 0;
+        for (index, side) in self.sides[..self.count].iter().enumerate() {
             let slack = side.value + side.gradient.dot(best.at);
-            let size = side.value.abs() + side.gradient.length() * best.at.length();
-            (best.on.contains(&Some(index)) || slack <= noise::SECTION * size)
-                .then_some(self.ends[index])
-        };
-        self.sides[..self.count].iter().enumerate().filter_map(meets)
+            let size = side.value + side.gradient.abs().element_sum() * far;
+            meet |= u32::from(slack <= noise::SECTION * size) << index;
+        }
+        for index in best.on.into_iter().flatten() {
+            meet |= 1 << index;
+        }
+        Ends { cell: self, meet }
+    }
+}
+
+/// What ends at some sides of a cell.
+#[derive(Debug, Clone)]
+pub(super) struct Ends<'a> {
+    cell: &'a Cell,
+    /// One bit for each side.
+    meet: u32,
+}
+
+impl Iterator for Ends<'_> {
+    type Item = End;
+
+    fn next(&mut self) -> Option<End> {
+        let index = self.meet.trailing_zeros();
+        let end = *self.cell.ends.get(index as usize)?;
+        self.meet &= self.meet - 1;
+        Some(end)
     }
 }
 
@@ -149,27 +168,38 @@ struct OnEdge<'a> {
     motion: DVec2,
 }
 
+/// A corner of a face, relative to the contact: its position along the edge and its level, and what
+/// rounding can make of either.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    along: f64,
+    rise: f64,
+    blur: [f64; 2],
+}
+
 impl OnEdge<'_> {
-    /// A half-edge of its face as a half-plane; `None` if the contact is beyond it by more than
-    /// rounding, or it has no direction.
-    fn side(&self, side: &Side, half_edge: u32, sense: f64) -> Option<Affine> {
-        let topology = side.topology;
-        let from = side.point(topology.half_edge(half_edge).origin);
-        let to = side.point(topology.target(half_edge));
-        let along = self.measure.dot(to.shadow - from.shadow);
-        let rise = to.level - from.level;
-        let start = self.measure.dot(from.shadow);
-        let value = sense * (along * (self.level - from.level) - rise * (self.position - start));
-        // What rounding can make of positions and levels, of either sign.
-        let blur = [
-            noise::SECTION * self.measure.length() * (to.shadow.length() + from.shadow.length()),
-            noise::SECTION * (to.level.abs() + from.level.abs()),
-        ];
-        let error = noise::SECTION
-            * (along.abs() * (self.level.abs() + from.level.abs())
-                + rise.abs() * (self.position.abs() + start.abs()));
+    fn corner(&self, side: &Side, vertex: u32) -> Corner {
+        let Point { level, shadow } = side.point(vertex);
+        let [h, g] = (self.measure * shadow).to_array();
+        Corner {
+            along: h + g - self.position,
+            rise: level - self.level,
+            blur: [
+                noise::SECTION * (h.abs() + g.abs() + self.position.abs()),
+                noise::SECTION * (level.abs() + self.level.abs()),
+            ],
+        }
+    }
+
+    /// The edge of its face between two corners as a half-plane; `None` if the contact is beyond it
+    /// by more than rounding, or it has no direction.
+    fn side(&self, [from, to]: [&Corner; 2], sense: f64) -> Option<Affine> {
+        let (along, rise) = (to.along - from.along, to.rise - from.rise);
+        let value = sense * (from.along * to.rise - to.along * from.rise);
+        let error = along.abs() * from.blur[1] + rise.abs() * from.blur[0];
         let gradient = (unit(self.body) * along - self.motion * rise) * sense;
-        let directed = along.abs() > blur[0] || rise.abs() > blur[1];
+        let directed =
+            along.abs() > from.blur[0] + to.blur[0] || rise.abs() > from.blur[1] + to.blur[1];
         (value >= -error && directed).then_some(Affine { value, gradient })
     }
 }
@@ -195,9 +225,14 @@ impl Cell {
         if boundary.len() > FACE_SIDES {
             return None;
         }
-        for h in boundary {
-            let Affine { value, gradient } = on.side(side, h, sense)?;
+        let corner = |h: u32| on.corner(side, topology.half_edge(h).origin);
+        let first = corner(boundary.start);
+        let mut from = first;
+        for h in boundary.clone() {
+            let to = if h + 1 < boundary.end { corner(h + 1) } else { first };
+            let Affine { value, gradient } = on.side([&from, &to], sense)?;
             self.keep(value, gradient, End::Edge(on.body, h));
+            from = to;
         }
         Some(())
     }

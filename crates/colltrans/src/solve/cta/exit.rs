@@ -6,15 +6,16 @@
 //! have a common normal `n`, `n . d > 0`, that supports P outward and Q inward: zero is then in the
 //! convex hull of the gradients of all cells at `q`. A face or two crossing edges leave one normal,
 //! which is held against the neighbours of the features; anything else is a linear programme in
-//! the two lateral parts of `n`.
+//! the two lateral parts of `n`. Where that one normal does not support a body, the faces are told on
+//! which it leads beyond: `phi` falls where the contact passes on to them.
 //!
 //! Local support of a convex body is support. So a hit is a proof up to rounding, at the height
 //! where the plane meets: if that is not `q`'s, ties have named features that do not touch, and the
 //! test misses. A miss costs a step, and the finish proves whatever a hit claims.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
-use super::cell::{Best, Cell, End, face_of};
+use super::cell::{End, Ends, face_of};
 use super::planar::Planar;
 use super::region::Region;
 use super::side::Side;
@@ -29,7 +30,7 @@ use crate::setting::{Setting, VertexPair};
 /// sides, of which each divides that error by the sine between them: the share leaves room for
 /// sines that multiply to `1.4e-4`. Where they are smaller the test misses, which costs a step. A
 /// plane so near that does not touch is no error either: the finish looks for what lies below it.
-const SAME_HEIGHT: f64 = 1e-10;
+pub(super) const SAME_HEIGHT: f64 = 1e-10;
 
 /// Ways out of the features that are compared; vertices with more are not decided.
 const MOST_WAYS: usize = 40;
@@ -54,6 +55,34 @@ pub(super) struct Solved {
     pub(super) corners: Option<Corners>,
 }
 
+/// What normal the features that touch have in common.
+#[derive(Debug, Clone, Copy)]
+enum Common {
+    Normal(DVec3),
+    /// None: the only one that there could be does not support a body, which leads beyond its plane
+    /// on the faces of these half-edges, or on one of them.
+    Beyond([u32; 2]),
+    Undecided,
+}
+
+/// What the exit test found.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Exit {
+    Solved(Solved),
+    /// The best point is none of the problem, and `phi` falls beyond it.
+    Falls(Beyond),
+    /// The features tell nothing.
+    Missed,
+}
+
+/// Where `phi` falls: at these levels the contact is at the rim of these faces, by half-edges, and
+/// goes on there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beyond {
+    pub(super) faces: [u32; 2],
+    pub(super) levels: [f64; 2],
+}
+
 /// What of a body touches; edges and faces by a half-edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Feature {
@@ -72,44 +101,63 @@ pub(super) struct ExitTest<'q, 'a> {
 }
 
 impl ExitTest<'_, '_> {
-    /// Whether the best point of a cell solves the problem, at height `upper` along the direction.
+    /// Whether the best point of a cell, at these levels and where these sides meet, solves the
+    /// problem, at height `upper` along the direction.
     pub(super) fn solves(
         &self,
         answer: &Planar,
-        (cell, best): (&Cell, &Best),
+        (levels, ends): ([f64; 2], &Ends),
         upper: f64,
-    ) -> Option<Solved> {
-        let features = self.features(answer, cell, best)?;
-        let normal = self.common_normal(features)?;
+    ) -> Exit {
+        let Some(features) = self.features(answer, ends) else { return Exit::Missed };
+        let normal = match self.common_normal(features) {
+            Common::Normal(normal) => normal,
+            Common::Beyond(faces) => return Exit::Falls(self.beyond(features, faces, levels)),
+            Common::Undecided => return Exit::Missed,
+        };
         let [p, q] = [0, 1].map(|body| self.at(body, self.vertex_of(body, features[body])));
         let height = normal.dot(q + self.setting.offset - p);
+        if (upper - height).abs() > SAME_HEIGHT * self.extent {
+            return Exit::Missed;
+        }
         let vertices = [0, 1].map(|body| self.named(body, features[body]));
-        ((upper - height).abs() <= SAME_HEIGHT * self.extent).then(|| Solved {
-            normal,
-            vertices,
-            corners: self.corners(features),
-        })
+        Exit::Solved(Solved { normal, vertices, corners: self.corners(features) })
+    }
+
+    /// The contact goes on at these half-edges, from features at some levels: where one is a vertex,
+    /// just above or below it.
+    fn beyond(&self, features: [Feature; 2], faces: [u32; 2], at: [f64; 2]) -> Beyond {
+        let level = |body: usize| match features[body] {
+            Feature::Vertex(v) => {
+                let side = &self.sides[body];
+                let level = side.level(v);
+                let is_up = side.level(side.topology.target(faces[body])) > level;
+                if is_up { level } else { level.next_down() }
+            }
+            Feature::Edge(_) | Feature::Face(_) => at[body],
+        };
+        Beyond { faces, levels: [level(0), level(1)] }
     }
 
     /// The features that touch in the best point.
-    fn features(&self, answer: &Planar, cell: &Cell, best: &Best) -> Option<[Feature; 2]> {
+    fn features(&self, answer: &Planar, ends: &Ends) -> Option<[Feature; 2]> {
         match answer {
             Planar::Edges { edges, .. } => {
                 let of = |body: usize| {
                     let (face, _) = face_of(&self.sides[body], &edges[body])?;
-                    Some(self.narrowed(body, Feature::Face(face), cell.ends_at(best)))
+                    Some(self.narrowed(body, Feature::Face(face), ends.clone()))
                 };
                 Some([of(0)?, of(1)?])
             }
             Planar::Vertex { upper, vertex, .. } => {
                 let lower = 1 - upper;
-                let own = self.narrowed(*upper, Feature::Edge(vertex.up), cell.ends_at(best));
-                let face = cell.ends_at(best).find_map(|end| match end {
+                let own = self.narrowed(*upper, Feature::Edge(vertex.up), ends.clone());
+                let face = ends.clone().find_map(|end| match end {
                     End::Face(_, h) => Some(h),
                     _ => None,
                 })?;
                 let topology = self.sides[lower].topology;
-                let on_face = cell.ends_at(best).filter(|end| match end {
+                let on_face = ends.clone().filter(|end| match end {
                     End::Edge(_, h) => bounds(topology, *h, face),
                     _ => true,
                 });
@@ -138,7 +186,7 @@ impl ExitTest<'_, '_> {
     }
 
     /// A normal with `n . d = 1` that supports both bodies where the features touch.
-    fn common_normal(&self, features: [Feature; 2]) -> Option<DVec3> {
+    fn common_normal(&self, features: [Feature; 2]) -> Common {
         let unit = self.setting.unit;
         let single = match features {
             [Feature::Face(f), _] => Some(self.face_normal(0, f)),
@@ -146,7 +194,9 @@ impl ExitTest<'_, '_> {
             [Feature::Edge(e), Feature::Edge(f)] => self.across(e, f),
             _ => None,
         };
-        let Some(single) = single else { return self.any_normal(features) };
+        let Some(single) = single else {
+            return self.any_normal(features).map_or(Common::Undecided, Common::Normal);
+        };
         let along = single.dot(unit);
         // A face has an outside; two edges do not.
         let outward = match features {
@@ -155,15 +205,29 @@ impl ExitTest<'_, '_> {
             _ => along != 0.0,
         };
         let normal = single / along;
-        let supports = |body: usize| self.supports(body, normal, features[body]);
-        (outward && normal.is_finite() && supports(0) && supports(1)).then_some(normal)
+        if !(outward && normal.is_finite()) {
+            return Common::Undecided;
+        }
+        let noise = self.setting.noise().point() * normal.length();
+        let farthest = [0, 1].map(|body| {
+            let outward = self.in_body(body, if body == 0 { normal } else { -normal });
+            self.farthest(body, outward, features[body])
+        });
+        if farthest.iter().all(|(distance, _)| *distance <= noise) {
+            return Common::Normal(normal);
+        }
+        Common::Beyond([0, 1].map(|body| match (farthest[body], features[body]) {
+            ((distance, _), Feature::Face(h) | Feature::Edge(h)) if distance <= noise => h,
+            ((_, h), _) => h,
+        }))
     }
 
     /// The normal of two edges, of either sense; `None` if they are parallel.
     fn across(&self, e: u32, f: u32) -> Option<DVec3> {
         let along = |body: usize, h: u32| {
             let topology = self.sides[body].topology;
-            self.at(body, topology.target(h)) - self.at(body, topology.half_edge(h).origin)
+            let way = self.way(body, topology.half_edge(h).origin, topology.target(h));
+            *self.matrix(body) * way
         };
         let (p, q) = (along(0, e), along(1, f));
         let normal = p.cross(q);
@@ -175,20 +239,20 @@ impl ExitTest<'_, '_> {
     fn face_normal(&self, body: usize, half_edge: u32) -> DVec3 {
         let topology = self.sides[body].topology;
         let third = topology.target(topology.next(half_edge));
-        let corners = [topology.half_edge(half_edge).origin, topology.target(half_edge), third];
-        let [a, b, c] = corners.map(|v| self.at(body, v));
-        (b - a).cross(c - a)
+        let first = topology.half_edge(half_edge).origin;
+        let along = self.way(body, first, topology.target(half_edge));
+        *self.matrix(body) * along.cross(self.way(body, first, third))
     }
 
-    /// Whether no way out of a feature leads beyond a plane, up to rounding.
-    fn supports(&self, body: usize, normal: DVec3, feature: Feature) -> bool {
-        let outward = if body == 0 { normal } else { -normal };
-        let noise = self.setting.noise().point() * normal.length();
-        let mut beyond = 0_u32;
-        self.for_ways(body, feature, |way| {
-            beyond += u32::from(outward.dot(way) > noise);
+    /// How far the ways out of a feature lead along a normal of the body's frame, and the half-edge
+    /// at whose face is the one that leads farthest.
+    fn farthest(&self, body: usize, outward: DVec3, feature: Feature) -> (f64, u32) {
+        let mut farthest = (f64::NEG_INFINITY, 0);
+        self.for_ways(body, feature, |way, h| {
+            let distance = outward.dot(way);
+            farthest = if distance > farthest.0 { (distance, h) } else { farthest };
         });
-        beyond == 0
+        farthest
     }
 
     /// By clipping the plane of normals `d + s1 e1 + s2 e2` with all ways out of both features,
@@ -205,9 +269,9 @@ impl ExitTest<'_, '_> {
         let mut normals = Region::rectangle(DVec2::splat(-STEEPEST), DVec2::splat(STEEPEST));
         for (body, feature) in features.into_iter().enumerate() {
             let sign = if body == 0 { 1.0 } else { -1.0 };
-            self.for_ways(body, feature, |way| {
-                let way = way * sign;
-                normals.cut(DVec2::new(e1.dot(way), e2.dot(way)), noise - unit.dot(way));
+            let [d, e1, e2] = [unit, e1, e2].map(|v| self.in_body(body, v * sign));
+            self.for_ways(body, feature, |way, _| {
+                normals.cut(DVec2::new(e1.dot(way), e2.dot(way)), noise - d.dot(way));
             });
         }
         let slope = normals.centroid()?;
@@ -222,40 +286,55 @@ impl ExitTest<'_, '_> {
         }
     }
 
-    /// The ways out of a feature along the surface, and both ways along it.
-    fn for_ways(&self, body: usize, feature: Feature, mut visit: impl FnMut(DVec3)) {
+    /// The ways out of a feature along the surface, and both ways along it, in the body's frame, each
+    /// with a half-edge of the face where it is.
+    fn for_ways(&self, body: usize, feature: Feature, mut visit: impl FnMut(DVec3, u32)) {
         let topology = self.sides[body].topology;
         let here = self.vertex_of(body, feature);
-        let from = self.at(body, here);
-        let mut visit_way = |to: u32| visit(self.at(body, to) - from);
         match feature {
             Feature::Vertex(v) => {
-                topology.neighbours(v).iter().copied().for_each(visit_way);
+                let ways = topology.neighbours(v).iter().zip(topology.outgoing(v));
+                ways.for_each(|(&to, &h)| visit(self.way(body, here, to), h));
             }
             Feature::Edge(h) => {
                 let twin = topology.half_edge(h).twin;
                 let end = topology.target(h);
-                visit_way(end);
-                visit_way(topology.target(topology.next(h)));
-                visit_way(topology.target(topology.next(twin)));
-                visit(from - self.at(body, end));
+                visit(self.way(body, here, end), h);
+                visit(self.way(body, here, topology.target(topology.next(h))), h);
+                visit(self.way(body, here, topology.target(topology.next(twin))), twin);
+                visit(self.way(body, end, here), twin);
             }
             Feature::Face(h) => {
                 let next = topology.next(h);
-                visit_way(topology.target(h));
-                visit_way(topology.target(next));
                 let [back, third] = [topology.target(h), topology.target(next)];
-                visit(from - self.at(body, back));
-                visit(from - self.at(body, third));
+                visit(self.way(body, here, back), h);
+                visit(self.way(body, here, third), h);
+                visit(self.way(body, back, here), h);
+                visit(self.way(body, third, here), h);
             }
         }
     }
 
     /// A vertex of the body in the setting frame, up to Q's offset.
     fn at(&self, body: usize, vertex: u32) -> DVec3 {
+        *self.matrix(body) * self.sides[body].vertices[vertex as usize]
+    }
+
+    /// From a vertex to another in the body's frame.
+    fn way(&self, body: usize, from: u32, to: u32) -> DVec3 {
+        let vertices = self.sides[body].vertices;
+        vertices[to as usize] - vertices[from as usize]
+    }
+
+    /// A covector of the setting frame in the body's frame.
+    fn in_body(&self, body: usize, covector: DVec3) -> DVec3 {
+        self.matrix(body).transpose() * covector
+    }
+
+    /// The rotation of the body.
+    fn matrix(&self, body: usize) -> &DMat3 {
         let Setting { moving_matrix, fixed_matrix, .. } = self.setting;
-        let matrix = if body == 0 { moving_matrix } else { fixed_matrix };
-        *matrix * self.sides[body].vertices[vertex as usize]
+        if body == 0 { moving_matrix } else { fixed_matrix }
     }
 
     /// A vertex of a feature.

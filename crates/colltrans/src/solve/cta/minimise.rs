@@ -1,12 +1,16 @@
 //! The minimisation: solve the planar problem at the centroid, shift to the cell's best point, end
 //! if that solves the problem, else cut and repeat.
+//!
+//! The paper's shift ends in its cell. Here, where a few edges' width of levels is left, it goes on:
+//! the exit test names the faces to which the contact passes on where `phi` falls, so the neighbouring
+//! cell is known without a search. Its best point is below, so no cell is crossed twice.
 
 use glam::{DVec2, DVec3};
 
 use super::MAX_STEPS;
 use super::bound::{LowerBound, Progress};
 use super::crossing::Crossing;
-use super::exit::{Corners, ExitTest, Solved};
+use super::exit::{Beyond, Corners, Exit, ExitTest, SAME_HEIGHT, Solved};
 use super::pair::SectionPair;
 use super::piece::{Affine, Piece};
 use super::planar::{self, Planar};
@@ -14,6 +18,11 @@ use super::region::{Region, Square};
 use super::start::Origin;
 use crate::setting::Setting;
 use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Watch};
+
+/// Levels to search that are together at most so many times as wide as near ones are apart are
+/// crossed from cell to cell: at most so many cells before the next planar problem (both measured).
+const NARROW: f64 = 8.0;
+const MOST_CELLS: u32 = 16;
 
 /// Choices of a minimisation.
 #[derive(Debug, Clone, Copy)]
@@ -215,25 +224,65 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         true
     }
 
-    /// Goes to the best point of the cell, and looks whether it solves the problem; the value there,
-    /// or that of a separation.
+    /// Goes to the best point of the cell, and looks whether it solves the problem; the value there, or
+    /// that of a separation. Where little is left to search, it goes on from cell to cell while the
+    /// exit test tells where `phi` falls.
     fn shift(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece) -> f64 {
-        let Some(cell) = answer.cell(&self.sections.sides, levels) else {
+        if matches!(answer, Planar::Separated { .. }) {
             self.last_separation = Some((answer.features(), local.normal));
             return local.bound.value;
-        };
-        let best = cell.best(local.bound.gradient);
-        let least = local.bound.value + best.change;
-        if least < self.upper {
-            self.upper = least;
-            self.best = Some(answer.features());
-            let SectionPair { sides, setting, extent, constant, .. } = self.sections;
-            let test = ExitTest { sides, setting, extent: *extent };
-            self.solved = test.solves(answer, (&cell, &best), least + constant);
-            let hit = self.solved.is_some();
-            self.watch.exit_test(|| hit);
+        }
+        let (least, mut exit) = self.improve(levels, answer, local);
+        let most = if self.is_narrow() { MOST_CELLS } else { 0 };
+        for _ in 0..most {
+            let Exit::Falls(beyond) = exit else { break };
+            let Some(next) = self.cross(&beyond) else { break };
+            exit = next;
         }
         least
+    }
+
+    /// Whether the levels to search are a few edges wide.
+    fn is_narrow(&self) -> bool {
+        let size = match self.square {
+            Some(square) => DVec2::splat(2.0 * square.half),
+            None => self.region.size(),
+        };
+        let near = DVec2::from_array(self.sections.sides.each_ref().map(|side| side.near));
+        size.cmple(near * NARROW).all()
+    }
+
+    /// Crosses a cell from its rim, where the best point of its neighbour is; `None` if the sections
+    /// do not meet there as told.
+    fn cross(&mut self, beyond: &Beyond) -> Option<Exit> {
+        let SectionPair { sides, frame, extent, .. } = self.sections;
+        let answer = planar::on_faces(sides, beyond.levels, beyond.faces)?;
+        let local = answer.piece(frame, beyond.levels);
+        let is_there = (local.bound.value - self.upper).abs() <= SAME_HEIGHT * extent;
+        is_there.then(|| self.improve(beyond.levels, &answer, &local).1)
+    }
+
+    /// The value at the best point of the cell of a contact, and what the exit test says there if it
+    /// is the least so far.
+    fn improve(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece) -> (f64, Exit) {
+        let SectionPair { sides, setting, extent, constant, .. } = self.sections;
+        let Some(cell) = answer.cell(sides, levels) else { return (f64::INFINITY, Exit::Missed) };
+        let best = cell.best(local.bound.gradient);
+        let least = local.bound.value + best.change;
+        if least.is_nan() || least >= self.upper {
+            return (least, Exit::Missed);
+        }
+        self.upper = least;
+        self.best = Some(answer.features());
+        let test = ExitTest { sides, setting, extent: *extent };
+        let at = (DVec2::from_array(levels) + best.at).to_array();
+        let exit = test.solves(answer, (at, &cell.ends_at(&best)), least + constant);
+        if let Exit::Solved(solved) = exit {
+            self.solved = Some(solved);
+        }
+        let hit = self.solved.is_some();
+        self.watch.exit_test(|| hit);
+        (least, exit)
     }
 
     fn report(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece, shifted: f64) {

@@ -53,6 +53,14 @@ impl Region {
         self.count += 1;
     }
 
+    /// Its extent in both levels.
+    pub(super) fn size(&self) -> DVec2 {
+        let corners = &self.corners[..self.count];
+        let low = corners.iter().fold(DVec2::INFINITY, |low, corner| low.min(*corner));
+        let high = corners.iter().fold(DVec2::NEG_INFINITY, |high, corner| high.max(*corner));
+        high - low
+    }
+
     /// Whether a point is inside or on the rim.
     pub(super) fn contains(&self, point: DVec2) -> bool {
         let corners = &self.corners[..self.count];

@@ -5,6 +5,7 @@
 
 use glam::DVec2;
 
+use super::cell::FACE_SIDES;
 use super::crossing::{Bracket, Chain, Crossing, is_horizontal};
 use super::side::Side;
 use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
@@ -220,6 +221,42 @@ impl Section<'_> {
             ahead = above.high;
         }
         None
+    }
+
+    /// The edge of the section on the face of a half-edge, and its chain; `None` for a face of many
+    /// sides, one that the level does not cut, or a horizontal edge.
+    pub(super) fn on_face(&self, half_edge: u32) -> Option<(Chain, Bracket)> {
+        let topology = self.side.topology;
+        let boundary = topology.face(topology.half_edge(half_edge).face);
+        if boundary.len() > FACE_SIDES {
+            return None;
+        }
+        let above = |h: u32| self.side.level(topology.half_edge(h).origin) > self.x;
+        let (mut from, mut to) = (None, None);
+        let mut last = boundary.end - 1;
+        for h in boundary {
+            match (above(last), above(h)) {
+                (true, false) => from = Some(topology.half_edge(last).twin),
+                (false, true) => to = Some(last),
+                _ => {}
+            }
+            last = h;
+        }
+        // Counter-clockwise.
+        let (from, to) = (self.crossing(from?), self.crossing(to?));
+        let chain = match self.side.turn_up(Chain::Left) {
+            Turn::CounterClockwise => Chain::Left,
+            Turn::Clockwise => Chain::Right,
+        };
+        let ahead = Bracket::new(from, to);
+        if is_horizontal(ahead.direction) {
+            return None;
+        }
+        Some(if chain.ascends(ahead.direction) {
+            (chain, ahead)
+        } else {
+            (chain.opposite(), Bracket::new(to, from))
+        })
     }
 
     /// The edge above `bracket` on its chain, if there is one.

@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
+use super::cell::face_of;
 use super::crossing::{Chain, Crossing};
 use super::minimise::{Narrowed, minimise};
 use super::pair::SectionPair;
@@ -490,6 +491,31 @@ fn check_answer(answer: &Planar, polygons: &[Vec<Crossing>; 2], least: f64, name
             assert!(polygons[1].iter().all(|c| beyond(c, 1) > -1e-9), "{name}");
         }
     }
+}
+
+#[test]
+fn the_faces_of_a_contact_tell_it_again() {
+    let mut random = Random(43);
+    let (p, q) = (ellipsoid(200, DVec3::ONE), ellipsoid(60, DVec3::new(1.0, 0.7, 1.3)));
+    let (mut contacts, mut told) = (0, 0);
+    for round in 0..3000 {
+        let poses = [random_pose(&mut random, 0.7), random_pose(&mut random, 0.7)];
+        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
+        let query = SectionPair::new(&setting);
+        let levels = [0, 1].map(|i| {
+            let [low, high] = query.sides[i].range();
+            random.within(low, high)
+        });
+        let found = planar::solve(&query.sides, levels, &Hint::NONE).unwrap();
+        let Planar::Edges { edges, contact } = found else { continue };
+        contacts += 1;
+        let faces = [0, 1].map(|i| face_of(&query.sides[i], &edges[i]).unwrap().0);
+        let again = planar::on_faces(&query.sides, levels, faces);
+        let Some(Planar::Edges { contact: other, .. }) = again else { continue };
+        told += 1;
+        assert!(contact.distance(other) < 1e-9, "round {round}: {contact} {other}");
+    }
+    assert!(contacts > 500 && told * 100 >= contacts * 99, "{told} of {contacts}");
 }
 
 /// Iterations of all loops per planar problem, and planar problems per search, of searches from the

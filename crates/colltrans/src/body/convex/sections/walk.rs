@@ -39,6 +39,12 @@ fn run_end(topology: &Topology, from: u32, inside: impl Fn(u32) -> bool) -> u32 
         if h >= face.end { h - count } else { h }
     };
     let is_inside = |offset: u32| inside(topology.half_edge(wrap(offset)).origin);
+    if count <= 4 {
+        // Without branches, which would be unpredictable. The fourth corner of three is the first,
+        // which is inside.
+        let outside = !is_inside(2);
+        return wrap(1 + u32::from(outside) + u32::from(outside & !is_inside(3)));
+    }
     // Invariant: the origin at `outside` is not inside, the one at `returned` is.
     let mut outside = 1;
     let mut returned = 2;

@@ -91,6 +91,17 @@ pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], hint: &Hint) -> Option<
     problem.solve(&guess, height)
 }
 
+/// The answer for sections at `levels` if it is where their edges on two faces, by half-edges, cross.
+pub(super) fn on_faces(sides: &[Side; 2], levels: [f64; 2], faces: [u32; 2]) -> Option<Planar> {
+    let section = |body: usize| Section { side: &sides[body], x: levels[body], limit: 0 };
+    let sections = [section(0), section(1)];
+    let (of_p, p) = sections[0].on_face(faces[0])?;
+    let (of_q, q) = sections[1].on_face(faces[1])?;
+    let slide = Slide::new(&sections, usize::from(of_q == Chain::Left));
+    let edges = [p, q];
+    (of_p != of_q && slide.closes(&edges)).then(|| crossing_edges(&edges))
+}
+
 struct Problem<'a> {
     sections: [Section<'a>; 2],
 }

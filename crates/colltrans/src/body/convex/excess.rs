@@ -31,7 +31,7 @@ use crate::number::plane::polygon_normal;
 /// Vertices of a plateau that are visited one by one; a larger one is taken to be the whole body.
 const VISITED: usize = 16;
 
-/// Of bodies with up to this many vertices each is looked at: that is faster than to visit some.
+/// Of a body with up to this many vertices each is looked at then.
 const SMALL: usize = 48;
 
 /// A face with more corners is measured at three.
@@ -74,29 +74,47 @@ pub(crate) struct LargeFace {
     descent: f64,
 }
 
+/// The vertices of a plateau, as far as they were found.
+struct Plateau {
+    /// In place of those not found yet, the first one.
+    vertices: [u32; VISITED],
+    count: usize,
+}
+
+impl Plateau {
+    /// Adds a vertex unless it is known. `false` if there are too many.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::needless_bitwise_bool, reason = "all compared at once is faster than a loop")]
+    fn add(&mut self, vertex: u32) -> bool {
+        if self.vertices.iter().fold(false, |found, &v| found | (v == vertex)) {
+            return true;
+        }
+        let has_room = self.count < VISITED;
+        if has_room {
+            self.vertices[self.count] = vertex;
+            self.count += 1;
+        }
+        has_room
+    }
+}
+
 impl ConvexPolyhedron {
     /// The support point along the unit vector `normal` (body frame), given the one that a climb has
     /// found, and a bound on how far the body reaches beyond it.
-    #[inline]
     pub(crate) fn settled(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
         if self.support.is_scanned() {
             return (vertex, self.excess_of_scan());
         }
-        let highest = self.highest_around(normal, vertex);
-        if highest <= -self.plateau_depth() { (vertex, 0.0) } else { self.settle(normal, vertex) }
-    }
-
-    /// The same where a plateau has to be visited. Each vertex on the way is higher than the one before
-    /// by more than rounding.
-    #[inline(never)]
-    fn settle(&self, normal: DVec3, mut vertex: u32) -> (u32, f64) {
+        // Each vertex on the way is higher than the one before by more than rounding.
+        let mut at = vertex;
         loop {
-            let found = self.summit(normal, 1.0, vertex, f64::INFINITY);
-            let summit = found.unwrap_or_else(|| self.summit_of_all(normal, 1.0, vertex));
-            if summit.excess <= 3.0 * noise::GAIN * self.inertia.reach || summit.vertex == vertex {
-                return (vertex, summit.excess);
+            let found = self.summit(normal, 1.0, at, f64::INFINITY);
+            let summit = found.unwrap_or_else(|| self.summit_of_all(normal, 1.0, at));
+            if summit.excess <= 3.0 * noise::GAIN * self.inertia.reach || summit.vertex == at {
+                return (at, summit.excess);
             }
-            vertex = summit.vertex;
+            at = summit.vertex;
         }
     }
 
@@ -130,72 +148,60 @@ impl ConvexPolyhedron {
 
     /// The excess beyond a vertex; `None` if something gains more than `most`, or the plateau is
     /// larger than can be visited.
-    #[inline]
     fn excess_up_to(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {
-        let highest = self.highest_around(normal, vertex);
-        if highest <= -self.plateau_depth() * length {
-            return Some(0.0);
-        }
-        let may = highest <= most * length;
-        if may {
-            self.summit(normal, length, vertex, most).map(|summit| summit.excess)
-        } else {
-            None
-        }
+        self.summit(normal, length, vertex, most).map(|summit| summit.excess)
     }
 
-    /// What the neighbour that gains most gains.
-    #[inline]
-    fn highest_around(&self, normal: DVec3, vertex: u32) -> f64 {
+    /// The same with the summit of the plateau.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "who does not need the summit does not look for it")]
+    fn summit(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<Summit> {
         let here = self.vertices[vertex as usize];
-        let gain = |w: &u32| normal.dot(self.vertices[*w as usize] - here);
-        self.neighbours(vertex).iter().map(gain).fold(f64::NEG_INFINITY, f64::max)
+        let [least, limit] = [-self.plateau_depth(), most].map(|limit| limit * length);
+        let mut plateau = Plateau { vertices: [vertex; VISITED], count: 1 };
+        let (mut next, mut highest, mut summit) = (0, 0.0, vertex);
+        while next < plateau.count {
+            for &w in self.neighbours(plateau.vertices[next]) {
+                let gained = normal.dot(self.vertices[w as usize] - here);
+                summit = if gained > highest { w } else { summit };
+                highest = if gained > highest { gained } else { highest };
+                if gained > least && !plateau.add(w) {
+                    return self.summit_of_many(normal, length, vertex, most);
+                }
+            }
+            if highest > limit {
+                return None;
+            }
+            next += 1;
+            if next == 1
+                && plateau.count > 1
+                && !self.large_faces.is_empty()
+                && let Some(summit) = self.summit_of_many(normal, length, vertex, most)
+            {
+                return Some(summit);
+            }
+        }
+        if plateau.count == 1 {
+            return Some(Summit { vertex, excess: 0.0 });
+        }
+        let excess = highest / length + noise::GAIN * self.inertia.reach;
+        Some(Summit { vertex: summit, excess })
+    }
+
+    /// The same where more may be in the plateau than is worth visiting.
+    #[inline(never)]
+    fn summit_of_many(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<Summit> {
+        if self.vertices.len() > SMALL {
+            return self.summit_of_large_face(normal, length, vertex, most);
+        }
+        let summit = self.summit_of_all(normal, length, vertex);
+        (summit.excess <= most).then_some(summit)
     }
 
     /// How far below a vertex its plateau is visited.
     #[inline]
     fn plateau_depth(&self) -> f64 {
         2.0 * noise::GAIN * self.inertia.reach + 4.0 * self.flatness
-    }
-
-    /// The summit of a vertex's plateau; `None` if something gains more than `most`, or the plateau is
-    /// larger than can be visited.
-    #[inline(never)]
-    fn summit(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<Summit> {
-        if self.vertices.len() <= SMALL {
-            let summit = self.summit_of_all(normal, length, vertex);
-            return (summit.excess <= most).then_some(summit);
-        }
-        if !self.large_faces.is_empty()
-            && let Some(summit) = self.summit_of_large_face(normal, length, vertex, most)
-        {
-            return Some(summit);
-        }
-        let here = self.vertices[vertex as usize];
-        let [least, most] = [-self.plateau_depth(), most].map(|limit| limit * length);
-        let gain = |w: u32| normal.dot(self.vertices[w as usize] - here);
-        let mut plateau = [vertex; VISITED];
-        let (mut count, mut next) = (1, 0);
-        let (mut highest, mut summit) = (0.0, vertex);
-        while next < count {
-            for &w in self.neighbours(plateau[next]) {
-                let gained = gain(w);
-                if gained <= least || plateau[..count].contains(&w) {
-                    continue;
-                }
-                if count == VISITED || gained > most {
-                    return None;
-                }
-                plateau[count] = w;
-                count += 1;
-                if gained > highest {
-                    (highest, summit) = (gained, w);
-                }
-            }
-            next += 1;
-        }
-        let excess = highest / length + noise::GAIN * self.inertia.reach;
-        Some(Summit { vertex: summit, excess })
     }
 
     /// The same by a look at all vertices.

@@ -34,8 +34,8 @@ const DIVIDED: u32 = 1 << 31;
 /// A cell whose corners are farther than this many climbing steps from its centre is divided.
 const NEAR_STEPS: usize = 3;
 
-/// After this many steps a climb from a guess asks the table.
-const PATIENCE: usize = 4;
+/// After this many steps a climb from a guess asks the table (measured).
+const PATIENCE: usize = 2;
 
 /// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that
 /// single-precision models have.

@@ -1,5 +1,6 @@
 """Which thread or process answers which shard."""
 
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import replace
@@ -7,6 +8,7 @@ from typing import Any
 
 from colltrans.bulk.bodies import Bodies
 from colltrans.bulk.shard import Job, Report, answer_shard
+from colltrans.errors import ColltransError
 
 Answer = Callable[..., Report]
 #: Bodies of this process, by the object that they came with.
@@ -23,16 +25,24 @@ def local(
 
     A shard has as many threads to itself as there are for each shard.
     """
+    stopped = threading.Event()
+
+    def told(rows: int) -> None:
+        if stopped.is_set():
+            raise ColltransError("stopped")
+        progress(rows)
+
     threads = max(1, workers // max(1, len(jobs)))
     jobs = [replace(job, options=replace(job.options, threads=threads)) for job in jobs]
     with ThreadPoolExecutor(max(1, min(workers, len(jobs)))) as pool:
         try:
-            futures = [pool.submit(answer_shard, job, bodies, progress) for job in jobs]
+            futures = [pool.submit(answer_shard, job, bodies, told) for job in jobs]
             for future in as_completed(futures):
                 yield future.result()
-        except BaseException:
+        finally:
+            # Ctrl-C or a shard that cannot be read: the others end with the batch they are at.
+            stopped.set()
             pool.shutdown(wait=False, cancel_futures=True)
-            raise
 
 
 def ray(

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -244,6 +245,19 @@ def test_tables_of_bodies_that_are_none(tmp_path: Path, bodies: Path, capsys: An
     assert main(words) == 5
     message = pq.read_table(tmp_path / "out" / "queries.parquet")["message"][0].as_py()
     assert message.startswith("moving: points: no array of numbers")
+
+
+def test_bodies_that_were_built_travel_without_their_table(bodies: Path) -> None:
+    here = Bodies(str(bodies))
+    here.build_table()
+    digest = here.digest(())
+    there = pickle.loads(pickle.dumps(here))
+    bodies.unlink()
+    assert there.digest(()) == digest
+    for mine, its in zip(here.get(KEYS[:2]), there.get(KEYS[:2]), strict=True):
+        assert isinstance(mine, ConvexPolyhedron) and isinstance(its, ConvexPolyhedron)
+        assert mine.vertices.tobytes() == its.vertices.tobytes()
+    assert str(there.get(["broken"])[0]) == str(here.get(["broken"])[0])
 
 
 @pytest.mark.parametrize(

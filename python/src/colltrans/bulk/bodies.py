@@ -48,12 +48,21 @@ class Bodies:
     def get(self, keys: Iterable[Any]) -> list[Body]:
         """The bodies of these keys; for one that cannot be built the reason."""
         with self._lock:
-            if self.table is not None and self._rows is None:
-                self._rows = rows_of(self.table)
             for key in keys:
                 if key not in self._built:
-                    self._built[key] = self._build(key)
+                    self._built[key] = self._build(key, self._table())
             return [self._built[key] for key in keys]
+
+    def build_table(self) -> None:
+        """Builds all bodies of the table, if there is one; copies of these read it no more."""
+        with self._lock:
+            self.get(self._table())
+            self.digest(())
+
+    def _table(self) -> dict[str, tuple[Any, Any]]:
+        if self._rows is None:
+            self._rows = {} if self.table is None else rows_of(self.table)
+        return self._rows
 
     def digest(self, keys: Iterable[Any]) -> str:
         """What the bodies of these keys are made of, as a hash."""
@@ -71,23 +80,20 @@ class Bodies:
                 return f"unreadable: {error}"
         return self._digests[path]
 
-    def _build(self, key: Any) -> Body:
+    def _build(self, key: Any, rows: dict[str, tuple[Any, Any]]) -> Body:
         try:
             if not isinstance(key, str):
                 raise InputError("no key of a body")
             if self.table is None:
                 return read(Path(self.folder, key), hull=self.hull)
-            vertices, faces = self._row(key)
+            if key not in rows:
+                raise InputError(f"{self.table} has no body {key!r}")
+            vertices, faces = rows[key]
             if faces is None or self.hull:
                 return ConvexPolyhedron(vertices)
             return ConvexPolyhedron.from_mesh(vertices, faces)
         except ColltransError as error:
             return error
-
-    def _row(self, key: str) -> tuple[Any, Any]:
-        if self._rows is None or key not in self._rows:
-            raise InputError(f"{self.table} has no body {key!r}")
-        return self._rows[key]
 
 
 def rows_of(table: str) -> dict[str, tuple[Any, Any]]:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -158,10 +159,112 @@ def test_json_lines_say_what_the_command_line_says(tmp_path: Path, batch: Batch)
             assert (row["normal"], row["point"]) == (line["normal"], line["point"])
 
 
+MESH = str(ROOT / "data" / "dodecahedron.off")
+QUERY = {"moving": MESH, "fixed": MESH, "direction": [0, 0, -1], "moving_pose": [0, 0, 9]}
+
+
+def test_lines_that_ask_something_else_are_refused_and_lose_nothing(tmp_path: Path) -> None:
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"moving": {"mesh": MESH, "scale": 2}}, "moving: a body is a key, or an object with"),
+        ({"moving": {"mesh": MESH, "hull": True}}, "moving: a body is a key, or an object with"),
+        ({"fixed": {"points": [[0, 0, 0]]}}, "fixed: a body is a key, or an object with"),
+        ({"fixed": None}, "fixed: a body is a key, or an object with"),
+        ({"query": "clearance"}, "the field 'query' is not for files in bulk"),
+        ({"solver": "cta"}, "the field 'solver' is not for files in bulk"),
+        ({"moving_pose": {"matrix": np.eye(4).tolist()}}, "moving_pose: no list of numbers, and"),
+        ({"moving_pose": {"translation": 5}}, "moving_pose.translation: no list of numbers"),
+        ({"moving_pose": {"rotation": [0, 1]}}, "moving_pose: 3 and 2 numbers, not 3 and 4"),
+        ({"moving_pose": [0, 0]}, "moving_pose: 2 numbers"),
+        ({"direction": {"translation": [0, 0, 1]}}, "direction: no list of numbers"),
+        ({"direction": [True, 0, 0]}, "direction: no list of numbers"),
+        ({"direction": [10**400, 0, 0]}, "int too large"),
+        ({"graze_tolerance": "no"}, "graze_tolerance: no list of numbers"),
+        ({"moving": "\ud800"}, "'utf-8' codec"),
+    ]
+    lines = [json.dumps(QUERY | {"id": k} | part).encode() for k, (part, _) in enumerate(wrong)]
+    lines += [
+        b"\xff\xfe",
+        b"[" * 100_000,
+        b'{"moving": "a\\u0000b", "fixed": "c", "direction": [1,0,0]}',
+    ]
+    lines += [b"", b"\xef\xbb\xbf" + json.dumps(QUERY | {"id": "\ud800"}).encode()]
+    (tmp_path / "queries.jsonl").write_bytes(b"\n".join(lines) + b"\n")
+    out = tmp_path / "answers.parquet"
+    assert main([str(tmp_path / "queries.jsonl"), str(out)]) == 5
+    *rows, whole = pq.read_table(out).to_pylist()
+    assert len(rows) == len(wrong) + 3 and whole["outcome"] == "contact" and whole["id"] == "?"
+    assert {row["outcome"] for row in rows} == {"error"}
+    for k, (row, (_, message)) in enumerate(zip(rows, wrong, strict=False)):
+        assert row["id"] == str(k)
+        assert row["message"].startswith(f"line {k + 1}: {message}")
+
+
+def test_a_shard_without_queries_has_no_answers(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    asked = shards(tmp_path / "in", 2, 10)
+    full = pq.read_table(asked / "shard-0.parquet")
+    pq.write_table(full.slice(0, 0), asked / "shard-1.parquet")
+    (asked / "lines.jsonl").write_text("\n")
+    words = [str(asked), str(tmp_path / "out"), "--bodies", str(bodies)]
+    assert main(words) == 0 and main(words) == 0
+    assert "10 rows in 3 shards (3 were done before)" in capsys.readouterr().out
+    first, second = (pq.read_table(tmp_path / "out" / f"shard-{k}.parquet") for k in (0, 1))
+    assert second.num_rows == 0 and first.schema == second.schema
+
+
+@pytest.mark.parametrize(
+    ("name", "column"),
+    [
+        ("direction", ["up", "down"]),
+        ("direction", [1.0, 2.0]),
+        ("moving_pose", [["a"], ["b"]]),
+        ("graze_tolerance", ["a", "b"]),
+    ],
+)
+def test_columns_of_another_kind(
+    tmp_path: Path, bodies: Path, name: str, column: list[Any], capsys: Any
+) -> None:
+    file = tmp_path / "queries.parquet"
+    write(file, queries(1, 2) | {name: column})
+    assert main([str(file), str(tmp_path / "out"), "--bodies", str(bodies)]) == 2
+    assert f"error: {file}: the column '{name}' has " in capsys.readouterr().err
+    assert not list((tmp_path / "out").iterdir())
+
+
+def test_tables_of_bodies_that_are_none(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    file, table = tmp_path / "queries.parquet", tmp_path / "table.parquet"
+    write(file, queries(1, 4))
+    words = [str(file), str(tmp_path / "out"), "--bodies", str(table)]
+    corners = CORNERS.tolist()
+    pq.write_table(pa.table({"key": ["cube"]}), table)
+    assert main(words) == 2 and "no column 'vertices'" in capsys.readouterr().err
+    pq.write_table(pa.table({"key": ["cube"] * 2, "vertices": [corners] * 2}), table)
+    assert main(words) == 2 and "the body 'cube' twice" in capsys.readouterr().err
+    table.write_text("no table")
+    assert main(words) == 2 and "table.parquet" in capsys.readouterr().err
+    pq.write_table(pa.table({"key": KEYS[:2], "vertices": [[[1.0, 2.0], [3.0]], corners]}), table)
+    assert main(words) == 5
+    message = pq.read_table(tmp_path / "out" / "queries.parquet")["message"][0].as_py()
+    assert message.startswith("moving: points: no array of numbers")
+
+
+def test_bodies_that_were_built_travel_without_their_table(bodies: Path) -> None:
+    here = Bodies(str(bodies))
+    here.build_table()
+    digest = here.digest(())
+    there = pickle.loads(pickle.dumps(here))
+    bodies.unlink()
+    assert there.digest(()) == digest
+    for mine, its in zip(here.get(KEYS[:2]), there.get(KEYS[:2]), strict=True):
+        assert isinstance(mine, ConvexPolyhedron) and isinstance(its, ConvexPolyhedron)
+        assert mine.vertices.tobytes() == its.vertices.tobytes()
+    assert str(there.get(["broken"])[0]) == str(here.get(["broken"])[0])
+
+
 @pytest.mark.parametrize(
     "words",
     [
         ["nowhere", "out"],
+        ["torn.parquet", "out"],
         ["empty", "out"],
         ["empty/../bodies.parquet", "bodies.parquet"],
         ["bodies.parquet", "out", "--threads", "0"],
@@ -173,6 +276,7 @@ def test_files_that_are_none(
 ) -> None:
     monkeypatch.chdir(bodies.parent)
     (tmp_path / "empty").mkdir()
+    (tmp_path / "torn.parquet").write_bytes(b"PAR1 half a file")
     assert main(words) == 2
     assert capsys.readouterr().err.startswith("error: ")
 
@@ -201,6 +305,24 @@ def test_a_killed_run_goes_on(tmp_path: Path, bodies: Path) -> None:
     told = killed_and_repeated(asked, tmp_path / "out", bodies, "--threads", "1")
     assert "(0 were done before)" not in told
     assert ids(tmp_path / "out") == all_ids(8, 60_000)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are sent another way")
+def test_interrupting_ends_it_and_leaves_nothing_half(tmp_path: Path, bodies: Path) -> None:
+    asked, out = shards(tmp_path / "in", 1, 1_000_000), tmp_path / "out"
+    run = command(asked, out, bodies, "--threads", "1")
+    with subprocess.Popen(run, stderr=subprocess.PIPE, text=True) as process:
+        began = time.monotonic()
+        while not list(out.glob(".*.partial")) and time.monotonic() - began < 300:
+            time.sleep(0.01)
+        sent = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.stderr is not None
+        assert "interrupted" in process.stderr.read()
+        assert process.wait() == 130
+        # A second on a machine of one's own.
+        assert time.monotonic() - sent < 5
+    assert not list(out.iterdir())
 
 
 @pytest.fixture(scope="module")

@@ -123,6 +123,8 @@ def test_arrays_that_change_are_noticed() -> None:
         columns[1]
     with pytest.raises(IndexError):
         columns[2]
+    with pytest.raises(TypeError, match="integer"):
+        columns[:1]  # type: ignore[index]
     assert isinstance(columns[-2], Contact)
 
 

@@ -1,5 +1,6 @@
 """Answers in bulk: columns, and whole answers of single rows."""
 
+import operator
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
@@ -69,7 +70,7 @@ class Table(Generic[Answer_co]):
         return len(self.outcome)
 
     def __getitem__(self, i: int) -> "Answer_co | Failed":
-        i = range(len(self))[i]
+        i = range(len(self))[operator.index(i)]
         if i in self.errors:
             return Failed(self.errors[i])
         try:

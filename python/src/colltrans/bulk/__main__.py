@@ -12,6 +12,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 
 from colltrans.bulk import engines
@@ -62,9 +63,12 @@ def jobs_of(asked: argparse.Namespace) -> list[Job]:
 
 def rows_of(job: Job) -> int:
     if job.queries.endswith(".parquet"):
-        return int(pq.read_metadata(job.queries).num_rows)
+        try:
+            return int(pq.read_metadata(job.queries).num_rows)
+        except pa.ArrowException as error:
+            raise ColltransError(f"{job.queries}: {error}") from error
     with open(job.queries, "rb") as file:
-        return sum(1 for _ in file)
+        return sum(1 for line in file if line.strip())
 
 
 class Progress:
@@ -82,20 +86,26 @@ class Progress:
             if now - self.told < 1:
                 return
             self.told = now
-            rate = self.rows / (now - self.began)
+            rate = max(self.rows, 1) / (now - self.began)
             left = (self.total - self.rows) / rate
             text = f"{self.rows:,} of {self.total:,} rows, {rate:,.0f} a second, {left:,.0f} s left"
             print(text, file=sys.stderr, flush=True)
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Answers all shards; 0 if every row has an answer, 5 if not, 2 for files that are none."""
+    """Answers all shards.
+
+    Returns 0 if every row has an answer, 5 if not, 2 for files that are none, 130 after Ctrl-C.
+    """
     asked = arguments(words)
     try:
         return run(asked)
     except (ColltransError, ModuleNotFoundError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("interrupted; the same words go on from here", file=sys.stderr)
+        return 130
 
 
 def run(asked: argparse.Namespace) -> int:

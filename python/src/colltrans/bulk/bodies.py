@@ -2,12 +2,12 @@
 
 import hashlib
 import threading
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import repeat
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from colltrans import ConvexPolyhedron, read
 from colltrans.errors import ColltransError, InputError
@@ -35,7 +35,7 @@ class Bodies:
     hull: bool = False
     _built: dict[str, Body] = field(default_factory=dict, repr=False)
     _digests: dict[str, str] = field(default_factory=dict, repr=False)
-    _rows: dict[str, Any] | None = field(default=None, repr=False)
+    _rows: dict[str, tuple[Any, Any]] | None = field(default=None, repr=False)
     _lock: threading.RLock = field(default_factory=threading.RLock, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -50,8 +50,19 @@ class Bodies:
         with self._lock:
             for key in keys:
                 if key not in self._built:
-                    self._built[key] = self._build(key)
+                    self._built[key] = self._build(key, self._table())
             return [self._built[key] for key in keys]
+
+    def build_table(self) -> None:
+        """Builds all bodies of the table, if there is one; copies of these read it no more."""
+        with self._lock:
+            self.get(self._table())
+            self.digest(())
+
+    def _table(self) -> dict[str, tuple[Any, Any]]:
+        if self._rows is None:
+            self._rows = {} if self.table is None else rows_of(self.table)
+        return self._rows
 
     def digest(self, keys: Iterable[Any]) -> str:
         """What the bodies of these keys are made of, as a hash."""
@@ -65,35 +76,44 @@ class Bodies:
         if path not in self._digests:
             try:
                 self._digests[path] = file_digest(path)
-            except OSError as error:
+            except (OSError, ValueError) as error:  # Or no path at all.
                 return f"unreadable: {error}"
         return self._digests[path]
 
-    def _build(self, key: Any) -> Body:
+    def _build(self, key: Any, rows: dict[str, tuple[Any, Any]]) -> Body:
         try:
             if not isinstance(key, str):
                 raise InputError("no key of a body")
             if self.table is None:
                 return read(Path(self.folder, key), hull=self.hull)
-            vertices, faces = self._row(key)
+            if key not in rows:
+                raise InputError(f"{self.table} has no body {key!r}")
+            vertices, faces = rows[key]
             if faces is None or self.hull:
                 return ConvexPolyhedron(vertices)
             return ConvexPolyhedron.from_mesh(vertices, faces)
         except ColltransError as error:
             return error
 
-    def _row(self, key: str) -> tuple[Any, Any]:
-        if self._rows is None:
-            import pyarrow.parquet as pq
 
-            table = pq.read_table(self.table)
-            faces = table["faces"].to_pylist() if "faces" in table.column_names else None
-            rows = zip(table["vertices"].to_pylist(), faces or [None] * len(table), strict=True)
-            self._rows = dict(zip(table["key"].to_pylist(), rows, strict=True))
-        if key not in self._rows:
-            raise InputError(f"{self.table} has no body {key!r}")
-        vertices, faces = self._rows[key]
-        return np.asarray(vertices, dtype=float), faces
+def rows_of(table: str) -> dict[str, tuple[Any, Any]]:
+    """Vertices and faces by their keys."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        columns = pq.read_table(table)
+    except pa.ArrowException as error:
+        raise ColltransError(f"{table}: {error}") from error
+    for name in ("key", "vertices"):
+        if name not in columns.column_names:
+            raise InputError(f"{table} has no column {name!r}")
+    keys, vertices = (columns[name].to_pylist() for name in ("key", "vertices"))
+    if len(set(keys)) < len(keys):
+        twice = next(key for key, count in Counter(keys).items() if count > 1)
+        raise InputError(f"{table} has the body {twice!r} twice")
+    faces = columns["faces"].to_pylist() if "faces" in columns.column_names else repeat(None)
+    return dict(zip(keys, zip(vertices, faces, strict=False), strict=True))
 
 
 def file_digest(path: str | Path) -> str:

@@ -1,5 +1,6 @@
 """Which thread or process answers which shard."""
 
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import replace
@@ -7,6 +8,7 @@ from typing import Any
 
 from colltrans.bulk.bodies import Bodies
 from colltrans.bulk.shard import Job, Report, answer_shard
+from colltrans.errors import ColltransError
 
 Answer = Callable[..., Report]
 #: Bodies of this process, by the object that they came with.
@@ -23,16 +25,24 @@ def local(
 
     A shard has as many threads to itself as there are for each shard.
     """
+    stopped = threading.Event()
+
+    def told(rows: int) -> None:
+        if stopped.is_set():
+            raise ColltransError("stopped")
+        progress(rows)
+
     threads = max(1, workers // max(1, len(jobs)))
     jobs = [replace(job, options=replace(job.options, threads=threads)) for job in jobs]
     with ThreadPoolExecutor(max(1, min(workers, len(jobs)))) as pool:
         try:
-            futures = [pool.submit(answer_shard, job, bodies, progress) for job in jobs]
+            futures = [pool.submit(answer_shard, job, bodies, told) for job in jobs]
             for future in as_completed(futures):
                 yield future.result()
-        except BaseException:
+        finally:
+            # Ctrl-C or a shard that cannot be read: the others end with the batch they are at.
+            stopped.set()
             pool.shutdown(wait=False, cancel_futures=True)
-            raise
 
 
 def ray(
@@ -44,8 +54,9 @@ def ray(
 ) -> Iterator[Report]:
     """Shards as tasks of a Ray cluster, as they are done; here, if there is no address.
 
-    Files must be where every node finds them under the same name. Bodies go once through the object
-    store, and every worker keeps them. A task whose worker dies is done again.
+    Files must be where every node finds them under the same name. The bodies of a table are built
+    here, go once through the object store, and every worker keeps them; meshes are read by every
+    worker. A task whose worker dies is done again.
     """
     import ray
 
@@ -53,6 +64,7 @@ def ray(
         here: dict[str, Any] = {"num_cpus": workers, "include_dashboard": False}
         here["object_store_memory"] = 256 << 20
         ray.init(address=address, log_to_driver=False, **({} if address else here))
+    bodies.build_table()
     store = ray.put(bodies)
 
     def answer_with(job: Job, boxed: list[Any]) -> Report:

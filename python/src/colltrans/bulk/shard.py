@@ -13,11 +13,13 @@ import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
+from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from colltrans.bulk.bodies import Bodies, file_digest
@@ -33,6 +35,8 @@ QUESTIONS: dict[str, Any] = {
 #: Rows that are in memory at once.
 BATCH = 65_536
 FINGERPRINT = b"colltrans"
+#: The column of why a line is no query.
+REFUSED = "colltrans: refused"
 
 
 @dataclass(frozen=True)
@@ -93,11 +97,16 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
         if f"{side}_pose" in queries.schema.names:
             arguments[f"{side}_pose"] = _vectors(queries, f"{side}_pose", (7, 3))
     if "graze_tolerance" in queries.schema.names:
-        tolerances = _column(queries, "graze_tolerance").fill_null(0.0)
-        arguments["graze_tolerance"] = np.asarray(tolerances, dtype=float)
+        tolerances = _column(queries, "graze_tolerance")
+        if not _is_number(tolerances.type):
+            raise InputError(f"the column 'graze_tolerance' has {tolerances.type}, not numbers")
+        arguments["graze_tolerance"] = np.asarray(tolerances.fill_null(0), dtype=float)
     directions = _vectors(queries, "direction", (3,))
     columns: Columns[Any] = QUESTIONS[options.question](*sides, directions, **arguments)
     answers = columns.to_arrow()
+    if REFUSED in queries.schema.names:
+        told = pc.coalesce(_column(queries, REFUSED), answers["message"])
+        answers = answers.set_column(answers.num_columns - 1, "message", told)
     if "id" in queries.schema.names:
         answers = answers.add_column(0, "id", _column(queries, "id"))
     assert answers.num_rows == count
@@ -110,12 +119,24 @@ def _column(queries: Any, name: str) -> Any:
     return queries.column(name)
 
 
+def _is_number(kind: Any) -> bool:
+    return any(of(kind) for of in (pa.types.is_floating, pa.types.is_integer, pa.types.is_null))
+
+
+def _is_list(kind: Any) -> bool:
+    return any(
+        of(kind) for of in (pa.types.is_list, pa.types.is_large_list, pa.types.is_fixed_size_list)
+    )
+
+
 def _vectors(queries: Any, name: str, widths: tuple[int, ...]) -> np.ndarray[Any, Any]:
     """Lists of numbers as a table; rows that are none, or of another length, are NaN."""
     column = _column(queries, name)
     if isinstance(column, pa.ChunkedArray):
         column = column.combine_chunks()
     kind = column.type
+    if not (pa.types.is_null(kind) or (_is_list(kind) and _is_number(kind.value_type))):
+        raise InputError(f"the column {name!r} has {kind}, not lists of numbers")
     if pa.types.is_fixed_size_list(kind) and column.null_count == 0:
         if kind.list_size not in widths:
             raise InputError(f"the column {name!r} has lists of {kind.list_size} numbers")
@@ -153,6 +174,13 @@ def answer_shard(
     -------
     Report
     """
+    try:
+        return _answered(job, bodies, progress)
+    except (ColltransError, pa.ArrowException) as error:
+        raise ColltransError(f"{job.queries}: {error}") from error
+
+
+def _answered(job: Job, bodies: Bodies, progress: Callable[[int], None]) -> Report:
     fingerprint = _fingerprint(job, bodies)
     target = Path(job.answers)
     done = _report_of(job, fingerprint)
@@ -173,8 +201,7 @@ def answer_shard(
             rows += answers.num_rows
             errors += answers.num_rows - answers["message"].null_count
             progress(answers.num_rows)
-        if writer is None:
-            raise InputError(f"{job.queries}: no queries")
+        assert writer is not None
         writer.add_key_value_metadata({"rows": str(rows), "errors": str(errors)})
         writer.close()
         writer = None
@@ -220,61 +247,86 @@ def _keys(path: Path) -> set[str]:
 
 
 def _batches(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
+    """The queries of a file; of one without any an empty batch, which has its columns."""
     if path.suffix == ".parquet":
-        try:
-            with pq.ParquetFile(path) as file:
-                yield from file.iter_batches(BATCH, columns=columns)
-        except (pa.ArrowInvalid, OSError) as error:
-            raise ColltransError(f"{path}: {error}") from None
+        with pq.ParquetFile(path) as file:
+            if file.metadata.num_rows == 0:
+                yield file.schema_arrow.empty_table()
+            yield from file.iter_batches(BATCH, columns=columns)
         return
-    rows: list[dict[str, Any]] = []
-    with path.open() as file:
-        for number, line in enumerate(file, 1):
-            rows.append(_row(line, number))
-            if len(rows) == BATCH:
-                yield _table(rows)
-                rows = []
-    if rows:
+    with path.open("rb") as file:
+        lines = ((number, line) for number, line in enumerate(file, 1) if line.strip())
+        rows = [_row(line, number) for number, line in islice(lines, BATCH)]
         yield _table(rows)
+        while rows := [_row(line, number) for number, line in islice(lines, BATCH)]:
+            yield _table(rows)
 
 
-def _row(line: str, number: int) -> dict[str, Any]:
-    """A query of a line; of one that is none the error comes when it is asked."""
+SIDES = ("moving", "fixed")
+#: Lists of numbers, and how many there may be.
+LISTS = {"direction": (3,), "moving_pose": (3, 7), "fixed_pose": (3, 7)}
+FIELDS = {"id", *SIDES, *LISTS, "graze_tolerance"}
+
+
+def _row(line: bytes, number: int) -> dict[str, Any]:
+    """A query of a line; of one that is none why it is refused."""
+    row = None
     try:
         row = json.loads(line)
-        return row if isinstance(row, dict) else {"id": f"line {number}: no object"}
-    except ValueError as error:
-        return {"id": f"line {number}: {error}"}
+        return {"id": _id_of(row), **_query(row)}
+    except (ValueError, OverflowError, RecursionError) as error:
+        return {"id": _id_of(row), REFUSED: f"line {number}: {error}"}
 
 
-LISTS = {"direction": 3, "moving_pose": 7, "fixed_pose": 7}
+def _id_of(row: Any) -> str | None:
+    found = row.get("id") if isinstance(row, dict) else None
+    return None if found is None else str(found).encode(errors="replace").decode()
+
+
+def _query(row: Any) -> dict[str, Any]:
+    """What a line asks. What it asks beside that is refused, for its answer would be another."""
+    if not isinstance(row, dict):
+        raise ValueError("no object")
+    for name in row.keys() - FIELDS:
+        raise ValueError(f"the field {name!r} is not for files in bulk")
+    query: dict[str, Any] = {side: _key(row.get(side), side) for side in SIDES}
+    for name, counts in LISTS.items():
+        if row.get(name) is not None:
+            query[name] = _numbers(row[name], name)
+            if len(query[name]) not in counts:
+                raise ValueError(f"{name}: {len(query[name])} numbers")
+    if row.get("graze_tolerance") is not None:
+        (query["graze_tolerance"],) = _numbers([row["graze_tolerance"]], "graze_tolerance")
+    return query
+
+
+def _key(value: Any, side: str) -> str:
+    if isinstance(value, dict) and value.keys() == {"mesh"}:  # As `colltrans batch` reads it.
+        value = value["mesh"]
+    if not isinstance(value, str):
+        raise ValueError(f'{side}: a body is a key, or an object with nothing but "mesh"')
+    value.encode()
+    return value
+
+
+def _numbers(value: Any, name: str) -> list[float]:
+    if name in LISTS and isinstance(value, dict):  # A pose as `colltrans batch` reads it.
+        parts = {"translation": [0, 0, 0], "rotation": [0, 0, 0, 1]}
+        if name == "direction" or value.keys() - parts.keys():
+            raise ValueError(f"{name}: no list of numbers, and no pose")
+        each = {**parts, **value}
+        place, turn = (_numbers(part, f"{name}.{of}") for of, part in each.items())
+        if (len(place), len(turn)) != (3, 4):
+            raise ValueError(f"{name}: {len(place)} and {len(turn)} numbers, not 3 and 4")
+        return place + turn
+    if not isinstance(value, list) or any(type(x) not in (int, float) for x in value):
+        raise ValueError(f"{name}: no list of numbers")
+    return [float(x) for x in value]
 
 
 def _table(rows: list[dict[str, Any]]) -> Any:
-    """The same columns for any rows: what has another type is as good as missing."""
-
-    def numbers(value: Any) -> list[float] | None:
-        if isinstance(value, dict):  # A pose as `colltrans batch` reads it.
-            still = {"translation": [0, 0, 0], "rotation": [0, 0, 0, 1], **value}
-            value = [*still["translation"], *still["rotation"]]
-        sound = isinstance(value, list) and all(isinstance(x, (int, float)) for x in value)
-        return [float(x) for x in value] if sound else None if value is None else []
-
-    def text(value: Any) -> str | None:
-        if isinstance(value, dict):  # A body as `colltrans batch` reads it.
-            value = value.get("mesh")
-        return value if isinstance(value, str) else None
-
-    columns: dict[str, Any] = {
-        "id": pa.array([None if (i := r.get("id")) is None else str(i) for r in rows], pa.string())
-    }
-    for name in ("moving", "fixed"):
-        columns[name] = pa.array([text(row.get(name)) for row in rows], pa.string())
-    for name in LISTS:
-        lists = [numbers(row.get(name)) for row in rows]
-        columns[name] = pa.array(lists, pa.list_(pa.float64()))
-    tolerances = [
-        t if isinstance(t := r.get("graze_tolerance", 0.0), (int, float)) else -1 for r in rows
-    ]
-    columns["graze_tolerance"] = pa.array(map(float, tolerances), pa.float64())
-    return pa.table(columns)
+    """The same columns for any rows."""
+    kinds = dict.fromkeys(("id", *SIDES, REFUSED), pa.string())
+    kinds |= dict.fromkeys(LISTS, pa.list_(pa.float64()))
+    kinds["graze_tolerance"] = pa.float64()
+    return pa.table({n: pa.array([row.get(n) for row in rows], kind) for n, kind in kinds.items()})

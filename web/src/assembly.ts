@@ -13,6 +13,7 @@ import { palette } from "./colours";
 import { h, refill, soon } from "./dom";
 import { Engine, bytesOf } from "./engine";
 import { type Vec, length, short, shown, times, unit } from "./math";
+import { quoted } from "./share";
 import type { State } from "./state";
 import { above, ball, clear, rod } from "./view/shapes";
 
@@ -20,6 +21,7 @@ const GEARBOX = [
   "bearing_ball_0", "bearing_ball_1", "bearing_ball_2", "bearing_ball_3", "bearing_inner", "bearing_outer", "bolt_0", "bolt_1",
   "bolt_2", "bolt_3", "cover", "gear", "housing", "rear_bush", "shaft", "spacer",
 ].map((name) => `gearbox_small/${name}.off`);
+const EXAMPLE = "gearbox_small";
 /** What is planned without being asked to. */
 const SOON = 40;
 
@@ -170,9 +172,14 @@ export class AssemblyTab {
 
   // --- what is asked
 
-  /** Shown for the first time: with the files of the example. */
+  /** Shown for the first time, or asked for: with the files of the example. */
   async start() {
     await this.example();
+  }
+
+  /** Or about to be. */
+  get isExample(): boolean {
+    return !this.source || this.source === EXAMPLE;
   }
 
   private async example() {
@@ -184,7 +191,7 @@ export class AssemblyTab {
         if (!response.ok) throw new Error(`${file}: ${response.status} ${response.statusText}`);
         return { name: file.split("/").at(-1)!, bytes: await response.arrayBuffer() };
       }));
-      await this.load(files, "gearbox_small");
+      await this.load(files, EXAMPLE);
     } catch (error) {
       this.refuse(error);
     }
@@ -470,10 +477,10 @@ export class AssemblyTab {
 
   private asCommand(): string {
     const { direction, tolerance, part, ignore } = this.asked;
-    const words = ["colltrans", "assembly", this.source, `--direction=${direction.join(",")}`];
+    const words = ["colltrans", "assembly", quoted(this.source), `--direction=${direction.join(",")}`];
     if (tolerance !== null) words.push(`--tolerance=${tolerance}`);
     if (ignore) words.push("--ignore-overlaps");
-    if (part !== null) words.push(`--map=${this.names([part])}`);
+    if (part !== null) words.push(`--map=${quoted(this.names([part]))}`);
     return [...words, "-o", "out"].join(" ");
   }
 

@@ -139,14 +139,8 @@ export class AssemblyTab {
     aim(seen.renderer.domElement, seen.camera, seen.orbit, ends, (way) => this.turnTo(rounded(way, 0.003)));
     sphere.onDirection = (d) => this.turnTo(rounded(d, 1e-4));
     this.stage.append(h("div", { class: "group assembly-tools" },
-      h("button", { onclick: () => this.facts && seen.fit(this.extent(this.facts)) }, "Fit"),
+      h("button", { onclick: () => seen.fit() }, "Fit"),
       h("button", { onclick: () => this.player.set(0), title: "All parts where they belong" }, "Assembled")));
-  }
-
-  /** How wide the picture is, with what has been moved by now. */
-  private extent({ size }: Facts): number {
-    const moved = this.moves.slice(0, Math.ceil(this.player.t)).map(({ way }) => 2 * length(way));
-    return Math.max(size, 0.8 * Math.max(0, ...moved) + size / 2);
   }
 
   private cards(): HTMLElement[] {

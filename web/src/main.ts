@@ -301,8 +301,8 @@ class Page {
     const instead = error instanceof Refused ? error.instead : [];
     this.refusals[slot] = { name, message: error instanceof Error ? error.message : String(error), instead };
     this.show();
-    // It may be far below what was dropped on.
-    requestAnimationFrame(() => document.querySelector(".refused")?.scrollIntoView({ block: "nearest" }));
+    // It may be far below what was dropped on. Where a body is missing, that is said in the answer's place.
+    if (this.bodies[slot]) requestAnimationFrame(() => document.querySelector(".refused")?.scrollIntoView({ block: "nearest" }));
   }
 
   /** A file that somebody chose or dropped. */

@@ -41,6 +41,17 @@ export function watch(page) {
   return page;
 }
 
+/** Whether something of what a canvas shows is cut off by its border. */
+export const isCut = (page, canvas) => page.evaluate(async (selector) => {
+  await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+  const source = document.querySelector(selector);
+  const { width, height } = source;
+  const flat = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d", { willReadFrequently: true });
+  flat.drawImage(source, 0, 0);
+  const borders = [[0, 0, width, 1], [0, height - 1, width, 1], [0, 0, 1, height], [width - 1, 0, 1, height]];
+  return borders.some((border) => flat.getImageData(...border).data.some((x, k) => k % 4 === 3 && x > 0));
+}, canvas);
+
 /** The page, served under a path of its own as on a site among others, in a browser. */
 export async function site() {
   const server = await serve(dist, 0, "/some/where/");

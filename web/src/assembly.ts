@@ -13,6 +13,7 @@ import { palette } from "./colours";
 import { h, refill, soon } from "./dom";
 import { Engine, bytesOf } from "./engine";
 import { type Vec, length, short, shown, times, unit } from "./math";
+import { quoted } from "./share";
 import type { State } from "./state";
 import { above, ball, clear, rod } from "./view/shapes";
 
@@ -20,6 +21,7 @@ const GEARBOX = [
   "bearing_ball_0", "bearing_ball_1", "bearing_ball_2", "bearing_ball_3", "bearing_inner", "bearing_outer", "bolt_0", "bolt_1",
   "bolt_2", "bolt_3", "cover", "gear", "housing", "rear_bush", "shaft", "spacer",
 ].map((name) => `gearbox_small/${name}.off`);
+const EXAMPLE = "gearbox_small";
 /** What is planned without being asked to. */
 const SOON = 40;
 
@@ -137,14 +139,8 @@ export class AssemblyTab {
     aim(seen.renderer.domElement, seen.camera, seen.orbit, ends, (way) => this.turnTo(rounded(way, 0.003)));
     sphere.onDirection = (d) => this.turnTo(rounded(d, 1e-4));
     this.stage.append(h("div", { class: "group assembly-tools" },
-      h("button", { onclick: () => this.facts && seen.fit(this.extent(this.facts)) }, "Fit"),
+      h("button", { onclick: () => seen.fit() }, "Fit"),
       h("button", { onclick: () => this.player.set(0), title: "All parts where they belong" }, "Assembled")));
-  }
-
-  /** How wide the picture is, with what has been moved by now. */
-  private extent({ size }: Facts): number {
-    const moved = this.moves.slice(0, Math.ceil(this.player.t)).map(({ way }) => 2 * length(way));
-    return Math.max(size, 0.8 * Math.max(0, ...moved) + size / 2);
   }
 
   private cards(): HTMLElement[] {
@@ -170,9 +166,14 @@ export class AssemblyTab {
 
   // --- what is asked
 
-  /** Shown for the first time: with the files of the example. */
+  /** Shown for the first time, or asked for: with the files of the example. */
   async start() {
     await this.example();
+  }
+
+  /** Or about to be. */
+  get isExample(): boolean {
+    return !this.source || this.source === EXAMPLE;
   }
 
   private async example() {
@@ -184,7 +185,7 @@ export class AssemblyTab {
         if (!response.ok) throw new Error(`${file}: ${response.status} ${response.statusText}`);
         return { name: file.split("/").at(-1)!, bytes: await response.arrayBuffer() };
       }));
-      await this.load(files, "gearbox_small");
+      await this.load(files, EXAMPLE);
     } catch (error) {
       this.refuse(error);
     }
@@ -470,10 +471,10 @@ export class AssemblyTab {
 
   private asCommand(): string {
     const { direction, tolerance, part, ignore } = this.asked;
-    const words = ["colltrans", "assembly", this.source, `--direction=${direction.join(",")}`];
+    const words = ["colltrans", "assembly", quoted(this.source), `--direction=${direction.join(",")}`];
     if (tolerance !== null) words.push(`--tolerance=${tolerance}`);
     if (ignore) words.push("--ignore-overlaps");
-    if (part !== null) words.push(`--map=${this.names([part])}`);
+    if (part !== null) words.push(`--map=${quoted(this.names([part]))}`);
     return [...words, "-o", "out"].join(" ");
   }
 

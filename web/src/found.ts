@@ -104,7 +104,8 @@ export class Found {
     const bodies = this.bodies();
     this.body.hidden = !bodies;
     if (!bodies) {
-      this.say("Only between convex bodies", "Searches between parts that are not convex go through trees of boxes; there is no picture of it here yet.");
+      if (!this.view.bodyOf("moving") || !this.view.bodyOf("fixed")) this.say("No search", "A body is missing: give it in the first tab.");
+      else this.say("Only between convex bodies", "Searches between parts that are not convex go through trees of boxes; there is no picture of it here yet.");
       return;
     }
     try {

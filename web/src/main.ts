@@ -22,6 +22,8 @@ import type { Tool } from "./view/handles";
 const TABS: Tab[] = ["answer", "found", "assembly"];
 /** Up to so many triangles of both bodies together. */
 const PROVED_SOON = 20_000;
+/** The example that is an assembly. */
+const GEARBOX = "gearbox";
 const WORKER = new URL("worker.js", import.meta.url);
 const engine = new Engine(WORKER);
 
@@ -54,6 +56,8 @@ class Page {
   private asking = false;
   private again = false;
   private loading = 0;
+  /** Counts what is asked for as a body: what comes for an older one is of no use. */
+  private readonly turns: Record<Slot, number> = { moving: 0, fixed: 0 };
   private tool: Tool = "look";
   private held: Slot = "moving";
 
@@ -155,7 +159,10 @@ class Page {
     let timer = 0;
     return () => {
       clearTimeout(timer);
-      timer = window.setTimeout(() => history.replaceState(null, "", toHash(this.state)), 250);
+      timer = window.setTimeout(() => {
+        history.replaceState(null, "", toHash(this.state));
+        this.showExample();
+      }, 250);
     };
   })();
 
@@ -164,11 +171,18 @@ class Page {
       this.again = true;
       return;
     }
-    if (!this.bodies.moving || !this.bodies.fixed) return;
+    if (!this.bodies.moving || !this.bodies.fixed) {
+      [this.answer, this.error] = [undefined, undefined];
+      this.show();
+      this.found?.changed();
+      return;
+    }
     this.asking = true;
     try {
       const pair = structuredClone(this.pair());
       const { answer, took } = await this.engine.cast(pair);
+      // Meanwhile a body may have gone, for a file that is not there.
+      if (!this.bodies.moving || !this.bodies.fixed) this.again = true;
       if (JSON.stringify(pair) !== JSON.stringify(this.last)) [this.before, this.last] = [this.last, pair];
       this.firstAnswer ??= performance.now();
       [this.answer, this.took, this.error] = [answer, took, undefined];
@@ -211,6 +225,7 @@ class Page {
     const plane = answer.margin ? await check({ separation: { normal: answer.sideways, margin: answer.margin } }) : undefined;
     const bad = [facts, plane].find((one) => one && !one.holds);
     const count = entries.byteLength.toLocaleString("en");
+    if (answer !== this.answer) return;
     this.verdict = bad
       ? { holds: false, text: `✗ ${bad.because}` }
       : { holds: true, text: `✓ it holds: ${count} entries checked, gap ${Number(facts.proven).toExponential(1)}${plane ? `; margin ${Number(plane.proven).toExponential(1)}` : ""}` };
@@ -229,6 +244,7 @@ class Page {
       : { contact: answer.first!.proof };
     try {
       const { facts } = await this.engine.ask({ do: "verify", ...this.pair(), proof });
+      if (answer !== this.answer) return;
       const proven = answer.outcome === "separated" ? "margin" : "gap";
       this.verdict = facts.holds
         ? { holds: true, text: `✓ it holds: ${proven} proven ${Number(facts.proven).toExponential(1)}` }
@@ -242,20 +258,27 @@ class Page {
   // --- bodies
 
   private async loadBoth() {
+    [this.answer, this.verdict] = [undefined, undefined];
     await Promise.all(SLOTS.map((slot) => this.loadExample(slot)));
     await this.ask();
   }
 
   /** A file of `data/`, as the state names it. */
   private async loadExample(slot: Slot) {
+    const turn = ++this.turns[slot];
     const { file, take } = this.state.parts[slot];
     try {
       const url = new URL(`data/${file}`, document.baseURI);
       const known = Object.values(EXAMPLES).some((e) => e.moving.file === file || e.fixed.file === file);
       const response = known ? await fetch(url) : undefined;
       if (!response?.ok) throw new Refused(`${file} is not among the examples: choose or drop it again`);
-      await this.load(slot, file, take, await response.arrayBuffer());
+      const bytes = await response.arrayBuffer();
+      if (turn === this.turns[slot]) await this.load(slot, file, take, bytes);
     } catch (error) {
+      if (turn !== this.turns[slot]) return;
+      // The body before it is not what is asked about.
+      forget(this.bodies[slot]);
+      delete this.bodies[slot];
       this.refuse(slot, file, error);
     }
   }
@@ -278,15 +301,22 @@ class Page {
     const instead = error instanceof Refused ? error.instead : [];
     this.refusals[slot] = { name, message: error instanceof Error ? error.message : String(error), instead };
     this.show();
+    // It may be far below what was dropped on. Where a body is missing, that is said in the answer's place.
+    if (this.bodies[slot]) requestAnimationFrame(() => document.querySelector(".refused")?.scrollIntoView({ block: "nearest" }));
   }
 
   /** A file that somebody chose or dropped. */
   private async open(slot: Slot, file: File) {
+    const turn = ++this.turns[slot];
+    const { file: name, take } = this.state.parts[slot];
     try {
-      await this.load(slot, file.name, "convex", await bytesOf(file));
+      const bytes = await bytesOf(file);
+      if (turn !== this.turns[slot]) return;
+      // A link to a file that had to be given says how it is taken.
+      await this.load(slot, file.name, !this.bodies[slot] && file.name === name ? take : "convex", bytes);
       await this.changedBody();
     } catch (error) {
-      this.refuse(slot, file.name, error);
+      if (turn === this.turns[slot]) this.refuse(slot, file.name, error);
     }
   }
 
@@ -368,13 +398,17 @@ class Page {
     const select = named<HTMLSelectElement>("example");
     select.append(h("option", { value: "" }, "Choose an example"));
     for (const [name, { title }] of Object.entries(EXAMPLES)) select.append(h("option", { value: name }, title));
-    const same = Object.entries(EXAMPLES).find(([name]) => toHash(fromExample(name)) === toHash({ ...this.state, t: null, tab: "answer" }));
-    select.value = same?.[0] ?? "";
+    select.append(h("option", { value: GEARBOX }, "A small gearbox (an assembly)"));
+    this.showExample();
     select.addEventListener("change", async () => {
       if (!select.value) return;
+      if (select.value === GEARBOX) {
+        this.change((state) => (state.tab = "assembly"), false);
+        void this.assembly?.start();
+        return;
+      }
       const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
       this.state = { ...fromExample(select.value), tab, assembly: this.state.assembly };
-      this.answer = undefined;
       await this.loadBoth();
       this.fit();
       this.remember();
@@ -390,9 +424,18 @@ class Page {
     addEventListener("hashchange", () => {
       if (location.hash === toHash(this.state)) return;
       this.state = fromHash(location.hash);
+      this.showExample();
       void this.loadBoth().then(() => this.fit());
       this.assembly?.stateChanged();
     });
+  }
+
+  /** The example that is asked about, if it is one as it began: else it can be chosen again. */
+  private showExample() {
+    const asked = toHash({ ...this.state, t: null, tab: "answer" });
+    const same = Object.keys(EXAMPLES).find((name) => toHash(fromExample(name)) === asked) ?? "";
+    const gearbox = this.assembly?.isExample ?? true ? GEARBOX : "";
+    named<HTMLSelectElement>("example").value = this.state.tab === "assembly" ? gearbox : same;
   }
 
   /** One of them is in the order of focus; arrow keys go to the others. */
@@ -484,10 +527,12 @@ class Page {
     });
   }
 
-  private async copy(text: string, what: string) {
+  private async copy(asked: string | undefined, what: string) {
+    // The address follows the question a little later.
+    history.replaceState(null, "", toHash(this.state));
+    const text = asked ?? location.href;
     try {
-      history.replaceState(null, "", toHash(this.state));
-      await navigator.clipboard.writeText(what === "The link" ? location.href : text);
+      await navigator.clipboard.writeText(text);
       toast(`${what} is copied`);
     } catch {
       prompt(`${what}:`, text);

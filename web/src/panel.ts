@@ -39,7 +39,8 @@ export interface Actions {
   take(slot: Slot, take: Take): void;
   dismiss(slot: Slot): void;
   verify(): void;
-  copy(text: string, what: string): void;
+  /** `undefined`: the address. */
+  copy(text: string | undefined, what: string): void;
   save(how: Picture): void;
 }
 
@@ -64,6 +65,7 @@ export class AnswerPanel {
   private readonly solid: HTMLElement;
   private readonly ignore = h("input", { type: "checkbox" });
   private readonly check: HTMLButtonElement;
+  private readonly command = h("button", { class: "small" }, "Copy as command line");
   private readonly known = new Map<string, string>();
   private now: Shown | undefined;
 
@@ -161,12 +163,13 @@ export class AnswerPanel {
   }
 
   private share(): HTMLElement {
-    const copy = (text: () => string, what: string) => () => this.now && this.act.copy(text(), what);
+    const copy = (text: () => string | undefined, what: string) => () => this.now && this.act.copy(text(), what);
     const state = () => this.now!.state;
+    this.command.addEventListener("click", copy(() => asCommand(state()), "The command"));
     return h("div", { style: "display: flex; flex-direction: column; gap: 10px" },
       h("div", { class: "row" },
-        h("button", { class: "small", onclick: copy(() => location.href, "The link") }, "Copy link"),
-        h("button", { class: "small", onclick: copy(() => asCommand(state()), "The command") }, "Copy as command line"),
+        h("button", { class: "small", onclick: copy(() => undefined, "The link") }, "Copy link"),
+        this.command,
         h("button", { class: "small", onclick: copy(() => asRust(state()), "The program") }, "Copy as Rust"),
         h("button", { class: "small", onclick: copy(() => asPython(state()), "The program") }, "Copy as Python")),
       h("div", { class: "row" },
@@ -191,6 +194,8 @@ export class AnswerPanel {
     const solids = Object.values(shown.bodies).some((body) => body?.body.facts.kind === "solid");
     this.graze.hidden = solids;
     this.solid.hidden = !solids;
+    this.command.disabled = asCommand(state) === undefined;
+    this.command.title = this.command.disabled ? "The command takes no hull of a part beside one that is not convex" : "";
     this.showParts(shown);
     this.facts.parentElement!.hidden = !answer || !!error;
     this.proofCard.hidden = !answer || !!error;
@@ -208,10 +213,14 @@ export class AnswerPanel {
     return changed;
   }
 
-  private showSaid({ state, answer, error, took }: Shown) {
+  private showSaid({ state, answer, error, took, bodies, refusals }: Shown) {
+    const missing = (["moving", "fixed"] as const).flatMap((slot) => (bodies[slot] ? [] : refusals[slot]?.message ?? []));
     if (error) {
       this.said.className = "said care";
       this.said.replaceChildren(h("h2", {}, "No answer"), h("p", {}, error));
+    } else if (missing.length) {
+      this.said.className = "said care";
+      this.said.replaceChildren(h("h2", {}, "No answer"), ...missing.map((message) => h("p", {}, message)));
     } else if (!answer) {
       this.said.className = "said";
       this.said.replaceChildren(h("h2", {}, "…"), h("p", {}, "Reading."));
@@ -247,7 +256,8 @@ export class AnswerPanel {
         refusal && h("div", { class: "refused", role: "alert" }, refusal.message,
           h("div", { class: "row" },
             ...refusal.instead.map((how) => h("button", { class: "small main", onclick: () => this.act.take(slot, how) }, OFFER[how])),
-            h("button", { class: "small", onclick: () => this.act.dismiss(slot) }, "Leave it"))),
+            // What was there before is there still.
+            facts && h("button", { class: "small", onclick: () => this.act.dismiss(slot) }, "Leave it"))),
       );
     });
     refill(this.parts, ...rows, h("small", { style: "color: var(--soft)" }, `STL, OBJ, PLY or OFF, up to ${MOST_MIB} MiB; or drop files on the view.`));
@@ -321,7 +331,6 @@ function bounds(proof: Pick<Certificate, "lower" | "upper" | "tolerance">): SVGS
   );
   return picture;
 }
-
 
 /** What there is any of. */
 const counts = (all: [number, string][]) =>

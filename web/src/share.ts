@@ -5,16 +5,19 @@ import type { Vec } from "./math";
 import type { State } from "./state";
 
 const isHome = (pose: number[]) => pose.join() === "0,0,0,0,0,0,1";
-const quoted = (file: string) => (/^[\w./-]+$/.test(file) ? file : `'${file.replaceAll("'", String.raw`'\''`)}'`);
+export const quoted = (file: string) => (/^[\w./-]+$/.test(file) ? file : `'${file.replaceAll("'", String.raw`'\''`)}'`);
 const isSolid = (take: Take) => take === "solid" || take === "open";
 const files = (state: State): Record<Slot, string> => ({
   moving: state.parts.moving.file.split("/").at(-1)!,
   fixed: state.parts.fixed.file.split("/").at(-1)!,
 });
 
-export function asCommand(state: State): string {
+/** Nothing where no command asks the same. */
+export function asCommand(state: State): string | undefined {
   const { moving, fixed } = files(state);
   const solids = isSolid(state.parts.moving.take) || isSolid(state.parts.fixed.take);
+  const hull = Object.values(state.parts).some(({ take }) => take === "hull");
+  if (solids && hull) return undefined;
   const words = solids
     ? ["colltrans", "clear", quoted(moving), "--from", quoted(fixed)]
     : ["colltrans", "cast", quoted(moving), quoted(fixed)];
@@ -51,7 +54,7 @@ function rustPose(pose: number[]): string {
 }
 
 function rustBody(slot: Slot, state: State): string {
-  const mesh = `    let mesh = colltrans_mesh::read("${files(state)[slot]}")?;\n`;
+  const mesh = `    let mesh = colltrans_mesh::read(${JSON.stringify(files(state)[slot])})?;\n`;
   const build: Record<Take, string> = {
     convex: "ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 1e-5 * mesh.extent())?",
     hull: "ConvexPolyhedron::from_points(&mesh.vertices)?",
@@ -76,7 +79,7 @@ export function asRust(state: State): string {
       (state.ignore ? ".with_start_overlap(StartOverlap::Ignore)" : "")
     : solver + (state.graze ? `.with_graze_tolerance(${float(state.graze)})?` : "");
   const first = state.poses;
-  return `use colltrans::glam::{${turned ? "DQuat, " : ""}DVec3};
+  return `use colltrans::glam::${turned ? "{DQuat, DVec3}" : "DVec3"};
 use colltrans::{${names.join(", ")}};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

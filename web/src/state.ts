@@ -31,7 +31,7 @@ export interface State {
 }
 
 export function fromExample(name: string): State {
-  const example = EXAMPLES[name] ?? EXAMPLES[FIRST]!;
+  const example = EXAMPLES[Object.hasOwn(EXAMPLES, name) ? name : FIRST]!;
   return {
     parts: { moving: { ...example.moving }, fixed: { ...example.fixed } },
     poses: { moving: [...example.movingPose], fixed: [...example.fixedPose] },

@@ -109,6 +109,8 @@ function solid(answer: SolidAnswer, state: State): Said {
       sentence:
         depth === null
           ? "One body lies in the other, deeper than any tolerance reaches."
+          : depth < answer.tolerance
+          ? `With a tolerance of ${short(depth)} they would not: one of ${short(answer.tolerance)} is more than the bodies are thick, and turns them inside out.`
           : `With a tolerance of ${short(depth)} they would not: that is how deep they are in each other.`,
       rows: [...(depth === null ? [] : [["depth", short(depth, 9)] as [string, string]]), ...exit, tolerance],
     };

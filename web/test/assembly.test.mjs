@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { answers, data, launchPlain, site, watch } from "../browser.mjs";
+import { answers, data, isCut, launchPlain, site, watch } from "../browser.mjs";
 
 const gearbox = join(data, "gearbox_small");
 
@@ -35,6 +35,7 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
   assert.match(await page.textContent(".assembly-stage output"), /^Step 1 of \d+: bolt_0 along \+z/);
   await page.locator('[aria-label="Steps of the plan"]').press("End");
   assert.match(await page.textContent(".assembly-stage output"), new RegExp(`^Step ${plan.steps.length} of`));
+  assert.equal(await isCut(page, ".assembly-view canvas"), false);
   // The same questions natively.
   const files = facts.parts.map(({ name }) => `${name}.off`);
   const questions = [
@@ -120,7 +121,7 @@ test("files are chosen, refused and dropped; the page stays alive", async () => 
     };
     requestAnimationFrame(frame);
   });
-  await page.click("text=Small gearbox");
+  await page.click("button:text-is('Small gearbox')");
   await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 16);
   await planned(page);
   const frames = await page.evaluate(() => window.drawn);

@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { data, launch, program, watch } from "../browser.mjs";
+import { data, isCut, launch, program, watch } from "../browser.mjs";
 
 test("a report shows its plan from all sides", async () => {
   const folder = mkdtempSync(join(tmpdir(), "report-"));
@@ -22,6 +22,8 @@ test("a report shows its plan from all sides", async () => {
     await page.click('#viewer [aria-label="Step on"]');
     await page.waitForFunction(() => document.querySelector("#viewer input").valueAsNumber === 1);
     assert.match(await page.textContent("#viewer output"), /^Step 1 of \d+: .+ along /);
+    await page.locator('#viewer [aria-label="Steps of the plan"]').press("End");
+    assert.equal(await isCut(page, "#viewer canvas"), false);
     // The part in the middle of the picture has a name.
     const box = await page.locator("#viewer canvas").boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);

@@ -42,6 +42,9 @@ export class Parts {
   private readonly name = h("div", { class: "name", hidden: true });
   private names: string[] = [];
   private lit = -1;
+  /** Of the assembly as it belongs together, and of what the picture is wide enough for. */
+  private size = 1;
+  private extent = 1;
   onClick: (part: number) => void = () => {};
   onRender: () => void = () => {};
 
@@ -84,12 +87,14 @@ export class Parts {
     this.parts.length = 0;
     this.names = parts.map(({ name }) => name);
     for (const part of parts) this.add(part);
-    this.fit(size);
+    this.size = this.extent = size;
+    this.fit();
     this.resize();
   }
 
-  fit(size: number) {
-    const far = (1.6 * size) / 2 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
+  /** Everything into the picture, with what has been moved by now. */
+  fit() {
+    const far = (1.6 * this.extent) / 2 / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
     this.camera.position.set(0.62, -0.68, 0.45).normalize().multiplyScalar(far);
     [this.camera.near, this.camera.far] = [far / 1e3, far * 1e3];
     this.camera.updateProjectionMatrix();
@@ -121,7 +126,19 @@ export class Parts {
       const eased = share * share * (3 - 2 * share);
       for (const part of parts) this.parts[part]?.group.position.addScaledVector(new Vector3(...way), eased);
     });
+    this.widen();
     this.render();
+  }
+
+  /** What is moved out stays in the picture: from however far one looks, farther by as much as it takes. */
+  private widen() {
+    const moved = Math.max(0, ...this.parts.map(({ group }) => group.position.length()));
+    const extent = Math.max(this.size, 1.6 * moved + this.size / 2);
+    if (extent === this.extent) return;
+    const { camera, orbit } = this;
+    camera.position.sub(orbit.target).multiplyScalar(extent / this.extent).add(orbit.target);
+    this.extent = extent;
+    orbit.update();
   }
 
   /** How each part is shown: in full, or pale. */

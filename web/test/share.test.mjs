@@ -1,0 +1,37 @@
+// The question as an address, and as a command line, without a browser.
+
+import assert from "node:assert/strict";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { test } from "node:test";
+import { build } from "esbuild";
+
+const resolveDir = join(dirname(fileURLToPath(import.meta.url)), "../src");
+const contents = ["share", "state", "examples"].map((name) => `export * from "./${name}";`).join("");
+const { outputFiles } = await build({ stdin: { contents, resolveDir, loader: "ts" }, bundle: true, format: "esm", write: false });
+const { EXAMPLES, asCommand, asPython, asRust, fromExample, fromHash, toHash } = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
+
+test("an address leads back to the same bits", () => {
+  for (const name of Object.keys(EXAMPLES)) assert.deepEqual(fromHash(toHash(fromExample(name))), fromExample(name));
+  const state = fromHash("#m=a b,+%26=#:%25.stl:hull&d=1e-7,-0.1,1e21&graze=1e-9&tol=0&ignore=1&solver=cta&t=-2.5&tab=assembly&ad=1,2,3&atol=0.1&aignore=1&apart=3");
+  assert.deepEqual(fromHash(toHash(state)), state);
+  // What is wrong in it is as in the first example.
+  for (const wrong of ["#example=toString", "#example=__proto__", "#d=1,2&mp=1&solver=x&tab=y&t=Infinity", "#m=x:y&f=:solid", "#%%%"]) {
+    assert.deepEqual(fromHash(wrong), fromExample("bracket"));
+  }
+});
+
+test("the same question as a command line, or none where none asks the same", () => {
+  assert.equal(asCommand(fromExample("slide")), "colltrans cast bracket.obj bracket.obj --direction=1,0,0 --moving-pose=-9,2,0,0,0,0,1");
+  assert.equal(asCommand(fromHash("#example=plate&tol=0.01&ignore=1")),
+    "colltrans clear bolt.stl --from plate.off --direction=0,0,-1 --moving-pose=0,0,7,0,0,0,1 --tolerance=0.01 --ignore-start-overlaps");
+  assert.match(asCommand(fromHash("#m=it's mine.off:hull&graze=0.1&solver=cta")), /^colltrans cast 'it'\\''s mine\.off' bracket\.obj .* --hull-moving --graze-tolerance=0\.1 --solver=cta$/);
+  assert.match(asCommand(fromHash("#f=plate.off:open")), / --open$/);
+  assert.equal(asCommand(fromHash("#m=bolt.stl:hull&f=plate.off:solid")), undefined);
+});
+
+test("and as programs", () => {
+  const state = fromHash('#m=a"b.stl:hull&f=plate.off:open&d=0,0,-1&tol=1&mp=0,0,7,0,0,0,1');
+  assert.match(asRust(state), /colltrans_mesh::read\("a\\"b\.stl"\)\?[^]*Solid::from_convex\(&ConvexPolyhedron::from_points[^]*from_open_mesh[^]*DVec3::new\(0\.0, 0\.0, -1\.0\)[^]*with_tolerance\(1\.0\)\?/);
+  assert.match(asPython(state), /read\("a\\"b\.stl", hull=True\)[^]*Solid\.read\("plate\.off", open=True\)[^]*tolerance=1\.0/);
+});

@@ -39,6 +39,9 @@ pub(crate) enum Until {
     Near,
     /// All the way: down to [`END_GAP`]. Portal refinement has nothing left but to confirm.
     End,
+    /// All the way, and not as published: where little is left of the region, the shift goes on from
+    /// cell to cell, which takes fewer planar problems.
+    EndAcrossCells,
 }
 
 /// The gap between upper and lower bound at which the collision translation algorithm hands over,
@@ -53,9 +56,10 @@ impl Until {
     pub(crate) fn options(self) -> Options {
         let gap = match self {
             Self::Near => PAPER_GAP,
-            Self::End => END_GAP,
+            Self::End | Self::EndAcrossCells => END_GAP,
         };
-        let narrowing = Narrowing { start: NarrowFrom::Center, gap };
+        let keeps_to_cell = self != Self::EndAcrossCells;
+        let narrowing = Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell };
         Options { solver: Solver::Cta, narrowing, ..Options::default() }
     }
 }
@@ -100,8 +104,12 @@ impl Who {
         match self {
             Self::Cta(Until::Near) => "CTA".into(),
             Self::Cta(Until::End) => "CTA to the end".into(),
+            Self::Cta(Until::EndAcrossCells) => "CTA to the end, across cells".into(),
             Self::CtaRegion(_, Until::Near) => "CTA, region focus".into(),
             Self::CtaRegion(_, Until::End) => "CTA to the end, region focus".into(),
+            Self::CtaRegion(_, Until::EndAcrossCells) => {
+                "CTA to the end, across cells, region focus".into()
+            }
             Self::Portal => "portal refinement".into(),
             Self::Tracker => "feature focus".into(),
             Self::Egjk(SupportSearch::Climbing) => "EGJK, climbing".into(),

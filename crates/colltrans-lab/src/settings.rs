@@ -164,6 +164,10 @@ impl Setting {
     /// own by as much, `alpha_deg` a step. The spheres always meet: no line of motion passes the fixed
     /// one's centre at more than three quarters of both radii together.
     ///
+    /// All is told in a frame that goes round as well, so that every direction looks the same way: a
+    /// [`Tracker`](colltrans::Tracker) keeps the solutions of opposite directions apart, and would
+    /// begin from the last but one, at 180 degrees that of the same configuration.
+    ///
     /// # Panics
     /// Never: the poses are in range.
     pub fn orbit(bodies: &Bodies, alpha_deg: f64, count: usize, random: &mut Random) -> Vec<Self> {
@@ -174,12 +178,12 @@ impl Setting {
         (0..count)
             .map(|k| {
                 let angle_rad = alpha_deg * PI / 180.0 * k as f64;
-                let at = DQuat::from_axis_angle(axis, angle_rad) * start;
+                let back = DQuat::from_axis_angle(axis, -angle_rad);
                 let spin = DQuat::from_axis_angle(spin_axis, angle_rad);
                 Self {
-                    moving: pose((spin * turn_p).normalize(), at),
-                    fixed: pose(turn_q, DVec3::ZERO),
-                    direction: (aim - at).normalize(),
+                    moving: pose((back * spin * turn_p).normalize(), start),
+                    fixed: pose((back * turn_q).normalize(), DVec3::ZERO),
+                    direction: (back * aim - start).normalize(),
                 }
             })
             .collect()
@@ -244,7 +248,9 @@ mod tests {
         let mut random = Random::new(7, &[]);
         for alpha_deg in [0.1, 30.0, 180.0] {
             for _ in 0..20 {
-                for s in Setting::orbit(&bodies, alpha_deg, 20, &mut random) {
+                let orbit = Setting::orbit(&bodies, alpha_deg, 20, &mut random);
+                assert!(orbit.windows(2).all(|s| s[0].direction.dot(s[1].direction) > 0.0));
+                for s in orbit {
                     let [p, q] = &bodies.pair;
                     let outcome = cast(p, &s.moving, q, &s.fixed, s.direction).unwrap();
                     assert!(matches!(outcome, Outcome::Contact(_)), "{outcome:?}");

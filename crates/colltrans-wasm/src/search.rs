@@ -15,7 +15,7 @@ use crate::question::Search;
 pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
     let mut cast = query(bodies, &asked.pair)?;
     if let Some(gap) = asked.from_center {
-        let narrowing = Narrowing { start: NarrowFrom::Center, gap };
+        let narrowing = Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell: false };
         let options = Options { narrowing, ..cast.options() };
         cast = cast.with_options(options).map_err(|error| error.to_string())?;
     }

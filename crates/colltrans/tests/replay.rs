@@ -1,7 +1,7 @@
 //! Queries as files: the same bits again, and no file that is not one.
 #![cfg(feature = "json")]
 
-use colltrans::{Case, CaseError, Solver};
+use colltrans::{Case, CaseError, Narrowing, Options, Solver};
 use colltrans_oracle::settings::{FAMILIES, setting};
 
 #[test]
@@ -25,6 +25,19 @@ fn every_family_comes_back_in_bits() {
                 assert_eq!(answers[0], answers[1], "{setting}");
             }
         }
+    }
+}
+
+#[test]
+fn choices_come_back() {
+    let setting = setting("boxes", 3);
+    let bodies = setting.bodies().expect("bodies");
+    for keeps_to_cell in [false, true] {
+        let narrowing = Narrowing { keeps_to_cell, ..Narrowing::default() };
+        let options = Options { narrowing, ..Options::default() };
+        let cast = setting.query(&bodies).expect("a query").with_options(options).expect("valid");
+        let case = Case::from_json(&cast.to_json()).expect("a case");
+        assert_eq!(case.cast().expect("checked").options(), options);
     }
 }
 

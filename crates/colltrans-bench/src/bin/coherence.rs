@@ -62,10 +62,11 @@ const REGION: Focus = Focus { features: false, region: Region::Automatic };
 const BOTH: Focus = Focus { features: true, region: Region::Automatic };
 
 /// What a user gets.
-const SHIPPED: Narrowing = Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2 };
+const SHIPPED: Narrowing =
+    Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2, keeps_to_cell: false };
 
 /// The paper's: from the centre of the levels, most of the way by planar problems.
-const PAPER: Narrowing = Narrowing { start: NarrowFrom::Center, gap: 0.01 };
+const PAPER: Narrowing = Narrowing { start: NarrowFrom::Center, gap: 0.01, keeps_to_cell: false };
 
 fn main() -> ExitCode {
     let Command { arguments } = Command::parse();

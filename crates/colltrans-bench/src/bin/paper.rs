@@ -48,9 +48,9 @@ const CHANGES: [f64; 3] = [0.01, 0.0025, 0.000_625];
 /// How a contestant narrows the search: `None` is portal refinement alone.
 const CONTESTANTS: [(&str, Option<Narrowing>); 4] = [
     ("portal", None),
-    ("cta", Some(Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2 })),
-    ("centre 1%", Some(Narrowing { start: NarrowFrom::Center, gap: 0.01 })),
-    ("centre end", Some(Narrowing { start: NarrowFrom::Center, gap: 0.0 })),
+    ("cta", Some(Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2, keeps_to_cell: false })),
+    ("centre 1%", Some(Narrowing { start: NarrowFrom::Center, gap: 0.01, keeps_to_cell: false })),
+    ("centre end", Some(Narrowing { start: NarrowFrom::Center, gap: 0.0, keeps_to_cell: false })),
 ];
 
 /// Bodies to measure on.
@@ -277,7 +277,8 @@ fn phases(blocks: &Blocks) -> Value {
 
 /// The same with region focus, in sequences.
 fn focused_phases(sequences: &Blocks) -> Value {
-    let options = options(Some(Narrowing { start: NarrowFrom::Center, gap: 0.0 }));
+    let options =
+        options(Some(Narrowing { start: NarrowFrom::Center, gap: 0.0, keeps_to_cell: false }));
     let mut spent = Spent::default();
     for (bodies, sequence) in sequences {
         let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");
@@ -326,7 +327,8 @@ fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
         for k in 0..contestants.len() {
             let who = (turn + k) % contestants.len();
             let (gap, focus) = contestants[who];
-            let options = options(Some(Narrowing { start: NarrowFrom::Center, gap }));
+            let options =
+                options(Some(Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell: false }));
             let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
             for setting in sequence {
                 let (outcome, spent) =

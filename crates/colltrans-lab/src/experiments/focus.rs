@@ -130,7 +130,7 @@ fn floor(all: &Sequences) -> Claim {
         share(0, 1)
     );
     judged("13-floor", vec![share(1, END)], details, || {
-        "One step is enough only where both bounds meet at the first planar problem.".into()
+        "One step is enough only where the best point of the first cell solves the problem.".into()
     })
 }
 
@@ -307,7 +307,7 @@ fn one(id: &str, until: usize, measured: &[At]) -> Claim {
     let details = "Up to 1.5 is taken as very close to 1. The numbers are in the claim before.";
     judged(id, vec![least], details.into(), || {
         format!(
-            "The minimisation ends only when its bounds meet: at the smallest change that takes {} \
+            "The minimisation ends only in the cell of the contact: at the smallest change that takes {} \
              steps in the smallest and {} in the largest bodies.",
             short(measured[0].points(REGION[until])[0].y),
             short(measured[measured.len() - 1].points(REGION[until])[0].y)

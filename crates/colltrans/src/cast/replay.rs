@@ -231,6 +231,8 @@ struct OptionsRecord {
     narrow_from: NarrowFromName,
     /// Infinite if there is none.
     narrowing_gap: Option<f64>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    keeps_to_cell: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -262,6 +264,7 @@ impl OptionsRecord {
                 NarrowFrom::Center => NarrowFromName::Center,
             },
             narrowing_gap: Some(options.narrowing.gap).filter(|gap| gap.is_finite()),
+            keeps_to_cell: options.narrowing.keeps_to_cell,
         }
     }
 
@@ -279,6 +282,7 @@ impl OptionsRecord {
                     NarrowFromName::Center => NarrowFrom::Center,
                 },
                 gap: self.narrowing_gap.unwrap_or(f64::INFINITY),
+                keeps_to_cell: self.keeps_to_cell,
             },
         }
     }

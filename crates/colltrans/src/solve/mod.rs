@@ -284,7 +284,8 @@ impl<O: Observer> Run<'_, '_, O> {
     /// By the collision translation algorithm.
     fn narrow(&mut self, ellipsoids: &FirstNormal, origin: Origin) -> Start {
         self.watch.ended(Phase::Setup);
-        let options = CtaOptions { start: origin, gap: self.narrowing.gap };
+        let Narrowing { gap, keeps_to_cell, .. } = self.narrowing;
+        let options = CtaOptions { start: origin, gap, keeps_to_cell };
         let narrowed = cta::minimise(self.difference.setting, &options, &mut self.watch);
         let corners = narrowed.corners.as_ref();
         if let Some(portal) = corners.and_then(|c| portal::around(&self.difference, c)) {

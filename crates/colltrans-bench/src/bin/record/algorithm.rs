@@ -15,7 +15,8 @@ pub(super) fn write(page: &mut String, run: &Value) -> Result<(), Failure> {
          which stands in ns. *centre*: from the centre of the levels to a gap of 1 %, and to the end, \
          where the exit test ends it; *of parry* its median over that of parry's cast of bodies of 8 \
          vertices in the same run. *planar* are planar problems and *left* portals exchanged after \
-         them, on average.\n\n\
+         them, on average; cells crossed where little of the region is left are not planar problems, and \
+         their time is that of the cell shift.\n\n\
          | bodies | vertices | portal, ns | `portal` | `cta` | centre, 1 % | planar | left | centre, \
          end | planar | left | of parry |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",

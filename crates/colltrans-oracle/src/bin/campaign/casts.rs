@@ -10,7 +10,11 @@ use crate::print;
 /// by default it seldom has to search.
 const WHO: [(&str, Solver, Option<Narrowing>); 4] = [
     ("Cta", Solver::Cta, None),
-    ("Cta from the centre", Solver::Cta, Some(Narrowing { start: NarrowFrom::Center, gap: 0.0 })),
+    (
+        "Cta from the centre",
+        Solver::Cta,
+        Some(Narrowing { start: NarrowFrom::Center, gap: 0.0, keeps_to_cell: false }),
+    ),
     ("Portal", Solver::Portal, None),
     ("Auto", Solver::Auto, None),
 ];

@@ -32,6 +32,8 @@ pub(crate) struct CtaOptions {
     /// Stops when upper minus lower bound is at most this part of the extent of both bodies along
     /// the direction.
     pub(crate) gap: f64,
+    /// The shift ends in its cell.
+    pub(crate) keeps_to_cell: bool,
 }
 
 /// Where the search was narrowed to.
@@ -113,6 +115,7 @@ impl SectionPair<'_> {
             sections: self,
             region: Region::rectangle(-self.half, self.half),
             square: begin.square,
+            keeps_to_cell: options.keeps_to_cell,
             bound: LowerBound::new([-self.half, self.half], begin.floor),
             upper: f64::INFINITY,
             best: None,
@@ -136,6 +139,7 @@ struct Minimisation<'q, 'a, 'o, O> {
     region: Region,
     /// The levels searched first, until cuts leave nothing of them on the way to the centroid.
     square: Option<Square>,
+    keeps_to_cell: bool,
     /// Over all levels.
     bound: LowerBound,
     upper: f64,
@@ -233,7 +237,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             return local.bound.value;
         }
         let (least, mut exit) = self.improve(levels, answer, local);
-        let most = if self.is_narrow() { MOST_CELLS } else { 0 };
+        let most = if !self.keeps_to_cell && self.is_narrow() { MOST_CELLS } else { 0 };
         for _ in 0..most {
             let Exit::Falls(beyond) = exit else { break };
             let Some(next) = self.cross(&beyond) else { break };

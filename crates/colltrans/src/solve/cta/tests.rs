@@ -111,7 +111,7 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
     Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
 }
 
-const EXACT: CtaOptions = CtaOptions { start: Origin::Center, gap: 1e-10 };
+const EXACT: CtaOptions = CtaOptions { start: Origin::Center, gap: 1e-10, keeps_to_cell: false };
 
 /// Compares with brute force to `tolerance`; returns the result.
 fn check(
@@ -321,6 +321,26 @@ fn a_hit_on_a_large_face_names_the_portal() {
         assert!(portal::around(&difference, &corners).is_some(), "round {round}: {corners:?}");
     }
     assert!(hits > 550, "{hits}");
+}
+
+#[test]
+fn a_shift_that_keeps_to_its_cell_takes_more_planar_problems() {
+    let one_by_one = CtaOptions { keeps_to_cell: true, ..EXACT };
+    let mut random = Random(47);
+    let bodies = similar(2000, false);
+    let (mut kept, mut crossed) = (0, 0);
+    for round in 0..300 {
+        let e = colliding(&mut random);
+        let [p, q] = &bodies;
+        let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
+        let [(a, one), (b, more)] = [&one_by_one, &EXACT].map(|o| minimised(&setting, o));
+        // Both end in the same place, or both pass.
+        let same = a.upper == b.upper || (a.upper - b.upper).abs() < 1e-8;
+        assert!(same, "round {round}: {} {}", a.upper, b.upper);
+        kept += one.planar_problems;
+        crossed += more.planar_problems;
+    }
+    assert!(kept * 4 > crossed * 5, "{kept} {crossed}");
 }
 
 #[test]

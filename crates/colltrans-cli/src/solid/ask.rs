@@ -231,10 +231,8 @@ impl Piece {
             ));
         }
         // A convex body of a batch has no file.
-        let name = match self.file.as_os_str().is_empty() {
-            true => "the convex body".into(),
-            false => self.file.display().to_string(),
-        };
+        let is_file = !self.file.as_os_str().is_empty();
+        let name = if is_file { self.file.display().to_string() } else { "the convex body".into() };
         (!text.is_empty())
             .then(|| format!("{name}: not all of it can be shrunk: {}", text.join("; ")))
     }

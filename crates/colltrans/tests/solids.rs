@@ -1,7 +1,8 @@
 //! Solids in the situations that people have names for.
 
 use colltrans::{
-    Cast, Clearance, Pose, Solid, SolidError, SolidOptions, SolidOverlap, StartOverlap,
+    Cast, Clearance, ConvexPolyhedron, Pose, Solid, SolidError, SolidOptions, SolidOverlap,
+    StartOverlap,
 };
 use colltrans_kit::shapes::Mesh;
 use colltrans_kit::solids::{bolt, pin, slab, turned, washer};
@@ -142,6 +143,47 @@ fn a_part_sealed_in_a_cavity() {
     assert_eq!(distance(&cast(&part, &hollow, DVec3::X)), 1.5);
     assert!(!cast(&part, &hollow, DVec3::X).overlaps());
     assert_eq!(cast(&part, &hollow, DVec3::X).exit(), Some(3.5));
+}
+
+#[test]
+fn the_volumes_of_shrunk_and_grown_shells() {
+    // Far apart in the tree, the second one with a cavity.
+    let cube = |low: f64, high: f64| slab(DVec3::splat(low), DVec3::splat(high), [2; 3]);
+    let mesh = cube(40.0, 41.0).joined(&cube(-3.0, 3.0)).joined(&cube(-2.0, 2.0).reversed());
+    let body = solid(&mesh);
+    let near = |body: &Solid, right: [f64; 3]| {
+        let found: Vec<f64> = body.report().shells.iter().map(|s| s.volume).collect();
+        assert_eq!(found.len(), 3);
+        let all = found.iter().zip(right).all(|(x, y)| (x - y).abs() < 1e-9);
+        assert!(all, "{found:?}, not {right:?}");
+        assert!((body.volume() - right.iter().sum::<f64>()).abs() < 1e-9);
+    };
+    near(&body, [1.0, 216.0, -64.0]);
+    near(&body.shrunk(0.25).expect("an amount").0, [0.125, 166.375, -91.125]);
+    near(&body.grown(0.5).expect("an amount").0, [8.0, 343.0, -27.0]);
+    // By more than half its size the small cube is mirrored in its middle: that is said of its facets.
+    let (mirrored, said) = body.shrunk(0.75).expect("an amount");
+    near(&mirrored, [-0.125, 91.125, -166.375]);
+    assert_eq!(said.inverted, (0..24).collect::<Vec<u32>>());
+    assert!(body.shrink_report(0.25).inverted.is_empty());
+}
+
+#[test]
+fn a_flat_polygon_is_a_sheet_and_a_segment_is_no_solid() {
+    let flat = |z: f64| {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * z);
+        ConvexPolyhedron::from_points(&corners).expect("a triangle")
+    };
+    let block = cuboid([-3.0; 3], [3.0; 3]);
+    for (z, inside) in [(0.0, true), (3.0, false), (4.0, false)] {
+        let sheet = flat(z);
+        let down = Cast::between(sheet.at(Pose::IDENTITY), block.at(Pose::IDENTITY), DVec3::NEG_Z)
+            .expect("a direction");
+        assert_eq!(down.overlaps(), inside, "at {z}");
+        assert!(inside || distance(&down) == z - 3.0);
+    }
+    let segment = ConvexPolyhedron::from_points(&[DVec3::ZERO, DVec3::X]).expect("a segment");
+    assert!(matches!(Solid::from_convex(&segment), Err(SolidError::Empty)));
 }
 
 #[test]

@@ -48,8 +48,7 @@ pub(super) struct Query<'a, Body> {
     #[serde(rename = "query")]
     pub(super) asked: Option<Asked>,
     pub(super) graze_tolerance: Option<f64>,
-    #[serde(default)]
-    pub(super) solver: SolverName,
+    pub(super) solver: Option<SolverName>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
 }
@@ -246,7 +245,7 @@ impl<B> Query<'_, B> {
             return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
         }
         let options = Options {
-            solver: self.solver.into(),
+            solver: self.solver.unwrap_or_default().into(),
             graze_tolerance: self.graze_tolerance.unwrap_or_default(),
             ..Options::default()
         };
@@ -272,8 +271,12 @@ impl<B> Query<'_, B> {
         if self.graze_tolerance.is_some() {
             return Err("`graze_tolerance` is for convex bodies; solids have `tolerance`".into());
         }
+        if self.solver.is_some() {
+            return Err("`solver` is for convex bodies".into());
+        }
         let [moving, fixed] = shapes.map(as_solid);
-        let (moving, fixed) = (moving?, fixed?);
+        let moving = moving.map_err(|e| format!("moving: {e}"))?;
+        let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
         let question = Question {
             moving: moving.get(),
             moving_pose: poses[0],

@@ -30,7 +30,7 @@ pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
         direction: found.direction?,
         asked: found.asked,
         graze_tolerance: found.graze_tolerance,
-        solver: found.solver.unwrap_or_default(),
+        solver: found.solver,
         tolerance: None,
         ignore_start_overlaps: None,
     })

@@ -102,7 +102,11 @@ fn overlaps(text: &mut String, answer: &Answer<'_>) {
         line(text, name, &format!("{moving} in {fixed}: {depth}"));
     }
     if !ignored {
-        let hint = "--tolerance allows for it, --ignore-start-overlaps lets it pass";
+        let hint = if answer.overlaps.iter().all(|overlap| overlap.depth.is_some()) {
+            "--tolerance allows for it, --ignore-start-overlaps lets it pass"
+        } else {
+            "--ignore-start-overlaps lets it pass"
+        };
         line(text, "", hint);
     }
 }

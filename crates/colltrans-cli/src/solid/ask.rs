@@ -220,8 +220,9 @@ impl Piece {
         let report = self.solid.shrink_report(amount);
         let mut text = Vec::new();
         if let Some(first) = report.stuck.first() {
-            let vertices = counted(report.stuck.len(), "vertex stays", "vertices stay");
-            text.push(format!("{vertices} where it is, as in a saddle (vertex {first})"));
+            let (one, many) = ("vertex stays where it is", "vertices stay where they are");
+            let vertices = counted(report.stuck.len(), one, many);
+            text.push(format!("{vertices}, as in a saddle (vertex {first})"));
         }
         if let Some(first) = report.inverted.first() {
             let faces = counted(report.inverted.len(), "face turns", "faces turn");
@@ -229,8 +230,10 @@ impl Piece {
                 "{faces} inside out, because the part is thinner than the tolerance (face {first})"
             ));
         }
-        (!text.is_empty()).then(|| {
-            format!("{}: not all of it can be shrunk: {}", self.file.display(), text.join("; "))
-        })
+        // A convex body of a batch has no file.
+        let is_file = !self.file.as_os_str().is_empty();
+        let name = if is_file { self.file.display().to_string() } else { "the convex body".into() };
+        (!text.is_empty())
+            .then(|| format!("{name}: not all of it can be shrunk: {}", text.join("; ")))
     }
 }

@@ -75,7 +75,10 @@ impl Body {
 
     /// A convex body, in double precision.
     pub(crate) fn of_convex(body: &ConvexPolyhedron) -> Result<Self, String> {
-        let solid = Solid::from_convex(body).map_err(|error| refusal(&error))?;
+        let solid = Solid::from_convex(body).map_err(|error| match error {
+            SolidError::Empty => "without an area, which bodies asked against solids need".into(),
+            other => refusal(&other),
+        })?;
         let piece = Piece { file: PathBuf::new(), solid, precision: 0.0 };
         Self::of_pieces(vec![piece], Vec::new())
     }
@@ -140,8 +143,8 @@ fn refusal(error: &SolidError) -> String {
     match error {
         SolidError::Open { count, from, to, facet } => format!(
             "the surface is not closed: {} have a face on one side only, the first runs from \
-             vertex {from} to vertex {to} of face {facet}; --merge-tolerance closes gaps, --open \
-             takes it as a scan without an inside",
+             vertex {from} to vertex {to} of face {facet}; --merge-tolerance closes gaps, `clear \
+             --open` takes it as a scan without an inside",
             counted(*count, "edge", "edges")
         ),
         SolidError::Empty => "holds no faces with an area".into(),

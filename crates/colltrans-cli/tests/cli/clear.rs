@@ -197,7 +197,13 @@ fn the_page_shows_what_is_printed() {
     let (_, rest) = page.split_once("```sh\ncolltrans clear ").unwrap();
     let (command, rest) = rest.split_once(" --picture bolt.svg\n```\n\n```text\n").unwrap();
     let (shown, _) = rest.split_once("```").unwrap();
-    assert_eq!(stdout(&run(&root, command, &[])), shown);
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("bolt.svg");
+    let drawn = ["--picture", picture.to_str().unwrap()];
+    assert_eq!(stdout(&run(&root, command, &drawn)), shown);
+    let [drawn, kept] = [picture, root.join("docs/solid-bolt-and-plate.svg")]
+        .map(|path| std::fs::read_to_string(path).unwrap());
+    assert!(drawn == kept, "the page shows another picture than the one that is drawn");
 }
 
 #[test]
@@ -265,6 +271,11 @@ fn overlaps_are_told_file_by_file() {
     for part in ["overlapping: ", "block.off in table.off", "0.25", "--ignore-start-overlaps"] {
         assert!(text.contains(part), "{part:?} is not in {text}");
     }
+    assert!(text.contains("--tolerance allows for it"), "{text}");
+    // A body within itself is parted by none, so none is advised.
+    let itself = stdout(&run(folder.path(), "block.off --from block.off --direction z", &[]));
+    assert!(itself.contains("no tolerance would part them"), "{itself}");
+    assert!(!itself.contains("--tolerance allows for it"), "{itself}");
 }
 
 #[test]
@@ -394,6 +405,8 @@ fn batches_take_solids() {
         line(7, r#"{"solid":"open.off"}"#, &plate, ""),
         line(8, r#"{"solid":"pin.off","hull":true}"#, &plate, ""),
         line(9, &plate, &plate, "").replace("[0,0,3]", "[1,0,2.5]"),
+        line(10, &pin, &plate, r#","solver":"cta""#),
+        line(11, &pin, r#"{"points":[[0,0,0],[1,0,0]]}"#, ""),
     ];
     std::fs::write(folder.path().join("queries.jsonl"), lines.join("\n")).unwrap();
     let output = colltrans(folder.path()).args(["batch", "queries.jsonl"]).output().unwrap();
@@ -407,13 +420,16 @@ fn batches_take_solids() {
     assert!((number(&results[0], "nominal") - 3.0).abs() < 1e-9);
     assert!((number(&results[2], "nominal") - 2.0).abs() < 1e-9, "block on plate");
     assert!((number(&results[3], "distance") - 1.0).abs() < 1e-9, "as convex bodies");
-    for (result, word) in results[4..9].iter().zip([
+    for (result, word) in results[4..9].iter().chain(&results[10..]).zip([
         "asked for their clearance",
         "solids have `tolerance`",
         "are for solids",
         "not closed",
         "`hull` is for a `mesh`",
+        "`solver` is for convex bodies",
+        "fixed: without an area",
     ]) {
+        assert_eq!(result["outcome"], "error");
         assert!(result["message"].as_str().unwrap().contains(word), "{result}");
     }
     assert_eq!(outcomes[9], "blocked");

@@ -85,7 +85,7 @@ pub trait AsSolid: sealed::Sealed {
     /// and kept.
     ///
     /// # Errors
-    /// A polyhedron without a volume.
+    /// A point or a segment. A flat polygon is a sheet with two sides and no volume.
     fn as_solid(&self) -> Result<&Solid, SolidError>;
 }
 
@@ -149,7 +149,7 @@ impl Solid {
     /// numbered through.
     ///
     /// # Errors
-    /// No pieces, more facets than 32-bit indices can number, or a polyhedron without a volume.
+    /// No pieces, more facets than 32-bit indices can number, or a point or segment among them.
     pub fn from_pieces<'a, B: AsSolid + 'a>(
         pieces: impl IntoIterator<Item = &'a B>,
     ) -> Result<Self, SolidError> {
@@ -187,10 +187,11 @@ impl Solid {
         Ok(Self::from_surface(all, report, closed))
     }
 
-    /// A convex polyhedron, its faces cut into triangles. Vertices and faces keep their numbers.
+    /// A convex polyhedron, its faces cut into triangles. Vertices and faces keep their numbers. A flat
+    /// polygon becomes a sheet with two sides and no volume; it overlaps what it is inside of.
     ///
     /// # Errors
-    /// A polyhedron without a volume.
+    /// A point or a segment.
     pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
         let facets: Vec<Vec<u32>> =
             (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();

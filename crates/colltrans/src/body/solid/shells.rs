@@ -103,6 +103,23 @@ fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
     shells
 }
 
+/// The volume of each shell, its vertices being where `vertex` says.
+pub(super) fn volumes(
+    shell_of: &[u32],
+    triangles: &[[u32; 3]],
+    vertex: impl Fn(u32) -> DVec3,
+) -> Vec<f64> {
+    let count = shell_of.iter().max().map_or(0, |&s| s as usize + 1);
+    let mut volumes = vec![0.0; count];
+    let mut origins = vec![None; count];
+    for (corners, &shell) in triangles.iter().zip(shell_of) {
+        let [a, b, c] = corners.map(&vertex);
+        let origin = *origins[shell as usize].get_or_insert(a);
+        volumes[shell as usize] += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
+    }
+    volumes
+}
+
 /// Reverses the triangles of turned shells: corners `a c b`, and their edges in that order.
 fn turn_over(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
     for (t, &s) in shell_of.iter().enumerate() {

@@ -23,7 +23,7 @@ use glam::DVec3;
 
 use super::edges::NONE;
 use super::error::SolidError;
-use super::report::SolidReport;
+use super::shells;
 use super::tree::{self, Node};
 use super::{Solid, Surface};
 use crate::number::range::in_exact_range;
@@ -93,6 +93,7 @@ impl Solid {
     /// let cube = Solid::from_convex(&ConvexPolyhedron::from_points(&corners)?)?;
     /// let (smaller, report) = cube.shrunk(0.25)?;
     /// assert_eq!(smaller.bounds(), [DVec3::splat(0.25), DVec3::splat(0.75)]);
+    /// assert!((smaller.volume() - 0.125).abs() < 1e-15);
     /// assert!((report.farthest - 0.25 * 3.0_f64.sqrt()).abs() < 1e-15);
     /// assert!(report.stuck.is_empty() && report.inverted.is_empty());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -130,8 +131,25 @@ impl Solid {
             facet_index: self.facet_index.clone(),
             neighbours: self.neighbours.clone(),
         };
-        let noticed = SolidReport { ..self.report.clone() };
+        let mut noticed = self.report.clone();
+        for (shell, volume) in noticed.shells.iter_mut().zip(self.volumes_of(&surface.vertices)) {
+            shell.volume = volume;
+        }
         Ok((Self::from_surface(surface, noticed, self.closed), report))
+    }
+
+    /// The volumes of the shells with other vertices, in the order of the report: that of the first
+    /// facets.
+    fn volumes_of(&self, vertices: &[DVec3]) -> Vec<f64> {
+        let shell_of = shells::components(&self.neighbours);
+        let volumes = shells::volumes(&shell_of, &self.triangles, |v| vertices[v as usize]);
+        let mut first = vec![NONE; volumes.len()];
+        for (&shell, &facet) in shell_of.iter().zip(&self.facet_index) {
+            first[shell as usize] = facet.min(first[shell as usize]);
+        }
+        let mut order: Vec<usize> = (0..volumes.len()).collect();
+        order.sort_by_key(|&shell| first[shell]);
+        order.into_iter().map(|shell| volumes[shell]).collect()
     }
 
     /// What shrinking by `amount` (or growing, if negative) cannot do as it should.
@@ -143,8 +161,21 @@ impl Solid {
             let moved = corners.map(|v| displace(self.vertices[v], shrinking.field[v], amount));
             tree::normal(moved).0.dot(before) <= 0.0
         };
-        let mut facets: Vec<u32> =
-            (0..self.triangles.len()).filter(inverted).map(|t| self.facet_index[t]).collect();
+        // A ball or a cube that is thinner in all directions is mirrored in a point: its facets look
+        // where they did, and only its volume tells.
+        let shell_of = shells::components(&self.neighbours);
+        let moved =
+            |v: u32| displace(self.vertices[v as usize], shrinking.field[v as usize], amount);
+        let before = shells::volumes(&shell_of, &self.triangles, |v| self.vertices[v as usize]);
+        let after = shells::volumes(&shell_of, &self.triangles, moved);
+        let mirrored = |t: &usize| {
+            let shell = shell_of[*t] as usize;
+            self.closed && (before[shell] < 0.0) != (after[shell] < 0.0)
+        };
+        let mut facets: Vec<u32> = (0..self.triangles.len())
+            .filter(|t| mirrored(t) || inverted(t))
+            .map(|t| self.facet_index[t])
+            .collect();
         facets.sort_unstable();
         facets.dedup();
         ShrinkReport {

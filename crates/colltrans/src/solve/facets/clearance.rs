@@ -82,7 +82,7 @@ impl<'a> Cast<'a, Solid> {
     /// Between bodies of either kind, as solids: a solid against a convex polyhedron, say.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range; a polyhedron without a volume.
+    /// A direction that is zero, not finite or out of range; a point or a segment.
     ///
     /// ```
     /// use colltrans::glam::DVec3;

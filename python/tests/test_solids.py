@@ -12,6 +12,7 @@ from colltrans import (
     BuildError,
     CertificateError,
     ConvexPolyhedron,
+    InputError,
     MeshError,
     QueryError,
     Solid,
@@ -120,6 +121,10 @@ def test_meshes_in_every_form_and_refusals(tmp_path: Path) -> None:
         assert Solid(CORNERS.astype("f4"), faces).volume == 1 / 6
     mesh = SimpleNamespace(vertices=CORNERS, faces=FACES)
     assert Solid.from_trimesh(mesh).bounds.tolist() == [[0, 0, 0], [1, 1, 1]]
+    assert ConvexPolyhedron.from_trimesh(mesh).volume == 1 / 6
+    for body in (Solid, ConvexPolyhedron):
+        with pytest.raises(InputError, match="mesh: it has no faces"):
+            body.from_trimesh(SimpleNamespace(vertices=CORNERS))
     with pytest.raises(BuildError, match="open"):
         Solid(CORNERS, FACES[:3])
     assert not Solid(CORNERS, FACES[:3], open=True).is_closed

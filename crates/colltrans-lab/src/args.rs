@@ -85,7 +85,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S", default_value_t = 2007)]
     seed: u64,
     /// A folder with mesh files of real parts, to be measured beside other shapes (`beyond`)
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder)]
     parts: Option<PathBuf>,
     /// The folder of the results, made if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "lab-results")]
@@ -101,6 +101,12 @@ impl Options {
         };
         Plan { scale, seed: self.seed, parts: self.parts.clone() }
     }
+}
+
+/// A folder that is there.
+fn folder(path: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(path);
+    if path.is_dir() { Ok(path) } else { Err("there is no such folder".to_owned()) }
 }
 
 /// The numbers of the experiments whose ids begin so; the help and errors list them.

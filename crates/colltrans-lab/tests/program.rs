@@ -58,6 +58,7 @@ fn what_there_is_not() {
         &["all", "12"],
         &["all", "--quick", "--full"],
         &["all", "--seed", "-1"],
+        &["beyond", "--parts", "nowhere"],
     ] {
         let output = lab(folder.path()).args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));

@@ -46,6 +46,12 @@ pub(crate) fn numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Numbers> {
     of_array(&array).ok_or_else(|| wrong_shape(&array, name, "a row or a table of numbers"))
 }
 
+/// `vertices` and `faces` of a mesh as trimesh has them.
+pub(crate) fn mesh<'py>(of: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, PyAny>; 2]> {
+    let part = |name| of.getattr(name).map_err(|_| input("mesh", format_args!("it has no {name}")));
+    Ok([part("vertices")?, part("faces")?])
+}
+
 /// Those of a tuple or a list of numbers, or of an array that is as it should be.
 #[inline]
 pub(crate) fn plain_numbers(of: &Bound<'_, PyAny>) -> Option<Numbers> {

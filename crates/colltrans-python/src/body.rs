@@ -8,7 +8,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::arrays::{faces, points, row, table, vector};
+use crate::arrays::{self, faces, points, row, table, vector};
 use crate::errors::{OrRaise, error};
 
 /// A convex polyhedron in its own frame: the convex hull of points.
@@ -93,6 +93,24 @@ impl ConvexPolyhedron {
         py.detach(|| colltrans::ConvexPolyhedron::from_mesh(&vertices, &faces, tolerance))
             .or_raise()
             .map(Self)
+    }
+
+    /// From a mesh of trimesh, or anything with ``vertices`` and ``faces``: a closed convex surface.
+    ///
+    /// Parameters
+    /// ----------
+    /// mesh : object
+    /// tolerance : float
+    ///     As for :meth:`from_mesh`.
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    #[staticmethod]
+    #[pyo3(signature = (mesh, tolerance=0.0))]
+    fn from_trimesh(py: Python<'_>, mesh: &Bound<'_, PyAny>, tolerance: f64) -> PyResult<Self> {
+        let [vertices, faces] = arrays::mesh(mesh)?;
+        Self::from_mesh(py, &vertices, &faces, tolerance)
     }
 
     /// The box between two corners.

@@ -14,7 +14,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{faces, points, table};
+use crate::arrays::{self, faces, points, table};
 use crate::body::ConvexPolyhedron;
 use crate::errors::OrRaise;
 
@@ -167,7 +167,8 @@ impl Solid {
     /// Solid
     #[staticmethod]
     fn from_trimesh(py: Python<'_>, mesh: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Self::new(py, &mesh.getattr("vertices")?, &mesh.getattr("faces")?, false)
+        let [vertices, faces] = arrays::mesh(mesh)?;
+        Self::new(py, &vertices, &faces, false)
     }
 
     /// Reads a part from a mesh file: STL, OBJ, PLY or OFF.

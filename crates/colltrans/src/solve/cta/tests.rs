@@ -513,6 +513,14 @@ fn check_answer(answer: &Planar, polygons: &[Vec<Crossing>; 2], least: f64, name
     }
 }
 
+/// Levels of both bodies, within their ranges.
+fn random_levels(random: &mut Random, query: &SectionPair) -> [f64; 2] {
+    query.sides.each_ref().map(|side| {
+        let [low, high] = side.range();
+        random.within(low, high)
+    })
+}
+
 #[test]
 fn the_faces_of_a_contact_tell_it_again() {
     let mut random = Random(43);
@@ -522,10 +530,7 @@ fn the_faces_of_a_contact_tell_it_again() {
         let poses = [random_pose(&mut random, 0.7), random_pose(&mut random, 0.7)];
         let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
         let query = SectionPair::new(&setting);
-        let levels = [0, 1].map(|i| {
-            let [low, high] = query.sides[i].range();
-            random.within(low, high)
-        });
+        let levels = random_levels(&mut random, &query);
         let found = planar::solve(&query.sides, levels, &Hint::NONE).unwrap();
         let Planar::Edges { edges, contact } = found else { continue };
         contacts += 1;
@@ -592,10 +597,7 @@ fn work_from_nothing(bodies: &[ConvexPolyhedron; 2], rounds: usize) -> [f64; 3] 
         let poses = [random_pose(&mut random, 0.7), random_pose(&mut random, 0.7)];
         let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
         let query = SectionPair::new(&setting);
-        let levels = [0, 1].map(|i| {
-            let [low, high] = query.sides[i].range();
-            random.within(low, high)
-        });
+        let levels = random_levels(&mut random, &query);
         let kind = match planar::solve(&query.sides, levels, &Hint::NONE).unwrap() {
             Planar::Separated { u, .. } if u.y == 0.0 => 2,
             Planar::Separated { .. } => 1,

@@ -102,14 +102,27 @@ fn lowest(
     found: Point,
     rounding: f64,
 ) -> Result<Plane, Point> {
-    let is_below = |point: &Point| depth_below(portal, normal, point) > rounding * normal.length();
-    if is_below(&found) {
+    if is_below(portal, normal, &found, rounding) {
         return Err(found);
     }
-    let plane = Plane::of(difference, normal, found.pair);
-    // The climb may have stuck.
-    let point = if plane.lowest == found.pair { found } else { difference.vertex(plane.lowest) };
-    if is_below(&point) { Err(point) } else { Ok(plane) }
+    settled(difference, portal, normal, found.pair, rounding)
+}
+
+/// The same of a support point that does not lie below the portal; the climb to it may have stuck.
+#[inline]
+fn settled(
+    difference: &MinkowskiDifference,
+    portal: &Portal,
+    normal: DVec3,
+    found: VertexPair,
+    rounding: f64,
+) -> Result<Plane, Point> {
+    let plane = Plane::of(difference, normal, found);
+    if plane.lowest == found {
+        return Ok(plane);
+    }
+    let point = difference.vertex(plane.lowest);
+    if is_below(portal, normal, &point, rounding) { Err(point) } else { Ok(plane) }
 }
 
 /// The face of an optimum that is not the portal's own, if nothing lies below it.
@@ -120,12 +133,15 @@ pub(crate) fn proven(
     optimum: &Optimum,
 ) -> Option<Face> {
     let Optimum { normal, lowest, weights } = *optimum;
-    let plane = Plane::of(difference, normal, lowest);
-    let is_settled = plane.lowest == lowest || {
-        let point = difference.vertex(plane.lowest);
-        depth_below(portal, normal, &point) <= difference.noise.plane(false) * normal.length()
-    };
-    is_settled.then_some(Face { plane, weights })
+    let rounding = difference.noise.plane(false);
+    let plane = settled(difference, portal, normal, lowest, rounding).ok()?;
+    Some(Face { plane, weights })
+}
+
+/// Whether a point lies below a portal by more than rounding.
+#[inline]
+fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> bool {
+    depth_below(portal, normal, point) > rounding * normal.length()
 }
 
 /// A portal with a plane in place of one too narrow to have one: over the edge that the line passes

@@ -8,8 +8,8 @@ mod pose;
 pub(crate) mod solid;
 pub(crate) mod topology;
 
-pub(crate) use convex::LargeFace;
 pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
+pub(crate) use convex::{LargeFace, greatest_on_cycle};
 pub use feature::Feature;
 pub(crate) use feature::feature;
 pub(crate) use inertia::Inertia;

@@ -23,6 +23,7 @@ pub use build::{ConvexityDefect, convexity_defect};
 pub(crate) use excess::LargeFace;
 use sections::SectionIndex;
 use support::SupportIndex;
+pub(crate) use support::greatest_on_cycle;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
 ///

@@ -423,7 +423,7 @@ fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec
 ///
 /// Between samples with a common distance, the maximum is at most that distance from the greatest
 /// sample.
-fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
+pub(crate) fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut stride = (count / 8).max(1).next_power_of_two();
     let (mut best, mut greatest) = (0, f64::NEG_INFINITY);
     let mut look = |i: usize, best: &mut usize| {

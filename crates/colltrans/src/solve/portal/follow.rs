@@ -18,9 +18,9 @@ use glam::{DVec2, DVec3};
 
 use super::edge::{Edge, crossed, left_behind};
 use super::flat::{Flat, across, has_large_faces};
-use super::start::continued;
+use super::start::{continued, slope_per_shadow};
 use super::tied::{Pointed, beside, pointed};
-use super::wrap::{Neighbour, first_met};
+use super::wrap::first_met;
 use super::{FirstNormal, Optimum, Portal, normal_of};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::MinkowskiDifference;
@@ -109,11 +109,8 @@ fn walk<O: Observer>(
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
         // The edge that was crossed has the line on its left now.
         let portal = match first_met(difference, &edge.from, &tilt) {
-            Neighbour::Met(point) => [edge.to, edge.from, point],
-            Neighbour::None => {
-                return Followed::Rim { outward: tilt.outward, near: edge.from.pair };
-            }
-            Neighbour::TooMany => return Followed::Lost,
+            Some(point) => [edge.to, edge.from, point],
+            None => return Followed::Rim { outward: tilt.outward, near: edge.from.pair },
         };
         match left_behind(difference, &portal, optimum, watch) {
             Some(from) => edge = Edge::of(&portal, from),
@@ -187,7 +184,7 @@ pub(crate) fn approach<O: Observer>(
                 Flat::No => {}
             }
         }
-        slope += start.slope_per_shadow * shadow;
+        slope += slope_per_shadow(difference, slope) * shadow;
         if !slope.is_finite() {
             break;
         }

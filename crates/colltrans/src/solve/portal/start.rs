@@ -6,14 +6,17 @@
 //! by one ellipsoid `K = (1 + r) A + (1 + 1/r) B`, which contains their sum for any `r > 0` and
 //! which the line enters where a quadratic equation says; then by one Newton step on `f`.
 //! `r^2 = tr B / tr A` makes the mean size of `K` least; `r^2 = n^T B n / n^T A n` makes it touch
-//! the sum along `n`, so `r` is fitted to the normal found until both agree.
+//! the sum along `n`: where that is the normal found, the line enters both in one point. The height at
+//! which it enters `K` is largest there and falls to either side, so this `r` lies beyond the one tried
+//! if it is less than what the normal asks for, and before it if it is more: it is bracketed, and
+//! approached by secants.
 
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::body::ConvexPolyhedron;
 use crate::number::symmetric::Symmetric;
-use crate::setting::VertexPair;
 use crate::setting::minkowski::MinkowskiDifference;
+use crate::setting::{Setting, VertexPair};
 
 /// Where to begin, and how the shadow of the support point answers to a change of slope.
 #[derive(Debug, Clone, Copy)]
@@ -28,9 +31,11 @@ pub(crate) struct FirstNormal {
     pub(crate) slope_per_shadow: DMat2,
 }
 
-/// Least share of a contact normal along the direction that is guessed: a steeper guess
-/// would say nothing about where the walls of the body are.
-const LEAST_INCLINATION: f64 = 0.05;
+/// Least share of a contact normal along the direction that is guessed where bodies seem to meet (thin
+/// ones may do so on walls almost along it), and where they seem to pass each other, so that a steeper
+/// guess would say nothing about where the walls are.
+const LEAST_INCLINATION: f64 = 0.002;
+const LEAST_PASSING: f64 = 0.05;
 
 /// Mean semi-axis of an ellipsoid over the root of its trace.
 const MEAN_RADIUS: f64 = 0.577_350_269_189_625_8;
@@ -39,11 +44,15 @@ const MEAN_RADIUS: f64 = 0.577_350_269_189_625_8;
 /// region it knows.
 const LONGEST_STEP: f64 = 0.5;
 
-/// The first ellipsoid is good enough for bodies of like shape, whose `r` would change by less than this
-/// share; flat ones across each other are fitted until it changes by less than the second, or this often.
+/// The first ellipsoid is good enough if its `r` would change by less than this share, of bodies that are
+/// round or have large faces; others are fitted until it changes by less than that, or this often.
 const LIKE: f64 = 0.5;
 const FITTED: f64 = 0.1;
-const MAX_FITS: usize = 12;
+const FINELY_FITTED: f64 = 0.02;
+const MAX_FITS: usize = 16;
+
+/// Bodies with more vertices than this have faces so small that a finer fit pays (measured).
+const FINE: usize = 256;
 
 /// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
 const FEW: usize = 20;
@@ -88,20 +97,7 @@ impl FirstNormal {
     #[inline]
     pub(crate) fn from_ellipsoids(difference: &MinkowskiDifference) -> Self {
         let (center, [a, b]) = difference.ellipsoids();
-        let mut r =
-            difference.setting.fixed.inertia().radius / difference.setting.moving.inertia().radius;
-        let mut normal = DVec3::Z;
-        let mut enough = LIKE;
-        for _ in 0..MAX_FITS {
-            let k = a.combine(1.0 + r, &b, 1.0 + 1.0 / r);
-            normal = entry_normal(&k, center);
-            let (along_a, along_b) = (a.square(normal), b.square(normal));
-            let [least, most] = [1.0 - enough, 1.0 + enough].map(|f| f * f * r * r * along_a);
-            if normal.z == 0.0 || (least < along_b && along_b < most) {
-                break;
-            }
-            (r, enough) = ((along_b / along_a).sqrt(), FITTED);
-        }
+        let mut normal = entered(difference.setting, center, [&a, &b]);
         let sloped = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
         let ((shadow_a, hessian_a), (shadow_b, hessian_b)) =
             (response(&a, sloped), response(&b, sloped));
@@ -119,6 +115,46 @@ impl FirstNormal {
     pub(crate) fn guided(&self, normal: DVec3, near: VertexPair) -> Self {
         Self { normal: tempered(normal), near: Some(near), ..*self }
     }
+}
+
+/// The normal where the axis enters the ellipsoid that suits the bodies', or, if it misses it, where it
+/// passes closest.
+#[inline]
+fn entered(setting: &Setting, center: DVec3, [a, b]: [&Symmetric; 2]) -> DVec3 {
+    let (moving, fixed) = (setting.moving.inertia(), setting.fixed.inertia());
+    let fine = setting.moving.vertices().len().max(setting.fixed.vertices().len()) > FINE;
+    let fitted = if fine { FINELY_FITTED } else { FITTED };
+    let mut enough = if fine && !(moving.round && fixed.round) { fitted } else { LIKE };
+    let mut r = fixed.radius / moving.radius;
+    let [mut low, mut high] = [0.0, f64::INFINITY];
+    let mut last: Option<[f64; 2]> = None;
+    let mut normal = DVec3::Z;
+    for _ in 0..MAX_FITS {
+        normal = entry_normal(&a.combine(1.0 + r, b, 1.0 + 1.0 / r), center);
+        let (along_a, along_b) = (a.square(normal), b.square(normal));
+        let [least, most] = [1.0 - enough, 1.0 + enough].map(|f| f * f * r * r * along_a);
+        if normal.z == 0.0 || (least < along_b && along_b < most) {
+            break;
+        }
+        enough = fitted;
+        let asked = (along_b / along_a).sqrt();
+        let ahead = asked - r;
+        if ahead > 0.0 {
+            low = r;
+        } else {
+            high = r;
+        }
+        let secant = last.map_or(f64::NAN, |[r0, ahead0]| r - ahead * (r - r0) / (ahead - ahead0));
+        last = Some([r, ahead]);
+        r = if low < secant && secant < high {
+            secant
+        } else if low > 0.0 && high.is_finite() {
+            (low * high).sqrt()
+        } else {
+            asked
+        };
+    }
+    normal
 }
 
 /// The normal where the axis enters the ellipsoid around `center` with matrix `k`, or, if it misses
@@ -158,9 +194,17 @@ fn tempered(normal: DVec3) -> DVec3 {
     if slope.is_finite() { slope.extend(1.0) } else { DVec3::Z }
 }
 
-/// The steepest slope that is guessed, along a lateral direction.
+/// The steepest slope that is guessed where bodies seem to pass each other, along a lateral direction.
 pub(super) fn steep(lateral: DVec2) -> DVec2 {
-    lateral.normalize_or_zero() / LEAST_INCLINATION
+    lateral.normalize_or_zero() / LEAST_PASSING
+}
+
+/// The change of slope that moves the shadow of the support point by minus a given vector, at a slope.
+pub(super) fn slope_per_shadow(difference: &MinkowskiDifference, slope: DVec2) -> DMat2 {
+    let normal = slope.extend(1.0);
+    let (_, ellipsoids) = difference.ellipsoids();
+    let [a, b] = ellipsoids.map(|k| response(&k, normal).1);
+    (a + b).inverse()
 }
 
 /// Where the line meets `M`, from where it met before: the slope that brings the point of contact

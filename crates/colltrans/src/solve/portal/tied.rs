@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 
 use super::enclose::nearest_share;
 use super::refine::{Optimum, largest, plane_normal, weights};
-use super::wrap::{Neighbour, Tilt, first_met};
+use super::wrap::{Tilt, first_met};
 use super::{Plane, Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
@@ -209,7 +209,7 @@ pub(super) fn beside<O: Observer>(
 ) -> Option<Portal> {
     let (vertex, normal) = (*vertex, normal_of(slope));
     let toward_line = Tilt { normal, outward: line };
-    let Neighbour::Met(second) = first_met(difference, &vertex, &toward_line) else { return None };
+    let second = first_met(difference, &vertex, &toward_line)?;
     // The plane after the turn, which contains both.
     let edge = second.at - vertex.at;
     let turn = normal.dot(edge) / toward_line.outward.dot(edge.truncate());
@@ -224,8 +224,6 @@ pub(super) fn beside<O: Observer>(
     let line_is_left = rounded.unwrap_or_else(|| difference.is_left(&vertex, &second));
     let left = edge.truncate().perp();
     let outward = if line_is_left { left } else { -left };
-    let Neighbour::Met(third) = first_met(difference, &vertex, &Tilt { normal, outward }) else {
-        return None;
-    };
+    let third = first_met(difference, &vertex, &Tilt { normal, outward })?;
     Some(if line_is_left { [vertex, second, third] } else { [second, vertex, third] })
 }

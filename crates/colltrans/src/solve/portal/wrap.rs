@@ -1,15 +1,20 @@
 //! Gift wrapping: which neighbour a plane meets first that turns about a vertex or an edge of `M`.
+//!
+//! Seen along the axis of the turn, the edges that leave a vertex are rays on one side of the plane, and
+//! the plane meets them in the order of their angles. In cyclic order of the edges the angle has one
+//! maximum and one minimum, because what the body's cone is seen as is a wedge; so around a vertex with
+//! many neighbours the first is found in `O(log n)`.
 
 use std::hint::select_unpredictable;
 
 use glam::{DVec2, DVec3};
 
-use crate::body::ConvexPolyhedron;
+use crate::body::{ConvexPolyhedron, greatest_on_cycle};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 
-/// A vertex with more neighbours than this is not looked around.
-const MOST_NEIGHBOURS: usize = 32;
+/// Neighbours of a vertex that are looked at one by one; among more the first is searched.
+const FEW: usize = 32;
 
 /// A plane that turns downwards on one side.
 pub(super) struct Tilt {
@@ -19,13 +24,6 @@ pub(super) struct Tilt {
     pub(super) outward: DVec2,
 }
 
-/// What a turning plane meets first.
-pub(super) enum Neighbour {
-    Met(Point),
-    None,
-    TooMany,
-}
-
 /// Of the neighbours of a vertex of `M` on the axis of the turn, the one with the least rise over
 /// its run.
 #[inline]
@@ -33,7 +31,7 @@ pub(super) fn first_met(
     difference: &MinkowskiDifference,
     vertex: &Point,
     tilt: &Tilt,
-) -> Neighbour {
+) -> Option<Point> {
     let VertexPair { moving, fixed } = vertex.pair;
     let setting = difference.setting;
     let (normal, outward) = (tilt.normal, tilt.outward.extend(0.0));
@@ -44,15 +42,14 @@ pub(super) fn first_met(
     let p = turn.first(setting.moving, moving);
     let turn = Turn { up: difference.in_fixed(normal), out: difference.in_fixed(outward), least };
     let q = turn.first(setting.fixed, fixed);
-    let (Some(p), Some(q)) = (p, q) else { return Neighbour::TooMany };
     let of_fixed = q.rise * p.run < p.rise * q.run;
     let found = if of_fixed { q.vertex } else { p.vertex };
     if found == NOBODY {
-        return Neighbour::None;
+        return None;
     }
     let moving = select_unpredictable(of_fixed, moving, found);
     let fixed = select_unpredictable(of_fixed, found, fixed);
-    Neighbour::Met(difference.vertex(VertexPair { moving, fixed }))
+    Some(difference.vertex(VertexPair { moving, fixed }))
 }
 
 /// A turn seen from one body's frame: `up` and `out` measure rise and run.
@@ -74,14 +71,14 @@ struct First {
 const NOBODY: u32 = u32::MAX;
 
 impl Turn {
-    /// The first among the neighbours of one body's vertex; `None` if there are too many.
+    /// The first among the neighbours of one body's vertex.
     #[inline]
     #[expect(clippy::needless_bitwise_bool, reason = "a branch here is not predictable")]
-    fn first(&self, body: &ConvexPolyhedron, vertex: u32) -> Option<First> {
+    fn first(&self, body: &ConvexPolyhedron, vertex: u32) -> First {
         let here = body.vertices()[vertex as usize];
         let neighbours = body.neighbours(vertex);
-        if neighbours.len() > MOST_NEIGHBOURS {
-            return None;
+        if neighbours.len() > FEW {
+            return self.first_of_many(body, here, neighbours);
         }
         let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
         for &w in neighbours {
@@ -92,6 +89,28 @@ impl Turn {
             first.rise = select_unpredictable(sooner, rise, first.rise);
             first.run = select_unpredictable(sooner, run, first.run);
         }
-        Some(first)
+        first
+    }
+
+    /// The same, by a search.
+    #[cold]
+    #[inline(never)]
+    fn first_of_many(&self, body: &ConvexPolyhedron, here: DVec3, neighbours: &[u32]) -> First {
+        let ahead = |i: usize| {
+            let edge = body.vertices()[neighbours[i] as usize] - here;
+            (self.up.dot(edge), self.out.dot(edge))
+        };
+        // Falls as the angle grows.
+        let soon = |i: usize| {
+            let (rise, run) = ahead(i);
+            run / (run.abs() + rise.abs())
+        };
+        let i = greatest_on_cycle(neighbours.len(), soon);
+        let (rise, run) = ahead(i);
+        if run > self.least {
+            First { vertex: neighbours[i], rise, run }
+        } else {
+            First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 }
+        }
     }
 }

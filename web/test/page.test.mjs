@@ -140,7 +140,7 @@ test("what a direction cannot be is said", async () => {
 });
 
 test("numbers beyond what a picture or the library holds are said, and nothing stays of them", async () => {
-  const page = await opened("#mp=1e200,0,0,0,0,0,1", {}, ["text=No answer", "#tools button"]);
+  const page = await opened("#mp=1e200,1,9,0,0,0,1", {}, ["text=No answer", "#tools button"]);
   const field = page.locator('[aria-label="moving position x"]');
   // A picture holds less than the library, which holds less than a number.
   for (const [number, said] of [["1e50", "never meet"], ["1e308", "No answer"], ["6", "Contact at t"]]) {

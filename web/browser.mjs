@@ -12,8 +12,8 @@ const root = join(dirname(fileURLToPath(import.meta.url)), "..");
 export const data = join(root, "data");
 export const dist = join(root, "web/dist");
 
-/** An example of crates/colltrans-wasm: there, cargo build --release --workspace --example NAME. */
-export const program = (name) => join(built, "release/examples", name);
+/** An example of crates/colltrans-wasm: there, cargo build --profile native --workspace --example NAME. */
+export const program = (name) => join(built, "native/examples", name);
 
 /** Its answers, a line each. */
 export function answers(name, questions) {

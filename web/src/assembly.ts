@@ -230,6 +230,8 @@ export class AssemblyTab {
       this.showParts(this.facts, numbers);
     } catch (error) {
       engine.stop("it was refused");
+      // What is wrong with it is of no use once another one is asked for.
+      if (turn !== this.turn) return;
       throw error;
     } finally {
       if (turn === this.turn) this.wait("");
@@ -251,6 +253,8 @@ export class AssemblyTab {
   /** Everything again, with the tolerance that is asked for. */
   private async refit() {
     if (!this.facts) return;
+    // An address may name a part that is not there.
+    if (this.asked.part !== null && !this.facts.parts[this.asked.part]) this.asked.part = null;
     const turn = ++this.turn;
     [this.fit, this.along, this.map, this.plan, this.moves, this.error] = [undefined, undefined, undefined, undefined, [], ""];
     this.player.show([], "");

@@ -129,6 +129,8 @@ export class Refused extends Error {
   constructor(
     message: string,
     readonly instead: Take[] = [],
+    /** Whether the body that was there before is no more. */
+    readonly gone = false,
   ) {
     super(message);
   }
@@ -139,6 +141,7 @@ export const MOST_MIB = 400;
 
 /** Those of a file that somebody gave. */
 export async function bytesOf(file: File): Promise<ArrayBuffer> {
+  if (!file.size) throw new Refused(`${file.name}: it is empty`);
   const mib = file.size / 2 ** 20;
   if (mib > MOST_MIB) throw new Refused(`${file.name}: ${Math.ceil(mib)} MiB; a page takes files up to ${MOST_MIB} MiB, the command line larger ones`);
   return file.arrayBuffer();
@@ -177,7 +180,7 @@ export class Engine {
       this.running().postMessage({ id, text, file }, file ? [file] : []);
     });
     const facts = JSON.parse(reply.text);
-    if (facts.error !== undefined) throw new Refused(facts.error, facts.instead);
+    if (facts.error !== undefined) throw new Refused(facts.error, facts.instead, facts.gone);
     return { facts, text: reply.text, numbers: reply.numbers, took: reply.took };
   }
 

@@ -7,7 +7,7 @@
 import { onChange } from "./colours";
 import { h, named, soon } from "./dom";
 import { type Answer, Engine, type Pair, Refused, type Slot, type SolidAnswer, type SolidProof, type Take, bytesOf } from "./engine";
-import { EXAMPLES, SLOTS } from "./examples";
+import { EXAMPLES, type Part, SLOTS } from "./examples";
 import { dot, length, placed, sub } from "./math";
 import type { AssemblyTab } from "./assembly";
 import type { Found } from "./found";
@@ -17,6 +17,7 @@ import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
 import { View } from "./view";
 import { type Bodies, drawn, forget } from "./view/body";
+import { drawable } from "./view/framing";
 import type { Tool } from "./view/handles";
 
 const TABS: Tab[] = ["answer", "found", "assembly"];
@@ -41,6 +42,8 @@ class Page {
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
   private readonly engine = engine;
   private readonly bodies: Bodies = {};
+  /** What they were made of. */
+  private readonly made: Partial<Record<Slot, Part>> = {};
   /** Made after the first answer, because graphics may take a while to begin. */
   private view: View | undefined;
   private readonly shadow = new Shadow();
@@ -270,6 +273,9 @@ class Page {
     try {
       const url = new URL(`data/${file}`, document.baseURI);
       const known = Object.values(EXAMPLES).some((e) => e.moving.file === file || e.fixed.file === file);
+      // A file that somebody gave is there still when an address, or going back, asks for it again.
+      const made = this.made[slot];
+      if (!known && this.bodies[slot] && made?.file === file && made.take === take) return;
       const response = known ? await fetch(url) : undefined;
       if (!response?.ok) throw new Refused(`${file} is not among the examples: choose or drop it again`);
       const bytes = await response.arrayBuffer();
@@ -277,8 +283,7 @@ class Page {
     } catch (error) {
       if (turn !== this.turns[slot]) return;
       // The body before it is not what is asked about.
-      forget(this.bodies[slot]);
-      delete this.bodies[slot];
+      this.remove(slot);
       this.refuse(slot, file, error);
     }
   }
@@ -291,13 +296,24 @@ class Page {
       [this.last, this.before] = [undefined, undefined];
       this.bodies[slot] = drawn(body);
       this.state.parts[slot] = { file: name, take };
+      this.made[slot] = { file: name, take };
       delete this.refusals[slot];
     } finally {
       this.waiting(-1);
     }
   }
 
+  private remove(slot: Slot) {
+    forget(this.bodies[slot]);
+    delete this.bodies[slot];
+  }
+
   private refuse(slot: Slot, name: string, error: unknown) {
+    // A large one makes room for the file that is read.
+    if (error instanceof Refused && error.gone && this.bodies[slot]) {
+      this.remove(slot);
+      void this.ask();
+    }
     const instead = error instanceof Refused ? error.instead : [];
     this.refusals[slot] = { name, message: error instanceof Error ? error.message : String(error), instead };
     this.show();
@@ -378,8 +394,9 @@ class Page {
     this.time.show(state, answer, this.pass());
     view?.setPlain(state.tab === "found");
     view?.show(state, answer);
-    named("inset").hidden = !moving || !fixed || state.tab !== "answer";
-    if (moving && fixed) this.shadow.show(state, { moving, fixed }, answer);
+    const seen = moving && fixed && drawable(state, answer, moving, fixed);
+    named("inset").hidden = !seen || state.tab !== "answer";
+    if (seen) this.shadow.show(state, { moving, fixed }, answer);
   });
 
   /** The translation after which the bodies have passed each other. */

@@ -16,7 +16,7 @@ import type { State } from "./state";
 import { type Arrow, arrow } from "./view/arrow";
 import { type Bodies, type Drawn, matrixOf, placedBody } from "./view/body";
 import { contact, gap } from "./view/contact";
-import { bestSide, distance, extent } from "./view/framing";
+import { bestSide, distance, drawable, extent } from "./view/framing";
 import { Ground } from "./view/ground";
 import { Handles, type Tool } from "./view/handles";
 import { Overlay } from "./view/overlay";
@@ -40,6 +40,7 @@ export class View {
   private arrow: Arrow | undefined;
   private labels: Label[] = [];
   private plain = false;
+  private fitted = false;
 
   onDirection: (direction: Vec, done: boolean) => void = () => {};
 
@@ -104,7 +105,8 @@ export class View {
   fit(state: State, answer: Answer | undefined, along = false) {
     [this.state, this.answer] = [state, answer];
     const { moving, fixed } = this.bodies;
-    if (!moving || !fixed) return;
+    if (!moving || !fixed || !drawable(state, answer, moving, fixed)) return;
+    this.fitted = true;
     Object.assign(this.frame, extent(state, answer, moving, fixed));
     const far = distance(this.frame.size, this.camera.fov, this.camera.aspect);
     const from: Vec = along ? times(unit(state.direction), -1) : bestSide(state.direction, answer);
@@ -122,6 +124,11 @@ export class View {
     const { frame, shown } = this;
     const { moving, fixed } = this.bodies;
     clear(shown, this.kept());
+    if (moving && fixed) {
+      if (!drawable(state, answer, moving, fixed)) return this.render();
+      // An address may have begun with what cannot be drawn.
+      if (!this.fitted) return this.fit(state, answer);
+    }
     if (fixed) shown.add(placedBody(fixed, matrixOf(state.poses.fixed, fixed.middle, frame.origin), frame.colours.fixed, this.plain ? "ghost" : "solid", frame.colours));
     if (moving) this.addMoving(moving, state, answer);
     shown.add(this.ground.grid(frame, this.bodies, state));

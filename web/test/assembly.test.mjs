@@ -131,7 +131,9 @@ test("files are chosen, refused and dropped; the page stays alive", async () => 
 });
 
 test("on a phone, and without WebGL", async () => {
-  const page = await opened("", { viewport: { width: 360, height: 640 }, hasTouch: true });
+  // A part that there is none of is not waited for.
+  const page = await opened("&apart=99", { viewport: { width: 360, height: 640 }, hasTouch: true });
+  await page.waitForSelector(".assembly-panel :text('Pick a part')");
   assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 360);
   await page.tap(".part:has-text('cover')");
   await page.waitForSelector(".part[aria-pressed=true]");

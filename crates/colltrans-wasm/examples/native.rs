@@ -1,7 +1,7 @@
 //! The same answers without a browser: one question a line in, one answer a line out.
 //!
 //! A line is `FILE<tab>QUESTION` for a question that comes with a file, else the question alone.
-//! `cargo run --release --example native < questions > answers`
+//! `cargo run --profile native --example native < questions > answers`
 
 use std::io::{self, BufRead as _, Write as _};
 

@@ -18,11 +18,13 @@ pub(crate) struct Refusal {
     pub(crate) error: String,
     /// What the same file could be taken as instead.
     pub(crate) instead: Vec<&'static str>,
+    /// Whether the body that was there before the file is no more.
+    pub(crate) gone: bool,
 }
 
 impl From<String> for Refusal {
     fn from(error: String) -> Self {
-        Self { error, instead: Vec::new() }
+        Self { error, instead: Vec::new(), gone: false }
     }
 }
 
@@ -34,6 +36,6 @@ impl Answer {
 
 impl Refusal {
     pub(crate) fn told(self) -> Answer {
-        Answer::of(&json!({ "error": self.error, "instead": self.instead }))
+        Answer::of(&json!({ "error": self.error, "instead": self.instead, "gone": self.gone }))
     }
 }

@@ -129,22 +129,20 @@ fn refused_hull(name: &str, error: &BuildError) -> Refusal {
         }
         _ => Vec::new(),
     };
-    Refusal { error: format!("{name}: {error}"), instead }
+    Refusal { instead, ..format!("{name}: {error}").into() }
 }
 
 fn refused_solid(name: &str, error: &SolidError) -> Refusal {
     match error {
         SolidError::Open { count, from, to, facet } => {
             let edges = if *count == 1 { "edge has" } else { "edges have" };
-            Refusal {
-                error: format!(
-                    "{name}: the surface is not closed: {count} {edges} a face on one side only, the \
-                     first runs from vertex {from} to vertex {to} of face {facet}"
-                ),
-                instead: vec!["open", "hull"],
-            }
+            let error = format!(
+                "{name}: the surface is not closed: {count} {edges} a face on one side only, the \
+                 first runs from vertex {from} to vertex {to} of face {facet}"
+            );
+            Refusal { instead: vec!["open", "hull"], ..error.into() }
         }
-        other => Refusal { error: format!("{name}: {other}"), instead: vec!["hull"] },
+        other => Refusal { instead: vec!["hull"], ..format!("{name}: {other}").into() },
     }
 }
 

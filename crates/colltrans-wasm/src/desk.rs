@@ -7,19 +7,69 @@ use crate::body::{self, Part};
 use crate::question::{Load, Question, Slot, Take};
 use crate::{certify, convex, levels, search, solid};
 
+/// A body made of a file with more bytes goes before the next file is read: both may not fit.
+const LARGE: usize = 64 << 20;
+
 /// Two bodies, as files made them.
 #[derive(Debug, Default)]
 pub struct Desk {
-    moving: Option<Loaded>,
-    fixed: Option<Loaded>,
+    moving: Place,
+    fixed: Place,
 }
 
-/// A file, read once, and the body made of it.
+/// What is asked about, and what is to take its place: a file that no body was made of is refused, and what
+/// was there stays.
+#[derive(Debug, Default)]
+struct Place {
+    body: Option<(File, Part)>,
+    offered: Option<File>,
+}
+
+/// A file, read once.
 #[derive(Debug)]
-struct Loaded {
+struct File {
     name: String,
+    bytes: usize,
     mesh: Mesh,
-    part: Option<Part>,
+}
+
+impl Place {
+    /// A file without bytes is the one that was offered last, or else the one in use, taken in another way.
+    fn load(&mut self, load: Load, bytes: Vec<u8>) -> Result<Answer, Refusal> {
+        let used = self.body.as_ref().map(|(file, _)| file);
+        let known = self.offered.as_ref().or(used).is_some_and(|file| file.name == load.name);
+        if !bytes.is_empty() || !known {
+            self.offered = None;
+            self.make_room();
+            let length = bytes.len();
+            let mesh = body::read(&load.name, bytes)?;
+            self.offered = Some(File { name: load.name, bytes: length, mesh });
+        }
+        let mut file = match self.offered.take() {
+            Some(file) => file,
+            None => self.body.take().map(|(file, _)| file).ok_or_else(|| "no file".to_owned())?,
+        };
+        match body::build(&file.mesh, &file.name, load.take) {
+            Ok((part, answer)) => {
+                if load.take == Take::Convex {
+                    // Nothing else will be made of it.
+                    file.mesh = Mesh::default();
+                }
+                self.body = Some((file, part));
+                Ok(answer)
+            }
+            Err(refusal) => {
+                self.offered = Some(file);
+                Err(refusal)
+            }
+        }
+    }
+
+    fn make_room(&mut self) {
+        if self.body.as_ref().is_some_and(|(file, _)| file.bytes > LARGE) {
+            self.body = None;
+        }
+    }
 }
 
 impl Desk {
@@ -56,32 +106,18 @@ impl Desk {
         }
     }
 
-    /// A file without bytes is the one that the slot has, taken in another way.
     fn load(&mut self, load: Load, file: Vec<u8>) -> Result<Answer, Refusal> {
-        let slot = match load.slot {
+        let place = match load.slot {
             Slot::Moving => &mut self.moving,
             Slot::Fixed => &mut self.fixed,
         };
-        if !file.is_empty() || slot.as_ref().is_none_or(|known| known.name != load.name) {
-            // The old one goes first: both may be large.
-            *slot = None;
-            let mesh = body::read(&load.name, file)?;
-            *slot = Some(Loaded { name: load.name, mesh, part: None });
-        }
-        let Some(known) = slot else { return Err("no file was given".to_owned().into()) };
-        known.part = None;
-        let (part, answer) = body::build(&known.mesh, &known.name, load.take)?;
-        if load.take == Take::Convex {
-            // Nothing else will be made of it.
-            known.mesh = Mesh::default();
-        }
-        known.part = Some(part);
-        Ok(answer)
+        let answer = place.load(load, file);
+        answer.map_err(|refusal| Refusal { gone: place.body.is_none(), ..refusal })
     }
 
     fn bodies(&self) -> Result<[&Part; 2], Refusal> {
-        let [Some(moving), Some(fixed)] = [&self.moving, &self.fixed]
-            .map(|slot| slot.as_ref().and_then(|known| known.part.as_ref()))
+        let [Some(moving), Some(fixed)] =
+            [&self.moving, &self.fixed].map(|place| place.body.as_ref().map(|(_, part)| part))
         else {
             return Err("two bodies are needed".to_owned().into());
         };

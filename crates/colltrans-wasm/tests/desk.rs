@@ -113,6 +113,19 @@ fn what_cannot_be_answered_is_said() {
     assert_eq!(answer["body"]["kind"], "solid");
 
     let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let (before, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+    assert_eq!(before["outcome"], "contact");
+    // What was there is still answered about when a file is refused, because of its text or of its shape.
+    for (name, file) in [("a.off", b"OFF\n1 0 0\n0 0".to_vec()), ("plate.off", data("plate.off"))] {
+        let (refused, _) = ask(&mut desk, &load(name), file);
+        assert!(refused["error"].is_string() && refused["gone"] == false, "{refused}");
+        let (after, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+        assert_eq!(after, before);
+    }
+    let (answer, _) = ask(&mut desk, &again, Vec::new());
+    assert_eq!(answer["body"]["kind"], "solid");
+    let (answer, _) = ask(&mut desk, &load("dodecahedron.off"), data("dodecahedron.off"));
+    assert_eq!(answer["body"]["kind"], "convex");
     let (answer, _) = ask(&mut desk, &pair("cast", [0.0, 0.0, 0.0]), Vec::new());
     assert!(answer["error"].as_str().unwrap().contains("direction"), "{answer}");
 }

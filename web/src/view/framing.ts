@@ -5,6 +5,16 @@ import { type Vec, add, dot, length, placed, sub, times, unit } from "../math";
 import type { State } from "../state";
 import type { Drawn } from "./body";
 
+/** Single precision, in which pictures are computed, holds no more. */
+const FAR = 1e30;
+
+/** Whether a picture can be made: numbers may be larger than it holds, until the library has refused them and
+ * even where it answers. */
+export function drawable({ poses, direction }: State, answer: Answer | undefined, moving: Drawn, fixed: Drawn): boolean {
+  const way = times(direction, Math.max(1, Math.abs(answer?.first?.t ?? 0)));
+  return [...poses.moving, ...poses.fixed, ...way, moving.radius, ...moving.middle, fixed.radius, ...fixed.middle].every((x) => Math.abs(x) < FAR);
+}
+
 /** The middle of the bodies, the moving one where it starts and where it stops, and half of their extent. */
 export function extent(state: State, answer: Answer | undefined, moving: Drawn, fixed: Drawn): { origin: Vec; size: number } {
   const start = placed(state.poses.moving, moving.middle);

@@ -1,7 +1,7 @@
 //! The same answers without a browser: one question a line in, one answer a line out.
 //!
 //! A line is `FILE<tab>QUESTION` for a question that comes with a file, else the question alone.
-//! `cargo run --release -p colltrans-wasm-assembly --example native_assembly < questions > answers`
+//! `cargo run --profile native -p colltrans-wasm-assembly --example native_assembly < questions > answers`
 
 use std::io::{self, BufRead as _, Write as _};
 

@@ -5,6 +5,12 @@
 //! query of a library behind one of the other would find the caches full of the other's. *Growth*: the same
 //! bumpy ball in more and more facets. *Flat*: two slabs with many facets in one plane, resting,
 //! sliding, parting, and with a gap.
+//!
+//! A pair starts in three ways. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
+//! one, up to 0.7 times it aside, whether they meet or not. *Near*: of these settings those that meet,
+//! the moving mesh put forward to [`NEAR`] times the sum before it meets the fixed one. *Near miss*: those
+//! that meet, started as far, the moving mesh put aside along a random axis until it misses the fixed one
+//! by at most [`MISS`] times the sum, found by halving between none and twice the sum.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -36,6 +42,10 @@ struct Command {
 
 /// Two answers agree when they differ by less than this share of the bodies' size.
 const AGREEMENT: f64 = 1e-4;
+/// Shares of the sum of the radii: how far before they meet bodies start that start near, and the most by
+/// which they miss each other narrowly.
+const NEAR: f64 = 0.02;
+const MISS: f64 = 0.01;
 /// Queries of one library in a row.
 const BLOCK: usize = 50;
 
@@ -43,13 +53,15 @@ fn main() -> ExitCode {
     let command = Command::parse();
     let mut rows = Vec::new();
     println!(
-        "{:<28} {:>9} {:>11} {:>11} {:>9} {:>11} {:>6} {:>5}",
+        "{:<44} {:>9} {:>11} {:>11} {:>9} {:>11} {:>6} {:>5}",
         "pair", "facets", "ours", "mean", "p99", "parry", "ratio", "hits"
     );
     for pair in pairs(&command) {
-        let row = pair.measure(&command.arguments);
-        print_pair(&row);
-        rows.push(row);
+        for start in Start::ALL {
+            let row = pair.measure(&command.arguments, start);
+            print_pair(&row);
+            rows.push(row);
+        }
     }
     if command.only.as_ref().is_none_or(|only| "growth".contains(only.as_str())) {
         rows.extend(growth(&command.arguments));
@@ -63,7 +75,7 @@ fn main() -> ExitCode {
 fn print_pair(row: &Value) {
     let number = |name: &str| row[name].as_f64().unwrap_or(f64::NAN);
     println!(
-        "{:<28} {:>9} {:>8.1} us {:>8.1} us {:>6.0} us {:>8.0} us {:>6.1} {:>5}",
+        "{:<44} {:>9} {:>8.1} us {:>8.1} us {:>6.0} us {:>8.0} us {:>6.1} {:>5}",
         row["name"].as_str().unwrap_or(""),
         row["facets"],
         number("median_ns") / 1e3,
@@ -143,6 +155,26 @@ fn solid(mesh: &Mesh) -> Option<Solid> {
         .ok()
 }
 
+/// How a pair starts: see the module's head.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Start {
+    Far,
+    Near,
+    NearMiss,
+}
+
+impl Start {
+    const ALL: [Self; 3] = [Self::Far, Self::Near, Self::NearMiss];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Far => "far",
+            Self::Near => "near",
+            Self::NearMiss => "near miss",
+        }
+    }
+}
+
 struct Placement {
     poses: [Pose; 2],
     direction: DVec3,
@@ -159,10 +191,64 @@ impl Placement {
         let poses = [pose(random.rotation(), start), pose(random.rotation(), DVec3::ZERO)];
         Self { poses, direction }
     }
+
+    /// The distance after which the bodies meet, if they do.
+    fn distance(&self, [p, q]: [&Solid; 2], workspace: &mut Workspace) -> Option<f64> {
+        let cast = Cast::new(p.at(self.poses[0]), q.at(self.poses[1]), self.direction).ok()?;
+        cast.clearance_in(workspace).distance().filter(|d| d.is_finite())
+    }
+
+    /// Of bodies that meet the same, the moving one put aside until they do not.
+    fn missing(&self, aside: DVec3, bodies: [&Solid; 2], workspace: &mut Workspace) -> Self {
+        let (mut meets, mut misses) = (0.0, 2.0);
+        while misses - meets > MISS {
+            let middle = 0.5 * (meets + misses);
+            let met = self.moved(aside * middle).distance(bodies, workspace).is_some();
+            *(if met { &mut meets } else { &mut misses }) = middle;
+        }
+        self.moved(aside * misses)
+    }
+
+    /// The same with the moving body elsewhere.
+    fn moved(&self, by: DVec3) -> Self {
+        let [moving, fixed] = self.poses;
+        let at = moving.translation() + by;
+        let moving = Pose::new(moving.rotation(), at).unwrap_or(moving);
+        Self { poses: [moving, fixed], ..*self }
+    }
 }
 
 impl Pair {
-    fn measure(&self, arguments: &Arguments) -> Value {
+    /// So many settings.
+    fn placements(
+        &self,
+        bodies: [&Solid; 2],
+        start: Start,
+        count: usize,
+        seed: u64,
+    ) -> Vec<Placement> {
+        let radii = [radius(&self.bodies[0]), radius(&self.bodies[1])];
+        let reach = radii[0] + radii[1];
+        let facets = bodies[0].triangles().len();
+        let mut random = Random::new(seed, &[self.name.len() as u64, facets as u64]);
+        let mut workspace = Workspace::default();
+        let mut draw = || {
+            let placement = Placement::draw(radii, &mut random);
+            if start == Start::Far {
+                return Some(placement);
+            }
+            let distance = placement.distance(bodies, &mut workspace)?;
+            if start == Start::Near {
+                return Some(placement.moved(placement.direction * (distance - NEAR * reach)));
+            }
+            let aside = random.direction().reject_from_normalized(placement.direction);
+            Some(placement.missing(aside.normalize_or_zero() * reach, bodies, &mut workspace))
+        };
+        // Not all that are drawn meet.
+        (0..100 * count).filter_map(|_| draw()).take(count).collect()
+    }
+
+    fn measure(&self, arguments: &Arguments, start: Start) -> Value {
         let [a, b] = &self.bodies;
         let (Some(p), Some(q)) = (solid(a), solid(b)) else { return Value::Null };
         let (r, f) = (
@@ -170,14 +256,12 @@ impl Pair {
             triangle_mesh(q.vertices(), q.triangles()),
         );
         let radii = [radius(a), radius(b)];
-        let mut random =
-            Random::new(arguments.seed, &[self.name.len() as u64, p.triangles().len() as u64]);
         let count = if arguments.quick { 60 } else { 300 };
         let stopwatch = Stopwatch::new();
         let (mut ours, mut theirs) = (Times::default(), Times::default());
         let (mut hits, mut apart) = (0, 0);
         let mut workspace = Workspace::default();
-        let placements: Vec<_> = (0..count).map(|_| Placement::draw(radii, &mut random)).collect();
+        let placements = self.placements([&p, &q], start, count, arguments.seed);
         for block in placements.chunks(BLOCK) {
             let mut distances = Vec::with_capacity(BLOCK);
             for Placement { poses: [s, t], direction } in block {
@@ -204,9 +288,14 @@ impl Pair {
         }
         ours.sort();
         theirs.sort();
+        let name = match start {
+            Start::Far => self.name.clone(),
+            _ => format!("{}, {}", self.name, start.name()),
+        };
         let mut row = ours.to_json();
         row.insert("group".into(), json!("pairs"));
-        row.insert("name".into(), json!(self.name));
+        row.insert("name".into(), json!(name));
+        row.insert("start".into(), json!(start.name()));
         row.insert("facets".into(), json!(p.triangles().len() + q.triangles().len()));
         row.insert("settings".into(), json!(count));
         row.insert("hits".into(), json!(hits));

@@ -370,6 +370,13 @@ fn solids(page: &mut String, run: &Value) -> Result<(), Failure> {
     }
     let differ: f64 = rows(run).iter().filter_map(|row| row["answers_apart"].as_f64()).sum();
     writeln!(page, "\nAnswers that differ from parry's: {differ}.")?;
+    if rows(run).iter().any(|row| text(row, "start") == "near") {
+        page.push_str(
+            "\n*Near*: settings that meet, started 0.02 times the sum of the radii before. *Near miss*: such \
+             settings moved aside until they miss, by at most 0.01 times the sum. All others: 1.05 times \
+             it before each other, and up to 0.7 times it aside.\n",
+        );
+    }
     Ok(())
 }
 

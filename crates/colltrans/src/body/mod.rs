@@ -9,7 +9,7 @@ pub(crate) mod solid;
 pub(crate) mod topology;
 
 pub(crate) use convex::LargeFace;
-pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
+pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defect};
 pub use feature::Feature;
 pub(crate) use feature::feature;
 pub(crate) use inertia::Inertia;

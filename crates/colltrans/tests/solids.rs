@@ -1,8 +1,8 @@
 //! Solids in the situations that people have names for.
 
 use colltrans::{
-    Cast, Clearance, ConvexPolyhedron, Pose, Solid, SolidError, SolidOptions, SolidOverlap,
-    StartOverlap,
+    Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
+    SolidOverlap, StartOverlap,
 };
 use colltrans_kit::shapes::Mesh;
 use colltrans_kit::solids::{bolt, pin, slab, turned, washer};
@@ -98,7 +98,7 @@ fn a_plate_pressed_into_a_table() {
     let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
     let plate = cuboid([-1.0, -1.0, -0.125], [1.0, 1.0, 0.5]);
     let down = cast(&plate, &table, DVec3::NEG_Z);
-    let Clearance::Overlapping(SolidOverlap { depth: Some(depth) }) = down.clearance() else {
+    let Clearance::Overlapping(SolidOverlap { depth: Some(depth), .. }) = down.clearance() else {
         panic!("{:?}", down.clearance())
     };
     assert!((depth - 0.125).abs() < 1e-9, "{depth}");
@@ -106,6 +106,36 @@ fn a_plate_pressed_into_a_table() {
     assert!(distance(&tolerated(DVec3::NEG_Z)) < 1e-9);
     assert!(tolerated(DVec3::Z).clearance().is_free());
     assert!(tolerated(DVec3::X).clearance().is_free());
+}
+
+#[test]
+fn what_was_ignored_at_the_start_is_told() {
+    let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
+    let plate = cuboid([-1.0, -1.0, -0.125], [1.0, 1.0, 0.5]);
+    let aside = cast(&plate, &table, DVec3::X).with_start_overlap(StartOverlap::Ignore);
+    assert!(aside.clearance().is_free());
+    let told = aside.start_overlap().expect("it is pressed in");
+    assert!((told.depth.expect("a tolerance") - 0.125).abs() < 1e-9, "{told:?}");
+    let Overlap::Facets(f, g) = told.place else { panic!("{told:?}") };
+    // A facet that reaches from below the table's top to above it, and one of the top or the like.
+    let heights = |s: &Solid, t: u32| s.triangles()[t as usize].map(|v| s.vertices()[v as usize].z);
+    assert!(heights(&plate, f).contains(&-0.125), "{told:?}");
+    assert!(heights(&table, g).contains(&0.0), "{told:?}");
+    // The answer that refuses tells the same, and with a tolerance of the depth there is nothing.
+    let refused = aside.with_start_overlap(StartOverlap::Refuse).clearance();
+    assert!(matches!(refused, Clearance::Overlapping(same) if same == told), "{refused:?}");
+    let depth = told.depth.expect("a tolerance");
+    assert_eq!(aside.with_tolerance(depth).expect("a tolerance").start_overlap(), None);
+    // Half of it tolerated changes where, but not how deep.
+    let half = aside.with_tolerance(depth / 2.0).expect("a tolerance").start_overlap();
+    assert_eq!(half.expect("it still is").depth, told.depth);
+    // What is inside.
+    let (block, part) = (cuboid([-3.0; 3], [3.0; 3]), cuboid([-0.5; 3], [0.5; 3]));
+    let place = |a, b| cast(a, b, DVec3::X).start_overlap().map(|o| o.place);
+    assert!(matches!(place(&part, &block), Some(Overlap::MovingInside(_))));
+    assert!(matches!(place(&block, &part), Some(Overlap::FixedInside(_))));
+    let beside = cuboid([3.0, 0.0, 0.0], [4.0, 1.0, 1.0]);
+    assert_eq!(place(&beside, &block), None);
 }
 
 #[test]

@@ -7,6 +7,10 @@
 //! cavity's: shells around material may overlap, as pieces do. What crosses before anything has moved
 //! is left out, pair by pair within a shell, and else shell by shell, for there curves of crossing
 //! wander.
+//!
+//! The sides of a wall face away from each other, so facets of one plane that look the same way are no
+//! wall's, whatever rounding does to them. Nodes of such facets are dismissed together: thin triangles
+//! of a large face have boxes that overlap by the thousand.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -14,7 +18,13 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::exact::side;
+use super::tree::{self, Node};
 use super::{Solid, shells};
+
+/// Facets within so many roundings of the largest coordinate of a plane lie in it.
+const FLAT: f64 = 64.0 * f64::EPSILON;
+/// Facets whose normals differ by more than this sine lie in no plane: a first look.
+const TURNED: f32 = 0.5;
 
 /// The facets, as positions in the triangles, that pass through others when vertices go from where
 /// they are to `moved`, in increasing order. `shell_of` and `volumes` tell the shells as they are.
@@ -25,7 +35,7 @@ pub(super) fn facets(
     volumes: &[f64],
 ) -> Vec<usize> {
     let shells = Shells { solid, shell_of, volumes };
-    let (before, after) = (Placing::new(solid, &solid.vertices), Placing::new(solid, moved));
+    let [before, after] = [&solid.vertices[..], moved].map(|vertices| Placing { solid, vertices });
     let mut crossing: Vec<[usize; 2]> = Vec::new();
     after.each_pair(&mut |pair| {
         if shells.may_pass(pair) && after.touch(pair) {
@@ -126,39 +136,122 @@ impl Shells<'_> {
     }
 }
 
-/// The facets with their vertices in some places, and boxes around those of each node of the tree.
+/// The facets with their vertices in some places.
 struct Placing<'a> {
     solid: &'a Solid,
     vertices: &'a [DVec3],
-    boxes: Vec<[DVec3; 2]>,
 }
 
-impl<'a> Placing<'a> {
-    fn new(solid: &'a Solid, vertices: &'a [DVec3]) -> Self {
-        let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; solid.nodes.len()];
+/// What tells of pairs of nodes that no facets of theirs pass through each other.
+struct Fences {
+    /// Around the facets of each node.
+    boxes: Vec<[DVec3; 2]>,
+    /// Of nodes whose facets lie in a plane and look the same way.
+    flats: Vec<Option<Flat>>,
+}
+
+/// A plane, and the farthest vertices of the facets in it along the axes.
+struct Flat {
+    normal: DVec3,
+    on: DVec3,
+    rim: [DVec3; 6],
+    /// How far rounding may put points off the plane, and how far more for each unit of distance, by
+    /// tilting it.
+    tolerance: f64,
+    tilt: f64,
+}
+
+impl Flat {
+    fn new(placing: &Placing, node: &Node, tolerance: f64) -> Option<Self> {
+        if node.spread > TURNED {
+            return None;
+        }
+        let corners = || node.facets().flat_map(|t| placing.corners(t));
+        let first = corners().next()?;
+        let mut rim = [first; 6];
+        for p in corners() {
+            for k in 0..3 {
+                if p[k] < rim[k][k] {
+                    rim[k] = p;
+                }
+                if p[k] > rim[k + 3][k] {
+                    rim[k + 3] = p;
+                }
+            }
+        }
+        let (mut area, mut longest) = (DVec3::ZERO, 0.0_f64);
+        for i in 1..6 {
+            for j in 0..i {
+                let [u, v] = [rim[i] - rim[0], rim[j] - rim[0]];
+                let product = u.cross(v);
+                longest = longest.max(u.length()).max(v.length());
+                if product.length_squared() > area.length_squared() {
+                    area = product;
+                }
+            }
+        }
+        let facing = node.facets().map(|t| tree::normal(placing.corners(t)).0).sum::<DVec3>();
+        let normal = (area * area.dot(facing).signum()).try_normalize()?;
+        let tilt = tolerance * longest / area.length();
+        let flat = Self { normal, on: rim[0], rim, tolerance, tilt };
+        let alike = |t: usize| tree::normal(placing.corners(t)).0.dot(normal) > 0.0;
+        let lies = corners().all(|p| flat.holds(p)) && node.facets().all(alike);
+        lies.then_some(flat)
+    }
+
+    fn holds(&self, point: DVec3) -> bool {
+        let away = point - self.on;
+        self.normal.dot(away).abs() <= self.tolerance + self.tilt * away.length()
+    }
+
+    /// Whether both lie in one plane and look the same way.
+    fn is_one_with(&self, other: &Self) -> bool {
+        let holds = |f: &Self, g: &Self| g.rim.iter().all(|p| f.holds(*p));
+        self.normal.dot(other.normal) > 0.0 && (holds(self, other) || holds(other, self))
+    }
+}
+
+impl Fences {
+    fn new(placing: &Placing) -> Self {
+        let nodes = &placing.solid.nodes;
+        let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; nodes.len()];
         // Children come after their node.
-        for (k, node) in solid.nodes.iter().enumerate().rev() {
+        for (k, node) in nodes.iter().enumerate().rev() {
             boxes[k] = if node.is_leaf() {
-                let corners = node.facets().flat_map(|t| solid.triangles[t]);
-                let at = corners.map(|v| vertices[v as usize]);
-                at.fold(boxes[k], |[low, high], p| [low.min(p), high.max(p)])
+                let corners = node.facets().flat_map(|t| placing.corners(t));
+                corners.fold(boxes[k], |[low, high], p| [low.min(p), high.max(p)])
             } else {
                 let [[a, b], [c, d]] = [0, 1].map(|n| boxes[k + node.skip as usize + n]);
                 [a.min(c), b.max(d)]
             };
         }
-        Self { solid, vertices, boxes }
+        let tolerance = FLAT * placing.solid.reach;
+        let flats = nodes.iter().map(|node| Flat::new(placing, node, tolerance)).collect();
+        Self { boxes, flats }
     }
 
+    fn part(&self, a: usize, b: usize) -> bool {
+        let ([low, high], [least, most]) = (self.boxes[a], self.boxes[b]);
+        let touch = low.cmple(most).all() && high.cmpge(least).all();
+        let one_plane = match (&self.flats[a], &self.flats[b]) {
+            (Some(f), Some(g)) => a == b || f.is_one_with(g),
+            _ => false,
+        };
+        !touch || one_plane
+    }
+}
+
+impl Placing<'_> {
     fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.solid.triangles[triangle].map(|v| self.vertices[v as usize])
     }
 
-    /// All pairs of facets whose leaves' boxes touch.
+    /// All pairs of facets whose leaves' boxes touch and do not lie in one plane.
     fn each_pair(&self, visit: &mut impl FnMut([usize; 2])) {
+        let fences = Fences::new(self);
         let mut stack = vec![[0, 0]];
         while let Some([a, b]) = stack.pop() {
-            if a != b && !self.boxes_touch(a, b) {
+            if fences.part(a, b) {
                 continue;
             }
             let [m, n] = [a, b].map(|k| &self.solid.nodes[k]);
@@ -176,11 +269,6 @@ impl<'a> Placing<'a> {
                 stack.extend(halves(b).map(|y| [a, y]));
             }
         }
-    }
-
-    fn boxes_touch(&self, a: usize, b: usize) -> bool {
-        let ([low, high], [least, most]) = (self.boxes[a], self.boxes[b]);
-        low.cmple(most).all() && high.cmpge(least).all()
     }
 
     /// Whether two facets without a common vertex have a point in common.

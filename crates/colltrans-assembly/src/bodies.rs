@@ -142,7 +142,7 @@ impl<'a> Bodies<'a> {
 
     /// What could not be shrunk, or grown, as the fit asks for; in words, `None` if nothing.
     ///
-    /// Facets turn inside out where a part is thinner than the tolerance: what is said about them is
+    /// Facets turn inside out, or through others, where a part is thinner than the tolerance: what is said about them is
     /// not what the part does. Vertices that stay are those of saddles: around them no displacement is
     /// inwards for all facets.
     pub fn remark(&self, part: usize) -> Option<String> {
@@ -157,7 +157,10 @@ impl<'a> Bodies<'a> {
             said.push("nothing of it is left: it is thinner than that".into());
         }
         if !inverted.is_empty() {
-            said.push(format!("facets that this turns inside out: {}", inverted.len()));
+            said.push(format!(
+                "facets that this turns inside out or through others: {}",
+                inverted.len()
+            ));
         }
         if !stuck.is_empty() {
             said.push(format!("vertices that it cannot move: {}", stuck.len()));

@@ -70,6 +70,30 @@ pub enum BuildError {
         /// The depth that would have been tolerated.
         tolerance: f64,
     },
+    /// An amount to shrink or grow by that is negative, not finite, or takes coordinates out of range.
+    #[error("the amount {amount} to shrink or grow by is negative, not finite or out of range")]
+    Amount {
+        /// The amount as given.
+        amount: f64,
+    },
+    /// A body to be shrunk of which nothing with a volume would be left.
+    #[error(
+        "shrunk by {amount} nothing is left of the body: it holds no ball of this radius, one of \
+         radius {fits} it does"
+    )]
+    TooThin {
+        /// The amount as given.
+        amount: f64,
+        /// The radius of a ball that the body holds, at least half of the largest one's, to within
+        /// rounding; 0 for a body of lower dimension.
+        fits: f64,
+    },
+    /// A segment or a point to be grown.
+    #[error("a body of dimension {dimension} has no faces to be moved outwards")]
+    NothingToMove {
+        /// Its dimension.
+        dimension: u8,
+    },
     /// The depth to be tolerated is negative or no number.
     #[error("the tolerance {tolerance} is negative or no number")]
     Tolerance {

@@ -131,7 +131,9 @@ pub use answer::{
     WhyFree,
 };
 pub use body::solid::{AsSolid, Shell, ShrinkReport, Solid, SolidError, SolidReport};
-pub use body::{Body, ConvexPolyhedron, ConvexityDefect, Feature, Placed, Pose, convexity_defect};
+pub use body::{
+    Body, ConvexPolyhedron, ConvexityDefect, Feature, OffsetReport, Placed, Pose, convexity_defect,
+};
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, Features, WitnessPoints, cast};

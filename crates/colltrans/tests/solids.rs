@@ -1,8 +1,8 @@
 //! Solids in the situations that people have names for.
 
 use colltrans::{
-    Cast, Clearance, ConvexPolyhedron, Pose, Solid, SolidError, SolidOptions, SolidOverlap,
-    StartOverlap,
+    Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
+    SolidOverlap, StartOverlap,
 };
 use colltrans_kit::shapes::Mesh;
 use colltrans_kit::solids::{bolt, pin, slab, turned, washer};
@@ -98,7 +98,7 @@ fn a_plate_pressed_into_a_table() {
     let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
     let plate = cuboid([-1.0, -1.0, -0.125], [1.0, 1.0, 0.5]);
     let down = cast(&plate, &table, DVec3::NEG_Z);
-    let Clearance::Overlapping(SolidOverlap { depth: Some(depth) }) = down.clearance() else {
+    let Clearance::Overlapping(SolidOverlap { depth: Some(depth), .. }) = down.clearance() else {
         panic!("{:?}", down.clearance())
     };
     assert!((depth - 0.125).abs() < 1e-9, "{depth}");
@@ -106,6 +106,36 @@ fn a_plate_pressed_into_a_table() {
     assert!(distance(&tolerated(DVec3::NEG_Z)) < 1e-9);
     assert!(tolerated(DVec3::Z).clearance().is_free());
     assert!(tolerated(DVec3::X).clearance().is_free());
+}
+
+#[test]
+fn what_was_ignored_at_the_start_is_told() {
+    let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
+    let plate = cuboid([-1.0, -1.0, -0.125], [1.0, 1.0, 0.5]);
+    let aside = cast(&plate, &table, DVec3::X).with_start_overlap(StartOverlap::Ignore);
+    assert!(aside.clearance().is_free());
+    let told = aside.start_overlap().expect("it is pressed in");
+    assert!((told.depth.expect("a tolerance") - 0.125).abs() < 1e-9, "{told:?}");
+    let Overlap::Facets(f, g) = told.place else { panic!("{told:?}") };
+    // A facet that reaches from below the table's top to above it, and one of the top or the like.
+    let heights = |s: &Solid, t: u32| s.triangles()[t as usize].map(|v| s.vertices()[v as usize].z);
+    assert!(heights(&plate, f).contains(&-0.125), "{told:?}");
+    assert!(heights(&table, g).contains(&0.0), "{told:?}");
+    // The answer that refuses tells the same, and with a tolerance of the depth there is nothing.
+    let refused = aside.with_start_overlap(StartOverlap::Refuse).clearance();
+    assert!(matches!(refused, Clearance::Overlapping(same) if same == told), "{refused:?}");
+    let depth = told.depth.expect("a tolerance");
+    assert_eq!(aside.with_tolerance(depth).expect("a tolerance").start_overlap(), None);
+    // Half of it tolerated changes where, but not how deep.
+    let half = aside.with_tolerance(depth / 2.0).expect("a tolerance").start_overlap();
+    assert_eq!(half.expect("it still is").depth, told.depth);
+    // What is inside.
+    let (block, part) = (cuboid([-3.0; 3], [3.0; 3]), cuboid([-0.5; 3], [0.5; 3]));
+    let place = |a, b| cast(a, b, DVec3::X).start_overlap().map(|o| o.place);
+    assert!(matches!(place(&part, &block), Some(Overlap::MovingInside(_))));
+    assert!(matches!(place(&block, &part), Some(Overlap::FixedInside(_))));
+    let beside = cuboid([3.0, 0.0, 0.0], [4.0, 1.0, 1.0]);
+    assert_eq!(place(&beside, &block), None);
 }
 
 #[test]
@@ -161,11 +191,134 @@ fn the_volumes_of_shrunk_and_grown_shells() {
     near(&body, [1.0, 216.0, -64.0]);
     near(&body.shrunk(0.25).expect("an amount").0, [0.125, 166.375, -91.125]);
     near(&body.grown(0.5).expect("an amount").0, [8.0, 343.0, -27.0]);
-    // By more than half its size the small cube is mirrored in its middle: that is said of its facets.
+    // By more than half its size the small cube is mirrored in its middle, and the wall between the
+    // other shells, 1 thick, passes through itself: that is said of all their facets.
     let (mirrored, said) = body.shrunk(0.75).expect("an amount");
     near(&mirrored, [-0.125, 91.125, -166.375]);
-    assert_eq!(said.inverted, (0..24).collect::<Vec<u32>>());
+    assert_eq!(said.inverted, (0..72).collect::<Vec<u32>>());
     assert!(body.shrink_report(0.25).inverted.is_empty());
+}
+
+/// A box around a cavity.
+fn hollow(outside: DVec3, cavity: [DVec3; 2], counts: [usize; 3]) -> Solid {
+    let around = slab(-outside, outside, counts);
+    solid(&around.joined(&slab(cavity[0], cavity[1], counts.map(|n| n + 1)).reversed()))
+}
+
+#[test]
+fn a_wall_all_round_a_cavity_passes_through_itself() {
+    let wall = 0.0625;
+    let inside = DVec3::splat(1.0 - wall);
+    for counts in [[1; 3], [3, 2, 4]] {
+        let thin = hollow(DVec3::ONE, [-inside, inside], counts);
+        let said = |amount: f64| thin.shrink_report(amount).inverted;
+        assert_eq!(said(0.49 * wall), Vec::<u32>::new());
+        // Then both shells are named: each is on the wrong side of the other.
+        for amount in [0.51 * wall, wall, 3.0 * wall] {
+            let all = thin.facet_indices().iter().max().expect("facets") + 1;
+            assert_eq!(said(amount), (0..all).collect::<Vec<u32>>(), "{amount}");
+        }
+        // Grown, the wall only gets thicker.
+        assert_eq!(thin.grown(0.25).expect("an amount").1.inverted, Vec::<u32>::new());
+        assert!(thin.shrunk(0.6 * wall).expect("an amount").1.stuck.is_empty());
+    }
+}
+
+#[test]
+fn a_wall_on_one_side_of_a_cavity_passes_through_itself() {
+    let wall = 0.0625;
+    for counts in [[1; 3], [3, 2, 4]] {
+        let cavity = [DVec3::new(-0.5, -0.25, -0.25), DVec3::new(1.0 - wall, 0.5, 0.25)];
+        let thin = hollow(DVec3::ONE, cavity, counts);
+        assert_eq!(thin.shrink_report(0.49 * wall).inverted, Vec::<u32>::new());
+        assert!(!thin.shrink_report(0.51 * wall).inverted.is_empty());
+    }
+    // Two cavities, and the wall between them.
+    let block = slab(DVec3::splat(-2.0), DVec3::splat(2.0), [2; 3]);
+    let cavity = |low: f64, high: f64| {
+        let corner =
+            |x| DVec3::new(x, 0.5_f64.copysign(x - low - 0.1), 1.0_f64.copysign(x - low - 0.1));
+        slab(corner(low), corner(high), [1, 2, 1]).reversed()
+    };
+    let two = solid(&block.joined(&cavity(-1.0, -0.03)).joined(&cavity(0.03, 1.0)));
+    assert_eq!(two.shrink_report(0.029).inverted, Vec::<u32>::new());
+    assert!(!two.shrink_report(0.031).inverted.is_empty());
+}
+
+#[test]
+fn the_bottom_of_a_pocket_passes_through_the_underside() {
+    // One shell, turned about z: a cup whose bottom is 0.01 thick and whose walls are 1.
+    let profile = [[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [1.0, 3.0], [1.0, 0.01], [0.0, 0.01]];
+    let cup = solid(&turned(&profile, 24));
+    assert_eq!(cup.shrink_report(0.0049).inverted, Vec::<u32>::new());
+    assert!(!cup.shrink_report(0.0051).inverted.is_empty());
+    // The other way round, a pocket of that width closes when the body grows.
+    let slit = [
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 3.0],
+        [1.01, 3.0],
+        [1.01, 1.0],
+        [1.0, 1.0],
+        [1.0, 3.0],
+        [0.0, 3.0],
+    ];
+    let slit = solid(&turned(&slit, 64));
+    let grown = |amount: f64| slit.grown(amount).expect("an amount").1.inverted;
+    assert_eq!(grown(0.0049), Vec::<u32>::new());
+    assert!(!grown(0.0051).is_empty());
+}
+
+#[test]
+fn pieces_that_overlap_are_no_thin_walls() {
+    let bars =
+        [cuboid([-3.0, -0.5, -0.5], [3.0, 0.5, 0.5]), cuboid([-0.4, -3.0, -0.7], [0.6, 3.0, 0.3])];
+    let cross = Solid::from_pieces(&bars).expect("two pieces");
+    assert_eq!(cross.shrink_report(0.1).inverted, Vec::<u32>::new());
+    // A rod through the wall of a cavity, and loose parts in it.
+    let block = hollow(DVec3::splat(4.0), [DVec3::splat(-2.0), DVec3::splat(2.0)], [3; 3]);
+    let rod = solid(&slab(DVec3::new(1.0, -0.3, -0.2), DVec3::new(6.0, 0.31, 0.22), [9, 1, 1]));
+    let loose = cuboid([-1.5; 3], [-1.0; 3]);
+    let all = Solid::from_pieces([&block, &rod, &loose]).expect("three pieces");
+    assert_eq!(all.shrink_report(0.05).inverted, Vec::<u32>::new());
+}
+
+#[test]
+fn thin_triangles_of_large_faces_are_told_apart_quickly() {
+    // Boxes of thin triangles in one plane overlap by the thousand.
+    let ring = solid(&washer([1.0, 2.0], [0.0, 1.0], 5_000));
+    let begun = std::time::Instant::now();
+    assert!(ring.shrink_report(1e-4).inverted.is_empty());
+    assert!(begun.elapsed() < std::time::Duration::from_secs(10), "it has become quadratic");
+}
+
+#[test]
+fn a_prism_of_20_000_sides_round_and_jagged() {
+    let sides = 20_000;
+    for radii in [[1.0, 1.0], [1.0, 0.6]] {
+        let ring = |z: f64| {
+            (0..sides).map(move |k| {
+                let (sine, cosine) = (std::f64::consts::TAU * k as f64 / sides as f64).sin_cos();
+                (DVec3::new(cosine, sine, 0.0) * radii[k % 2]).with_z(z)
+            })
+        };
+        let vertices: Vec<DVec3> = ring(0.0).chain(ring(1.0)).collect();
+        let n = sides as u32;
+        let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+        faces.extend((0..n).map(|k| vec![k, (k + 1) % n, n + (k + 1) % n, n + k]));
+        let begun = std::time::Instant::now();
+        let prism = Solid::from_mesh(&vertices, &faces).expect("a prism");
+        assert!(begun.elapsed() < std::time::Duration::from_secs(20), "it has become quadratic");
+        assert_eq!(prism.triangles().len(), 4 * sides - 4);
+        let area =
+            0.5 * sides as f64 * radii[0] * radii[1] * (std::f64::consts::TAU / sides as f64).sin();
+        assert!((prism.volume() / area - 1.0).abs() < 1e-9, "{}", prism.volume());
+        let on_top = cast(&prism, &prism, DVec3::Z);
+        assert!(on_top.overlaps());
+        let above = Pose::from_translation(DVec3::Z * 3.0).expect("in range");
+        let down = Cast::new(prism.at(above), prism.at(Pose::IDENTITY), DVec3::NEG_Z);
+        assert_eq!(distance(&down.expect("a direction")), 2.0);
+    }
 }
 
 #[test]

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOptions, StartOverlap,
+    Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOptions, SolidOverlap,
+    StartOverlap,
 };
 
 use super::{Body, Piece};
@@ -158,9 +159,9 @@ impl<'a> Question<'a> {
         for moving in &self.moving.pieces {
             for fixed in &self.fixed.pieces {
                 let cast = self.cast(&moving.solid, &fixed.solid, tolerance)?;
-                if cast.overlaps() {
+                if let Some(SolidOverlap { depth, .. }) = cast.start_overlap() {
                     let (moving, fixed) = (moving.file.as_path(), fixed.file.as_path());
-                    found.push(Overlap { moving, fixed, depth: cast.depth() });
+                    found.push(Overlap { moving, fixed, depth });
                 }
                 done();
             }
@@ -225,9 +226,11 @@ impl Piece {
             text.push(format!("{vertices}, as in a saddle (vertex {first})"));
         }
         if let Some(first) = report.inverted.first() {
-            let faces = counted(report.inverted.len(), "face turns", "faces turn");
+            let one = "face turns inside out or passes through another";
+            let many = "faces turn inside out or pass through others";
+            let faces = counted(report.inverted.len(), one, many);
             text.push(format!(
-                "{faces} inside out, because the part is thinner than the tolerance (face {first})"
+                "{faces}, because the part is thinner than the tolerance (face {first})"
             ));
         }
         // A convex body of a batch has no file.

@@ -8,7 +8,7 @@ mod pose;
 pub(crate) mod solid;
 pub(crate) mod topology;
 
-pub use convex::{ConvexPolyhedron, ConvexityDefect, convexity_defect};
+pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use convex::{LargeFace, greatest_on_cycle};
 pub use feature::Feature;
 pub(crate) use feature::feature;

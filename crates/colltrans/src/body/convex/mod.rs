@@ -19,7 +19,7 @@ use crate::body::Inertia;
 use crate::body::solid::{Solid, SolidError};
 use crate::body::topology::Topology;
 use crate::number::plane::polygon_normal;
-pub use build::{ConvexityDefect, convexity_defect};
+pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use excess::LargeFace;
 use sections::SectionIndex;
 use support::SupportIndex;

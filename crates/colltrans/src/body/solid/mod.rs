@@ -2,13 +2,14 @@
 //!
 //! The data's way: facets -> [`door`] (one checked surface of triangles) -> [`shells`] (which parts
 //! there are, which are inside out) -> [`tree`] (what a search goes down). [`shrink`] is made when it
-//! is first asked for.
+//! is first asked for; [`passed`] finds the walls that are too thin for it.
 
 pub(crate) mod cuts;
 mod door;
 pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
+mod passed;
 mod polygon;
 mod report;
 mod shells;

@@ -4,29 +4,151 @@
 //! corners are decided exactly. Ears have an area and no other corner in them or on their rim, so
 //! triangles have areas and corners that lie on a side stay corners. A polygon of `k` corners gives
 //! `k - 2` triangles over its own corners.
+//!
+//! Of many corners those near an ear are found in a grid over the ones that are left, about one to a
+//! cell, which is made anew whenever half of them have gone: an ear of a round or a jagged polygon
+//! looks at a few, so that `k` corners take about `k log k` steps.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use robust::{Coord, orient2d};
 
+/// Fewer corners than this are looked at one by one.
+const MANY: usize = 64;
+
 /// Triangles over the polygon's corners, as positions in it; `None` if it crosses itself.
 pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
-    let flat = project(corners);
-    let mut rest: Vec<usize> = (0..corners.len()).collect();
+    let mut ring = Ring::new(project(corners));
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
     let mut start = 0;
-    while rest.len() > 3 {
-        let n = rest.len();
-        let ear = (0..n).map(|k| (start + k) % n).find(|&k| is_ear(&flat, &rest, k))?;
-        triangles.push([rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]]);
-        rest.remove(ear);
+    while ring.count > 3 {
+        let ear = ring.from(start).find(|&k| ring.is_ear(k))?;
+        triangles.push([ring.before[ear], ear, ring.after[ear]]);
         // The next ear is looked for beyond: fans would have the thinnest triangles.
-        start = (ear + 1) % rest.len();
+        start = ring.after[ring.after[ear]];
+        ring.remove(ear);
     }
-    if turn(flat[rest[0]], flat[rest[1]], flat[rest[2]]) <= 0.0 {
+    let mut last = [start, ring.after[start], ring.before[start]];
+    last.sort_unstable();
+    if turn(ring.flat[last[0]], ring.flat[last[1]], ring.flat[last[2]]) <= 0.0 {
         return None;
     }
-    triangles.push([rest[0], rest[1], rest[2]]);
+    triangles.push(last);
     Some(triangles)
+}
+
+/// The corners that are left, each with those before and after it.
+struct Ring {
+    flat: Vec<DVec2>,
+    before: Vec<usize>,
+    after: Vec<usize>,
+    count: usize,
+    /// Where there are many.
+    grid: Option<Grid>,
+}
+
+impl Ring {
+    fn new(flat: Vec<DVec2>) -> Self {
+        let n = flat.len();
+        let before = (0..n).map(|k| (k + n - 1) % n).collect();
+        let after = (0..n).map(|k| (k + 1) % n).collect();
+        let grid = (n >= MANY).then(|| Grid::new(&flat, (0..n).collect()));
+        Self { flat, before, after, count: n, grid }
+    }
+
+    /// The corners, beginning with one of them.
+    fn from(&self, start: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(start), |&k| Some(self.after[k])).take(self.count)
+    }
+
+    fn remove(&mut self, k: usize) {
+        let (i, l) = (self.before[k], self.after[k]);
+        (self.after[i], self.before[l]) = (l, i);
+        // A corner that is gone is its own neighbour.
+        (self.before[k], self.after[k]) = (k, k);
+        self.count -= 1;
+        if self.grid.as_ref().is_some_and(|grid| 2 * self.count < grid.corners.len()) {
+            let left: Vec<usize> = self.from(l).collect();
+            self.grid = (left.len() >= MANY).then(|| Grid::new(&self.flat, left));
+        }
+    }
+
+    fn is_ear(&self, j: usize) -> bool {
+        let (i, l) = (self.before[j], self.after[j]);
+        let [a, b, c] = [i, j, l].map(|m| self.flat[m]);
+        if turn(a, b, c) <= 0.0 {
+            return false;
+        }
+        let inside =
+            |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+        let leaves_free = |m: usize| {
+            let p = self.flat[m];
+            // A corner passed twice (a slit to a hole) lies on the ear without being in it.
+            p == a || p == b || p == c || !inside(p)
+        };
+        match &self.grid {
+            None => self.from(l).skip(1).take(self.count - 3).all(leaves_free),
+            Some(grid) => {
+                let mut near = grid.near(a.min(b).min(c), a.max(b).max(c));
+                near.all(|m| self.after[m] == m || leaves_free(m))
+            }
+        }
+    }
+}
+
+/// Corners by the squares in which they lie, row by row.
+struct Grid {
+    low: DVec2,
+    /// Squares to a unit of length, and to a row; rows.
+    scale: f64,
+    size: [usize; 2],
+    /// Where the corners of a square begin.
+    starts: Vec<u32>,
+    corners: Vec<usize>,
+}
+
+impl Grid {
+    fn new(flat: &[DVec2], members: Vec<usize>) -> Self {
+        let low = members.iter().map(|&m| flat[m]).fold(DVec2::INFINITY, DVec2::min);
+        let high = members.iter().map(|&m| flat[m]).fold(DVec2::NEG_INFINITY, DVec2::max);
+        let (extent, count) = (high - low, members.len());
+        let scale =
+            (count as f64 / (extent.x * extent.y)).sqrt().min(count as f64 / extent.max_element());
+        let size = (extent * scale).to_array().map(|side| side as usize + 1);
+        let mut grid =
+            Self { low, scale, size, starts: vec![0; size[0] * size[1] + 1], corners: members };
+        let mut squares: Vec<(usize, usize)> =
+            grid.corners.iter().map(|&m| (grid.square(flat[m]), m)).collect();
+        squares.sort_unstable();
+        for &(square, _) in &squares {
+            grid.starts[square + 1] += 1;
+        }
+        for square in 0..grid.starts.len() - 1 {
+            grid.starts[square + 1] += grid.starts[square];
+        }
+        grid.corners = squares.into_iter().map(|(_, m)| m).collect();
+        grid
+    }
+
+    /// The column and the row of a point; never falling where coordinates rise.
+    fn place(&self, p: DVec2) -> [usize; 2] {
+        let at = (p - self.low) * self.scale;
+        [(at.x as usize).min(self.size[0] - 1), (at.y as usize).min(self.size[1] - 1)]
+    }
+
+    fn square(&self, p: DVec2) -> usize {
+        let [column, row] = self.place(p);
+        row * self.size[0] + column
+    }
+
+    /// All corners in a box, and some around it.
+    fn near(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = usize> + '_ {
+        let ([left, bottom], [right, top]) = (self.place(low), self.place(high));
+        let row = move |r: usize| {
+            let first = self.starts[r * self.size[0] + left] as usize;
+            &self.corners[first..self.starts[r * self.size[0] + right + 1] as usize]
+        };
+        (bottom..=top).flat_map(row).copied()
+    }
 }
 
 /// The corners along the axis in which the area vector is largest, running counter-clockwise.
@@ -41,21 +163,6 @@ fn project(corners: &[DVec3]) -> Vec<DVec2> {
     let upwards = area[area.abs().max_position()] >= 0.0;
     let turned = |p: DVec2| if upwards { p } else { DVec2::new(-p.x, p.y) };
     corners.iter().map(|p| turned(flat(p))).collect()
-}
-
-fn is_ear(flat: &[DVec2], rest: &[usize], k: usize) -> bool {
-    let n = rest.len();
-    let (i, j, l) = ((k + n - 1) % n, k, (k + 1) % n);
-    let [a, b, c] = [i, j, l].map(|m| flat[rest[m]]);
-    if turn(a, b, c) <= 0.0 {
-        return false;
-    }
-    let inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
-    (0..n).filter(|m| ![i, j, l].contains(m)).all(|m| {
-        let p = flat[rest[m]];
-        // A corner passed twice (a slit to a hole) lies on the ear without being in it.
-        p == a || p == b || p == c || !inside(p)
-    })
 }
 
 /// Positive if `a b c` turn to the left; exact in sign.
@@ -86,6 +193,69 @@ mod tests {
         assert_eq!(area(&l, &triangles), 3.0);
         let reversed: Vec<DVec3> = l.iter().rev().copied().collect();
         assert_eq!(area(&reversed, &triangulate(&reversed).unwrap()), -3.0);
+    }
+
+    /// Corners at these distances from the origin, at equal angles.
+    fn round(sides: usize, radius: impl Fn(usize) -> f64) -> Vec<DVec3> {
+        let corner = |k: usize| {
+            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / sides as f64).sin_cos();
+            DVec3::new(cosine, sine, 0.0) * radius(k)
+        };
+        (0..sides).map(corner).collect()
+    }
+
+    /// No triangle is empty or turned, together they have the polygon's area, and every side of one is
+    /// the polygon's or another one's the other way round.
+    fn check(corners: &[DVec3]) {
+        let triangles = triangulate(corners).expect("a polygon");
+        assert_eq!(triangles.len(), corners.len() - 2);
+        let mut sides = std::collections::BTreeSet::new();
+        for t in &triangles {
+            let [a, b, c] = t.map(|k| corners[k].truncate());
+            assert!(turn(a, b, c) > 0.0);
+            for k in 0..3 {
+                assert!(sides.insert((t[k], t[(k + 1) % 3])), "twice");
+            }
+        }
+        let own = |&(a, b): &(usize, usize)| (a + 1) % corners.len() == b;
+        assert!(sides.iter().all(|&(a, b)| own(&(a, b)) || sides.contains(&(b, a))));
+        assert_eq!(sides.iter().filter(|s| own(s)).count(), corners.len());
+        let polygon: f64 = corners.windows(2).map(|w| w[0].cross(w[1]).z).sum::<f64>()
+            + corners[corners.len() - 1].cross(corners[0]).z;
+        assert!((area(corners, &triangles) / (0.5 * polygon) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn many_corners_round_jagged_and_wound() {
+        for sides in [63, 64, 65, 200, 20_000] {
+            check(&round(sides, |_| 1.0));
+            check(&round(sides, |k| [1.0, 0.5][k % 2]));
+            check(&round(sides, |k| 1.0 + 0.3 * (k as f64 * 0.7).sin()));
+        }
+        // A band that winds three times around the origin.
+        let turns = |k: usize, r: f64| {
+            let angle = std::f64::consts::TAU * 3.0 * k as f64 / 1_000.0;
+            DVec3::new(angle.cos(), angle.sin(), 0.0) * (r + 0.001 * k as f64)
+        };
+        let band: Vec<DVec3> = (0..=1_000)
+            .map(|k| turns(k, 1.1))
+            .chain((0..=1_000).rev().map(|k| turns(k, 1.0)))
+            .collect();
+        check(&band);
+    }
+
+    #[test]
+    fn a_grid_changes_no_triangle() {
+        for sides in [64, 150, 1_001] {
+            for corners in [round(sides, |_| 1.0), round(sides, |k| 1.0 + 0.4 * (k as f64).sin())] {
+                let mut plain = Ring::new(project(&corners));
+                plain.grid = None;
+                let plain_ears: Vec<bool> = (0..sides).map(|k| plain.is_ear(k)).collect();
+                let ring = Ring::new(project(&corners));
+                assert!(ring.grid.is_some());
+                assert_eq!((0..sides).map(|k| ring.is_ear(k)).collect::<Vec<_>>(), plain_ears);
+            }
+        }
     }
 
     #[test]

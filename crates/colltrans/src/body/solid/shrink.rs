@@ -23,10 +23,10 @@ use glam::DVec3;
 
 use super::edges::NONE;
 use super::error::SolidError;
-use super::shells;
 use super::tree::{self, Node};
 use super::{Solid, Surface};
-use crate::number::range::in_exact_range;
+use super::{passed, shells};
+use crate::number::range::{in_exact_range, without_traces};
 
 /// Facets less high than this share of the body's size are noise.
 const NOISE: f64 = 1e-6;
@@ -71,8 +71,8 @@ pub struct ShrinkReport {
     /// Vertices that stay, because no displacement is inwards for all facets around them; indices of
     /// the input.
     pub stuck: Vec<u32>,
-    /// Facets that turned inside out, because the body is thinner than twice the amount there;
-    /// indices of the input, in increasing order.
+    /// Facets that turned inside out, or passed through others, because the body (or a gap in it that
+    /// grows shut) is thinner than twice the amount there; indices of the input, in increasing order.
     pub inverted: Vec<u32>,
 }
 
@@ -155,25 +155,25 @@ impl Solid {
     /// What shrinking by `amount` (or growing, if negative) cannot do as it should.
     pub fn shrink_report(&self, amount: f64) -> ShrinkReport {
         let shrinking = self.shrinking();
-        let inverted = |t: &usize| {
-            let corners = self.triangles[*t].map(|v| v as usize);
-            let before = tree::normal(corners.map(|v| self.vertices[v])).0;
-            let moved = corners.map(|v| displace(self.vertices[v], shrinking.field[v], amount));
-            tree::normal(moved).0.dot(before) <= 0.0
-        };
         // A ball or a cube that is thinner in all directions is mirrored in a point: its facets look
         // where they did, and only its volume tells.
         let shell_of = shells::components(&self.neighbours);
-        let moved =
-            |v: u32| displace(self.vertices[v as usize], shrinking.field[v as usize], amount);
+        let fields = self.vertices.iter().zip(&shrinking.field);
+        let moved: Vec<DVec3> = fields.map(|(v, x)| displace(*v, *x, amount)).collect();
         let before = shells::volumes(&shell_of, &self.triangles, |v| self.vertices[v as usize]);
-        let after = shells::volumes(&shell_of, &self.triangles, moved);
+        let after = shells::volumes(&shell_of, &self.triangles, |v| moved[v as usize]);
+        let inverted = |t: &usize| {
+            let corners = self.triangles[*t].map(|v| v as usize);
+            let before = tree::normal(corners.map(|v| self.vertices[v])).0;
+            tree::normal(corners.map(|v| moved[v])).0.dot(before) <= 0.0
+        };
         let mirrored = |t: &usize| {
             let shell = shell_of[*t] as usize;
             self.closed && (before[shell] < 0.0) != (after[shell] < 0.0)
         };
         let mut facets: Vec<u32> = (0..self.triangles.len())
             .filter(|t| mirrored(t) || inverted(t))
+            .chain(passed::facets(self, &moved, &shell_of, &before))
             .map(|t| self.facet_index[t])
             .collect();
         facets.sort_unstable();
@@ -193,9 +193,7 @@ impl Solid {
 
 /// A vertex of the shrunk body. Coordinates too small for the exact range are zero.
 pub(crate) fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
-    let moved = vertex + field * amount;
-    let kept = |c: f64| if c.abs() < crate::number::range::MIN_MAGNITUDE { 0.0 } else { c };
-    DVec3::from_array(moved.to_array().map(kept))
+    without_traces(vertex + field * amount)
 }
 
 impl Shrinking {

@@ -28,10 +28,11 @@ use crate::body::solid::edges::NONE;
 use crate::body::solid::tree::Node;
 use crate::body::solid::wedge::{Axis, Ray, Wedge};
 
-/// Where the solids overlap.
+/// Where the solids overlap: positions in [`Solid::triangles`](crate::Solid::triangles);
+/// [`Solid::facet_indices`](crate::Solid::facet_indices) leads to the facets of the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Overlap {
-    /// Around these two triangles.
+    /// Around these two triangles, of the moving and of the fixed body.
     Facets(u32, u32),
     /// The shell of the moving body with this triangle lies inside the fixed one.
     MovingInside(u32),

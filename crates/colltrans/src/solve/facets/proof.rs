@@ -181,9 +181,12 @@ impl Cast<'_, Solid> {
             stop: None,
             cover: Cover::default(),
         };
-        let Some(aim) = certificate.aim(self.options()) else {
-            let depth = self.depth();
-            return (Clearance::Overlapping(SolidOverlap { depth }), certificate);
+        let aim = match (certificate.aim(self.options()), &certificate.start) {
+            (None, &StartProof::Overlapping(place)) => {
+                let overlap = SolidOverlap { place, depth: self.depth() };
+                return (Clearance::Overlapping(overlap), certificate);
+            }
+            (aim, _) => aim.unwrap_or(Aim::Stop),
         };
         let mut cuts = HashMap::new();
         let limit = self.limit(&scene);
@@ -208,7 +211,11 @@ impl Cast<'_, Solid> {
     }
 
     fn prove_start(&self, scene: &Scene) -> StartProof {
-        if self.options().overlapping.is_some() {
+        // An overlap that is the answer is looked for, to be named.
+        let options = self.options();
+        let is_answer =
+            options.overlapping == Some(true) && options.start_overlap == StartOverlap::Refuse;
+        if options.overlapping.is_some() && !is_answer {
             return StartProof::Assumed;
         }
         let mut entries = Vec::new();

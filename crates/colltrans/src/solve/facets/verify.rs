@@ -89,10 +89,12 @@ impl Cast<'_, Solid> {
     }
 
     fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
-        let assumed = self.options().overlapping.is_some();
+        let assumed = self.options().overlapping;
         let holds = match start {
-            StartProof::Assumed => assumed,
-            StartProof::Overlapping(overlap) => !assumed && is_overlap(scene, *overlap),
+            StartProof::Assumed => assumed.is_some(),
+            StartProof::Overlapping(overlap) => {
+                assumed != Some(false) && is_overlap(scene, *overlap)
+            }
             StartProof::Apart(cover) => return verify_apart(scene, cover),
         };
         if holds { Ok(()) } else { Err(CertificateError::Start) }

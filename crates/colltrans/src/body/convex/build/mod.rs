@@ -2,6 +2,7 @@
 
 mod hull;
 mod mesh;
+mod offset;
 
 use std::sync::OnceLock;
 
@@ -16,6 +17,7 @@ use crate::body::topology::Topology;
 use crate::error::BuildError;
 use hull::Hull;
 pub use mesh::{ConvexityDefect, convexity_defect};
+pub use offset::OffsetReport;
 
 impl ConvexPolyhedron {
     /// The convex hull of `points` (body frame, any unit).

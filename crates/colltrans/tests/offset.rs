@@ -1,0 +1,416 @@
+//! Convex bodies made smaller and larger, against all faces and all vertices.
+
+use std::collections::BTreeSet;
+
+use colltrans::{BuildError, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
+use colltrans_kit::random::Random;
+use colltrans_kit::shapes::{Mesh, cuboid, prism, random_hull, ring_sphere, superellipsoid};
+use glam::{DMat3, DQuat, DVec3};
+use proptest::prelude::*;
+
+/// What is promised of planes, as a share of the largest coordinate.
+const PROMISED: f64 = 1.0 / (1_u64 << 40) as f64;
+
+fn hull(points: &[DVec3]) -> ConvexPolyhedron {
+    ConvexPolyhedron::from_points(points).expect("points")
+}
+
+fn size(body: &ConvexPolyhedron) -> f64 {
+    body.vertices().iter().map(|v| v.abs().max_element()).fold(0.0, f64::max)
+}
+
+/// Outward normal and level of every face: that of the farthest vertex, by looking at all.
+fn planes(body: &ConvexPolyhedron) -> Vec<(DVec3, f64)> {
+    let plane = |face| {
+        let normal = body.face_normal(face);
+        (normal, level(body, normal))
+    };
+    (0..body.face_count() as u32).map(plane).collect()
+}
+
+fn level(body: &ConvexPolyhedron, normal: DVec3) -> f64 {
+    body.vertices().iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// How much a body can be shrunk by, at least.
+fn fits(body: &ConvexPolyhedron) -> f64 {
+    match body.shrunk(1e3 * size(body)) {
+        Err(BuildError::TooThin { fits, .. }) => fits,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// How a corner of three faces moves when their planes move by 1, and whether that is the shortest way:
+/// the three normals carry it, none of them pulls.
+fn tight(body: &ConvexPolyhedron, vertex: u32) -> Option<DVec3> {
+    let faces = (0..body.face_count() as u32)
+        .filter(|&f| body.face_vertices(f).any(|v| v == vertex))
+        .map(|f| body.face_normal(f));
+    let [a, b, c] = faces.collect::<Vec<_>>().try_into().ok()?;
+    let rows = DMat3::from_cols(a, b, c).transpose();
+    let way = rows.inverse() * DVec3::ONE;
+    let carried = rows.transpose().inverse() * way;
+    (carried.min_element() > 1e-6).then_some(way)
+}
+
+/// Whether moving has left every edge between the vertices that it was between.
+fn same_edges(body: &ConvexPolyhedron, made: &ConvexPolyhedron) -> bool {
+    let edges = |of: &ConvexPolyhedron| -> BTreeSet<[u32; 2]> {
+        let index = of.input_indices();
+        let around = |v: u32| of.neighbours(v).iter().map(move |&w| [v, w]);
+        let all = (0..of.vertices().len() as u32).flat_map(around);
+        all.map(|ends| ends.map(|v| index[v as usize])).collect()
+    };
+    made.vertices().len() == body.vertices().len() && edges(made) == edges(body)
+}
+
+/// A box whose six faces lean.
+fn leaning_box(random: &mut Random) -> ConvexPolyhedron {
+    let planes: Vec<(DVec3, f64)> = (0..6)
+        .map(|k| {
+            let across = [DVec3::X, DVec3::Y, DVec3::Z][k / 2] * [1.0, -1.0][k % 2];
+            ((across + random.direction() * 0.25).normalize(), random.range(0.5, 2.0))
+        })
+        .collect();
+    let corner = |k: usize| {
+        let [a, b, c] = [k & 1, 2 + (k >> 1 & 1), 4 + (k >> 2)].map(|p| planes[p]);
+        DMat3::from_cols(a.0, b.0, c.0).transpose().inverse() * DVec3::new(a.1, b.1, c.1)
+    };
+    hull(&(0..8).map(corner).collect::<Vec<_>>())
+}
+
+/// Every vertex lies `inwards` deep below all planes, and faces that did not vanish are as far out as
+/// they may be.
+fn check(body: &ConvexPolyhedron, inwards: f64) -> ConvexPolyhedron {
+    let made = if inwards < 0.0 { body.grown(-inwards) } else { body.shrunk(inwards) };
+    let (result, report) = made.expect("an amount");
+    let promised = PROMISED * size(body).max(size(&result));
+    for (face, (normal, level_before)) in planes(body).into_iter().enumerate() {
+        let off = level(&result, normal) - (level_before - inwards);
+        assert!(off <= promised, "face {face} is {off:e} outside, {promised:e} promised");
+        let stays = report.vanished.binary_search(&(face as u32)).is_err();
+        assert!(!stays || off >= -promised, "face {face} is {:e} inside, {promised:e}", -off);
+    }
+    for (k, v) in result.vertices().iter().enumerate() {
+        let source = body.input_indices().iter().position(|i| *i == result.input_indices()[k]);
+        let source = body.vertices()[source.expect("a vertex of the body")];
+        assert!(v.distance(source) <= report.farthest * (1.0 + 1e-12) + promised);
+    }
+    result
+}
+
+fn bodies(random: &mut Random) -> Vec<Mesh> {
+    let mut found = vec![
+        cuboid(DVec3::ONE),
+        cuboid(DVec3::new(1.0, 2.0, 0.01)),
+        prism(3, 1.0),
+        prism(7, 0.2),
+        prism(64, 10.0),
+        prism(1_000, 0.7),
+        ring_sphere(12, 7),
+        ring_sphere(40, 31),
+        superellipsoid(300, 4.0),
+    ];
+    for n in [4, 5, 6, 8, 12, 30, 100, 1_000] {
+        found.push(random_hull(n, random));
+    }
+    found
+}
+
+fn placings(random: &mut Random) -> Vec<(DVec3, DQuat, DVec3)> {
+    let turn = |random: &mut Random| {
+        DQuat::from_rotation_arc(DVec3::Z, random.direction())
+            * DQuat::from_rotation_z(random.direction().x)
+    };
+    let mut found = vec![(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO)];
+    for stretch in [
+        DVec3::ONE,
+        DVec3::new(1.0, 1.0, 1e-3),
+        DVec3::new(1.0, 1.0, 1e3),
+        DVec3::new(1.0, 1e-2, 1e2),
+        DVec3::splat(1e-40),
+        DVec3::splat(1e50),
+    ] {
+        found.push((stretch, turn(random), random.direction() * stretch.max_element()));
+    }
+    found.push((DVec3::ONE, turn(random), DVec3::new(100.0, -300.0, 50.0)));
+    found
+}
+
+#[test]
+fn planes_move_by_the_amount_and_no_farther() {
+    let mut random = Random::new(11, &[]);
+    for mesh in bodies(&mut random) {
+        for (stretch, turn, by) in placings(&mut random) {
+            let placed: Vec<DVec3> =
+                mesh.vertices.iter().map(|v| turn * (*v * stretch) + by).collect();
+            let body = hull(&placed);
+            let room = fits(&body);
+            for share in [1e-6, 0.01, 0.3, 0.9] {
+                check(&body, share * room);
+            }
+            for share in [1e-6, 0.1, 1.0, 100.0] {
+                check(&body, -share * room);
+            }
+        }
+    }
+}
+
+/// Every corner of the moved planes, by all triples of them, lies in the body, and the other way round.
+fn check_by_triples(body: &ConvexPolyhedron, inwards: f64) {
+    let result = check(body, inwards);
+    let moved: Vec<(DVec3, f64)> =
+        planes(body).into_iter().map(|(n, level)| (n, level - inwards)).collect();
+    let faces = planes(&result);
+    let scale = size(&result).max(size(body));
+    let mut corners = 0;
+    for i in 0..moved.len() {
+        for j in 0..i {
+            for k in 0..j {
+                let [(a, p), (b, q), (c, r)] = [moved[i], moved[j], moved[k]];
+                let volume = a.dot(b.cross(c));
+                if volume.abs() < 1e-3 {
+                    continue;
+                }
+                let corner = (b.cross(c) * p + c.cross(a) * q + a.cross(b) * r) / volume;
+                if moved.iter().all(|(n, level)| n.dot(corner) <= level + 1e-13 * scale) {
+                    corners += 1;
+                    let off = faces.iter().map(|(n, level)| n.dot(corner) - level);
+                    let off = off.fold(f64::NEG_INFINITY, f64::max);
+                    assert!(off < 1e-8 * scale, "a corner is {off:e} outside");
+                }
+            }
+        }
+    }
+    assert!(corners >= 4);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn small_bodies_are_the_intersection_of_their_moved_half_spaces(
+        n in 4_usize..14,
+        seed in any::<u64>(),
+        share in -2.0..0.95_f64,
+    ) {
+        let body = hull(&random_hull(n, &mut Random::new(seed, &[])).vertices);
+        check_by_triples(&body, share * fits(&body));
+    }
+
+    /// Near the largest amount there is; what a body that is refused holds is said to half.
+    #[test]
+    fn the_largest_ball_decides(n in 4_usize..40, seed in any::<u64>()) {
+        let body = hull(&random_hull(n, &mut Random::new(seed, &[])).vertices);
+        let (mut low, mut high) = (fits(&body), 2.001 * fits(&body));
+        prop_assert!(body.shrunk(low * 0.999).is_ok() && body.shrunk(high).is_err());
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            match body.shrunk(middle) {
+                Ok(_) => {
+                    check(&body, middle);
+                    low = middle;
+                }
+                Err(BuildError::TooThin { fits, .. }) => {
+                    prop_assert!(fits <= low + (high - low) + 1e-12);
+                    high = middle;
+                }
+                Err(other) => panic!("{other}"),
+            }
+        }
+        // No ball of that radius fits: four planes hold the largest one from all sides.
+        let moved: Vec<(DVec3, f64)> =
+            planes(&body).into_iter().map(|(n, level)| (n, level - high)).collect();
+        let last = body.shrunk(low).expect("it fits").0;
+        let middle = last.vertices().iter().sum::<DVec3>() / last.vertices().len() as f64;
+        let around: Vec<DVec3> = moved
+            .iter()
+            .filter(|(n, level)| n.dot(middle) > level - 1e-3 * high)
+            .map(|(n, _)| *n)
+            .collect();
+        prop_assert!(around.len() >= 2);
+        let held = |d: DVec3| around.iter().any(|n| n.dot(d) > -1e-3);
+        let mut random = Random::new(seed ^ 1, &[]);
+        prop_assert!((0..200).all(|_| held(random.direction())));
+    }
+
+    /// Corners of three faces, where nothing pulls, move to where those of the solid do.
+    #[test]
+    fn solids_move_alike_where_three_faces_meet(
+        n in 5_usize..40,
+        seed in any::<u64>(),
+        share in 1e-6..0.01_f64,
+        grows in any::<bool>(),
+    ) {
+        let rough = hull(&random_hull(n, &mut Random::new(seed, &[])).vertices);
+        let body = hull(rough.grown(0.5).expect("an amount").0.vertices());
+        prop_assume!(body.input_indices().iter().copied().eq(0..body.vertices().len() as u32));
+        let amount = share * fits(&body);
+        let solid = Solid::from_convex(&body).expect("a body");
+        let ((made, report), (same, said)) = if grows {
+            (body.grown(amount).expect("an amount"), solid.grown(amount).expect("an amount"))
+        } else {
+            (body.shrunk(amount).expect("an amount"), solid.shrunk(amount).expect("an amount"))
+        };
+        prop_assume!(report.vanished.is_empty() && same_edges(&body, &made));
+        prop_assume!(said.stuck.is_empty());
+        let mut compared = 0;
+        for (v, &from) in made.vertices().iter().zip(made.input_indices()) {
+            let Some(way) = tight(&body, from) else { continue };
+            // Rounding of planes moves a corner the farther the sharper it is.
+            let apart = v.distance(same.vertices()[from as usize]);
+            let sharpness = way.length_squared();
+            prop_assert!(apart < 1e-12 * sharpness, "{apart:e}, sharpness {sharpness}");
+            compared += 1;
+        }
+        prop_assert!(compared > 0 || n < 20);
+    }
+
+    /// A cast of shrunk bodies is the clearance of the same as solids with the tolerance.
+    #[test]
+    fn casts_of_shrunk_bodies_are_clearances_with_a_tolerance(
+        seed in any::<u64>(),
+        tolerance in 1e-6..0.05_f64,
+    ) {
+        let mut random = Random::new(seed, &[]);
+        let bodies = [leaning_box(&mut random), leaning_box(&mut random)];
+        let start = Pose::from_translation(random.direction() * 20.0).expect("in range");
+        let direction = random.direction() * 0.2 - start.translation() * 0.05;
+        let shrunk = bodies.each_ref().map(|b| b.shrunk(tolerance / 2.0).expect("it fits").0);
+        for (body, made) in bodies.iter().zip(&shrunk) {
+            let all = (0..body.vertices().len() as u32).all(|v| tight(body, v).is_some());
+            prop_assume!(all && same_edges(body, made));
+        }
+        let solids = Cast::between(bodies[0].at(start), bodies[1].at(Pose::IDENTITY), direction)
+            .and_then(|c| c.with_tolerance(tolerance))
+            .expect("a direction")
+            .clearance();
+        let cast = Cast::new(shrunk[0].at(start), shrunk[1].at(Pose::IDENTITY), direction)
+            .expect("a direction");
+        match (cast.clearance().expect("an answer"), solids) {
+            (
+                Clearance::Blocked { distance, contact },
+                Clearance::Blocked { distance: other, .. },
+            ) => {
+                let both = contact.certificate.tolerance + 1e-9;
+                prop_assert!((distance - other).abs() < both, "{distance} and {other}");
+            }
+            (Clearance::Free(_), Clearance::Free(_)) => (),
+            (a, b) => prop_assert!(false, "{a:?} and {b:?}"),
+        }
+    }
+}
+
+#[test]
+fn boxes_prisms_and_the_solids_of_them() {
+    let mut random = Random::new(5, &[]);
+    for mesh in
+        [cuboid(DVec3::ONE), cuboid(DVec3::new(1.0, 2.0, 30.0)), prism(3, 1.0), prism(9, 0.5)]
+    {
+        let turn = DQuat::from_rotation_arc(DVec3::Z, random.direction());
+        let body = hull(&mesh.vertices.iter().map(|v| turn * *v).collect::<Vec<_>>());
+        let solid = Solid::from_convex(&body).expect("a body");
+        for amount in [1e-3, 0.1, 0.24] {
+            let pairs = [
+                (
+                    body.shrunk(amount).expect("it fits").0,
+                    solid.shrunk(amount).expect("an amount").0,
+                ),
+                (
+                    body.grown(amount).expect("an amount").0,
+                    solid.grown(amount).expect("an amount").0,
+                ),
+            ];
+            for (made, same) in pairs {
+                assert_eq!(made.vertices().len(), same.vertices().len());
+                for (v, from) in made.vertices().iter().zip(made.input_indices()) {
+                    let apart = v.distance(same.vertices()[*from as usize]);
+                    assert!(apart < 1e-13 * size(&body), "{apart:e}");
+                }
+                assert!((made.volume() - same.volume()).abs() < 1e-12 * made.volume());
+            }
+        }
+    }
+}
+
+#[test]
+fn faces_too_small_to_stay_vanish() {
+    // A cube with one corner cut off a little: shrunk, the cut stays; grown, the corner does not
+    // come back; a roof whose ridge face is narrow loses it.
+    let mut corners = cuboid(DVec3::ONE).vertices;
+    corners.retain(|v| *v != DVec3::ONE);
+    corners.extend([DVec3::X, DVec3::Y, DVec3::Z].map(|e| DVec3::ONE - e * 0.1));
+    let cut = hull(&corners);
+    assert_eq!(cut.face_count(), 7);
+    for amount in [0.01, 0.1, 0.5] {
+        assert_eq!(cut.grown(amount).expect("an amount").0.face_count(), 7);
+    }
+    // The cut is 0.1 / sqrt(3) below the corner, which moves by sqrt(3) - 1 more than the cut does.
+    let gone = 0.1 / 3.0_f64.sqrt() / (3.0_f64.sqrt() - 1.0);
+    let report = |amount| cut.shrunk(amount).expect("it fits").1;
+    assert!(report(0.999 * gone).vanished.is_empty());
+    let lost = report(1.001 * gone).vanished;
+    assert_eq!(lost.len(), 1);
+    let normal = cut.face_normal(lost[0]);
+    assert!((normal - DVec3::ONE / 3.0_f64.sqrt()).length() < 1e-12);
+    assert_eq!(cut.shrunk(1.001 * gone).expect("it fits").0.vertices().len(), 8);
+}
+
+#[test]
+fn bodies_too_thin_are_refused_and_say_what_would_fit() {
+    let plate = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(8.0, 3.0, 1.0)).expect("a box");
+    for amount in [0.5, 0.5 + 1e-15, 0.6, 5.0, 1e40] {
+        let Err(BuildError::TooThin { amount: said, fits }) = plate.shrunk(amount) else {
+            panic!("{amount}")
+        };
+        assert_eq!(said, amount);
+        assert!((0.25 - 1e-12..=0.5 + 1e-12).contains(&fits), "{fits}");
+    }
+    let sliver = check(&plate, 0.5 - 1e-9);
+    assert!((sliver.volume() / (7.0 * 2.0 * 2e-9) - 1.0).abs() < 1e-5, "{}", sliver.volume());
+    for amount in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(plate.shrunk(amount), Err(BuildError::Amount { .. })));
+        assert!(matches!(plate.grown(amount), Err(BuildError::Amount { .. })));
+    }
+    assert!(matches!(plate.grown(1e61), Err(BuildError::Amount { .. })));
+}
+
+#[test]
+fn bodies_of_lower_dimension() {
+    let point = hull(&[DVec3::ONE]);
+    let segment = hull(&[DVec3::ZERO, DVec3::X]);
+    let square = hull(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y]);
+    for body in [&point, &segment, &square] {
+        assert!(matches!(body.shrunk(0.1), Err(BuildError::TooThin { fits: 0.0, .. })));
+        assert_eq!(body.shrunk(0.0).expect("itself").0.vertices(), body.vertices());
+        assert_eq!(body.grown(0.0).expect("itself").0.vertices(), body.vertices());
+    }
+    for (body, dimension) in [(&point, 0), (&segment, 1)] {
+        let refused = body.grown(0.1).expect_err("no faces");
+        assert_eq!(refused, BuildError::NothingToMove { dimension });
+    }
+    let mut random = Random::new(3, &[]);
+    for amount in [1e-6, 0.25, 50.0] {
+        let turn = DQuat::from_rotation_arc(DVec3::Z, random.direction());
+        let turned = hull(&square.vertices().iter().map(|v| turn * *v).collect::<Vec<_>>());
+        let plate = turned.grown(amount).expect("an amount").0;
+        let side = 1.0 + 2.0 * amount;
+        assert!((plate.volume() / (side * side * 2.0 * amount) - 1.0).abs() < 1e-9);
+        assert_eq!((plate.vertices().len(), plate.face_count()), (8, 6));
+        // Everything within the amount is in it.
+        for _ in 0..100 {
+            let out = random.direction();
+            assert!(level(&plate, out) >= level(&turned, out) + amount * (1.0 - 1e-12));
+        }
+    }
+}
+
+#[test]
+fn large_bodies_take_little_more_than_their_hull() {
+    let body = hull(&random_hull(100_000, &mut Random::new(9, &[])).vertices);
+    let begun = std::time::Instant::now();
+    let made = [body.shrunk(0.1).expect("it fits"), body.grown(0.1).expect("an amount")];
+    assert!(begun.elapsed() < std::time::Duration::from_mins(1));
+    // Grown, all vertices of more than three faces are split.
+    assert!(made[1].0.vertices().len() > body.face_count() / 2);
+}

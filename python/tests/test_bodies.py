@@ -9,7 +9,15 @@ import pytest
 from conftest import ROOT, draw
 
 import colltrans
-from colltrans import BuildError, CaseError, ConvexPolyhedron, InputError, MeshError, cast_many
+from colltrans import (
+    BuildError,
+    CaseError,
+    ConvexPolyhedron,
+    InputError,
+    MeshError,
+    OffsetReport,
+    cast_many,
+)
 
 CORNERS = np.vstack([np.zeros(3), np.eye(3)])
 FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
@@ -120,3 +128,66 @@ def test_arrays_of_a_body_are_copies() -> None:
     assert cube.vertices.max() == 1
     with pytest.raises(AttributeError):
         cube.volume = 3.0  # type: ignore[misc]
+
+
+def test_a_cube_shrinks_and_grows() -> None:
+    corners = [[x, y, z] for x in (0, 4) for y in (0, 4) for z in (0, 4)]
+    points = np.array([[1, 1, 1], *corners])
+    cube = ConvexPolyhedron(points)
+    for (body, report), low, high in [(cube.shrunk(0.5), 0.5, 3.5), (cube.grown(1), -1, 5)]:
+        assert (len(body.vertices), len(body.faces), body.dimension) == (8, 6, 3)
+        assert body.volume == pytest.approx((high - low) ** 3, abs=1e-12)
+        assert np.abs(body.vertices - np.where(body.vertices > 2, high, low)).max() < 1e-14
+        assert np.array_equal(points[body.input_indices] > 2, body.vertices > 2)
+        match report:
+            case OffsetReport(farthest, vanished):
+                assert farthest == pytest.approx(abs(low) * 3**0.5, abs=1e-12)
+                assert vanished.dtype == np.uint32 and vanished.tolist() == []
+            case other:
+                raise AssertionError(other)
+    assert (len(cube.vertices), cube.volume) == (8, 64)
+
+
+def test_a_face_too_small_to_stay_is_named() -> None:
+    """Of a cube with a corner cut off: the cut, x + y + z = 11.5, goes to 9.77, the corner to 9."""
+    corners = np.array([[x, y, z] for x in (0, 4) for y in (0, 4) for z in (0, 4)][:-1])
+    body = ConvexPolyhedron(np.vstack([corners, 4 - np.eye(3) / 2]))
+    smaller, report = body.shrunk(1)
+    assert smaller.volume == pytest.approx(8, abs=1e-12) and len(smaller.faces) == 6
+    (cut,) = (f for f in range(7) if body.face_normal(f).min() > 0)
+    assert report.vanished.tolist() == [cut]
+    assert report.farthest == pytest.approx(3**0.5, abs=1e-12)
+    again = pickle.loads(pickle.dumps(report))
+    assert (
+        repr(again)
+        == repr(report)
+        == f"OffsetReport(farthest={report.farthest!r}, vanished=[{cut}])"
+    )
+    back = pickle.loads(pickle.dumps(smaller))
+    assert back.vertices.tobytes() == smaller.vertices.tobytes()
+    assert back.input_indices.tolist() == smaller.input_indices.tolist()
+
+
+def test_bodies_that_cannot_shrink_or_grow() -> None:
+    plate = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 1])
+    with pytest.raises(BuildError, match=r"shrunk by 0\.75 nothing is left.* radius 0\.5 it does"):
+        plate.shrunk(0.75)
+    sheet = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 0])
+    segment = ConvexPolyhedron([[0, 0, 0], [1, 0, 0]])
+    for thin in (sheet, segment):
+        with pytest.raises(BuildError, match=r"shrunk by 0\.125 .* one of radius 0 it does"):
+            thin.shrunk(0.125)
+        for same, report in (thin.shrunk(0), thin.grown(0)):
+            assert same.vertices.tolist() == thin.vertices.tolist()
+            assert (report.farthest, report.vanished.tolist()) == (0, [])
+    assert sheet.grown(0.5)[0].volume == pytest.approx(5 * 5 * 1, abs=1e-12)
+    with pytest.raises(BuildError, match="a body of dimension 1 has no faces"):
+        segment.grown(0.125)
+    for amount in (-1, np.nan, np.inf):
+        for move in (plate.shrunk, plate.grown):
+            with pytest.raises(BuildError, match="the amount (-1|NaN|inf) to shrink or grow by"):
+                move(amount)
+    with pytest.raises(BuildError, match="out of range"):
+        plate.grown(1e75)
+    with pytest.raises(TypeError):
+        plate.grown("1")  # type: ignore[arg-type]

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{self, faces, points, row, table, vector};
 use crate::errors::{OrRaise, error};
+use crate::offset::OffsetReport;
 
 /// A convex polyhedron in its own frame: the convex hull of points.
 ///
@@ -212,6 +213,81 @@ impl ConvexPolyhedron {
     ///     One of the farthest, to within rounding error.
     fn support(&self, direction: &Bound<'_, PyAny>) -> PyResult<u32> {
         Ok(self.0.support(vector(direction, "direction")?))
+    }
+
+    /// What lies at least so deep below every face plane.
+    ///
+    /// Every face plane moves inwards; where a face is too small to stay, the planes around it meet
+    /// without it. Vertices are numbered anew; ``input_indices`` of the result has for each the input
+    /// of the one that it comes from.
+    ///
+    /// Parameters
+    /// ----------
+    /// amount : float
+    ///     A length, not negative. 0 is the body itself, whatever it is.
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    /// OffsetReport
+    ///     How far vertices went, and which faces are gone.
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     A body that holds no ball of this radius, with a radius that it does hold; so also a flat
+    ///     polygon, a segment, a point. An amount that is negative or not finite.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import BuildError, ConvexPolyhedron
+    /// >>> plate = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 1])
+    /// >>> smaller, report = plate.shrunk(0.25)
+    /// >>> smaller.volume, round(report.farthest, 9), len(report.vanished)
+    /// (6.125, 0.433012702, 0)
+    /// >>> try:
+    /// ...     plate.shrunk(0.75)
+    /// ... except BuildError as error:
+    /// ...     print(error)
+    /// shrunk by 0.75 nothing is left of the body: it holds no ball of this radius, one of radius 0.5 it does
+    fn shrunk(&self, py: Python<'_>, amount: f64) -> PyResult<(Self, OffsetReport)> {
+        let (body, report) = py.detach(|| self.0.shrunk(amount)).or_raise()?;
+        Ok((Self(body), OffsetReport(report)))
+    }
+
+    /// What lies at most so far outside every face plane, for a margin to be kept.
+    ///
+    /// Every face plane moves outwards, and edges and corners stay as sharp as they are: all points
+    /// within the amount of the body are in it, and beyond sharp corners more. A flat polygon becomes
+    /// a plate twice as thick as the amount. Vertices are numbered as by :meth:`shrunk`.
+    ///
+    /// Parameters
+    /// ----------
+    /// amount : float
+    ///     A length, not negative. 0 is the body itself, whatever it is.
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    /// OffsetReport
+    ///     How far vertices went, and which faces are gone.
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     A segment or a point, which have no faces. An amount that is negative, not finite, or so
+    ///     large that coordinates leave the exact range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron
+    /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    /// >>> larger, _ = cube.grown(0.5)
+    /// >>> round(larger.volume, 9)
+    /// 8.0
+    fn grown(&self, py: Python<'_>, amount: f64) -> PyResult<(Self, OffsetReport)> {
+        let (body, report) = py.detach(|| self.0.grown(amount)).or_raise()?;
+        Ok((Self(body), OffsetReport(report)))
     }
 
     /// int: Bytes of memory that the body occupies.

@@ -1,7 +1,7 @@
 //! The extension module of the Python package `colltrans`: thin conversions, nothing is computed here.
 //!
 //! The way: `arrays` (numbers in and out) and `errors` (the library's errors as exceptions) ->
-//! `body`, `pose` -> `query` (two placed bodies and a direction), `questions` (the functions of the
+//! `body` (with `offset`), `pose` -> `query` (two placed bodies and a direction), `questions` (the functions of the
 //! package) -> `answer`, `clearance`, `features`, `certificate` (what comes back) -> `solid`, `solid_cast`, `solid_answer` (the same for parts
 //! that are not convex), `saved` (answers as bytes), `show` (as pictures), `tracker` and `many` (queries in sequence and in bulk), `assembly` (many parts). The package itself
 //! is in `python/`; its stub `_colltrans.pyi` has the types.
@@ -15,6 +15,7 @@ mod clearance;
 mod errors;
 mod features;
 mod many;
+mod offset;
 mod pose;
 mod query;
 mod questions;
@@ -42,6 +43,8 @@ mod _colltrans {
     use crate::features::{Feature, Features, Steps};
     #[pymodule_export]
     use crate::many::ask_many;
+    #[pymodule_export]
+    use crate::offset::OffsetReport;
     #[pymodule_export]
     use crate::pose::Pose;
     #[pymodule_export]

@@ -13,6 +13,7 @@ use crate::answer::{Contact, ContactRange, Grazing, Separated};
 use crate::certificate::{Certificate, Separation};
 use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapping, Slides};
 use crate::features::{Feature, Features, Steps};
+use crate::offset::OffsetReport;
 use crate::pose::Pose;
 use crate::query::{Cast, Query, solver_called_by};
 use crate::solid::Piece;
@@ -100,6 +101,10 @@ fn convex<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, 
         "Features" => {
             let (moving, fixed) = state.extract()?;
             object(state, Features { moving, fixed })
+        }
+        "OffsetReport" => {
+            let (farthest, vanished) = state.extract()?;
+            object(state, OffsetReport(colltrans::OffsetReport { farthest, vanished }))
         }
         _ => Err(unknown(class)),
     }

@@ -220,7 +220,7 @@ fn approach(planes: &[Plane], mut near: Near, inwards: f64) -> Result<Cell, Buil
                 return if cell.hull.dimension == 3 {
                     in_range(cell, inwards)
                 } else {
-                    Err(BuildError::TooThin { amount: inwards, fits })
+                    Err(nothing_left(inwards, fits))
                 };
             }
             roundings += 1;
@@ -228,7 +228,17 @@ fn approach(planes: &[Plane], mut near: Near, inwards: f64) -> Result<Cell, Buil
         near = Near::new(&cell.inertia());
         taken = step;
     }
-    Err(BuildError::TooThin { amount: inwards.abs(), fits })
+    Err(nothing_left(inwards, fits))
+}
+
+/// Why there is no body: too thin to shrink so far, or grown beyond all numbers, so that the polar points
+/// are one to them.
+fn nothing_left(inwards: f64, fits: f64) -> BuildError {
+    if inwards > 0.0 {
+        BuildError::TooThin { amount: inwards, fits }
+    } else {
+        BuildError::Amount { amount: -inwards }
+    }
 }
 
 fn in_range(cell: Cell, inwards: f64) -> Result<Cell, BuildError> {

@@ -142,9 +142,9 @@ impl<'a> Bodies<'a> {
 
     /// What could not be shrunk, or grown, as the fit asks for; in words, `None` if nothing.
     ///
-    /// Facets turn inside out, or through others, where a part is thinner than the tolerance: what is said about them is
-    /// not what the part does. Vertices that stay are those of saddles: around them no displacement is
-    /// inwards for all facets.
+    /// Facets turn inside out, or pass through others, where a part is thinner than the tolerance: what
+    /// is said about them is not what the part does. Vertices that stay are those of saddles: around
+    /// them no displacement is inwards for all facets.
     pub fn remark(&self, part: usize) -> Option<String> {
         let ShrinkReport { stuck, inverted, .. } = &self.displaced[part];
         let mut said = match self.fit {

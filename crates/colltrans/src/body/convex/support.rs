@@ -15,7 +15,9 @@
 //! A vertex with many neighbours (the apex of a cone) would make one step linear. Cut by a plane,
 //! the edges of a vertex are the corners of a convex polygon, over which a linear function has one
 //! maximum and one minimum: the steepest edge is found among widely spaced ones first, then among
-//! ever closer ones.
+//! ever closer ones. Along the boundary of a face with many corners (the base of a cylinder) a climb
+//! would take a step for each: there it goes twice as far each time while the boundary still rises,
+//! and then searches where it began to fall.
 
 use std::hint::select_unpredictable;
 
@@ -44,6 +46,10 @@ const MAX_DEPTH: u32 = 20;
 /// A vertex with more neighbours than this is searched, not scanned.
 const FAN: usize = 32;
 
+/// Steps after which a climb looks whether it goes along a face with more corners than [`FAN`]
+/// (measured).
+const LONG: usize = 6;
+
 /// The table over directions.
 #[derive(Debug, Clone)]
 pub(crate) struct SupportIndex {
@@ -58,6 +64,8 @@ pub(crate) struct SupportIndex {
     /// Vertices with many neighbours, ascending, each with a vector that has a positive product
     /// with all its edges.
     fans: Vec<(u32, DVec3)>,
+    /// Whether there are faces with more corners than [`FAN`].
+    has_wide_faces: bool,
 }
 
 impl SupportIndex {
@@ -68,6 +76,8 @@ impl SupportIndex {
             cells: Vec::new(),
             groups: Vec::new(),
             fans: fans(vertices, topology),
+            has_wide_faces: (0..topology.face_count() as u32)
+                .any(|face| topology.face(face).len() > FAN),
         };
         if vertices.len() <= SCAN_LIMIT {
             index.groups = groups(vertices);
@@ -178,7 +188,10 @@ impl SupportIndex {
             if gain <= noise::GAIN * direction.abs().dot(edge.abs()) {
                 return (at, steps);
             }
-            at = best;
+            let last = std::mem::replace(&mut at, best);
+            if self.has_wide_faces && steps % LONG == LONG - 1 {
+                at = along_face(vertices, topology, direction, [last, at]);
+            }
         }
         (at, limit)
     }
@@ -442,6 +455,53 @@ pub(crate) fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> u
         look((center + count - stride) % count, &mut best);
     }
     best
+}
+
+/// Where the boundary of a face with many corners is highest beyond an edge that rises along it; the
+/// edge's end if neither face beside it has many.
+///
+/// A linear function rises along the boundary of a convex polygon up to one maximum.
+#[cold]
+#[inline(never)]
+fn along_face(
+    vertices: &[DVec3],
+    topology: &Topology,
+    direction: DVec3,
+    [from, at]: [u32; 2],
+) -> u32 {
+    let Some(left) = topology.edge_between(from, at) else { return at };
+    let right = topology.half_edge(left).twin;
+    let boundary = |edge: u32| topology.face(topology.half_edge(edge).face);
+    let is_wide = |edge: &u32| boundary(*edge).len() > FAN;
+    let Some(edge) = [left, right].into_iter().find(is_wide) else { return at };
+    let face = boundary(edge);
+    let (first, count) = (edge - face.start, face.len() as u32);
+    // The corner `k` edges beyond `at`.
+    let corner = |k: u32| {
+        let ahead = if edge == left { first + 1 + k } else { first + 2 * count - k };
+        topology.half_edge(face.start + ahead % count).origin
+    };
+    let rises_to = |k: u32| {
+        let [here, there] = [k - 1, k].map(|k| vertices[corner(k) as usize]);
+        direction.dot(there - here) > 0.0
+    };
+    // The boundary rises to `low`, and not to `high` or further than round.
+    let (mut low, mut high) = (0, 1);
+    while high < count && rises_to(high) {
+        (low, high) = (high, 2 * high);
+    }
+    high = high.min(count);
+    while high - low > 1 {
+        let middle = u32::midpoint(low, high);
+        if rises_to(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let there = corner(low);
+    let way = vertices[there as usize] - vertices[at as usize];
+    if direction.dot(way) > noise::GAIN * direction.abs().dot(way.abs()) { there } else { at }
 }
 
 /// The vertices with more than [`FAN`] neighbours, with the mean of the inward unit normals of

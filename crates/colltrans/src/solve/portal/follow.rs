@@ -38,7 +38,7 @@ pub(crate) enum Followed {
     Lost,
 }
 
-/// Faces of `M` crossed before a start from scratch is the shorter way (measured).
+/// Faces of `M` crossed before wide portals are the shorter way (measured).
 const CROSSINGS: usize = 20;
 
 /// A line this many widths of the triangle beyond an edge is not reached face by face (measured).
@@ -91,7 +91,7 @@ pub(crate) fn follow<O: Observer>(
             None => return Followed::Portal(portal),
         }
     }
-    walk(difference, edge, CROSSINGS, optimum, watch)
+    walk(difference, edge, optimum, watch)
 }
 
 /// From a face of `M` to the one that the line pierces, over one edge after another, of which the
@@ -100,11 +100,10 @@ pub(crate) fn follow<O: Observer>(
 fn walk<O: Observer>(
     difference: &MinkowskiDifference,
     mut edge: Edge,
-    most: usize,
     optimum: &mut Option<Optimum>,
     watch: &mut Watch<O>,
 ) -> Followed {
-    for _ in 0..most {
+    for _ in 0..CROSSINGS {
         watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
         // The edge that was crossed has the line on its left now.
@@ -120,15 +119,16 @@ fn walk<O: Observer>(
     Followed::Lost
 }
 
-/// The same for a start from scratch, which has wider portals to fall back on.
-const FEW_CROSSINGS: usize = 8;
-
 /// How often a guess is corrected by the ellipsoids' curvature before the walk begins.
 const CORRECTIONS: usize = 4;
 
 /// A correction that leaves more of the distance from the line than this share says that the bodies
 /// are no ellipsoids.
 const PROGRESS: f64 = 0.5;
+
+/// A line no farther than this, in widths of the triangle, is walked to if corrections come no nearer.
+/// From farther away wide portals are the shorter way (measured).
+const REACH: f64 = 8.0;
 
 /// From a guessed normal: the face of `M` beside its support point, and from there to the line.
 ///
@@ -148,6 +148,7 @@ pub(crate) fn approach<O: Observer>(
         None => difference.support(normal_of(slope)),
     };
     watch.support(|| Support::of(normal_of(slope), &vertex));
+    let mut within_reach = None;
     for _ in 0..CORRECTIONS {
         let shadow = vertex.shadow();
         let mut toward_line = -shadow;
@@ -172,7 +173,10 @@ pub(crate) fn approach<O: Observer>(
         };
         let edge = Edge::of(&portal, from);
         if edge.distance() <= FAR * edge.width() {
-            return walk(difference, edge, FEW_CROSSINGS, optimum, watch);
+            return walk(difference, edge, optimum, watch);
+        }
+        if edge.distance() <= REACH * edge.width() {
+            within_reach = Some(edge.clone());
         }
         if has_large_faces(difference) {
             match across(difference, portal, from, optimum, watch) {
@@ -194,7 +198,10 @@ pub(crate) fn approach<O: Observer>(
             break;
         }
     }
-    Followed::Lost
+    match within_reach {
+        Some(edge) => walk(difference, edge, optimum, watch),
+        None => Followed::Lost,
+    }
 }
 
 /// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has

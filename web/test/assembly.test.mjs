@@ -36,22 +36,23 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
   await page.locator('[aria-label="Steps of the plan"]').press("End");
   assert.match(await page.textContent(".assembly-stage output"), new RegExp(`^Step ${plan.steps.length} of`));
   assert.equal(await isCut(page, ".assembly-view canvas"), false);
-  // The same questions natively.
+  // The same questions natively: what the page has asked by itself, and two more.
   const files = facts.parts.map(({ name }) => `${name}.off`);
+  const more = [[0.3, -0.2, 1], [0, 0, -1]].map((direction) => ({ do: "along", direction }));
   const questions = [
     ...files.map((name) => `${join(gearbox, name)}\t${JSON.stringify({ do: "add", name })}`),
-    ...[{ do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "along", direction: [0.3, -0.2, 1] }, { do: "along", direction: [0, 0, -1] }, { do: "plan" }].map((q) => JSON.stringify(q)),
+    ...[{ do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "plan" }, ...more].map((q) => JSON.stringify(q)),
   ];
-  const native = answers("native_assembly", questions).slice(files.length);
-  const told = await page.evaluate(async () => {
+  const [, nativeFit, nativePlan, ...native] = answers("native_assembly", questions).slice(files.length);
+  // Bit for bit: of numbers, strictly equal are those with the same bits.
+  assert.deepStrictEqual([fit, plan], [nativeFit, nativePlan].map((text) => JSON.parse(text)));
+  const told = await page.evaluate(async (more) => {
     const { engine } = window.colltrans.probe().assembly;
     const texts = [];
-    for (const question of [{ do: "fit", tolerance: 0.1 }, { do: "along", direction: [0.3, -0.2, 1] }, { do: "along", direction: [0, 0, -1] }, { do: "plan" }]) {
-      texts.push((await engine.ask(question)).text);
-    }
+    for (const question of more) texts.push((await engine.ask(question)).text);
     return texts;
-  });
-  told.forEach((text, k) => assert.equal(text, native[k + 1]));
+  }, more);
+  assert.deepStrictEqual(told, native);
   assert.deepEqual(page.complaints, []);
   await page.context().close();
 });

@@ -166,11 +166,11 @@ test("how it was found: steps and the graph keep the focus", async () => {
 
 test("assemblies: parts, the sphere, the steps", async () => {
   const page = await at.open("#tab=assembly", {}, ["#assembly-headline", ".assembly-panel ol li"]);
-  const part = page.locator(".part", { has: page.locator("strong:text-is('cover')") });
+  const part = page.locator(".part", { has: page.locator("strong:text-is('bolt_0')") });
   await part.focus();
   await page.keyboard.press("Enter");
   await page.waitForSelector(".part[aria-pressed=true]");
-  assert.match(await focused(page), /^cover/);
+  assert.match(await focused(page), /^bolt_0/);
   await page.waitForSelector(".sphere");
   await page.focus(".sphere");
   const way = () => page.evaluate(() => window.colltrans.probe().state.assembly.direction.join());

@@ -460,7 +460,8 @@ pub(crate) fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> u
 /// Where the boundary of a face with many corners is highest beyond an edge that rises along it; the
 /// edge's end if neither face beside it has many.
 ///
-/// A linear function rises along the boundary of a convex polygon up to one maximum.
+/// A linear function rises along the boundary of a convex polygon up to one maximum, then falls, and
+/// rises again to where it began; so where it rises and is higher than there, the maximum is ahead.
 #[cold]
 #[inline(never)]
 fn along_face(
@@ -481,9 +482,10 @@ fn along_face(
         let ahead = if edge == left { first + 1 + k } else { first + 2 * count - k };
         topology.half_edge(face.start + ahead % count).origin
     };
+    let here = vertices[at as usize];
     let rises_to = |k: u32| {
-        let [here, there] = [k - 1, k].map(|k| vertices[corner(k) as usize]);
-        direction.dot(there - here) > 0.0
+        let [last, there] = [k - 1, k].map(|k| vertices[corner(k) as usize]);
+        direction.dot(there - last) > 0.0 && direction.dot(there - here) > 0.0
     };
     // The boundary rises to `low`, and not to `high` or further than round.
     let (mut low, mut high) = (0, 1);
@@ -500,7 +502,7 @@ fn along_face(
         }
     }
     let there = corner(low);
-    let way = vertices[there as usize] - vertices[at as usize];
+    let way = vertices[there as usize] - here;
     if direction.dot(way) > noise::GAIN * direction.abs().dot(way.abs()) { there } else { at }
 }
 

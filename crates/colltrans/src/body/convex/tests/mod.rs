@@ -2,3 +2,4 @@
 
 pub(crate) mod bodies;
 mod sections;
+mod supports;

@@ -1,0 +1,61 @@
+//! Support points where faces have many corners, against a look at every vertex.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::bodies::{Random, cone, prism};
+use crate::body::ConvexPolyhedron;
+
+/// A frustum over a polygon with its corners anywhere on an ellipse, most of them close together.
+fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
+    let mut angles: Vec<f64> =
+        (0..around).map(|_| random.within(0.0, 1.0).powi(8) * 0.999 * TAU).collect();
+    angles.sort_by(f64::total_cmp);
+    angles.dedup_by(|a, b| *a - *b < 1e-3 / around as f64);
+    let ring = |radius: f64, z: f64| {
+        let point = move |a: &f64| DVec3::new(3.0 * radius * a.cos(), radius * a.sin(), z);
+        angles.iter().map(point).collect::<Vec<_>>()
+    };
+    ConvexPolyhedron::from_points(&[ring(1.0, -1.0), ring(0.7, 1.0)].concat()).unwrap()
+}
+
+/// Along the axis, across it, and by ever less beside the axis, where a small change of the direction
+/// leads around the whole base.
+fn direction(random: &mut Random, k: usize) -> DVec3 {
+    let lateral = random.unit().with_z(0.0);
+    let up = if k % 2 == 0 { 1.0 } else { -1.0 };
+    match k / 2 % 4 {
+        0 => random.unit(),
+        1 => lateral,
+        2 => DVec3::Z * up,
+        _ => lateral * 10_f64.powf(random.within(-12.0, 0.0)) + DVec3::Z * up,
+    }
+}
+
+#[test]
+fn no_vertex_is_farther_than_the_support_point() {
+    let mut random = Random(41);
+    let scales = [DVec3::ONE, DVec3::new(1.0, 4.0, 0.01), DVec3::new(0.1, 0.2, 30.0)];
+    let mut bodies = Vec::new();
+    for around in [24, 33, 100, 1_500] {
+        bodies.extend(scales.map(|scale| prism(around, scale)));
+        bodies.extend(scales.map(|scale| cone(around, scale)));
+        bodies.push(crowded_frustum(around, &mut random));
+    }
+    for (i, body) in bodies.iter().enumerate() {
+        let vertices = body.vertices();
+        let size = vertices.iter().fold(DVec3::ZERO, |m, v| m.max(v.abs()));
+        for k in 0..400 {
+            let d = direction(&mut random, k);
+            let farthest = vertices.iter().map(|v| d.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+            let near = random.index(vertices.len()) as u32;
+            for found in [body.support(d), body.support_from(d, near)] {
+                let short = farthest - d.dot(vertices[found as usize]);
+                // Corners are rounded, so the boundary may rise and fall by as much.
+                let rounding = 64.0 * f64::EPSILON * d.abs().dot(size);
+                assert!(short <= rounding, "body {i}, along {d}: short by {short:e}, {rounding:e}");
+            }
+        }
+    }
+}

@@ -29,12 +29,12 @@ const data = join(root, "data");
 const out = join(here, "dist");
 
 if (!process.argv.includes("--no-wasm")) {
-  const { args, env } = found();
+  const env = { ...process.env, ...found() };
   const packages = ["-p", "colltrans-wasm", "--example", "page", "-p", "colltrans-wasm-assembly", "--example", "page_assembly"];
   // Both at once: what they have in common is built once.
-  execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown", ...args], {
+  execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown"], {
     cwd: join(root, "crates/colltrans-wasm"),
-    env: { ...process.env, ...env },
+    env,
     stdio: "inherit",
   });
 }

@@ -1,10 +1,12 @@
 // With what Rust is compiled to WebAssembly: the installed toolchain, if it has the target; else
-// Debian's packages, unpacked into a folder of their own, because they conflict with an installed rustc.
+// Debian's packages, unpacked into a folder of their own, because they conflict with an installed rustc. Those
+// have the standard library for WebAssembly as source alone: it is compiled once, and kept beside them.
 //
 // On an ordinary machine: rustup target add wasm32-unknown-unknown
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readdirSync } from "node:fs";
+import { createHash } from "node:crypto";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -33,15 +35,56 @@ function unpacked(folder) {
   const rustc = join(folder, "usr/bin/rustc");
   const linker = newest(existsSync("/usr/bin") ? readdirSync("/usr/bin") : [], /^wasm-ld(-\d+)?$/);
   if (!existsSync(rustc) || !linker) return undefined;
-  return {
-    args: ["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"],
-    env: {
-      LD_LIBRARY_PATH: join(folder, "usr/lib/x86_64-linux-gnu"),
-      RUSTC: rustc,
-      RUSTC_BOOTSTRAP: "1",
-      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER: join("/usr/bin", linker),
-    },
+  const env = {
+    LD_LIBRARY_PATH: join(folder, "usr/lib/x86_64-linux-gnu"),
+    RUSTC: rustc,
+    RUSTC_BOOTSTRAP: "1",
+    CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER: join("/usr/bin", linker),
   };
+  const sysroot = standardLibrary(folder, { ...process.env, ...env });
+  return { ...env, CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: `--sysroot=${sysroot}` };
+}
+
+/** What the standard library is compiled for: a program as small as the page's modules (see profile `page` in
+ * crates/colltrans-wasm), and their linking together as one. */
+const PROGRAM = `
+[package]
+name = "program"
+version = "0.0.0"
+edition = "2024"
+[lib]
+path = "program.rs"
+crate-type = ["cdylib"]
+[profile.release]
+opt-level = "z"
+lto = "fat"
+codegen-units = 1
+panic = "abort"
+[workspace]
+`;
+const OF_SOURCE = ["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"];
+
+/** The folder of the standard library by this compiler and for such programs. */
+function standardLibrary(folder, env) {
+  const compiler = run(env.RUSTC, ["-vV"], { env });
+  const key = createHash("sha256").update([compiler, PROGRAM, ...OF_SOURCE].join()).digest("hex").slice(0, 16);
+  const sysroot = join(folder, `std-${key}`);
+  if (existsSync(sysroot)) return sysroot;
+  // It gets its name when all of it is there.
+  const making = mkdtempSync(join(folder, "making-"));
+  try {
+    writeFileSync(join(making, "Cargo.toml"), PROGRAM);
+    writeFileSync(join(making, "program.rs"), "");
+    const target = join(making, "target");
+    run("cargo", ["build", "--release", "--target", TARGET, ...OF_SOURCE], { cwd: making, env: { ...env, CARGO_TARGET_DIR: target }, stdio: "inherit" });
+    const [compiled, libraries] = [join(target, TARGET, "release/deps"), join(making, "std/lib/rustlib", TARGET, "lib")];
+    mkdirSync(libraries, { recursive: true });
+    for (const file of readdirSync(compiled).filter((name) => name.endsWith(".rlib"))) copyFileSync(join(compiled, file), join(libraries, file));
+    renameSync(join(making, "std"), sysroot);
+  } finally {
+    rmSync(making, { recursive: true });
+  }
+  return sysroot;
 }
 
 function unpack(folder) {
@@ -60,9 +103,9 @@ function unpack(folder) {
 /** There is no compiler for the target: nothing is wrong with the page. */
 export class Missing extends Error {}
 
-/** Arguments and environment for cargo; installs what can be installed if `install` is given. */
+/** The environment for cargo; installs what can be installed if `install` is given. */
 export function toolchain(install = process.argv.includes("--install")) {
-  if (installed()) return { args: [], env: {} };
+  if (installed()) return {};
   const folder = process.env.COLLTRANS_WASM_TOOLCHAIN ?? join(homedir(), ".cache/colltrans-wasm-toolchain");
   const found = unpacked(folder);
   if (found) return found;

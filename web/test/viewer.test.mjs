@@ -11,14 +11,16 @@ import { data, isCut, launch, program, watch } from "../browser.mjs";
 
 test("a report shows its plan from all sides", async () => {
   const folder = mkdtempSync(join(tmpdir(), "report-"));
-  const parts = readdirSync(join(data, "gearbox_small")).map((name) => join(data, "gearbox_small", name));
+  // Without the balls of its bearing, whose plan takes six times as long as that of all else.
+  const names = readdirSync(join(data, "gearbox_small")).filter((name) => !name.startsWith("bearing_ball"));
+  const parts = names.map((name) => join(data, "gearbox_small", name));
   execFileSync(program("report"), ["0.1", join(folder, "report.html"), ...parts]);
   const browser = await launch();
   try {
     const page = watch(await browser.newPage({ viewport: { width: 1100, height: 900 } }));
     await page.goto(pathToFileURL(join(folder, "report.html")).href);
     await page.waitForSelector("#viewer canvas");
-    assert.match(await page.textContent("#viewer output"), /^16 parts, \d+ steps/);
+    assert.match(await page.textContent("#viewer output"), /^12 parts, \d+ steps/);
     await page.click('#viewer [aria-label="Step on"]');
     await page.waitForFunction(() => document.querySelector("#viewer input").valueAsNumber === 1);
     assert.match(await page.textContent("#viewer output"), /^Step 1 of \d+: .+ along /);

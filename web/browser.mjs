@@ -74,6 +74,20 @@ export async function site() {
       for (const selector of ready) await page.waitForSelector(selector);
       return page;
     },
+    /** The same page, asked by another address, as where somebody follows a link in it: what is asked and answered
+     * is as where a page is opened with it. Tools, themes and cards are a test's own to put back. */
+    async ask(page, hash = "#example=bracket", ready = ["#headline"]) {
+      await page.evaluate(async (hash) => {
+        const changed = new Promise((resolve) => addEventListener("hashchange", resolve, { once: true }));
+        // What nobody reads in it makes it another one, even where the same is asked again.
+        location.hash = `${hash}&turn=${(window.turn = (window.turn ?? 0) + 1)}`;
+        await changed;
+      }, hash);
+      await page.waitForFunction(() => window.colltrans.probe().answer);
+      await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+      for (const selector of ready) await page.waitForSelector(selector);
+      return page;
+    },
     async close() {
       await browser.close();
       server.close();

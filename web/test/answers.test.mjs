@@ -7,18 +7,20 @@ import { after, before, test } from "node:test";
 import { brotliCompressSync } from "node:zlib";
 import { answers as nativeAnswers, data, dist, site } from "../browser.mjs";
 
-let at;
-before(async () => (at = await site()));
+let at, page;
+before(async () => {
+  at = await site();
+  page = await at.open();
+});
 after(() => at?.close());
 
-/** A page that has answered. */
-const opened = (hash, options, ready) => at.open(hash, options, ready);
+/** The page of all tests, asked anew. */
+const asked = (hash) => at.ask(page, hash);
 
 const headline = (page) => page.textContent("#headline");
 const answered = (page) => page.evaluate(() => window.colltrans.probe().answer);
 
 test("it opens solved, without a complaint, and is small", async () => {
-  const page = await opened();
   assert.equal(await headline(page), "Contact at t = 4.31674");
   assert.deepEqual(page.complaints, []);
   const first = await page.evaluate(() => window.colltrans.probe().firstAnswer);
@@ -33,7 +35,6 @@ test("it opens solved, without a complaint, and is small", async () => {
   // 384,877 when this was written; other compilers make a little more of it.
   assert.ok(total < 400_000, `${total} bytes`);
   assert.ok(!read.has("colltrans_assembly.wasm"));
-  await page.context().close();
 });
 
 test("1,000 answers are the native ones, bit for bit", async () => {
@@ -54,10 +55,10 @@ test("1,000 answers are the native ones, bit for bit", async () => {
     const l = Math.hypot(...q);
     return q.map((x) => x / l);
   };
-  const asked = [];
+  const questions = [];
   for (const [moving, takeMoving, fixed, takeFixed, far] of pairs) {
-    asked.push({ file: moving, question: { do: "load", slot: "moving", name: moving, take: takeMoving } });
-    asked.push({ file: fixed, question: { do: "load", slot: "fixed", name: fixed, take: takeFixed } });
+    questions.push({ file: moving, question: { do: "load", slot: "moving", name: moving, take: takeMoving } });
+    questions.push({ file: fixed, question: { do: "load", slot: "fixed", name: fixed, take: takeFixed } });
     for (let k = 0; k < 200; k++) {
       // Every fourth one in round numbers: ties, slides, faces upon faces.
       const round = k % 4 === 0;
@@ -70,27 +71,26 @@ test("1,000 answers are the native ones, bit for bit", async () => {
         do: "cast", moving_pose: [...at, ...turned], fixed_pose: [0, 0, 0, ...(round ? [0, 0, 0, 1] : turn())], direction,
         solver: ["auto", "cta", "portal"][k % 3], ignore_overlaps: k % 2 === 1,
       };
-      asked.push({ question });
+      questions.push({ question });
     }
   }
-  const lines = asked.map(({ file, question }) => (file ? `${join(data, file)}\t` : "") + JSON.stringify(question));
+  const lines = questions.map(({ file, question }) => (file ? `${join(data, file)}\t` : "") + JSON.stringify(question));
   const expected = nativeAnswers("native", lines);
-  const page = await opened();
-  const answers = await page.evaluate(async (asked) => {
+  const answers = await page.evaluate(async (questions) => {
     const { engine } = window.colltrans.probe();
     const answers = [];
-    for (const { file, question } of asked) {
+    for (const { file, question } of questions) {
       const bytes = file && (await (await fetch(`data/${file}`)).arrayBuffer());
       answers.push((await engine.ask(question, bytes || undefined)).text);
     }
     return answers;
-  }, asked);
+  }, questions);
   assert.equal(answers.length, expected.length);
   const outcomes = new Map();
   answers.forEach((text, k) => {
-    if (asked[k].question.do !== "cast") return;
+    if (questions[k].question.do !== "cast") return;
     // Byte for byte: numbers are written with as many digits as it takes to read the same bits.
-    assert.equal(text, expected[k], JSON.stringify(asked[k].question));
+    assert.equal(text, expected[k], JSON.stringify(questions[k].question));
     const answer = JSON.parse(text);
     const name = `${answer.kind} ${answer.outcome}`;
     outcomes.set(name, (outcomes.get(name) ?? 0) + 1);
@@ -99,11 +99,10 @@ test("1,000 answers are the native ones, bit for bit", async () => {
   for (const name of ["convex contact", "convex grazing", "convex separated", "solid blocked", "solid free"]) {
     assert.ok(outcomes.get(name) > 0, `no answer was ${name}`);
   }
-  await page.context().close();
 });
 
 test("how it was found: planar problems, portals, and what a tracker saves", async () => {
-  const page = await opened();
+  await asked();
   await page.click("#tab-found");
   await page.waitForSelector(".stack .pick");
   const steps = await page.locator(".found .steps").first().locator("button").count();
@@ -139,11 +138,10 @@ test("how it was found: planar problems, portals, and what a tracker saves", asy
   const said = await page.locator(".found .proof").last().textContent();
   assert.match(said, new RegExp(`solved ${near} planar problems?, from scratch ${scratch}: ${scratch - near} of ${scratch} are saved`));
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });
 
 test("dragging the arrow's tip changes the answer", async () => {
-  const page = await opened();
+  await asked();
   // Once the picture is drawn the arrow is where it is said to be.
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   const old = await answered(page);
@@ -158,15 +156,14 @@ test("dragging the arrow's tip changes the answer", async () => {
   // The address tells it, and leads back to the same answer.
   await page.waitForFunction((d) => decodeURIComponent(location.hash).includes(`d=${d.join(",")}`), direction);
   const now = await answered(page);
-  const again = await opened(new URL(page.url()).hash);
+  const again = await at.open(new URL(page.url()).hash);
   assert.deepStrictEqual((await answered(again)).first, now.first);
   assert.deepEqual([...page.complaints, ...again.complaints], []);
-  await page.context().close();
   await again.context().close();
 });
 
 test("numbers can be typed, and the proof is checked", async () => {
-  const page = await opened();
+  await asked();
   await page.fill('[aria-label="moving position z"]', "12.5");
   await page.waitForFunction(() => window.colltrans.probe().answer?.first?.t > 7);
   await page.click("text=Verify");
@@ -180,11 +177,10 @@ test("numbers can be typed, and the proof is checked", async () => {
   assert.equal(lie.holds, false);
   assert.match(lie.because, /above the upper bound/);
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });
 
 test("a proof between solids is shown, checked, and no proof of anything else", async () => {
-  const page = await opened("#example=plate");
+  await asked("#example=plate");
   await page.waitForSelector(".claims");
   assert.match(await page.textContent(".claims"), /their shadows are apart/);
   await page.click("text=Verify");
@@ -202,5 +198,4 @@ test("a proof between solids is shown, checked, and no proof of anything else", 
   });
   assert.deepEqual(lies, [true, false, false, false]);
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });

@@ -1,15 +1,17 @@
 // The page's part for assemblies, in a browser, held against the same code built natively and by hand.
 
 import assert from "node:assert/strict";
-import { readdirSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { answers, data, isCut, launchPlain, site, watch } from "../browser.mjs";
 
 const gearbox = join(data, "gearbox_small");
 
-let at;
-before(async () => (at = await site()));
+let at, page;
+before(async () => {
+  at = await site();
+  page = await opened();
+});
 after(() => at?.close());
 
 const opened = (hash = "", options = {}) => at.open(`#tab=assembly${hash}`, options, ["#assembly-headline"]);
@@ -20,8 +22,44 @@ const probe = (page) => page.evaluate(() => {
 });
 const planned = (page) => page.waitForSelector(".assembly-panel ol li");
 
+async function choose(page, files) {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("text=Choose files…")]);
+  await chooser.setFiles(files);
+}
+
+test("files are chosen, refused and dropped; the page stays alive", async () => {
+  await choose(page, [{ name: "bad.off", mimeType: "", buffer: Buffer.from("OFF\n1 0 0\n0 zero 0\n") }]);
+  await page.waitForSelector(".assembly-panel [role=alert]");
+  assert.match(await page.textContent(".assembly-panel [role=alert]"), /^bad\.off: line 3/);
+  await choose(page, [{ name: "bad.glb", mimeType: "", buffer: Buffer.from("glTF, but no more") }]);
+  await page.waitForFunction(() => /bad\.glb: glTF/.test(document.querySelector(".assembly-panel [role=alert]")?.textContent));
+  await choose(page, ["housing.off", "shaft.off"].map((name) => join(gearbox, name)));
+  await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 2 && window.colltrans.probe().assembly.fit);
+  await page.waitForSelector("text=1 of 2 parts come out along d");
+  // With what takes long the frames go on.
+  await page.evaluate(() => {
+    const { probe } = window.colltrans;
+    window.drawn = 0;
+    const frame = () => {
+      const { facts, fit, plan } = probe().assembly;
+      if (facts?.parts.length === 16 && fit && plan) return;
+      window.drawn++;
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  });
+  await page.click("button:text-is('Small gearbox')");
+  await page.waitForFunction(() => {
+    const { facts, plan } = window.colltrans.probe().assembly;
+    return facts?.parts.length === 16 && plan;
+  });
+  await planned(page);
+  const frames = await page.evaluate(() => window.drawn);
+  assert.ok(frames > 20, `${frames} frames`);
+  assert.deepEqual(page.complaints, []);
+});
+
 test("the gearbox: the plan, its slider, and the native answers", async () => {
-  const page = await opened();
   assert.match(await page.textContent("#assembly-headline"), /^4 of 16 parts come out along d$/);
   await planned(page);
   const { facts, plan, fit } = await probe(page);
@@ -54,12 +92,11 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
   }, more);
   assert.deepStrictEqual(told, native);
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });
 
 test("dragging the arrow, picking a part, clicking into its map", async () => {
-  const page = await opened();
   await planned(page);
+  await page.click("button:text-is('Assembled')");
   const [x, y] = (await probe(page)).tip;
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -88,47 +125,9 @@ test("dragging the arrow, picking a part, clicking into its map", async () => {
     return fields.has("apart") && fields.get("ad") === window.colltrans.probe().state.assembly.direction.join(",");
   });
   const again = await opened(new URL(page.url()).hash.replace(/^#/, "&").replace("&tab=assembly", ""));
-  await page.waitForFunction((along) => JSON.stringify(window.colltrans.probe().assembly.along) === along, JSON.stringify((await probe(again)).along));
+  await again.waitForFunction((along) => JSON.stringify(window.colltrans.probe().assembly.along) === along, JSON.stringify((await probe(page)).along));
   assert.deepEqual([...page.complaints, ...again.complaints], []);
-  await page.context().close();
   await again.context().close();
-});
-
-test("files are chosen, refused and dropped; the page stays alive", async () => {
-  const page = await opened();
-  const choose = async (files) => {
-    const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("text=Choose files…")]);
-    await chooser.setFiles(files);
-  };
-  await choose([{ name: "bad.off", mimeType: "", buffer: Buffer.from("OFF\n1 0 0\n0 zero 0\n") }]);
-  await page.waitForSelector(".assembly-panel [role=alert]");
-  assert.match(await page.textContent(".assembly-panel [role=alert]"), /^bad\.off: line 3/);
-  await choose([{ name: "bad.glb", mimeType: "", buffer: Buffer.from("glTF, but no more") }]);
-  await page.waitForFunction(() => /bad\.glb: glTF/.test(document.querySelector(".assembly-panel [role=alert]")?.textContent));
-  await choose(["housing.off", "shaft.off"].map((name) => join(gearbox, name)));
-  await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 2 && window.colltrans.probe().assembly.fit);
-  await page.waitForSelector("text=1 of 2 parts come out along d");
-  const files = readdirSync(gearbox).filter((name) => name.startsWith("bolt"));
-  assert.equal(files.length, 4);
-  // With what takes long the frames go on.
-  await page.evaluate(() => {
-    const { probe } = window.colltrans;
-    window.drawn = 0;
-    const frame = () => {
-      const { facts, fit, plan } = probe().assembly;
-      if (facts?.parts.length === 16 && fit && plan) return;
-      window.drawn++;
-      requestAnimationFrame(frame);
-    };
-    requestAnimationFrame(frame);
-  });
-  await page.click("button:text-is('Small gearbox')");
-  await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 16);
-  await planned(page);
-  const frames = await page.evaluate(() => window.drawn);
-  assert.ok(frames > 20, `${frames} frames`);
-  assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });
 
 test("on a phone, and without WebGL", async () => {
@@ -144,6 +143,8 @@ test("on a phone, and without WebGL", async () => {
   const plain = watch(await without.newPage());
   await plain.goto(`${at.base}#tab=assembly`);
   await plain.waitForSelector("#assembly-headline");
+  await choose(plain, ["housing.off", "shaft.off"].map((name) => join(gearbox, name)));
+  await plain.waitForSelector("text=1 of 2 parts come out along d");
   await planned(plain);
   assert.match(await plain.textContent(".assembly-view"), /WebGL 2/);
   await without.close();

@@ -10,9 +10,10 @@ import { site } from "../browser.mjs";
 /** COLLTRANS_FACETS=1000000 takes longer, by the same way. */
 const FACETS = Number(process.env.COLLTRANS_FACETS ?? 200_000);
 
-let at, folder;
+let at, page, folder;
 before(async () => {
   at = await site();
+  page = await at.open();
   folder = mkdtempSync(join(tmpdir(), "large-"));
 });
 after(async () => {
@@ -63,7 +64,6 @@ async function choose(page, slot, file) {
 test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, the answer comes`, async () => {
   const file = join(folder, "waves.stl");
   writeFileSync(file, ball(FACETS, 7));
-  const page = await at.open();
   const working = await processor(page);
   await page.evaluate(() => {
     window.longest = 0;
@@ -101,7 +101,6 @@ test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, th
   // Whoever else uses the machine makes all of it longer.
   assert.ok(longest < took / 2, `${longest} ms of ${took}`);
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });
 
 test("a file beyond the limit is refused before it is read", async () => {
@@ -109,11 +108,10 @@ test("a file beyond the limit is refused before it is read", async () => {
   const handle = openSync(file, "w");
   ftruncateSync(handle, 401 * 2 ** 20);
   closeSync(handle);
-  const page = await at.open();
+  await at.ask(page);
   await choose(page, "fixed", file);
   await page.waitForSelector(".refused");
   assert.match(await page.textContent(".refused"), /^huge\.stl: 401 MiB; a page takes files up to 400 MiB, the command line larger ones/);
   assert.equal(await page.textContent("#headline"), "Contact at t = 4.31674");
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { data, launchPlain, site, watch } from "../browser.mjs";
 
-let at, folder;
+let at, page, folder;
 before(async () => {
   at = await site();
   folder = mkdtempSync(join(tmpdir(), "page-"));
@@ -17,14 +17,19 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true });
 });
 
-/** A page that has answered. */
-const opened = (hash, options, ready) => at.open(hash, options, ready);
-
 const headline = (page) => page.textContent("#headline");
 const answered = (page) => page.evaluate(() => window.colltrans.probe().answer);
 
+test("what a direction cannot be is said; another address is answered", async () => {
+  page = await at.open("#d=0,0,0", {}, ["text=No answer", "#tools button"]);
+  assert.match(await page.textContent(".said"), /direction/);
+  await at.ask(page);
+  assert.equal(await headline(page), "Contact at t = 4.31674");
+  assert.deepEqual(page.complaints, []);
+});
+
 test("the view is saved as pixels and as a drawing, the shadows too", async () => {
-  const page = await opened();
+  await at.ask(page);
   await page.click("summary:has-text('Share')");
   for (const [button, name, begins] of [["Save the view (PNG)", "contact.png", "\u0089PNG"], ["Save the view (SVG)", "contact.svg", "<svg"], ["Save the shadows (SVG)", "shadows.svg", "<?xml"]]) {
     const [download] = await Promise.all([page.waitForEvent("download"), page.click(`text=${button}`)]);
@@ -34,11 +39,10 @@ test("the view is saved as pixels and as a drawing, the shadows too", async () =
     if (name === "contact.svg") assert.ok(text.split("<path").length > 50 && text.endsWith("</svg>"));
   }
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });
 
 test("a bad file gives its message, one that is not convex two ways on", async () => {
-  const page = await opened();
+  await at.ask(page);
   const choose = async (file) => {
     const [chooser] = await Promise.all([
       page.waitForEvent("filechooser"),
@@ -68,7 +72,6 @@ test("a bad file gives its message, one that is not convex two ways on", async (
   await page.click("text=As a solid");
   await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid");
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
 });
 
 test("an address that asks for a file: it is given, and taken as the address says", async () => {
@@ -100,7 +103,7 @@ test("an address that asks for a file: it is given, and taken as the address say
 });
 
 test("an example is chosen again, or another: nothing stays of what was checked", async () => {
-  const page = await opened("#example=__proto__");
+  await at.ask(page, "#example=__proto__");
   const chosen = () => page.inputValue("#example");
   assert.equal(await chosen(), "bracket");
   await page.fill('[aria-label="moving position z"]', "12.5");
@@ -130,17 +133,10 @@ test("an example is chosen again, or another: nothing stays of what was checked"
   await page.click("#tab-answer");
   await page.waitForFunction(() => document.querySelector("#example").value === "plate");
   assert.deepEqual(page.complaints, []);
-  await page.context().close();
-});
-
-test("what a direction cannot be is said", async () => {
-  const page = await at.open("#d=0,0,0", {}, ["text=No answer"]);
-  assert.match(await page.textContent(".said"), /direction/);
-  await page.context().close();
 });
 
 test("numbers beyond what a picture or the library holds are said, and nothing stays of them", async () => {
-  const page = await opened("#mp=1e200,1,9,0,0,0,1", {}, ["text=No answer", "#tools button"]);
+  const page = await at.open("#mp=1e200,1,9,0,0,0,1", {}, ["text=No answer", "#tools button"]);
   const field = page.locator('[aria-label="moving position x"]');
   // A picture holds less than the library, which holds less than a number.
   for (const [number, said] of [["1e50", "never meet"], ["1e308", "No answer"], ["6", "Contact at t"]]) {
@@ -170,16 +166,18 @@ test("without WebGL it says so", async () => {
 });
 
 test("nothing is wider than a phone", async () => {
+  const page = await at.open("", { viewport: { width: 360, height: 640 } });
   for (const [width, height] of [[360, 640], [390, 844], [844, 390], [768, 1024]]) {
-    const page = await opened("", { viewport: { width, height } });
+    await page.setViewportSize({ width, height });
+    await page.waitForFunction((width) => innerWidth === width, width);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= width, `${wide} of ${width}`);
-    await page.context().close();
   }
+  await page.context().close();
 });
 
 test("without a network after loading, everything of the first part works on", async () => {
-  const page = await opened();
+  const page = await at.open();
   await page.context().setOffline(true);
   await page.fill('[aria-label="moving position z"]', "12.5");
   await page.waitForFunction(() => window.colltrans.probe().answer?.first?.t > 7);

@@ -1,5 +1,6 @@
 """Parts that are not convex: the same bits as the command line's, proofs, refusals, copies."""
 
+import copy
 import pickle
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,6 +16,7 @@ from colltrans import (
     InputError,
     MeshError,
     QueryError,
+    ShrinkReport,
     Solid,
     SolidBlocked,
     SolidCast,
@@ -101,6 +103,57 @@ def test_other_questions(bolt: Solid, plate: Solid) -> None:
             raise AssertionError(other)
     assert inside.intersects()
     assert query.moving is bolt and query.moving_pose.translation.tolist() == [0, 0, 7]
+
+
+def test_ignored_overlaps_are_told() -> None:
+    table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
+    plate = ConvexPolyhedron.cuboid([0, 0, 0], [1, 2, 1])
+    pressed = SolidCast(
+        plate, table, [1, 0, 0], moving_pose=[0, 0, -0.125], ignore_start_overlaps=True
+    )
+    assert isinstance(pressed.clearance(), SolidFree)
+    ignored = pressed.start_overlap()
+    assert ignored is not None and ignored.query is pressed
+    assert ignored.depth == pytest.approx(0.125, abs=1e-9)
+    moving, fixed = ignored.place
+    assert moving is not None and fixed is not None
+    assert moving < len(plate.faces) and table.face_normal(fixed).tolist() == [0, 0, 1]
+    assert SolidCast(plate, table, [1, 0, 0]).start_overlap() is None
+    small = ConvexPolyhedron.cuboid([0, 0, 0], [0.25, 0.25, 0.25])
+    within = SolidCast(small, table, [1, 0, 0], moving_pose=[0, 0, -0.5]).start_overlap()
+    assert within is not None and within.place[1] is None
+    assert (within.place[0] or 0) < len(small.faces)
+    around = SolidCast(table, small, [1, 0, 0], fixed_pose=[0, 0, -0.5]).clearance()
+    assert isinstance(around, SolidOverlapping) and around.place[0] is None
+    assert around.place[1] is not None
+
+
+def test_a_solid_shrinks_and_grows() -> None:
+    cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    post = ConvexPolyhedron.cuboid([2, 2, 0], [3, 3, 4])
+    both = Solid.from_pieces([cube, post])
+    for (body, report), by in [(both.shrunk(0.25), 0.25), (both.grown(0.25), -0.25)]:
+        side = 1 - 2 * by
+        assert body.volume == pytest.approx(side**2 * (side + 4 - 2 * by), abs=1e-12)
+        assert body.bounds.tolist() == [[by, by, by], [3 - by, 3 - by, 4 - by]]
+        assert np.array_equal(body.triangles, both.triangles)
+        assert np.array_equal(body.input_indices, both.input_indices)
+        assert np.array_equal(body.face_indices, both.face_indices)
+        match report:
+            case ShrinkReport(farthest, stuck, inverted):
+                assert farthest == pytest.approx(0.25 * 3**0.5, abs=1e-12)
+                assert stuck.tolist() == inverted.tolist() == []
+            case other:
+                raise AssertionError(other)
+        for again in (pickle.loads(pickle.dumps(body)), copy.deepcopy(body)):
+            assert again.vertices.tobytes() == body.vertices.tobytes()
+            assert again.face_indices.tolist() == body.face_indices.tolist()
+        assert repr(pickle.loads(pickle.dumps(report))) == repr(report)
+    wall = Solid.from_pieces([cube, ConvexPolyhedron.cuboid([2, 0, 0], [2.25, 3, 3])])
+    _, report = wall.shrunk(0.25)
+    assert set(report.inverted.tolist()) <= set(range(6, 12)) and len(report.inverted) > 0
+    with pytest.raises(BuildError):
+        both.shrunk(-1)
 
 
 def test_a_union_of_convex_bodies_and_a_convex_body() -> None:

@@ -44,7 +44,7 @@ mod _colltrans {
     #[pymodule_export]
     use crate::many::ask_many;
     #[pymodule_export]
-    use crate::offset::OffsetReport;
+    use crate::offset::{OffsetReport, ShrinkReport};
     #[pymodule_export]
     use crate::pose::Pose;
     #[pymodule_export]

@@ -36,3 +36,46 @@ impl OffsetReport {
         format!("OffsetReport(farthest={farthest:?}, vanished={vanished:?})")
     }
 }
+
+/// What shrinking, or growing, could not do to a solid as it should.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct ShrinkReport(pub(crate) colltrans::ShrinkReport);
+
+#[pymethods]
+impl ShrinkReport {
+    #[classattr]
+    #[pyo3(name = "__match_args__")]
+    const MATCH_ARGS: (&'static str, &'static str, &'static str) =
+        ("farthest", "stuck", "inverted");
+
+    /// float: The largest displacement of a vertex, a length.
+    #[getter]
+    fn farthest(&self) -> f64 {
+        self.0.farthest
+    }
+
+    /// ndarray: Vertices that stay, because no displacement is inwards for all facets around them;
+    /// indices of the input.
+    #[getter]
+    fn stuck<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.0.stuck)
+    }
+
+    /// ndarray: Facets that turned inside out, or passed through others, because the body (or a gap in
+    /// it that grows shut) is thinner than twice the amount there; indices of the input, in increasing
+    /// order.
+    #[getter]
+    fn inverted<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.0.inverted)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
+        let colltrans::ShrinkReport { farthest, stuck, inverted } = self.0.clone();
+        saved(py, "ShrinkReport", (farthest, stuck, inverted))
+    }
+
+    fn __repr__(&self) -> String {
+        let colltrans::ShrinkReport { farthest, stuck, inverted } = &self.0;
+        format!("ShrinkReport(farthest={farthest:?}, stuck={stuck:?}, inverted={inverted:?})")
+    }
+}

@@ -13,7 +13,7 @@ use crate::answer::{Contact, ContactRange, Grazing, Separated};
 use crate::certificate::{Certificate, Separation};
 use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapping, Slides};
 use crate::features::{Feature, Features, Steps};
-use crate::offset::OffsetReport;
+use crate::offset::{OffsetReport, ShrinkReport};
 use crate::pose::Pose;
 use crate::query::{Cast, Query, solver_called_by};
 use crate::solid::Piece;
@@ -106,6 +106,10 @@ fn convex<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, 
             let (farthest, vanished) = state.extract()?;
             object(state, OffsetReport(colltrans::OffsetReport { farthest, vanished }))
         }
+        "ShrinkReport" => {
+            let (farthest, stuck, inverted) = state.extract()?;
+            object(state, ShrinkReport(colltrans::ShrinkReport { farthest, stuck, inverted }))
+        }
         _ => Err(unknown(class)),
     }
 }
@@ -127,8 +131,8 @@ fn solids<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, 
             object(state, SolidFree { separation, query })
         }
         "SolidOverlapping" => {
-            let (depth, query) = state.extract()?;
-            object(state, SolidOverlapping { depth, query })
+            let (depth, place, query) = state.extract()?;
+            object(state, SolidOverlapping { depth, place, query })
         }
         "SolidCertificate" => {
             let (text,): (String,) = state.extract()?;

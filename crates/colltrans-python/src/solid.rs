@@ -17,11 +17,18 @@ use pyo3::types::PyTuple;
 use crate::arrays::{self, faces, points, table};
 use crate::body::ConvexPolyhedron;
 use crate::errors::OrRaise;
+use crate::offset::ShrinkReport;
 
 /// What a solid was made of.
 enum Source {
-    Mesh { vertices: Vec<DVec3>, faces: Vec<Vec<u32>>, open: bool },
+    Mesh {
+        vertices: Vec<DVec3>,
+        faces: Vec<Vec<u32>>,
+        open: bool,
+    },
     Pieces(Vec<Piece>),
+    /// Another solid, its facets moved inwards by this much, or outwards if it is negative.
+    Moved(Py<Solid>, f64),
 }
 
 /// A body that stands for a solid.
@@ -112,6 +119,16 @@ impl Solid {
         };
         let solid = solid.or_raise()?;
         Ok(Self { solid, source: Arc::new(Source::Mesh { vertices, faces, open }) })
+    }
+
+    /// With facets moved inwards by an amount, or outwards.
+    fn moved(slf: &Bound<'_, Self>, amount: f64, inwards: bool) -> PyResult<(Self, ShrinkReport)> {
+        let of = &slf.get().solid;
+        let moved = || if inwards { of.shrunk(amount) } else { of.grown(amount) };
+        let (solid, report) = slf.py().detach(moved).or_raise()?;
+        let by = if inwards { amount } else { -amount };
+        let source = Arc::new(Source::Moved(slf.clone().unbind(), by));
+        Ok((Self { solid, source }, ShrinkReport(report)))
     }
 }
 
@@ -214,6 +231,59 @@ impl Solid {
         })
     }
 
+    /// The solid with every facet plane moved inwards.
+    ///
+    /// Vertices and facets keep their numbers. What cannot be moved so is counted and named: walls
+    /// thinner than twice the amount, and corners between facets of which none can move inwards
+    /// without another moving outwards.
+    ///
+    /// Parameters
+    /// ----------
+    /// amount : float
+    ///     By how much, in the unit of the body.
+    ///
+    /// Returns
+    /// -------
+    /// Solid
+    /// ShrinkReport
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     An amount that is negative or not finite, or of which nothing is left.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, Solid
+    /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    /// >>> step = Solid.from_pieces([cube, ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 4])])
+    /// >>> smaller, report = step.shrunk(0.25)
+    /// >>> smaller.bounds.tolist(), report.stuck.tolist(), report.inverted.tolist()
+    /// ([[0.25, 0.25, 0.25], [0.75, 0.75, 3.75]], [], [])
+    fn shrunk(slf: &Bound<'_, Self>, amount: f64) -> PyResult<(Self, ShrinkReport)> {
+        Self::moved(slf, amount, true)
+    }
+
+    /// The solid with every facet plane moved outwards: for a margin to be kept.
+    ///
+    /// Parameters
+    /// ----------
+    /// amount : float
+    ///     By how much, in the unit of the body.
+    ///
+    /// Returns
+    /// -------
+    /// Solid
+    /// ShrinkReport
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     As of :meth:`shrunk`.
+    fn grown(slf: &Bound<'_, Self>, amount: f64) -> PyResult<(Self, ShrinkReport)> {
+        Self::moved(slf, amount, false)
+    }
+
     /// ndarray of shape (N, 3): The vertices in use, in the body frame.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -272,6 +342,7 @@ impl Solid {
                 let pieces: Vec<_> = pieces.iter().map(|piece| piece.object(py)).collect();
                 Ok((class.getattr("from_pieces")?, (pieces,).into_pyobject(py)?))
             }
+            Source::Moved(of, by) => Ok((class.getattr("_moved")?, (of, *by).into_pyobject(py)?)),
             Source::Mesh { vertices, faces, open } => {
                 let vertices = table(py, vertices.iter().map(DVec3::to_array))?;
                 let faces: Vec<_> = faces.iter().map(|f| f.clone().into_pyarray(py)).collect();
@@ -291,6 +362,12 @@ impl Solid {
     #[pyo3(name = "_open")]
     fn open(py: Python<'_>, v: &Bound<'_, PyAny>, f: &Bound<'_, PyAny>) -> PyResult<Self> {
         Self::new(py, v, f, true)
+    }
+
+    #[staticmethod]
+    #[pyo3(name = "_moved")]
+    fn moved_again(of: &Bound<'_, Self>, by: f64) -> PyResult<Self> {
+        Ok(Self::moved(of, by.abs(), by.is_sign_positive())?.0)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

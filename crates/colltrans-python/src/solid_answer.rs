@@ -1,6 +1,6 @@
 //! Answers of queries about solids: frozen, with what they were asked.
 
-use colltrans::Clearance;
+use colltrans::{Clearance, Overlap, SolidOverlap};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -214,7 +214,24 @@ impl SolidFree {
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidOverlapping {
     pub(crate) depth: Option<f64>,
+    /// Faces of the moving and of the fixed body.
+    pub(crate) place: [Option<u32>; 2],
     pub(crate) query: Py<SolidCast>,
+}
+
+impl SolidOverlapping {
+    pub(crate) fn of(overlap: &SolidOverlap, query: &Bound<'_, SolidCast>) -> PyResult<Self> {
+        let triangles = match overlap.place {
+            Overlap::Facets(moving, fixed) => [Some(moving), Some(fixed)],
+            Overlap::MovingInside(moving) => [Some(moving), None],
+            Overlap::FixedInside(fixed) => [None, Some(fixed)],
+        };
+        let bodies = &query.get().bodies;
+        let solids = [bodies[0].solid().or_raise()?, bodies[1].solid().or_raise()?];
+        let face = |i: usize| Some(solids[i].facet_indices()[triangles[i]? as usize]);
+        let place = [face(0), face(1)];
+        Ok(Self { depth: overlap.depth, place, query: query.clone().unbind() })
+    }
 }
 
 #[pymethods]
@@ -235,6 +252,15 @@ impl SolidOverlapping {
         self.depth
     }
 
+    /// tuple of (int or None, int or None): One of the places where the bodies, shrunk by half the
+    /// tolerance each, overlap: a face of the moving and one of the fixed body that cross, as they
+    /// were numbered in the input; where one of them is None, the shell with the other lies inside
+    /// that body.
+    #[getter]
+    fn place(&self) -> (Option<u32>, Option<u32>) {
+        self.place.into()
+    }
+
     /// SolidCast: The query.
     #[getter]
     fn query(&self, py: Python<'_>) -> Py<SolidCast> {
@@ -248,7 +274,7 @@ impl SolidOverlapping {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "SolidOverlapping", (self.depth, self.query.clone_ref(py)))
+        saved(py, "SolidOverlapping", (self.depth, self.place, self.query.clone_ref(py)))
     }
 
     fn __repr__(&self) -> String {
@@ -316,8 +342,7 @@ pub(crate) fn solid_answer<'py>(
             Bound::new(py, SolidFree { separation, query: query.clone().unbind() })?.into_any()
         }
         Clearance::Overlapping(overlap) => {
-            let query = query.clone().unbind();
-            Bound::new(py, SolidOverlapping { depth: overlap.depth, query })?.into_any()
+            Bound::new(py, SolidOverlapping::of(overlap, query)?)?.into_any()
         }
     })
 }

@@ -17,7 +17,7 @@ use crate::pose::{Pose, pose};
 use crate::saved::{Saved, saved};
 use crate::show::{Options, Shown, show};
 use crate::solid::Piece;
-use crate::solid_answer::{SolidCertificate, solid_answer};
+use crate::solid_answer::{SolidCertificate, SolidOverlapping, solid_answer};
 
 /// A query about solids as a value: two placed bodies and a direction.
 ///
@@ -183,6 +183,29 @@ impl SolidCast {
     /// none up to their size.
     fn depth(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
         Self::ask(slf, |cast| cast.depth())
+    }
+
+    /// Where the bodies, shrunk by half the tolerance, overlap, and how deep; None if they do not: what
+    /// an answer with ``ignore_start_overlaps`` has ignored.
+    ///
+    /// Returns
+    /// -------
+    /// SolidOverlapping or None
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, SolidCast
+    /// >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
+    /// >>> plate = ConvexPolyhedron.cuboid([0, 0, 0], [1, 2, 1])
+    /// >>> aside = SolidCast(plate, table, [1, 0, 0], moving_pose=[0, 0, -0.125],
+    /// ...                   ignore_start_overlaps=True)
+    /// >>> aside.clearance()
+    /// SolidFree()
+    /// >>> round(aside.start_overlap().depth, 9)
+    /// 0.125
+    fn start_overlap(slf: &Bound<'_, Self>) -> PyResult<Option<SolidOverlapping>> {
+        let found = Self::ask(slf, |cast| cast.start_overlap())?;
+        found.map(|found| SolidOverlapping::of(&found, slf)).transpose()
     }
 
     /// The translation after which the bodies never meet again, None if nothing faces.

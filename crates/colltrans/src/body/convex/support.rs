@@ -95,7 +95,7 @@ impl SupportIndex {
         if self.resolution == 0 {
             return scan(&self.groups, direction);
         }
-        self.climb(vertices, topology, direction, self.look_up(direction), usize::MAX).0
+        self.ascend(vertices, topology, direction, self.look_up(direction))
     }
 
     /// The same, starting from a vertex believed to be near; if it is not, the table helps out.
@@ -138,7 +138,7 @@ impl SupportIndex {
         if self.resolution == 0 {
             return scan(&self.groups, direction);
         }
-        self.climb(vertices, topology, direction, guess, usize::MAX).0
+        self.ascend(vertices, topology, direction, guess)
     }
 
     fn climb_from(
@@ -155,7 +155,7 @@ impl SupportIndex {
         let other = self.look_up(direction);
         let ahead = direction.dot(vertices[other as usize] - vertices[reached as usize]) > 0.0;
         let start = if ahead { other } else { reached };
-        self.climb(vertices, topology, direction, start, usize::MAX).0
+        self.ascend(vertices, topology, direction, start)
     }
 
     /// Steepest ascent along edges, at most `limit` steps, and the number of steps it took.
@@ -188,12 +188,41 @@ impl SupportIndex {
             if gain <= noise::GAIN * direction.abs().dot(edge.abs()) {
                 return (at, steps);
             }
-            let last = std::mem::replace(&mut at, best);
-            if self.has_wide_faces && steps % LONG == LONG - 1 {
-                at = along_face(vertices, topology, direction, [last, at]);
-            }
+            at = best;
         }
         (at, limit)
+    }
+
+    /// Steepest ascent from a vertex to the support point.
+    #[inline]
+    fn ascend(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3, start: u32) -> u32 {
+        if self.has_wide_faces {
+            return self.ascend_along_faces(vertices, topology, direction, start);
+        }
+        self.climb(vertices, topology, direction, start, usize::MAX).0
+    }
+
+    /// The same, with long strides along faces with many corners.
+    #[inline(never)]
+    fn ascend_along_faces(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        direction: DVec3,
+        start: u32,
+    ) -> u32 {
+        let mut at = start;
+        loop {
+            let (last, steps) = self.climb(vertices, topology, direction, at, LONG - 1);
+            if steps < LONG - 1 {
+                return last;
+            }
+            let (next, steps) = self.climb(vertices, topology, direction, last, 1);
+            if steps < 1 {
+                return last;
+            }
+            at = along_face(vertices, topology, direction, [last, next]);
+        }
     }
 
     /// Position among its neighbours of the steepest edge of a vertex with many.
@@ -284,7 +313,7 @@ impl SupportIndex {
         for j in 0..r {
             for i in 0..r {
                 let cell = Cell { side: 2.0 / f64::from(r), i, j, depth: 0 };
-                near = builder.support(cell.direction(0.5, 0.5), near).0;
+                near = builder.support(cell.direction(0.5, 0.5), near);
                 let entry = builder.entry(cell, near, &mut cells);
                 cells[(j * r + i) as usize] = entry;
             }
@@ -344,16 +373,23 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn support(&self, normalised: DVec3, start: u32) -> (u32, usize) {
+    fn support(&self, normalised: DVec3, start: u32) -> u32 {
         let direction = self.to_body * normalised;
-        self.index.climb(self.vertices, self.topology, direction, start, usize::MAX)
+        self.index.ascend(self.vertices, self.topology, direction, start)
+    }
+
+    /// Whether the support point is a few climbing steps from a vertex.
+    fn is_near(&self, normalised: DVec3, start: u32) -> bool {
+        let direction = self.to_body * normalised;
+        let most = NEAR_STEPS + 1;
+        self.index.climb(self.vertices, self.topology, direction, start, most).1 < most
     }
 
     /// The entry of a cell whose centre has the support point `center`: divided while its corners
     /// are far.
     fn entry(&self, cell: Cell, center: u32, cells: &mut Vec<u32>) -> u32 {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
-        let is_near = |(s, t)| self.support(cell.direction(s, t), center).1 <= NEAR_STEPS;
+        let is_near = |(s, t)| self.is_near(cell.direction(s, t), center);
         let full = cells.len() + 4 > self.limit;
         if cell.depth == MAX_DEPTH || full || corners.into_iter().all(is_near) {
             return center;
@@ -362,7 +398,7 @@ impl Builder<'_> {
         cells.extend([center; 4]);
         for (k, (i, j)) in [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().enumerate() {
             let quarter = cell.quarter(i, j);
-            let near = self.support(quarter.direction(0.5, 0.5), center).0;
+            let near = self.support(quarter.direction(0.5, 0.5), center);
             cells[first + k] = self.entry(quarter, near, cells);
         }
         first as u32 | DIVIDED

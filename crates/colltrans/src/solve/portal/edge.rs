@@ -13,7 +13,6 @@ use crate::solve::observe::{Observer, Watch};
 const NEXT: [usize; 3] = [1, 2, 0];
 
 /// A directed edge of a portal with the third corner on its left and the line on its right.
-#[derive(Clone)]
 pub(super) struct Edge {
     pub(super) from: Point,
     pub(super) to: Point,

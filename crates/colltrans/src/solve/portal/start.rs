@@ -201,7 +201,9 @@ pub(super) fn steep(lateral: DVec2) -> DVec2 {
 
 /// The change of slope that moves the shadow of the support point by minus a given vector, at a slope.
 pub(super) fn slope_per_shadow(difference: &MinkowskiDifference, slope: DVec2) -> DMat2 {
-    let [a, b] = hessians(difference, slope);
+    let normal = slope.extend(1.0);
+    let (_, ellipsoids) = difference.ellipsoids();
+    let [a, b] = ellipsoids.map(|k| response(&k, normal).1);
     (a + b).inverse()
 }
 
@@ -216,14 +218,10 @@ pub(super) fn continued(
     shadow: DVec2,
     slopes: [DVec2; 2],
 ) -> DVec2 {
-    let [a, b] = hessians(difference, (slopes[0] + slopes[1]) * 0.5);
-    (a + b).inverse() * (shadow + a * slopes[0] + b * slopes[1])
-}
-
-/// The Hessians of both ellipsoids' support functions at a slope.
-fn hessians(difference: &MinkowskiDifference, slope: DVec2) -> [DMat2; 2] {
     let (_, ellipsoids) = difference.ellipsoids();
-    ellipsoids.map(|k| response(&k, slope.extend(1.0)).1)
+    let n = ((slopes[0] + slopes[1]) * 0.5).extend(1.0);
+    let [a, b] = [response(&ellipsoids[0], n).1, response(&ellipsoids[1], n).1];
+    (a + b).inverse() * (shadow + a * slopes[0] + b * slopes[1])
 }
 
 /// Gradient and Hessian of an ellipsoid's support function in the lateral components of a normal.

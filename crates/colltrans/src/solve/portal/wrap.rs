@@ -70,10 +70,6 @@ struct First {
 /// No neighbour lies beyond the axis.
 const NOBODY: u32 = u32::MAX;
 
-impl First {
-    const NONE: Self = Self { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
-}
-
 impl Turn {
     /// The first among the neighbours of one body's vertex.
     #[inline]
@@ -84,7 +80,7 @@ impl Turn {
         if neighbours.len() > FEW {
             return self.first_of_many(body, here, neighbours);
         }
-        let mut first = First::NONE;
+        let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
         for &w in neighbours {
             let edge = body.vertices()[w as usize] - here;
             let (rise, run) = (self.up.dot(edge), self.out.dot(edge));
@@ -111,6 +107,10 @@ impl Turn {
         };
         let i = greatest_on_cycle(neighbours.len(), soon);
         let (rise, run) = ahead(i);
-        if run > self.least { First { vertex: neighbours[i], rise, run } } else { First::NONE }
+        if run > self.least {
+            First { vertex: neighbours[i], rise, run }
+        } else {
+            First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 }
+        }
     }
 }

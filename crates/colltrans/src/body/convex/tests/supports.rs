@@ -24,7 +24,7 @@ fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
 /// leads around the whole base.
 fn direction(random: &mut Random, k: usize) -> DVec3 {
     let lateral = random.unit().with_z(0.0);
-    let up = if k % 2 == 0 { 1.0 } else { -1.0 };
+    let up = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     match k / 2 % 4 {
         0 => random.unit(),
         1 => lateral,

@@ -176,7 +176,7 @@ pub(crate) fn approach<O: Observer>(
             return walk(difference, edge, optimum, watch);
         }
         if edge.distance() <= REACH * edge.width() {
-            within_reach = Some([edge.from, edge.to, edge.third].map(|corner| corner.pair));
+            within_reach = Some(edge);
         }
         if has_large_faces(difference) {
             match across(difference, portal, from, optimum, watch) {
@@ -199,22 +199,9 @@ pub(crate) fn approach<O: Observer>(
         }
     }
     match within_reach {
-        Some(corners) => walk_from(difference, corners, optimum, watch),
+        Some(edge) => walk(difference, edge, optimum, watch),
         None => Followed::Lost,
     }
-}
-
-/// The walk over the first edge of a triangle that was left behind.
-#[cold]
-#[inline(never)]
-fn walk_from<O: Observer>(
-    difference: &MinkowskiDifference,
-    corners: [VertexPair; 3],
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Followed {
-    let portal = corners.map(|pair| difference.vertex(pair));
-    walk(difference, Edge::of(&portal, 0), optimum, watch)
 }
 
 /// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has

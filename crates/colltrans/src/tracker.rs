@@ -185,9 +185,10 @@ impl<'a> Tracker<'a> {
         which: usize,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
-        let warm_start = &mut self.warm_starts[which];
+        let next = &mut self.warm_starts[which];
+        let last = *next;
         // Matched in place: an outcome is large, and moving it costs a tenth of a coherent query.
-        let outcome = search(&cast.setting, &cast.options, &self.focus, warm_start, observer);
+        let outcome = search(&cast.setting, &cast.options, &self.focus, &last, next, observer);
         if let Ok(outcome) = &outcome {
             self.steps.add(&outcome.steps());
         }

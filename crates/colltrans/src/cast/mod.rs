@@ -209,8 +209,8 @@ impl Cast<'_> {
         &self,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
-        let mut start = WarmStart::Nothing;
-        search(&self.setting, &self.options, &Focus::NONE, &mut start, observer)
+        let (last, mut next) = (WarmStart::Nothing, WarmStart::Nothing);
+        search(&self.setting, &self.options, &Focus::NONE, &last, &mut next, observer)
     }
 
     /// All translations at which the bodies meet, both ends certified. Two casts, along the

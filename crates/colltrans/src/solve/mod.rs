@@ -34,20 +34,22 @@ use portal::{
 use proof::Proven;
 pub(crate) use warm_start::WarmStart;
 
-/// Casts, starting from `warm_start` as far as `focus` allows, and leaves the next one there.
+/// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` where the next
+/// one may start: nothing, unless there is an answer.
 #[inline]
 pub(crate) fn search<O: Observer>(
     setting: &Setting,
     options: &Options,
     focus: &Focus,
-    warm_start: &mut WarmStart,
+    last: &WarmStart,
+    next: &mut WarmStart,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     let solver = match options.solver {
         Solver::Auto => Solver::Portal,
         solver => solver,
     };
-    let last = std::mem::take(warm_start);
+    *next = WarmStart::Nothing;
     let mut first = Run {
         difference: MinkowskiDifference::new(setting),
         graze_tolerance: options.graze_tolerance,
@@ -58,7 +60,7 @@ pub(crate) fn search<O: Observer>(
         is_wrapped: false,
         watch: Watch::new(observer),
     };
-    let mut answer = first.run(focus, &last, warm_start);
+    let mut answer = first.run(focus, last, next);
     first.watch.ended(Phase::Answer);
     if let Err(QueryError::NotConverged { .. }) = answer {
         let turns: &[DVec2] = if first.watch.steps.started_from == StartedFrom::Scratch {
@@ -66,7 +68,7 @@ pub(crate) fn search<O: Observer>(
         } else {
             &TURNS
         };
-        answer = again(&mut first, turns, warm_start);
+        answer = again(&mut first, turns, next);
     }
     answer
 }
@@ -193,29 +195,47 @@ impl<O: Observer> Run<'_, '_, O> {
 
     /// A portal, or a separating direction, from scratch or from the region of the last solution.
     fn enclosure(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
-        let start = match self.start(region, last) {
-            Start::Enclosed(found) => return Some(found),
-            Start::Normal(start) => start,
-        };
-        self.watch.ended(Phase::Setup);
-        match self.approach(&start) {
-            None => portal::enclose(&self.difference, &start, &mut self.watch),
-            found => found,
+        let setting = self.difference.setting;
+        let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
+        if self.solver == Solver::Cta && solid {
+            return self.narrowed(region, last);
+        }
+        if let Some((portal, face)) = portal::facing(&self.difference, &mut self.watch) {
+            self.face = Some(face);
+            return Some(Enclosure::Portal(portal));
+        }
+        self.approach(FirstNormal::new(&self.difference))
+    }
+
+    /// The same by the collision translation algorithm.
+    #[inline(never)]
+    fn narrowed(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
+        match self.start(region, last) {
+            Start::Enclosed(found) => Some(found),
+            Start::Normal(start) => self.approach(start),
         }
     }
 
-    /// A portal, or a separating direction, face by face from a guess that is not lateral.
-    #[inline]
-    fn approach(&mut self, start: &FirstNormal) -> Option<Enclosure> {
-        if start.normal.z <= 0.0 {
-            return None;
+    /// A portal, or a separating direction, from a guess: face by face if it is not lateral, or by wide
+    /// portals.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory the guess stalls its reader")]
+    fn approach(&mut self, start: FirstNormal) -> Option<Enclosure> {
+        self.watch.ended(Phase::Setup);
+        let mut nearest = start;
+        if start.normal.z > 0.0 {
+            let optimum = &mut self.optimum;
+            let (difference, watch) = (&self.difference, &mut self.watch);
+            let found = match portal::approach(difference, &start, &mut nearest, optimum, watch) {
+                Followed::Portal(portal) => Some(self.wrapped(portal)),
+                Followed::Rim { outward, near } => self.beside(-outward, near),
+                Followed::Lost => None,
+            };
+            if found.is_some() {
+                return found;
+            }
         }
-        let optimum = &mut self.optimum;
-        match portal::approach(&self.difference, start, optimum, &mut self.watch) {
-            Followed::Portal(portal) => Some(self.wrapped(portal)),
-            Followed::Rim { outward, near } => self.beside(-outward, near),
-            Followed::Lost => None,
-        }
+        portal::enclose(&self.difference, &nearest, &mut self.watch)
     }
 
     /// A portal that was reached face by face.
@@ -244,16 +264,6 @@ impl<O: Observer> Run<'_, '_, O> {
 
     /// The first guess of the contact normal, or more than a guess.
     fn start(&mut self, region: Region, last: &WarmStart) -> Start {
-        let setting = self.difference.setting;
-        let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
-        if self.solver != Solver::Cta || !solid {
-            let facing = portal::facing(&self.difference, &mut self.watch);
-            let Some((portal, face)) = facing else {
-                return Start::Normal(FirstNormal::new(&self.difference));
-            };
-            self.face = Some(face);
-            return Start::Enclosed(Enclosure::Portal(portal));
-        }
         let ellipsoids = FirstNormal::from_ellipsoids(&self.difference);
         if let Some(focus) = self.region(region, last) {
             self.watch.steps.started_from = StartedFrom::Region;
@@ -276,7 +286,7 @@ impl<O: Observer> Run<'_, '_, O> {
         let support = self.difference.support(normal);
         self.watch.support(|| Support::of(normal, &support));
         if normal.dot(support.at) > 0.0 {
-            return Start::Normal(ellipsoids.guided(normal, support.pair));
+            return Start::Normal(FirstNormal::guided(normal, support.pair));
         }
         self.narrow(ellipsoids, Origin::Center)
     }
@@ -295,9 +305,9 @@ impl<O: Observer> Run<'_, '_, O> {
         let near = VertexPair { moving: moving[0], fixed: fixed[0] };
         let in_shadow = |normal| self.difference.setting_from_shadow.transpose() * normal;
         Start::Normal(match narrowed.guess {
-            Guess::Contact { normal } => ellipsoids.guided(in_shadow(normal), near),
+            Guess::Contact { normal } => FirstNormal::guided(in_shadow(normal), near),
             Guess::Separation { direction } => {
-                ellipsoids.guided(in_shadow(direction).with_z(0.0), near)
+                FirstNormal::guided(in_shadow(direction).with_z(0.0), near)
             }
             Guess::Nothing => *ellipsoids,
         })

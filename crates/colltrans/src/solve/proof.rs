@@ -6,6 +6,7 @@ use crate::answer::{
     Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_tolerance,
 };
 use crate::error::{QueryError, Stalled};
+use crate::number::noise::UNIT_VECTOR;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::WarmStart;
 use crate::solve::portal::{ContactPortal, Plane, Portal};
@@ -45,7 +46,9 @@ impl<'a> Proven<'a> {
         let tolerance = gap_tolerance(setting, normal, noise, difference.widening);
         let lower = along.distance / steepness;
         let gap = estimate - lower;
-        if gap.is_nan() || gap > tolerance {
+        // A plane along the direction bounds nothing.
+        let is_upward = steepness > UNIT_VECTOR * setting.length;
+        if !is_upward || gap.is_nan() || gap > tolerance {
             let reason = Stalled::Gap { lower, upper: estimate, tolerance };
             return Err(QueryError::NotConverged { reason });
         }

@@ -8,9 +8,9 @@
 //! lies on this side of it and the normal separates. Every step widens the angle under which the
 //! line sees the points, so the search ends.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 
-use super::start::steep;
+use super::start::{slope_per_shadow, steep};
 use super::{FirstNormal, Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
@@ -64,11 +64,12 @@ pub(crate) fn enclose<O: Observer>(
     start: &FirstNormal,
     watch: &mut Watch<O>,
 ) -> Option<Enclosure> {
-    let mut search = Enclosing { difference, guide: Guide::First(start), watch };
-    let first = match search.first(start) {
+    let first = match first(difference, start, watch) {
         Ok(tangent) => tangent,
         Err(line) => return Some(Enclosure::Beside(line)),
     };
+    let guide = Guide::Ellipsoids(slope_per_shadow(difference, first.slope));
+    let mut search = Enclosing { difference, guide, watch };
     let second = match search.beyond(&[first], first.point.shadow(), first.slope) {
         Ok(tangent) => tangent,
         Err(line) => return Some(Enclosure::Beside(line)),
@@ -84,25 +85,49 @@ pub(super) fn complete<O: Observer>(
     guide: Guide,
     watch: &mut Watch<O>,
 ) -> Option<Enclosure> {
-    // Slopes are interpolated only where a start guides the search.
+    // Slopes are interpolated only where ellipsoids guide the search.
     let tangents = edge.map(|point| Tangent { point, slope: DVec2::ZERO });
     Enclosing { difference, guide, watch }.close(tangents)
 }
 
 /// Which normals are tried before the lateral one.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Guide<'a> {
-    /// Those that should move the shadow of the support point beyond the line.
-    First(&'a FirstNormal),
+pub(super) enum Guide {
+    /// Those that would move the shadow of the support point beyond the line if the bodies were
+    /// ellipsoids: with the change of slope that moves it by minus a given vector.
+    Ellipsoids(DMat2),
     /// The normal through the edge, tilted outwards by half a right angle.
     Tilt,
     /// None.
     Lateral,
 }
 
+/// The support point along the guess; if the guess is lateral, it may already separate.
+fn first<O: Observer>(
+    difference: &MinkowskiDifference,
+    start: &FirstNormal,
+    watch: &mut Watch<O>,
+) -> Result<Tangent, SeparatingLine> {
+    let normal = start.normal;
+    let point = match start.near {
+        Some(near) => difference.support_from(normal, near),
+        None => difference.support(normal),
+    };
+    watch.support(|| Support::of(normal, &point));
+    if normal.z != 0.0 {
+        return Ok(Tangent { point, slope: normal.truncate() });
+    }
+    let lateral = normal.truncate().normalize_or_zero();
+    let margin = lateral.dot(point.shadow());
+    if margin > 0.0 {
+        return Err(SeparatingLine { normal: lateral, margin, point });
+    }
+    Ok(Tangent { point, slope: steep(lateral) })
+}
+
 struct Enclosing<'a, 'o, O> {
     difference: &'a MinkowskiDifference<'a>,
-    guide: Guide<'a>,
+    guide: Guide,
     watch: &'a mut Watch<'o, O>,
 }
 
@@ -134,25 +159,6 @@ impl<O: Observer> Enclosing<'_, '_, O> {
         None
     }
 
-    /// The support point along the guess; if the guess is lateral, it may already separate.
-    fn first(&mut self, start: &FirstNormal) -> Result<Tangent, SeparatingLine> {
-        let normal = start.normal;
-        let point = match start.near {
-            Some(near) => self.difference.support_from(normal, near),
-            None => self.difference.support(normal),
-        };
-        self.watch.support(|| Support::of(normal, &point));
-        if normal.z != 0.0 {
-            return Ok(Tangent { point, slope: normal.truncate() / normal.z });
-        }
-        let lateral = normal.truncate().normalize_or_zero();
-        let margin = lateral.dot(point.shadow());
-        if margin > 0.0 {
-            return Err(SeparatingLine { normal: lateral, margin, point });
-        }
-        Ok(Tangent { point, slope: steep(lateral) })
-    }
-
     /// A point on the other side of the line than `near_side`, the point nearest to the line of
     /// what is known.
     ///
@@ -169,8 +175,8 @@ impl<O: Observer> Enclosing<'_, '_, O> {
         let clearly_scaled = clearly * outward.length();
         let near = known[known.len() - 1].point.pair;
         let tries = match self.guide {
-            Guide::First(start) => {
-                OVERSHOOT.map(|factor| Some(slope + start.slope_per_shadow * near_side * factor))
+            Guide::Ellipsoids(slope_per_shadow) => {
+                OVERSHOOT.map(|factor| Some(slope + slope_per_shadow * near_side * factor))
             }
             Guide::Tilt => [tilted(known, outward), None],
             Guide::Lateral => [None; 2],

@@ -126,33 +126,38 @@ const CORRECTIONS: usize = 4;
 /// are no ellipsoids.
 const PROGRESS: f64 = 0.5;
 
-/// A line no farther than this, in widths of the triangle, is walked to if corrections come no nearer.
-/// From farther away wide portals are the shorter way (measured).
+/// A line no farther than this, in widths of the last triangle that is so near, is walked to if
+/// corrections come no nearer. From farther away wide portals are the shorter way (measured).
 const REACH: f64 = 8.0;
 
 /// From a guessed normal: the face of `M` beside its support point, and from there to the line.
 ///
 /// Where the support point is itself on the line, or nearly so, its plane may prove that the portal
-/// reached is the lowest; then `optimum` says so.
+/// reached is the lowest; then `optimum` says so. Where no portal is reached, `nearest` becomes the
+/// support point that corrections led to.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "passed through memory its result stalls its reader")]
 pub(crate) fn approach<O: Observer>(
     difference: &MinkowskiDifference,
     start: &FirstNormal,
+    nearest: &mut FirstNormal,
     optimum: &mut Option<Optimum>,
     watch: &mut Watch<O>,
 ) -> Followed {
-    let mut slope = start.normal.truncate() / start.normal.z;
+    let mut slope = start.normal.truncate();
     let mut vertex = match start.near {
         Some(near) => difference.support_from(normal_of(slope), near),
         None => difference.support(normal_of(slope)),
     };
     watch.support(|| Support::of(normal_of(slope), &vertex));
     let mut within_reach = None;
+    // A corner that is farthest in what seems to be a face need not be one, and proves nothing.
+    let mut is_support = true;
     for _ in 0..CORRECTIONS {
         let shadow = vertex.shadow();
         let mut toward_line = -shadow;
-        if shadow.length_squared() <= difference.touching() * difference.touching() {
+        let touching = difference.touching();
+        if is_support && shadow.length_squared() <= touching * touching {
             match pointed(difference, &vertex, slope, watch) {
                 Pointed::Lowest(portal, found) => {
                     *optimum = Some(found);
@@ -163,7 +168,7 @@ pub(crate) fn approach<O: Observer>(
             }
         }
         let Some(portal) = beside(difference, &vertex, slope, toward_line, optimum, watch) else {
-            return Followed::Lost;
+            break;
         };
         if optimum.is_some() {
             return Followed::Portal(portal);
@@ -172,32 +177,39 @@ pub(crate) fn approach<O: Observer>(
             return Followed::Portal(portal);
         };
         let edge = Edge::of(&portal, from);
-        if edge.distance() <= FAR * edge.width() {
-            return walk(difference, edge, optimum, watch);
-        }
-        if edge.distance() <= REACH * edge.width() {
+        let [distance, width] = [edge.distance(), edge.width()];
+        if distance <= REACH * width {
             within_reach = Some(edge);
+        }
+        if distance <= FAR * width {
+            break;
         }
         if has_large_faces(difference) {
             match across(difference, portal, from, optimum, watch) {
                 Flat::Portal(portal) => return Followed::Portal(portal),
                 Flat::Corner(normal, corner) => {
                     (slope, vertex) = (normal.truncate() / normal.z, corner);
+                    is_support = false;
                     continue;
                 }
                 Flat::No => {}
             }
         }
-        slope += slope_per_shadow(difference, slope) * shadow;
-        if !slope.is_finite() {
+        let corrected = slope + slope_per_shadow(difference, slope) * shadow;
+        if !corrected.is_finite() {
             break;
         }
-        vertex = difference.support_from(normal_of(slope), vertex.pair);
-        watch.support(|| Support::of(normal_of(slope), &vertex));
-        if vertex.shadow().length_squared() > PROGRESS * PROGRESS * shadow.length_squared() {
+        let next = difference.support_from(normal_of(corrected), vertex.pair);
+        watch.support(|| Support::of(normal_of(corrected), &next));
+        let [before, after] = [shadow, next.shadow()].map(DVec2::length_squared);
+        if after <= before {
+            (slope, vertex, is_support) = (corrected, next, true);
+        }
+        if after > PROGRESS * PROGRESS * before {
             break;
         }
     }
+    *nearest = FirstNormal { normal: normal_of(slope), near: Some(vertex.pair) };
     match within_reach {
         Some(edge) => walk(difference, edge, optimum, watch),
         None => Followed::Lost,

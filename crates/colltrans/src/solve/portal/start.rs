@@ -9,7 +9,8 @@
 //! the sum along `n`: where that is the normal found, the line enters both in one point. The height at
 //! which it enters `K` is largest there and falls to either side, so this `r` lies beyond the one tried
 //! if it is less than what the normal asks for, and before it if it is more: it is bracketed, and
-//! approached by secants.
+//! approached by secants. Of thin bodies it may be a thousand times the first one, so the secants are
+//! those of the logarithm of `r` and of the logarithm of what is asked over what is tried.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -18,7 +19,7 @@ use crate::number::symmetric::Symmetric;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
 
-/// Where to begin, and how the shadow of the support point answers to a change of slope.
+/// Where to begin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FirstNormal {
     /// Guess of the contact normal in the shadow frame: `(a, 1)`, or lateral (height 0) if the
@@ -26,9 +27,6 @@ pub(crate) struct FirstNormal {
     pub(crate) normal: DVec3,
     /// A pair near the contact, if one is known.
     pub(crate) near: Option<VertexPair>,
-    /// The change of slope that moves the shadow of the support point by minus a given vector: the
-    /// inverse Hessian of the ellipsoids' support functions.
-    pub(crate) slope_per_shadow: DMat2,
 }
 
 /// Least share of a contact normal along the direction that is guessed where bodies seem to meet (thin
@@ -48,8 +46,13 @@ const LONGEST_STEP: f64 = 0.5;
 /// round or have large faces; others are fitted until it changes by less than that, or this often.
 const LIKE: f64 = 0.5;
 const FITTED: f64 = 0.1;
-const FINELY_FITTED: f64 = 0.02;
+const FINELY_FITTED: f64 = 0.01;
 const MAX_FITS: usize = 16;
+
+/// In one fit `r` grows or shrinks at most as [`log_ratio`] of this says, fifteenfold; and while its
+/// bracket is open and the secant points away, by this many times what is asked (measured).
+const LONGEST_FIT: f64 = 1.75;
+const HASTE: f64 = 8.0;
 
 /// Bodies with more vertices than this have faces so small that a finer fit pays (measured).
 const FINE: usize = 256;
@@ -79,18 +82,14 @@ impl FirstNormal {
             (setting.moving.inertia().radius + setting.fixed.inertia().radius) * MEAN_RADIUS;
         let lateral = difference.center().truncate();
         let square = radius * radius - lateral.length_squared();
-        let meets = square > 0.0;
-        let slope =
-            if meets { tempered(lateral.extend(square.sqrt())).truncate() } else { steep(lateral) };
-        // The support function `r |n|` has the Hessian `r (I / |n| - a a^T / |n|^3)`.
-        let scale = (1.0 + slope.length_squared()).sqrt() / radius;
-        let slope_per_shadow = DMat2::from_cols(
-            DVec2::new(1.0 + slope.x * slope.x, slope.x * slope.y) * scale,
-            DVec2::new(slope.x * slope.y, 1.0 + slope.y * slope.y) * scale,
-        );
-        let passes = !meets && lateral != DVec2::ZERO;
-        let normal = if passes { lateral.extend(0.0) } else { slope.extend(1.0) };
-        Self { normal, near: None, slope_per_shadow }
+        let normal = if square > 0.0 {
+            tempered(lateral.extend(square.sqrt()))
+        } else if lateral != DVec2::ZERO {
+            lateral.extend(0.0)
+        } else {
+            DVec3::Z
+        };
+        Self { normal, near: None }
     }
 
     /// The guess from the inertia ellipsoids.
@@ -98,22 +97,19 @@ impl FirstNormal {
     pub(crate) fn from_ellipsoids(difference: &MinkowskiDifference) -> Self {
         let (center, [a, b]) = difference.ellipsoids();
         let mut normal = entered(difference.setting, center, [&a, &b]);
-        let sloped = if normal.z == 0.0 { steep(normal.truncate()).extend(1.0) } else { normal };
-        let ((shadow_a, hessian_a), (shadow_b, hessian_b)) =
-            (response(&a, sloped), response(&b, sloped));
-        let slope_per_shadow = (hessian_a + hessian_b).inverse();
         if normal.z > 0.0 {
-            let step = slope_per_shadow * (center.truncate() - shadow_a - shadow_b);
+            let ((p, hessian_p), (q, hessian_q)) = (response(&a, normal), response(&b, normal));
+            let step = (hessian_p + hessian_q).inverse() * (center.truncate() - p - q);
             if step.length_squared() < LONGEST_STEP * LONGEST_STEP * normal.length_squared() {
                 normal += step.extend(0.0);
             }
         }
-        Self { normal, near: None, slope_per_shadow }
+        Self { normal, near: None }
     }
 
     /// With a normal (shadow frame) and a pair that another solver found.
-    pub(crate) fn guided(&self, normal: DVec3, near: VertexPair) -> Self {
-        Self { normal: tempered(normal), near: Some(near), ..*self }
+    pub(crate) fn guided(normal: DVec3, near: VertexPair) -> Self {
+        Self { normal: tempered(normal), near: Some(near) }
     }
 }
 
@@ -138,23 +134,36 @@ fn entered(setting: &Setting, center: DVec3, [a, b]: [&Symmetric; 2]) -> DVec3 {
         }
         enough = fitted;
         let asked = (along_b / along_a).sqrt();
-        let ahead = asked - r;
+        let ahead = log_ratio(asked, r);
+        if !ahead.is_finite() {
+            break;
+        }
         if ahead > 0.0 {
             low = r;
         } else {
             high = r;
         }
-        let secant = last.map_or(f64::NAN, |[r0, ahead0]| r - ahead * (r - r0) / (ahead - ahead0));
-        last = Some([r, ahead]);
-        r = if low < secant && secant < high {
-            secant
-        } else if low > 0.0 && high.is_finite() {
-            (low * high).sqrt()
-        } else {
-            asked
+        let is_bracketed = low > 0.0 && high.is_finite();
+        let step = match last {
+            None => ahead,
+            Some([r0, ahead0]) => {
+                let secant = ahead * log_ratio(r, r0) / (ahead0 - ahead);
+                let is_forward = secant * ahead > 0.0;
+                if is_forward || is_bracketed { secant } else { HASTE * ahead }
+            }
         };
+        last = Some([r, ahead]);
+        let step = step.clamp(-LONGEST_FIT, LONGEST_FIT);
+        let next = r * (2.0 + step) / (2.0 - step);
+        r = if !is_bracketed || (low < next && next < high) { next } else { (low * high).sqrt() };
     }
     normal
+}
+
+/// The logarithm of `r / q`, nearly, alike on every machine: `(2 + s) / (2 - s)` undoes it.
+#[inline]
+fn log_ratio(r: f64, q: f64) -> f64 {
+    2.0 * (r - q) / (r + q)
 }
 
 /// The normal where the axis enters the ellipsoid around `center` with matrix `k`, or, if it misses
@@ -199,7 +208,8 @@ pub(super) fn steep(lateral: DVec2) -> DVec2 {
     lateral.normalize_or_zero() / LEAST_PASSING
 }
 
-/// The change of slope that moves the shadow of the support point by minus a given vector, at a slope.
+/// The change of slope that moves the shadow of the support point by minus a given vector: the inverse
+/// Hessian of the ellipsoids' support functions, at a slope.
 pub(super) fn slope_per_shadow(difference: &MinkowskiDifference, slope: DVec2) -> DMat2 {
     let normal = slope.extend(1.0);
     let (_, ellipsoids) = difference.ellipsoids();

@@ -63,6 +63,8 @@ fn found_by_the_campaign() {
         ("size-ratio", 38_654_732_680),
         // A first guess out of range.
         ("magnitude", 433_791_703_393),
+        // A climb that stuck in a lateral direction.
+        ("narrow-rings", 4_728_759_013_088),
     ];
     let wrong: Vec<String> =
         cases.iter().flat_map(|(family, seed)| check_setting(family, *seed, true)).collect();

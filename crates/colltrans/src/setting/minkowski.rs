@@ -185,9 +185,10 @@ impl<'a> MinkowskiDifference<'a> {
         Point { at, pair }
     }
 
+    /// The same of `M` as it is widened: the corner that is lowest along a normal.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
-    fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
+    pub(crate) fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
         let mut point = self.vertex(pair);
         if self.widening != 0.0 {
             let [along_x, along_y] = noise::WIDENING.map(|side| side * self.widening);

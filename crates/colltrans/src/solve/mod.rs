@@ -58,6 +58,7 @@ pub(crate) fn search<O: Observer>(
         optimum: None,
         face: None,
         is_wrapped: false,
+        is_second: false,
         watch: Watch::new(observer),
     };
     let mut answer = first.run(focus, last, next);
@@ -84,6 +85,7 @@ fn again<O: Observer>(
     let mut answer = Err(stalled(Stalled::Cycle));
     for &turn in turns {
         run.difference = MinkowskiDifference::turned_by(run.difference.setting, turn);
+        run.is_second = false;
         answer = run.run(&Focus::NONE, &WarmStart::Nothing, next);
         if !matches!(answer, Err(QueryError::NotConverged { .. })) {
             break;
@@ -124,6 +126,8 @@ struct Run<'a, 'o, O> {
     face: Option<Face>,
     /// Whether the first portal was reached face by face, so that it probably is the lowest.
     is_wrapped: bool,
+    /// Whether a line that seemed to pass `M` was found not to.
+    is_second: bool,
     watch: Watch<'o, O>,
 }
 
@@ -168,10 +172,32 @@ impl<O: Observer> Run<'_, '_, O> {
             return Ok(Outcome::Separated(separated));
         }
         let widest = portal::widest_margin(&self.difference, found, &mut self.watch);
+        if widest.margin < -self.difference.touching() {
+            return self.enclosed_after_all(&widest, next);
+        }
         if let Some(separated) = self.separated(&widest, next) {
             return Ok(Outcome::Separated(separated));
         }
         self.touching(&widest, next).map(Outcome::Grazing)
+    }
+
+    /// The line does not pass `M`: a climb had stuck. Begins again where it should have ended.
+    #[cold]
+    fn enclosed_after_all(
+        &mut self,
+        refuted: &SeparatingLine,
+        next: &mut WarmStart,
+    ) -> Result<Outcome, QueryError> {
+        if std::mem::replace(&mut self.is_second, true) {
+            return Err(stalled(Stalled::NoPortal));
+        }
+        let start =
+            FirstNormal { normal: refuted.normal.extend(0.0), near: Some(refuted.point.pair) };
+        match portal::enclose(&self.difference, &start, &mut self.watch) {
+            None => Err(stalled(Stalled::NoPortal)),
+            Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
+            Some(Enclosure::Beside(found)) => self.passed(found, next),
+        }
     }
 
     /// Feature focus: a portal, or a separating direction, from those of the last answer.

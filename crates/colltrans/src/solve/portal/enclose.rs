@@ -11,7 +11,7 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use super::start::{slope_per_shadow, steep};
-use super::{FirstNormal, Portal, normal_of};
+use super::{FirstNormal, Plane, Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -243,26 +243,28 @@ pub(super) fn nearest_share([from, to]: [DVec2; 2]) -> f64 {
 }
 
 /// The lateral normal along which the shadow of `M` keeps the largest distance from the line, from
-/// any that separates it.
+/// one that seems to separate it.
 ///
 /// Used when the margin found is too small to tell separation from touching: it converges to the
-/// true distance of the line from the shadow (Gilbert's algorithm with segments).
+/// true distance of the line from the shadow (Gilbert's algorithm with segments). A margin that is
+/// clearly negative says that the line is inside after all, and the climb to a support point had stuck.
 pub(crate) fn widest_margin<O: Observer>(
     difference: &MinkowskiDifference,
     found: SeparatingLine,
     watch: &mut Watch<O>,
 ) -> SeparatingLine {
-    let mut segment = [found.point; 2];
-    let mut best = found;
+    let mut best = settled(difference, found.normal, found.point);
+    let mut segment = [best.point; 2];
     let (mut nearest, mut stalls) = (f64::INFINITY, 0);
     for _ in 0..MAX_POINTS {
         let Some((normal, distance)) = from_segment(&segment) else { break };
         let lateral: DVec3 = normal.extend(0.0);
-        let point = difference.support_from(lateral, segment[0].pair);
+        let climbed = difference.support_from(lateral, segment[0].pair);
+        let line = settled(difference, normal, climbed);
+        let SeparatingLine { margin, point, .. } = line;
         watch.support(|| Support::of(lateral, &point));
-        let margin = normal.dot(point.shadow());
         if margin > best.margin {
-            best = SeparatingLine { normal, margin, point };
+            best = line;
         }
         let options = [[segment[0], point], [segment[1], point]];
         let away = options.map(|s| from_segment(&s).map_or(0.0, |(_, distance)| distance));
@@ -276,6 +278,12 @@ pub(crate) fn widest_margin<O: Observer>(
         segment = options[nearer];
     }
     best
+}
+
+/// What a lateral unit normal separates, from where a climb to its support point has ended.
+fn settled(difference: &MinkowskiDifference, normal: DVec2, climbed: Point) -> SeparatingLine {
+    let point = Plane::settled(difference, normal.extend(0.0), climbed);
+    SeparatingLine { normal, margin: normal.dot(point.shadow()), point }
 }
 
 /// Unit normal from the line towards a segment of shadows, and the distance; without cancellation,

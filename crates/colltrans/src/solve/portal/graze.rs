@@ -7,6 +7,7 @@
 
 use glam::DVec2;
 
+use super::Plane;
 use crate::number::determinant::accurate_det;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support, Watch};
@@ -65,10 +66,14 @@ fn search<O: Observer>(
             return Overlap::Ample;
         }
         let inward = (-outward).extend(0.0);
-        let point = difference.support_from(inward, corners[edge].pair);
+        let is_last = |depth: f64| depth - reach <= difference.noise.point();
+        let mut point = difference.support_from(inward, corners[edge].pair);
+        if is_last(outward.dot(point.shadow())) {
+            point = Plane::settled(difference, inward, point);
+        }
         watch.support(|| Support::of(inward, &point));
         let depth = outward.dot(point.shadow());
-        if depth - reach <= difference.noise.point() || count == MAX_CORNERS {
+        if is_last(depth) || count == MAX_CORNERS {
             return if depth > tolerance {
                 Overlap::Ample
             } else {

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::body::LargeFace;
 use crate::setting::VertexPair;
-use crate::setting::minkowski::MinkowskiDifference;
+use crate::setting::minkowski::{MinkowskiDifference, Point};
 
 /// What may lie beyond faces, in noises: of less flat ones other support points prove more.
 const MOST_BEYOND: f64 = 4.0;
@@ -92,5 +92,16 @@ impl Plane {
             + setting.fixed.excess_of_face(g, -normals[1], 1.0, lowest.fixed, most)?;
         let plane = Self { normal, normals, lowest, beyond };
         (beyond <= MOST_BEYOND * noise).then_some(plane)
+    }
+
+    /// The point of `M` lowest along a normal, from where a climb has ended: among edges as short as
+    /// rounding errors it may have stuck far away.
+    pub(super) fn settled(
+        difference: &MinkowskiDifference,
+        normal: DVec3,
+        climbed: Point,
+    ) -> Point {
+        let lowest = Self::of(difference, normal, climbed.pair).lowest;
+        if lowest == climbed.pair { climbed } else { difference.point(lowest, normal) }
     }
 }

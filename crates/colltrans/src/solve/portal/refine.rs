@@ -36,6 +36,12 @@ const LONG: usize = 200;
 /// Bound on the number of portals; reaching it is reported, never hidden.
 pub(crate) const MAX_PORTALS: usize = 10_000;
 
+/// More narrow portals than this are not widened, because that leads back to higher ones and, where rounding
+/// decides, in a circle: planes through one edge are turned instead, so many times through the lowest,
+/// then as often through the longest.
+const MOST_WIDENED: usize = 3;
+const LONG_OR_LOW: usize = 16;
+
 /// What following portals ends with.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Refined {
@@ -71,19 +77,33 @@ pub(crate) fn refine<O: Observer>(
     watch: &mut Watch<O>,
 ) -> Option<Refined> {
     let mut newest = 2;
+    let (mut last, mut narrow) = (DVec3::Z, 0);
     for round in 0..most {
         watch.portal(|| portal.map(|p| p.at));
-        let Some(plane) = plane_normal(difference, portal) else {
-            match widen(difference, portal, watch)? {
-                Enclosure::Portal(wide) => *portal = wide,
-                Enclosure::Beside(rim) => return Some(Refined::Rim(rim)),
+        let edge;
+        let (plane, base) = match plane_normal(difference, portal) {
+            Some(plane) => (plane, portal.each_ref()),
+            None if narrow < MOST_WIDENED => {
+                narrow += 1;
+                match widen(difference, portal, watch)? {
+                    Enclosure::Portal(wide) => *portal = wide,
+                    Enclosure::Beside(rim) => return Some(Refined::Rim(rim)),
+                }
+                continue;
             }
-            continue;
+            None => {
+                narrow += 1;
+                let by_length = narrow / LONG_OR_LOW % 2 == 1;
+                edge =
+                    if by_length { longest_edge(portal) } else { lowest_edge(difference, portal) };
+                (through_edge(&edge, last), [&edge[0], &edge[1], &edge[0]])
+            }
         };
+        last = plane;
         let point = difference.support_from(plane, portal[newest].pair);
         watch.support(|| Support::of(plane, &point));
         let rounding = difference.noise.plane(round >= LONG);
-        let below = match lowest(difference, portal, plane, point, rounding) {
+        let below = match lowest(difference, &base.map(|p| *p), plane, point, rounding) {
             Ok(plane) => return Some(Refined::Lowest(Face { plane, weights: weights(portal) })),
             Err(point) => point,
         };
@@ -142,6 +162,20 @@ pub(crate) fn proven(
 #[inline]
 fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> bool {
     depth_below(portal, normal, point) > rounding * normal.length()
+}
+
+/// The longest edge of a portal.
+fn longest_edge(portal: &Portal) -> [Point; 2] {
+    let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]]);
+    edges[largest(edges.each_ref().map(|[from, to]| from.at.distance_squared(to.at)))]
+}
+
+/// The upward normal nearest to another among those of planes through an edge; the other itself if the
+/// edge stands upright.
+fn through_edge([from, to]: &[Point; 2], normal: DVec3) -> DVec3 {
+    let edge = to.at - from.at;
+    let turned = normal - edge * (normal.dot(edge) / edge.length_squared());
+    if turned.z > 0.0 { turned } else { normal }
 }
 
 /// A portal with a plane in place of one too narrow to have one: over the edge that the line passes

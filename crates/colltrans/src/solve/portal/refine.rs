@@ -39,7 +39,7 @@ pub(crate) const MAX_PORTALS: usize = 10_000;
 /// More narrow portals than this are not widened, because that leads back to higher ones and, where rounding
 /// decides, in a circle: planes through one edge are turned instead, so many times through the lowest,
 /// then as often through the longest.
-const MOST_WIDENED: usize = 3;
+const MOST_WIDENED: usize = 200;
 const LONG_OR_LOW: usize = 16;
 
 /// What following portals ends with.

@@ -155,6 +155,17 @@ impl<O: Observer> Run<'_, '_, O> {
             self.enclosure(focus.region, last)
         };
         self.watch.ended(Phase::Finish);
+        self.concluded(enclosure, next)
+    }
+
+    /// What follows from a portal, or from a separating direction.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory a portal stalls its reader")]
+    fn concluded(
+        &mut self,
+        enclosure: Option<Enclosure>,
+        next: &mut WarmStart,
+    ) -> Result<Outcome, QueryError> {
         match enclosure {
             None => Err(stalled(Stalled::NoPortal)),
             Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
@@ -193,11 +204,8 @@ impl<O: Observer> Run<'_, '_, O> {
         }
         let start =
             FirstNormal { normal: refuted.normal.extend(0.0), near: Some(refuted.point.pair) };
-        match portal::enclose(&self.difference, &start, &mut self.watch) {
-            None => Err(stalled(Stalled::NoPortal)),
-            Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
-            Some(Enclosure::Beside(found)) => self.passed(found, next),
-        }
+        let enclosure = portal::enclose(&self.difference, &start, &mut self.watch);
+        self.concluded(enclosure, next)
     }
 
     /// Feature focus: a portal, or a separating direction, from those of the last answer.

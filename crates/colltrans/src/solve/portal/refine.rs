@@ -164,9 +164,14 @@ fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> boo
     depth_below(portal, normal, point) > rounding * normal.length()
 }
 
+/// The edges of a portal.
+fn edges(portal: &Portal) -> [[Point; 2]; 3] {
+    [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]])
+}
+
 /// The longest edge of a portal.
 fn longest_edge(portal: &Portal) -> [Point; 2] {
-    let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]]);
+    let edges = edges(portal);
     edges[largest(edges.each_ref().map(|[from, to]| from.at.distance_squared(to.at)))]
 }
 
@@ -226,7 +231,7 @@ fn farthest<O: Observer>(
 
 /// Of the edges of a narrow portal near which the line passes, the one it passes lowest.
 fn lowest_edge(difference: &MinkowskiDifference, portal: &Portal) -> [Point; 2] {
-    let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]]);
+    let edges = edges(portal);
     let passing = edges.map(|edge| {
         let shadows = edge.map(|p| p.shadow());
         let share = nearest_share(shadows);

@@ -369,7 +369,7 @@ impl<'a> Judge<'a> {
         let d = &self.scene.direction;
         let square = d.dot(d);
         let sideways = miss.times(&square).minus(&d.times(&miss.dot(d)));
-        sideways.to_f64().length() / square.to_f64()
+        Ratio::new(sideways.dot(&sideways), &square * &square).sqrt_to_f64()
     }
 
     /// The witness points come together after the translation, and lie in the contact plane of

@@ -138,6 +138,101 @@ fn thin_slabs() {
     }
 }
 
+/// Shadows about as wide as rounding errors: few portals have a plane, and exact sides of the line
+/// contradict rounded ones; still each cast has an answer, and the same from both solvers.
+#[test]
+fn shadows_as_wide_as_rounding() {
+    for seed in 0..30_000 {
+        let mut rng = Rng::new(seed);
+        let mut needle = [0; 4].map(|_| rng.vector());
+        needle[0].z = -10.0_f64.powf(rng.range(10.0, 16.0));
+        let block = [0; 5].map(|_| rng.vector());
+        let offset = rng.vector() * DVec3::new(1.0, 1.0, 5.0);
+        if seed % 50 == 0 {
+            cast(&needle, &block, offset, DVec3::Z);
+            continue;
+        }
+        let (moving, fixed) = (body(&needle), body(&block));
+        let pose = Pose::from_translation(offset).expect("a pose");
+        let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(pose), DVec3::Z).expect("a query");
+        let kinds = [Solver::Cta, Solver::Portal].map(|solver| {
+            let outcome = cast.with_solver(solver).first_contact();
+            std::mem::discriminant(&outcome.unwrap_or_else(|e| panic!("{seed}, {solver:?}: {e}")))
+        });
+        assert_eq!(kinds[0], kinds[1], "{seed}");
+    }
+}
+
+/// Many points in one plane that contains the direction, and the line as near to it as rounding: exact
+/// portals that are rounded to the other side.
+#[test]
+fn lines_in_upright_planes() {
+    for seed in 0..20_000 {
+        let mut rng = Rng::new(seed);
+        let turn = rng.rotation();
+        let mut fan: Vec<DVec3> = (0..rng.int(6, 40))
+            .map(|_| rng.range(0.0, std::f64::consts::TAU))
+            .map(|angle_rad| DVec3::new(angle_rad.cos(), 0.0, angle_rad.sin()))
+            .collect();
+        for side in [-1.0, 1.0] {
+            let beside = side * 10.0_f64.powf(rng.range(-13.0, -2.0));
+            fan.push(DVec3::new(rng.range(-1.2, 1.2), beside, rng.range(-0.8, 0.8)));
+        }
+        let off = rng.range(-1.0, 1.0) * 10.0_f64.powf(rng.range(-18.0, -14.0));
+        let at = DVec3::new(rng.range(-0.9, 0.9), off, 3.0);
+        let fan: Vec<DVec3> = fan.into_iter().map(|v| turn * (v + at)).collect();
+        if seed % 20 == 0 {
+            cast(&POINT, &fan, DVec3::ZERO, turn * DVec3::Z);
+            continue;
+        }
+        let (point, fan) = (body(&POINT), body(&fan));
+        let cast = Cast::new(point.at(Pose::IDENTITY), fan.at(Pose::IDENTITY), turn * DVec3::Z)
+            .expect("a query");
+        for solver in [Solver::Cta, Solver::Portal] {
+            let outcome = cast.with_solver(solver).first_contact();
+            let outcome = outcome.unwrap_or_else(|e| panic!("{seed}, {solver:?}: {e}"));
+            let proven = match &outcome {
+                Outcome::Contact(contact) => cast.verify(&contact.certificate),
+                Outcome::Grazing(grazing) => cast.verify(&grazing.contact.certificate),
+                Outcome::Separated(separated) => cast.verify(&separated.certificate),
+            };
+            proven.unwrap_or_else(|e| panic!("{seed}, {solver:?}: {e}, {outcome:?}"));
+        }
+    }
+}
+
+/// Portals that rounding turns over in every frame.
+#[test]
+fn portals_turned_over() {
+    let settings = [
+        (
+            [0.285_051_439_507_732_1, 0.947_668_157_945_216_4, 0.143_773_221_607_120_58],
+            [
+                [0.712_109_279_635_911_4, 1.893_938_746_570_692_5, 0.625_457_840_171_806_3],
+                [0.712_925_700_108_005_8, 2.632_020_154_678_927, 0.212_318_653_031_609_68],
+                [0.956_015_477_801_933_7, 1.690_598_689_902_075_5, 1.318_848_059_958_354_7],
+                [1.245_310_807_672_668_7, 1.741_049_957_044_611_4, 1.977_267_295_881_618_2],
+                [1.482_143_467_427_470_7, 3.167_969_842_271_110_4, 1.737_049_928_048_41],
+            ],
+        ),
+        (
+            [-0.232_505_845_981_131_91, 0.207_030_429_429_782_23, -0.950_304_915_737_427_1],
+            [
+                [-0.733_887_723_847_131_5, 0.600_890_745_616_369_6, -3.119_353_802_114_064_3],
+                [-1.129_977_038_327_081_3, 2.172_769_043_866_784_6, -1.961_055_016_230_361_5],
+                [-0.600_908_318_728_927_7, 0.501_199_748_132_012_4, -2.533_198_352_797_435_3],
+                [-1.426_548_180_734_663_2, 2.588_422_458_238_442_7, -2.827_939_485_207_488],
+                [-1.072_709_137_729_882_7, 1.864_628_294_249_350_4, -2.312_745_945_501_597],
+            ],
+        ),
+    ];
+    for (direction, corners) in settings {
+        let corners = corners.map(DVec3::from_array);
+        let outcome = cast(&POINT, &corners, DVec3::ZERO, DVec3::from_array(direction));
+        assert!(matches!(outcome, Outcome::Contact(_)), "{outcome:?}");
+    }
+}
+
 /// The contact of a body with itself, moved by nothing.
 #[test]
 fn a_body_and_itself() {

@@ -30,7 +30,9 @@
 //!   its plane is tilted by rounding by less than an eighth; the weighted mean of its corners is off
 //!   the line by at most two noises sideways, as its weights are off by a noise over that height, and
 //!   off in height by one: together less than four noises along `n`. Whoever computes the height of
-//!   the mean without rounding misses that one, and has to find the bound three noises above it.
+//!   the mean without rounding misses that one, and has to find the bound three noises above it. Of
+//!   a narrower triangle the plane is that of its rounded corners: the exact ones, which enclose the
+//!   line, are within one noise of it, and the mean, on it, is less than one off the line sideways.
 //! - *Residual.* The witness points of a certificate are the same weighted mean, so they miss each
 //!   other by at most two noises sideways, and one that the weights' sum may be off; of bodies that
 //!   were widened by the corner of the widest rectangle, and by one noise for each body.

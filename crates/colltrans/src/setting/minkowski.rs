@@ -198,13 +198,6 @@ impl<'a> MinkowskiDifference<'a> {
         point
     }
 
-    /// The corners that widening makes of a vertex, each lowest along one diagonal; four times the
-    /// vertex itself without widening.
-    pub(crate) fn corners(&self, vertex: &Point) -> [Point; 4] {
-        [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
-            .map(|(x, y)| self.point(vertex.pair, DVec3::new(x, y, 0.0)))
-    }
-
     /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and
     /// their matrices.
     #[inline]

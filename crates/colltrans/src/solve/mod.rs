@@ -391,7 +391,7 @@ impl<O: Observer> Run<'_, '_, O> {
         *next = WarmStart::Contact(proven.contact_portal());
         match overlap {
             Overlap::Ample => Ok(Outcome::Contact(proven.contact(self.solver, self.watch.steps))),
-            Overlap::Slight { inward, depth } => {
+            Overlap::Slight { inward, depth, .. } => {
                 let contact = proven.contact(self.solver, self.watch.steps);
                 let grazing = proof::grazing(&self.difference, inward, depth, contact);
                 Ok(Outcome::Grazing(grazing))

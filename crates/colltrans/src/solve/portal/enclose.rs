@@ -68,38 +68,13 @@ pub(crate) fn enclose<O: Observer>(
         Ok(tangent) => tangent,
         Err(line) => return Some(Enclosure::Beside(line)),
     };
-    let guide = Guide::Ellipsoids(slope_per_shadow(difference, first.slope));
-    let mut search = Enclosing { difference, guide, watch };
+    let slope_per_shadow = slope_per_shadow(difference, first.slope);
+    let mut search = Enclosing { difference, slope_per_shadow, watch };
     let second = match search.beyond(&[first], first.point.shadow(), first.slope) {
         Ok(tangent) => tangent,
         Err(line) => return Some(Enclosure::Beside(line)),
     };
     search.close([first, second])
-}
-
-/// A portal that begins with an edge which the line passes, completed by wide points: for edges
-/// that a narrow portal left behind. `None` if rounding makes the search run in a circle.
-pub(super) fn complete<O: Observer>(
-    difference: &MinkowskiDifference,
-    edge: [Point; 2],
-    guide: Guide,
-    watch: &mut Watch<O>,
-) -> Option<Enclosure> {
-    // Slopes are interpolated only where ellipsoids guide the search.
-    let tangents = edge.map(|point| Tangent { point, slope: DVec2::ZERO });
-    Enclosing { difference, guide, watch }.close(tangents)
-}
-
-/// Which normals are tried before the lateral one.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Guide {
-    /// Those that would move the shadow of the support point beyond the line if the bodies were
-    /// ellipsoids: with the change of slope that moves it by minus a given vector.
-    Ellipsoids(DMat2),
-    /// The normal through the edge, tilted outwards by half a right angle.
-    Tilt,
-    /// None.
-    Lateral,
 }
 
 /// The support point along the guess; if the guess is lateral, it may already separate.
@@ -127,7 +102,9 @@ fn first<O: Observer>(
 
 struct Enclosing<'a, 'o, O> {
     difference: &'a MinkowskiDifference<'a>,
-    guide: Guide,
+    /// The change of slope that would move the shadow of a support point by minus a given vector if the
+    /// bodies were ellipsoids.
+    slope_per_shadow: DMat2,
     watch: &'a mut Watch<'o, O>,
 }
 
@@ -174,14 +151,8 @@ impl<O: Observer> Enclosing<'_, '_, O> {
         let clearly = -self.difference.touching();
         let clearly_scaled = clearly * outward.length();
         let near = known[known.len() - 1].point.pair;
-        let tries = match self.guide {
-            Guide::Ellipsoids(slope_per_shadow) => {
-                OVERSHOOT.map(|factor| Some(slope + slope_per_shadow * near_side * factor))
-            }
-            Guide::Tilt => [tilted(known, outward), None],
-            Guide::Lateral => [None; 2],
-        };
-        for slope in tries.into_iter().flatten() {
+        for factor in OVERSHOOT {
+            let slope = slope + self.slope_per_shadow * near_side * factor;
             if !slope.is_finite() {
                 break;
             }
@@ -195,10 +166,12 @@ impl<O: Observer> Enclosing<'_, '_, O> {
         let point = self.difference.support(outward.extend(0.0));
         self.watch.support(|| Support::of(outward.extend(0.0), &point));
         let margin = outward.dot(point.shadow());
-        if margin >= clearly {
-            return Err(SeparatingLine { normal: outward, margin, point });
+        if margin < clearly {
+            return Ok(Tangent { point, slope });
         }
-        Ok(Tangent { point, slope })
+        // The climb may have stuck.
+        let line = settled(self.difference, outward, point);
+        if line.margin >= clearly { Err(line) } else { Ok(Tangent { point: line.point, slope }) }
     }
 }
 
@@ -213,14 +186,6 @@ fn outward(known: &[Tangent], near_side: DVec2) -> DVec2 {
         }
     }
     if can_normalize(near_side) { near_side } else { DVec2::X }
-}
-
-/// The slope of a normal through an edge that rises by 1 outwards.
-fn tilted(known: &[Tangent], outward: DVec2) -> Option<DVec2> {
-    let [from, to] = known else { return None };
-    let along = to.point.shadow() - from.point.shadow();
-    let rise = to.point.height() - from.point.height();
-    Some(outward.try_normalize()? - along * (rise / along.length_squared()))
 }
 
 fn can_normalize(v: DVec2) -> bool {

@@ -24,6 +24,8 @@ pub(crate) enum Overlap {
         inward: DVec2,
         /// The overlap.
         depth: f64,
+        /// The support point that gives it.
+        point: Point,
     },
 }
 
@@ -59,9 +61,9 @@ fn search<O: Observer>(
     let mut count = first_polygon(&mut corners);
     let mut slightest = Overlap::Ample;
     for _ in 0..MAX_ROUNDS {
-        let Some((edge, outward, reach)) = nearest_edge(&corners[..count]) else {
-            return Overlap::Slight { inward: DVec2::X, depth: 0.0 };
-        };
+        // All in one place, they have no edge, and any direction will do.
+        let anywhere = (0, DVec2::X, corners[0].shadow().x);
+        let (edge, outward, reach) = nearest_edge(&corners[..count]).unwrap_or(anywhere);
         if reach > tolerance {
             return Overlap::Ample;
         }
@@ -77,11 +79,11 @@ fn search<O: Observer>(
             return if depth > tolerance {
                 Overlap::Ample
             } else {
-                Overlap::Slight { inward: -outward, depth }
+                Overlap::Slight { inward: -outward, depth, point }
             };
         }
         if depth <= tolerance {
-            slightest = Overlap::Slight { inward: -outward, depth };
+            slightest = Overlap::Slight { inward: -outward, depth, point };
         }
         count = insert(&mut corners, count, edge, point);
     }

@@ -5,11 +5,18 @@
 //! portal's plane it replaces one of the three, and the height at which the line passes the portal
 //! falls. The end: no point of `M` is below the plane by more than rounding error; then the plane
 //! proves the lower bound and the portal the upper one.
+//!
+//! Narrow portals. Shadows within what counts as touching of one straight line (upright faces, ties
+//! within rounding) have a rounded plane that may be far from the exact one, and yet serves: no exact
+//! corner is off it by more than a noise, so the portal proves the upper bound of what this plane
+//! proves the lower one of. Where rounding has turned the portal over, its exact plane is nearly
+//! upright, and what lies beyond the upright one lies below it. In narrow portals the line may pass the
+//! rim of `M`, beyond which there is nothing: that is asked first.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::Portal;
-use super::enclose::{Enclosure, Guide, SeparatingLine, complete, nearest_share};
+use super::enclose::{SeparatingLine, nearest_share};
 use super::graze::{Overlap, overlap};
 use super::plane::{Face, Plane};
 use crate::number::determinant::accurate_det;
@@ -36,11 +43,9 @@ const LONG: usize = 200;
 /// Bound on the number of portals; reaching it is reported, never hidden.
 pub(crate) const MAX_PORTALS: usize = 10_000;
 
-/// More narrow portals than this are not widened, because that leads back to higher ones and, where rounding
-/// decides, in a circle: planes through one edge are turned instead, so many times through the lowest,
-/// then as often through the longest.
-const MOST_WIDENED: usize = 200;
-const LONG_OR_LOW: usize = 16;
+/// Bound on the narrow ones, of which five are the most that was seen: more run in a circle, which
+/// another frame breaks.
+const MAX_NARROW: usize = 32;
 
 /// What following portals ends with.
 #[derive(Debug, Clone, Copy)]
@@ -77,35 +82,30 @@ pub(crate) fn refine<O: Observer>(
     watch: &mut Watch<O>,
 ) -> Option<Refined> {
     let mut newest = 2;
-    let (mut last, mut narrow) = (DVec3::Z, 0);
+    let mut narrow = 0;
     for round in 0..most {
         watch.portal(|| portal.map(|p| p.at));
-        let edge;
-        let (plane, base) = match plane_normal(difference, portal) {
-            Some(plane) => (plane, portal.each_ref()),
-            None if narrow < MOST_WIDENED => {
-                narrow += 1;
-                match widen(difference, portal, watch)? {
-                    Enclosure::Portal(wide) => *portal = wide,
-                    Enclosure::Beside(rim) => return Some(Refined::Rim(rim)),
-                }
-                continue;
-            }
+        let plane = match plane_normal(difference, portal) {
+            Some(plane) => plane,
+            None if narrow == MAX_NARROW => return None,
             None => {
+                if narrow == 0
+                    && let Some(rim) = rim(difference, portal, watch)
+                {
+                    return Some(Refined::Rim(rim));
+                }
                 narrow += 1;
-                let by_length = narrow / LONG_OR_LOW % 2 == 1;
-                edge =
-                    if by_length { longest_edge(portal) } else { lowest_edge(difference, portal) };
-                (through_edge(&edge, last), [&edge[0], &edge[1], &edge[0]])
+                narrow_plane_normal(portal)
             }
         };
-        last = plane;
         let point = difference.support_from(plane, portal[newest].pair);
         watch.support(|| Support::of(plane, &point));
         let rounding = difference.noise.plane(round >= LONG);
-        let below = match lowest(difference, &base.map(|p| *p), plane, point, rounding) {
-            Ok(plane) => return Some(Refined::Lowest(Face { plane, weights: weights(portal) })),
+        let below = match lowest(difference, portal, plane, point, rounding) {
             Err(point) => point,
+            // An upright plane bounds nothing.
+            Ok(_) if plane.z == 0.0 => return None,
+            Ok(plane) => return Some(Refined::Lowest(Face { plane, weights: weights(portal) })),
         };
         newest = exchange(difference, portal, below);
     }
@@ -141,7 +141,7 @@ fn settled(
     if plane.lowest == found {
         return Ok(plane);
     }
-    let point = difference.vertex(plane.lowest);
+    let point = difference.point(plane.lowest, normal);
     if is_below(portal, normal, &point, rounding) { Err(point) } else { Ok(plane) }
 }
 
@@ -164,85 +164,18 @@ fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> boo
     depth_below(portal, normal, point) > rounding * normal.length()
 }
 
-/// The edges of a portal.
-fn edges(portal: &Portal) -> [[Point; 2]; 3] {
-    [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [portal[i], portal[j]])
-}
-
-/// The longest edge of a portal.
-fn longest_edge(portal: &Portal) -> [Point; 2] {
-    let edges = edges(portal);
-    edges[largest(edges.each_ref().map(|[from, to]| from.at.distance_squared(to.at)))]
-}
-
-/// The upward normal nearest to another among those of planes through an edge; the other itself if the
-/// edge stands upright.
-fn through_edge([from, to]: &[Point; 2], normal: DVec3) -> DVec3 {
-    let edge = to.at - from.at;
-    let turned = normal - edge * (normal.dot(edge) / edge.length_squared());
-    if turned.z > 0.0 { turned } else { normal }
-}
-
-/// A portal with a plane in place of one too narrow to have one: over the edge that the line passes
-/// lowest or, if that gives the new portal no width, around its lower point. `None` if there is
-/// none.
-fn widen<O: Observer>(
+/// The rim of the shadow of `M`, if the line passes it.
+fn rim<O: Observer>(
     difference: &MinkowskiDifference,
     portal: &Portal,
     watch: &mut Watch<O>,
-) -> Option<Enclosure> {
-    let edge = lowest_edge(difference, portal);
-    let [from, to] = edge;
-    let low = if from.height() <= to.height() { from } else { to };
-    let far = farthest(difference, low, watch);
-    let long = from.shadow().distance(to.shadow()) > difference.touching();
-    let stars = difference.corners(&low).map(|corner| [corner, far]);
-    for edge in long.then_some(edge).into_iter().chain(stars) {
-        for guide in [Guide::Tilt, Guide::Lateral] {
-            match complete(difference, edge, guide, watch)? {
-                Enclosure::Portal(wide) if plane_normal(difference, &wide).is_none() => {}
-                found => return Some(found),
-            }
-        }
-    }
-    // Only narrow portals contain a line that passes the rim.
+) -> Option<SeparatingLine> {
     match overlap(difference, portal, difference.touching(), watch) {
-        Overlap::Slight { inward, depth } => {
-            Some(Enclosure::Beside(SeparatingLine { normal: inward, margin: -depth, point: low }))
+        Overlap::Slight { inward, depth, point } => {
+            Some(SeparatingLine { normal: inward, margin: -depth, point })
         }
         Overlap::Ample => None,
     }
-}
-
-/// A point of `M` whose shadow is far from that of another.
-fn farthest<O: Observer>(
-    difference: &MinkowskiDifference,
-    from: Point,
-    watch: &mut Watch<O>,
-) -> Point {
-    let candidates = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(|lateral| {
-        let point = difference.support(lateral.extend(0.0));
-        watch.support(|| Support::of(lateral.extend(0.0), &point));
-        point
-    });
-    let distance = |p: &Point| p.shadow().distance_squared(from.shadow());
-    candidates.into_iter().fold(from, |far, p| if distance(&p) > distance(&far) { p } else { far })
-}
-
-/// Of the edges of a narrow portal near which the line passes, the one it passes lowest.
-fn lowest_edge(difference: &MinkowskiDifference, portal: &Portal) -> [Point; 2] {
-    let edges = edges(portal);
-    let passing = edges.map(|edge| {
-        let shadows = edge.map(|p| p.shadow());
-        let share = nearest_share(shadows);
-        let [from, to] = edge.map(|p| p.height());
-        let near = shadows[0] + (shadows[1] - shadows[0]) * share;
-        (near.length(), from + (to - from) * share)
-    });
-    let nearest = passing.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
-    let close = |k: &usize| passing[*k].0 <= nearest.max(difference.touching());
-    let lowest = (0..3).filter(close).min_by(|&i, &j| passing[i].1.total_cmp(&passing[j].1));
-    edges[lowest.unwrap_or(0)]
 }
 
 /// How far a point lies below all three of the portal's along `normal`, times the normal's length.
@@ -282,6 +215,18 @@ fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -
 pub(super) fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
     let normal = triangle_normal(portal.map(|p| p.at));
     is_wide(difference, portal, normal.z).then_some(normal)
+}
+
+/// The same of a narrow portal's rounded corners; lateral if rounding has turned them over.
+fn narrow_plane_normal(portal: &Portal) -> DVec3 {
+    let own = triangle_normal(portal.map(|p| p.at));
+    if own.z > 0.0 {
+        own
+    } else if own.truncate().length_squared() > 0.0 {
+        own.with_z(0.0)
+    } else {
+        DVec3::X
+    }
 }
 
 /// Whether a portal, with twice this area, is wider than what counts as touching.

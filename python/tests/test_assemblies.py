@@ -65,7 +65,12 @@ def test_parts_by_hand_stuck_and_fixed() -> None:
     assert [step.parts for step in plan.steps] == [["upper"]] and plan.left == ["lower"]
     overlap = Assembly({"a": cuboid([0, 0, 0], [1, 1, 1]), "b": cuboid([0.5, 0, 0], [2, 1, 1])})
     assert overlap.plan().steps == [] and overlap.plan().stuck[0].parts == ["a", "b"]
-    assert overlap.with_ignored(("a", "b")).plan().steps != []
+    assert overlap.plan().stuck[0].directions > 14
+    first = overlap.with_ignored(("a", "b")).plan().steps[0]
+    assert first.parts + ["b"] == list(first.ignored[0]) == ["a", "b"]
+    ahead = [[1, 0, 0]]  # deeper into the other one
+    assert overlap.with_ignored(("a", "b")).rooms(ahead).distance[0, 0] < 0.1
+    assert overlap.with_ignored(("a", "b"), always=True).rooms(ahead).free()["a"] == [0]
 
 
 def test_refusals(tmp_path: Path, gearbox: Assembly) -> None:

@@ -519,7 +519,7 @@ export class AssemblyTab {
       h("li", {}, h("button", { class: "link", onclick: () => this.player.go(k + 1) },
         `${within === null ? "" : `of step ${within + 1}: `}${this.names(parts)} ${travel ? `along ${arrow(direction)}` : "stays"}`)));
     const stuck = plan.stuck.map(({ parts, directions, overlapping, holds }) => h("p", { class: "proof" },
-      `Not parted along any of ${directions} directions: ${this.names(parts)}. `,
+      `No single straight motion along the ${directions} directions asked takes these apart: ${this.names(parts)}. `,
       overlapping.length ? `They overlap: ${overlapping.slice(0, 4).map((pair) => this.names(pair)).join("; ")}.`
         : holds.filter(({ by }) => by.length).slice(0, 4).map(({ part, by }) => `${this.names([part])} is held by ${this.names(by[0]!)}`).join("; ")));
     refill(this.planCard, h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...stuck);

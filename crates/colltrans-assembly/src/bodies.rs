@@ -3,6 +3,8 @@
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
 //! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
+use std::collections::BTreeMap;
+
 use colltrans::{
     Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
 };
@@ -11,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::boxes::{Aabb, BoxTree};
 use crate::error::AssemblyError;
-use crate::part::{Assembly, Part};
+use crate::part::{Assembly, Ignored, Part};
 
 /// How tight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,8 +84,14 @@ pub struct Bodies<'a> {
     tree: BoxTree,
     /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
     overlapping: Vec<[usize; 2]>,
+    /// Pairs whose overlap is ignored, with the further tolerance that lets it pass, if there is one.
+    passing: BTreeMap<[usize; 2], f64>,
     noise: f64,
 }
+
+/// How deep an overlap that is ignored may become, in multiples of its depth at the start: so much more
+/// that rounding does not decide.
+const DEEPER: f64 = 1.05;
 
 impl<'a> Bodies<'a> {
     /// Makes the bodies ready, and looks which pairs overlap where they are.
@@ -112,12 +120,35 @@ impl<'a> Bodies<'a> {
         let boxes: Vec<Aabb> = solids.iter().map(|s| Aabb::of(s.bounds())).collect();
         let tree = BoxTree::new(boxes.iter().copied());
         let noise = 4.0 * Fit::default_for(assembly).tolerance();
-        let overlapping = Vec::new();
-        let mut bodies = Self { assembly, fit, solids, displaced, boxes, tree, overlapping, noise };
+        let (overlapping, passing) = (Vec::new(), BTreeMap::new());
+        let mut bodies =
+            Self { assembly, fit, solids, displaced, boxes, tree, overlapping, passing, noise };
         let pairs = bodies.neighbours(0.0);
         let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
         bodies.overlapping = overlapping.collect();
+        let ignored = |pair: &&[usize; 2]| assembly.ignored(pair[0], pair[1]).is_some();
+        let ignored = bodies.overlapping.par_iter().filter(ignored);
+        bodies.passing =
+            ignored.filter_map(|&pair| Some((pair, bodies.passes_with(pair)?))).collect();
         Ok(bodies)
+    }
+
+    /// A little more than the least further tolerance with which two parts do not overlap; `None` if
+    /// there is none that leaves both parts as they are but smaller.
+    fn passes_with(&self, pair: [usize; 2]) -> Option<f64> {
+        let [a, b] = pair.map(|k| self.solids[k].at(Pose::IDENTITY));
+        let tolerance = Cast::new(a, b, DVec3::Z).ok()?.depth()? * DEEPER;
+        let whole = |k: usize| {
+            let solid = &self.solids[k];
+            solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
+                report.inverted.is_empty() && volume(&smaller) > 0.0 && smaller.is_closed()
+            })
+        };
+        pair.into_iter().all(whole).then_some(tolerance)
+    }
+
+    fn passing(&self, a: usize, b: usize) -> Option<f64> {
+        self.passing.get(&[a.min(b), a.max(b)]).copied()
     }
 
     /// The parts.
@@ -180,7 +211,7 @@ impl<'a> Bodies<'a> {
     /// Parts that a part's box meets along a unit direction, with lower bounds, nearest first.
     pub(crate) fn ahead(&self, part: usize, d: DVec3) -> Vec<(f64, usize)> {
         let mut found = self.tree.ahead(&self.boxes[part], d);
-        found.retain(|&(_, other)| other != part && !self.assembly.ignores(part, other));
+        found.retain(|&(_, other)| other != part && !self.always_ignored(part, other));
         found
     }
 
@@ -191,13 +222,33 @@ impl<'a> Bodies<'a> {
             let met = self.tree.meeting(&self.boxes[a].grown(by));
             pairs.extend(met.into_iter().filter(|&b| b > a).map(|b| [a, b]));
         }
-        pairs.retain(|&[a, b]| !self.assembly.ignores(a, b));
+        pairs.retain(|&[a, b]| !self.always_ignored(a, b));
         pairs
+    }
+
+    fn always_ignored(&self, a: usize, b: usize) -> bool {
+        self.assembly.ignored(a, b) == Some(Ignored::Always)
+    }
+
+    /// What an overlap of two parts at the start means, where `start` is asked of all.
+    pub(crate) fn start_of(&self, a: usize, b: usize, start: StartOverlap) -> StartOverlap {
+        match self.assembly.ignored(a, b) {
+            Some(_) => StartOverlap::Ignore,
+            None => start,
+        }
+    }
+
+    /// Whether a plan passes over what two parts do where they are: an overlap that is ignored, or
+    /// everything.
+    pub(crate) fn lets_pass(&self, a: usize, b: usize, start: StartOverlap) -> bool {
+        self.always_ignored(a, b)
+            || (self.overlaps(a, b) && self.start_of(a, b, start) == StartOverlap::Ignore)
     }
 
     /// How far part `a` can move along unit direction `d` before `b` stops it; contacts from
     /// `before` on are of no interest. Parts that overlap where they are do so, or, with
-    /// [`StartOverlap::Ignore`], are stopped by contacts that begin later.
+    /// [`StartOverlap::Ignore`], are stopped by contacts that begin later; where the assembly
+    /// [ignores](Assembly::with_ignored) their overlap, by what would make it deeper than it is.
     pub fn room(
         &self,
         [a, b]: [usize; 2],
@@ -206,20 +257,25 @@ impl<'a> Bodies<'a> {
         start: StartOverlap,
         workspace: &mut Workspace,
     ) -> Room {
-        let overlapping = self.overlaps(a, b);
+        let passing = self.passing(a, b);
+        let (overlapping, start) = match passing {
+            Some(_) => (false, StartOverlap::Refuse),
+            None => (self.overlaps(a, b), self.start_of(a, b, start)),
+        };
         if overlapping && start == StartOverlap::Refuse {
             return Room::Overlapping;
         }
         let options = SolidOptions {
             start_overlap: start,
-            tolerance: Some(0.0),
+            tolerance: passing.or(Some(0.0)),
             // A plane between the two, which comes with "free" where there is no limit, is not needed.
             before: before.or(Some(f64::INFINITY)),
             overlapping: Some(overlapping),
         };
         let contact = met([&self.solids[a], &self.solids[b]], d, options, workspace);
         contact.map_or(Room::Free, |(distance, c)| {
-            Room::Blocked(self.stop([a, b], d, distance, c.triangles, &c))
+            let meeting = if passing.is_some() { c.nominal } else { distance };
+            Room::Blocked(self.stop([a, b], d, [distance, meeting], c.triangles, &c))
         })
     }
 
@@ -235,6 +291,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// The room of two parts, if these were all of their facets; parts that overlap are not refused.
+    /// Free of parts that pass with a tolerance of their own, which single facets do not have.
     pub(crate) fn room_of_facets(
         &self,
         [a, b]: [usize; 2],
@@ -244,6 +301,10 @@ impl<'a> Bodies<'a> {
         start: StartOverlap,
         workspace: &mut Workspace,
     ) -> Room {
+        if self.passing(a, b).is_some() {
+            return Room::Free;
+        }
+        let start = self.start_of(a, b, start);
         let options = SolidOptions {
             start_overlap: start,
             tolerance: Some(0.0),
@@ -252,19 +313,20 @@ impl<'a> Bodies<'a> {
         };
         let contact = met([&facets[0], &facets[1]], d, options, workspace);
         contact.map_or(Room::Free, |(distance, c)| {
-            Room::Blocked(self.stop([a, b], d, distance, triangles, &c))
+            Room::Blocked(self.stop([a, b], d, [distance; 2], triangles, &c))
         })
     }
 
+    /// From how far the two can go, and after how far their facets meet.
     fn stop(
         &self,
         pair: [usize; 2],
         d: DVec3,
-        distance: f64,
+        [distance, meeting]: [f64; 2],
         triangles: [u32; 2],
         contact: &SolidContact,
     ) -> Stop {
-        let nominal = self.nominal(pair, d, distance, triangles, contact);
+        let nominal = self.nominal(pair, d, meeting, triangles, contact);
         let SolidContact { normal, point_on_fixed: point, .. } = *contact;
         Stop { distance, nominal, normal, point, triangles }
     }

@@ -38,5 +38,5 @@ pub mod start;
 
 pub use bodies::{Bodies, Fit, Room, Stop};
 pub use error::{AssemblyError, ReadError};
-pub use part::{Assembly, Part, Piece};
+pub use part::{Assembly, Ignored, Part, Piece};
 pub use watch::{Stage, Watch};

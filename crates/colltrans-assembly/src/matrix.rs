@@ -15,6 +15,11 @@ use crate::error::AssemblyError;
 use crate::rooms::PartRoom;
 use crate::watch::{Stage, Watch};
 
+/// The bits of a direction, to find it again by; both zeros are one.
+pub(crate) fn bits(d: DVec3) -> [u64; 3] {
+    d.to_array().map(|x| (x + 0.0).to_bits())
+}
+
 /// One part meets another along a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Meeting {
@@ -63,10 +68,9 @@ impl Matrix {
         start: StartOverlap,
         watch: Watch,
     ) -> Result<Self, AssemblyError> {
-        let key = |d: DVec3| d.to_array().map(|x| (x + 0.0).to_bits());
         let index: HashMap<[u64; 3], usize> =
-            directions.iter().enumerate().map(|(k, d)| (key(*d), k)).collect();
-        let opposite = |k: usize| index.get(&key(-directions[k])).copied();
+            directions.iter().enumerate().map(|(k, d)| (bits(*d), k)).collect();
+        let opposite = |k: usize| index.get(&bits(-directions[k])).copied();
         let asked: Vec<usize> =
             (0..directions.len()).filter(|&k| opposite(k).is_none_or(|o| o > k)).collect();
         let moving: Vec<usize> = (0..bodies.len()).filter(|&k| among[k]).collect();

@@ -1,6 +1,6 @@
 //! Parts in one world.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
 use colltrans::{Solid, SolidError};
@@ -131,11 +131,23 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
     Ok(solid)
 }
 
-/// Parts with different names in one world, and pairs that are not asked about.
+/// What of two parts is let pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Ignored {
+    /// The overlap at the start: the two pass with a tolerance of a little more than its depth, so
+    /// what would make it deeper blocks, and so do contacts that begin later. Where no tolerance ends
+    /// the overlap and leaves something of both, only such contacts do, as with
+    /// [`StartOverlap::Ignore`](colltrans::StartOverlap::Ignore).
+    Overlap,
+    /// Everything: the two are never asked about.
+    Always,
+}
+
+/// Parts with different names in one world, and pairs that let each other pass.
 #[derive(Debug, Clone, Default)]
 pub struct Assembly {
     parts: Vec<Part>,
-    ignored: Vec<[usize; 2]>,
+    ignored: BTreeMap<[usize; 2], Ignored>,
     unit: Option<String>,
     notes: Vec<String>,
     files: Vec<PathBuf>,
@@ -156,20 +168,24 @@ impl Assembly {
         Ok(Self { parts, ..Self::default() })
     }
 
-    /// The same, with pairs (by name) that never block each other and may overlap.
+    /// The same, with pairs (by name) of which so much is let pass. A pair that is named twice keeps
+    /// what lets more pass.
     ///
     /// # Errors
     /// A name that no part has; a part paired with itself.
-    pub fn with_ignored<S: AsRef<str>>(mut self, pairs: &[[S; 2]]) -> Result<Self, AssemblyError> {
+    pub fn with_ignored<S: AsRef<str>>(
+        mut self,
+        pairs: &[[S; 2]],
+        ignored: Ignored,
+    ) -> Result<Self, AssemblyError> {
         for [a, b] in pairs {
             let (a, b) = (self.index(a.as_ref())?, self.index(b.as_ref())?);
             if a == b {
                 return Err(AssemblyError::SamePart { name: self.parts[a].name.clone() });
             }
-            self.ignored.push([a.min(b), a.max(b)]);
+            let known = self.ignored.entry([a.min(b), a.max(b)]).or_insert(ignored);
+            *known = ignored.max(*known);
         }
-        self.ignored.sort_unstable();
-        self.ignored.dedup();
         Ok(self)
     }
 
@@ -224,9 +240,9 @@ impl Assembly {
         &self.files
     }
 
-    /// Pairs (smaller index first) that are not asked about.
-    pub fn ignored(&self) -> &[[usize; 2]] {
-        &self.ignored
+    /// What of two parts is let pass, if anything.
+    pub fn ignored(&self, a: usize, b: usize) -> Option<Ignored> {
+        self.ignored.get(&[a.min(b), a.max(b)]).copied()
     }
 
     /// Position of the part with a name.
@@ -258,10 +274,6 @@ impl Assembly {
     pub fn size(&self) -> f64 {
         let [low, high] = self.bounds();
         low.abs().max(high.abs()).max(high - low).max_element()
-    }
-
-    pub(crate) fn ignores(&self, a: usize, b: usize) -> bool {
-        !self.ignored.is_empty() && self.ignored.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 }
 

@@ -14,7 +14,7 @@ mod hold;
 mod loose;
 mod replay;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use colltrans::StartOverlap;
 use glam::DVec3;
@@ -25,7 +25,8 @@ use crate::bodies::Bodies;
 use crate::candidates::Finer;
 use crate::error::AssemblyError;
 use crate::map::{MapOptions, way_out};
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, bits};
+use crate::part::Assembly;
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
@@ -42,14 +43,31 @@ pub struct Step {
     pub travel: f64,
     /// For a step that takes a group apart: the step that took the group out.
     pub within: Option<usize>,
+    /// What the step does not speak of: of each pair the first part moves and the second stays, and
+    /// their overlap at the start, or all that they do, is ignored on request.
+    pub ignored: Vec<[usize; 2]>,
 }
 
-/// Parts that straight moves cannot part.
+impl Step {
+    /// What it does not speak of, in words; `None` if there is nothing.
+    pub fn ignores(&self, assembly: &Assembly) -> Option<String> {
+        let pair = |p: &[usize; 2]| assembly.names(p).join(" and ");
+        let named: Vec<String> = self.ignored.iter().take(MOST_NAMED).map(pair).collect();
+        let more = match self.ignored.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more pairs"),
+        };
+        (!named.is_empty()).then(|| format!("ignored: {}{more}", named.join(", ")))
+    }
+}
+
+/// Parts of which no group leaves along any of the directions asked. That no other single motion
+/// parts them, or several, is not said.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stuck {
     /// Positions of the parts, in increasing order.
     pub parts: Vec<usize>,
-    /// How many directions were asked.
+    /// How many different directions were asked of them.
     pub directions: usize,
     /// For each part, the least sets of others that hold it.
     pub holds: Vec<Hold>,
@@ -64,9 +82,9 @@ pub struct Stuck {
 pub struct Plan {
     /// What to do, in order; steps that take a group apart follow the one that took it out.
     pub steps: Vec<Step>,
-    /// Parts that stay: fixed, or stuck to each other.
+    /// Parts that stay: fixed, or not moved by any direction asked.
     pub left: Vec<usize>,
-    /// What cannot be taken apart.
+    /// What none of the directions asked takes apart.
     pub stuck: Vec<Stuck>,
 }
 
@@ -123,6 +141,8 @@ fn base(bodies: &Bodies) -> Vec<bool> {
     base
 }
 
+/// Pairs that are ignored are named up to so many for a step.
+const MOST_NAMED: usize = 4;
 /// Of the finer directions of what is stuck, at most so many are asked.
 const MOST_FINER: usize = 64;
 /// Of the parts that are stuck, a sphere is refined for at most so many.
@@ -157,19 +177,20 @@ impl Planner<'_> {
     ) -> Result<Vec<usize>, AssemblyError> {
         let mut alive = self.mask(group);
         let mut left = group.to_vec();
-        let mut asked = matrix.directions().len();
         while !left.is_empty() {
             self.watch.check()?;
             if left.len() == 1 && !self.fixed(left[0]) {
                 self.finish(&left, matrix, within);
                 return Ok(Vec::new());
             }
+            let mut asked: HashSet<[u64; 3]> =
+                matrix.directions().iter().copied().map(bits).collect();
             let mut way = self.smallest(matrix, &alive, left.len());
             if way.is_none() {
                 way = self.search_finer(&left, &alive, matrix, &mut asked)?;
             }
             let Some(way) = way else {
-                self.explain(&left, matrix, asked);
+                self.explain(&left, matrix, asked.len());
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.fixed(k)) {
                     // All others are gone: what is left comes out, as one.
@@ -196,7 +217,10 @@ impl Planner<'_> {
         let travel = replay::checked(self.bodies, &way, left, self.options.start)?;
         let at = self.plan.steps.len();
         let Way { parts, direction } = way;
-        self.plan.steps.push(Step { parts: parts.clone(), direction, travel, within });
+        let start = self.options.start;
+        let pairs = parts.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
+        let ignored = pairs.filter(|&[a, b]| self.bodies.lets_pass(a, b, start)).collect();
+        self.plan.steps.push(Step { parts: parts.clone(), direction, travel, within, ignored });
         for _ in &parts {
             self.tally.step()?;
         }
@@ -212,7 +236,9 @@ impl Planner<'_> {
     fn finish(&mut self, left: &[usize], matrix: &Matrix, within: Option<usize>) {
         if within.is_none() {
             let direction = matrix.directions().first().copied().unwrap_or(DVec3::Z);
-            self.plan.steps.push(Step { parts: left.to_vec(), direction, travel: 0.0, within });
+            let parts = left.to_vec();
+            let ignored = Vec::new();
+            self.plan.steps.push(Step { parts, direction, travel: 0.0, within, ignored });
         }
     }
 
@@ -239,13 +265,13 @@ impl Planner<'_> {
     }
 
     /// A way along directions that the matrix does not have: of contacts of these parts, then of the
-    /// sphere. Counts them.
+    /// sphere. Adds them to those asked.
     fn search_finer(
         &mut self,
         left: &[usize],
         alive: &[bool],
         matrix: &Matrix,
-        asked: &mut usize,
+        asked: &mut HashSet<[u64; 3]>,
     ) -> Result<Option<Way>, AssemblyError> {
         if left.iter().filter(|&&k| !self.fixed(k)).count() == 0 {
             return Ok(None);
@@ -266,7 +292,7 @@ impl Planner<'_> {
             movable.then(|| group.iter().any(|&k| base[k]))
         };
         for directions in [own, sphere] {
-            *asked += directions.len();
+            asked.extend(directions.iter().copied().map(bits));
             let (start, known) = (self.options.start, &mut self.known);
             let way = loose::smallest(
                 self.bodies,
@@ -325,11 +351,10 @@ impl Planner<'_> {
     /// These parts, those that overlap in one group, unless overlaps are ignored.
     fn rigid(&self, left: &[usize]) -> Vec<Vec<usize>> {
         let mut sets = UnionFind::new(self.bodies.len());
-        if self.options.start == StartOverlap::Refuse {
-            for &[a, b] in self.bodies.overlapping() {
-                if left.contains(&a) && left.contains(&b) {
-                    sets.union(a, b);
-                }
+        for &[a, b] in self.bodies.overlapping() {
+            let rigid = !self.bodies.lets_pass(a, b, self.options.start);
+            if rigid && left.contains(&a) && left.contains(&b) {
+                sets.union(a, b);
             }
         }
         let mut groups = BTreeMap::<usize, Vec<usize>>::new();

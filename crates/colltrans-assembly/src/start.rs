@@ -37,7 +37,8 @@ impl Start {
     /// # Errors
     /// Cancelled.
     pub fn new(bodies: &Bodies, watch: Watch) -> Result<Self, AssemblyError> {
-        let pairs = bodies.neighbours(0.0);
+        let mut pairs = bodies.neighbours(0.0);
+        pairs.retain(|&[a, b]| bodies.assembly().ignored(a, b).is_none());
         let tally = watch.stage(Stage::Start, pairs.len());
         let look = |&[a, b]: &[usize; 2]| {
             let remains = bodies.overlaps(a, b);

@@ -11,7 +11,7 @@ mod common;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use colltrans::StartOverlap;
-use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::candidates::{Choice, Finer, Origin, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
@@ -19,7 +19,7 @@ use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Part, Room, Watch};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Room, Watch};
 use colltrans_kit::random::Random;
 use common::*;
 use glam::{DAffine3, DVec3};
@@ -331,9 +331,85 @@ fn overlaps_at_the_start_are_measured_and_can_be_ignored() {
     assert!(room(Fit::Tolerance(suggested), DVec3::Z).is_free());
     let stopped = room(Fit::Tolerance(suggested), DVec3::NEG_Z);
     assert!((stopped.distance() - 1.0 - suggested).abs() < 1e-9, "{stopped:?}");
-    let listed = assembly.clone().with_ignored(&[["pin", "block"]]).unwrap();
+    let listed = assembly.clone().with_ignored(&[["pin", "block"]], Ignored::Overlap).unwrap();
     let bodies = Bodies::new(&listed, Fit::Tolerance(0.0)).unwrap();
     assert!(Start::new(&bodies, Watch::default()).unwrap().overlaps.is_empty());
+}
+
+fn room_with(assembly: &Assembly, d: DVec3) -> PartRoom {
+    let bodies = Bodies::new(assembly, Fit::Tolerance(0.0)).unwrap();
+    let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
+    room_of(&bodies, &[0], &all, d, start, &mut Default::default())
+}
+
+#[test]
+fn an_overlap_that_is_ignored_lets_pass_what_begins_later_does_not() {
+    // The pin is pressed into the walls of the well, whose floor is 1 below it.
+    let parts = vec![
+        part("pin", &[cuboid([-1.05, -1.05, 1.0], [1.05, 1.05, 6.0])]),
+        part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0)),
+    ];
+    let assembly = Assembly::new(parts).unwrap();
+    let pair = [["block", "pin"]];
+    let ignored = assembly.clone().with_ignored(&pair, Ignored::Overlap).unwrap();
+    assert!(room_with(&ignored, DVec3::Z).is_free());
+    let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::NEG_Z) else {
+        panic!("the floor is below")
+    };
+    // The two are asked about with the depth of the overlap, 0.05, and a twentieth more.
+    assert!((stop.nominal - 1.0).abs() < 1e-9, "{stop:?}");
+    assert!((stop.distance - 1.0525).abs() < 1e-9, "{stop:?}");
+    let plan = planned(&ignored);
+    assert_eq!(steps(&ignored, &plan), [["pin"], ["block"]]);
+    assert_eq!((plan.steps[0].direction, &plan.steps[0].ignored[..]), (DVec3::Z, &[[0, 1]][..]));
+    assert_eq!(plan.steps[0].ignores(&ignored).unwrap(), "ignored: pin and block");
+    let always = ignored.with_ignored(&pair, Ignored::Always).unwrap();
+    assert!(room_with(&always, DVec3::NEG_Z).is_free());
+    // What lets more pass stays, in whatever order they are named.
+    let again = always.with_ignored(&pair, Ignored::Overlap).unwrap();
+    assert!(room_with(&again, DVec3::NEG_Z).is_free());
+    assert!(planned(&again).steps[0].ignores(&again).is_some());
+}
+
+#[test]
+fn an_overlap_that_is_ignored_does_not_become_deeper() {
+    let parts = vec![
+        part("cube", &[cuboid([0.0; 3], [1.0; 3])]),
+        part("long", &[cuboid([0.75, -1.0, -1.0], [9.0, 2.0, 2.0])]),
+    ];
+    let assembly = Assembly::new(parts).unwrap();
+    let ignored = assembly.with_ignored(&[["cube", "long"]], Ignored::Overlap).unwrap();
+    for free in [DVec3::NEG_X, DVec3::Y, DVec3::NEG_Z] {
+        assert!(room_with(&ignored, free).is_free(), "{free}");
+    }
+    // A twentieth deeper than 0.25 is let pass as rounding.
+    let pushed = room_with(&ignored, DVec3::X).distance();
+    assert!((pushed - 0.0125).abs() < 1e-9, "{pushed}");
+    let away = steps(&ignored, &planned(&ignored));
+    assert_eq!(away, [["cube"], ["long"]]);
+    assert!(planned(&ignored).steps[0].direction.x <= 0.0);
+}
+
+#[test]
+fn what_is_stuck_is_said_of_the_directions_asked() {
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let (axes, all) = ([DVec3::X, DVec3::Y, DVec3::Z], [true; 2]);
+    let start = StartOverlap::Refuse;
+    let matrix = Matrix::new(&bodies, &axes, &all, start, Watch::default()).unwrap();
+    // The finer directions repeat one of the matrix, and each other: each counts once.
+    let finer: Vec<Finer> = [DVec3::X, DVec3::NEG_X, DVec3::NEG_X]
+        .map(|direction| Finer { direction, origin: Origin::Given, part: None })
+        .to_vec();
+    let options = PlanOptions { samples: 0, ..Default::default() };
+    let plan = disassemble(&bodies, &matrix, &finer, options, Watch::default()).unwrap();
+    assert_eq!(plan.stuck[0].directions, 4);
+    let because = plan.stuck[0].because(&bodies);
+    assert!(
+        because
+            .starts_with("no single straight motion along the 4 directions asked takes them apart"),
+        "{because}"
+    );
 }
 
 #[test]
@@ -371,7 +447,7 @@ fn directions_and_names_that_are_wrong_are_refused() {
     }
     let twice = vec![part("a", &[cuboid([0.0; 3], [1.0; 3])]); 2];
     assert!(matches!(Assembly::new(twice), Err(AssemblyError::SameName { .. })));
-    let alone = assembly.clone().with_ignored(&[["lid", "lid"]]);
+    let alone = assembly.clone().with_ignored(&[["lid", "lid"]], Ignored::Overlap);
     assert!(matches!(alone, Err(AssemblyError::SamePart { .. })));
     assert!(matches!(Part::new(" ", &[]), Err(AssemblyError::NoName)));
 }

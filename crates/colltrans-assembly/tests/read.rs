@@ -11,7 +11,7 @@ use base64::Engine;
 use colltrans_assembly::plan::Plan;
 use colltrans_assembly::read::{Geometry, ReadOptions, read};
 use colltrans_assembly::report::glb::animation;
-use colltrans_assembly::{Assembly, ReadError};
+use colltrans_assembly::{Assembly, Ignored, ReadError};
 use common::*;
 use glam::DVec3;
 
@@ -53,11 +53,13 @@ fn a_folder_is_read_in_natural_order() {
 
 #[test]
 fn manifests_place_parts_in_toml_and_json() {
-    let toml = "unit = 'mm'\nignore = [['a', 'b']]\n[[part]]\nfile = 'c.off'\nname = 'a'\n\
+    let toml = "unit = 'mm'\nignore = [['a', 'b']]\nignore_always = [['c', 'b']]\n\
+        [[part]]\nfile = 'c.off'\nname = 'a'\n\
         translation = [5, 0, 0]\nrotation = { rpy_degrees = [0, 0, 90] }\nscale = 2\nfixed = true\n\
         [[part]]\nfile = ['c.off', 'c.off']\nname = 'b'\nrotation = [0, 0, 1, 0]\n\
         scale = [1, 1, 3]\n[[part]]\nfile = 'c.off'\nrotation = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]\n";
-    let json = r#"{"unit": "mm", "ignore": [["a", "b"]], "parts": [
+    let json = r#"{"unit": "mm", "ignore": [["a", "b"]], "ignore_always": [["c", "b"]],
+        "parts": [
         {"file": "c.off", "name": "a", "translation": [5, 0, 0],
          "rotation": {"rpy_degrees": [0, 0, 90]}, "scale": 2, "fixed": true},
         {"file": ["c.off", "c.off"], "name": "b", "rotation": {"quaternion": [0, 0, 1, 0]},
@@ -67,7 +69,9 @@ fn manifests_place_parts_in_toml_and_json() {
     for file in ["m.toml", "m.json"] {
         let assembly = open(folder.path().join(file)).unwrap();
         assert_eq!(assembly.unit(), Some("mm"));
-        assert_eq!(assembly.ignored(), [[0, 1]]);
+        assert_eq!(assembly.ignored(1, 0), Some(Ignored::Overlap));
+        assert_eq!(assembly.ignored(1, 2), Some(Ignored::Always));
+        assert_eq!(assembly.ignored(0, 2), None);
         assert!(assembly.parts()[0].fixed());
         near(bounds(&assembly, "a"), [3.0, 0.0, 0.0], [5.0, 2.0, 2.0]);
         near(bounds(&assembly, "b"), [-1.0, -1.0, 0.0], [0.0, 0.0, 3.0]);

@@ -19,7 +19,7 @@ use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Stage, Watch};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Stage, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::{AssemblyArguments, direction};
@@ -107,15 +107,23 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     }
     let assembly = read::read(&arguments.source, &options)
         .map_err(|e| Failure::new(Code::Input, e.to_string()))?;
-    let mut pairs = Vec::new();
-    for pair in &arguments.ignore {
-        let (a, b) = pair
-            .split_once(',')
-            .ok_or_else(|| usage(format!("--ignore {pair}: not two names with a comma between")))?;
-        pairs.push([a.trim(), b.trim()]);
-    }
-    let assembly = assembly.with_ignored(&pairs)?;
+    let ignore = pairs("--ignore", &arguments.ignore)?;
+    let always = pairs("--ignore-always", &arguments.ignore_always)?;
+    let assembly = assembly.with_ignored(&ignore, Ignored::Overlap)?;
+    let assembly = assembly.with_ignored(&always, Ignored::Always)?;
     Ok(assembly.with_fixed(&arguments.fixed)?)
+}
+
+/// The names of parts that let each other pass.
+fn pairs<'a>(flag: &str, given: &'a [String]) -> Result<Vec<[&'a str; 2]>, Failure> {
+    let names = |pair: &'a String| {
+        let found = pair.split_once(',').map(|(a, b)| [a.trim(), b.trim()]);
+        found.ok_or_else(|| {
+            let text = format!("{flag} {pair}: not two names with a comma between");
+            Failure::new(Code::Usage, text)
+        })
+    };
+    given.iter().map(names).collect()
 }
 
 /// The directions of the file and the samples, of length 1.

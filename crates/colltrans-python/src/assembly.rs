@@ -21,7 +21,7 @@ use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{PlanOptions, disassemble};
 use colltrans_assembly::read::{Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
-use colltrans_assembly::{AssemblyError, Bodies, Fit, Part, Piece, Watch};
+use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
 use pyo3::prelude::*;
 
 use crate::arrays::{faces, points};
@@ -33,9 +33,9 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// A vector, and the distance and the part (-1 for none) of rooms along it.
 type RoomRow = (Vec<f64>, Vec<i64>);
 /// Parts, direction, travel, and the step that took the group out.
-type StepRow = (Vec<usize>, [f64; 3], f64, Option<usize>);
+type StepRow = (Vec<usize>, [f64; 3], f64, Option<usize>, Vec<[usize; 2]>);
 /// Parts, and for each of some parts the sets that hold it.
-type StuckRow = (Vec<usize>, Vec<(usize, Vec<Vec<usize>>)>);
+type StuckRow = (Vec<usize>, usize, Vec<(usize, Vec<Vec<usize>>)>);
 
 /// How tight the parts are, and what overlaps mean.
 #[derive(Clone, Copy)]
@@ -156,9 +156,10 @@ impl Assembly {
         Ok(Self(Arc::new(assembly.with_fixed(&names).or_raise()?)))
     }
 
-    fn with_ignored(&self, pairs: Vec<[String; 2]>) -> PyResult<Self> {
+    fn with_ignored(&self, pairs: Vec<[String; 2]>, always: bool) -> PyResult<Self> {
         let assembly = colltrans_assembly::Assembly::clone(&self.0);
-        Ok(Self(Arc::new(assembly.with_ignored(&pairs).or_raise()?)))
+        let ignored = if always { Ignored::Always } else { Ignored::Overlap };
+        Ok(Self(Arc::new(assembly.with_ignored(&pairs, ignored).or_raise()?)))
     }
 
     #[getter]
@@ -231,10 +232,12 @@ impl Assembly {
             disassemble(bodies, &matrix, &found.finer, options, watch)
         })?;
         let steps = plan.steps.into_iter();
-        let steps = steps.map(|s| (s.parts, s.direction.to_array(), s.travel, s.within)).collect();
+        let steps = steps
+            .map(|s| (s.parts, s.direction.to_array(), s.travel, s.within, s.ignored))
+            .collect();
         let stuck = plan.stuck.into_iter().map(|stuck| {
             let sets = |by: Vec<(Vec<usize>, DVec3)>| by.into_iter().map(|(set, _)| set).collect();
-            (stuck.parts, stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect())
+            (stuck.parts, stuck.directions, stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect())
         });
         Ok((steps, plan.left, stuck.collect()))
     }

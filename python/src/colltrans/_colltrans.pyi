@@ -147,7 +147,7 @@ class Assembly:
         joints: dict[str, float],
     ) -> Assembly: ...
     def with_fixed(self, names: list[str]) -> Assembly: ...
-    def with_ignored(self, pairs: list[tuple[str, str]]) -> Assembly: ...
+    def with_ignored(self, pairs: list[tuple[str, str]], always: bool) -> Assembly: ...
     @property
     def names(self) -> list[str]: ...
     @property
@@ -168,9 +168,9 @@ class Assembly:
         tolerance: float | None,
         ignore_overlaps: bool,
     ) -> tuple[
-        list[tuple[list[int], list[float], float, int | None]],
+        list[tuple[list[int], list[float], float, int | None, list[list[int]]]],
         list[int],
-        list[tuple[list[int], list[tuple[int, list[list[int]]]]]],
+        list[tuple[list[int], int, list[tuple[int, list[list[int]]]]]],
     ]: ...
     def removal_map(
         self,

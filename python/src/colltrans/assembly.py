@@ -74,26 +74,35 @@ class Step:
         How far, a length, until it never meets what is left again; 0 if nothing is ahead.
     within : int or None
         For a step that takes a group apart, the position of the step that took the group out.
+    ignored : list of tuple of (str, str)
+        What the step does not speak of: the first part moves, the second stays, and their overlap at
+        the start, or all that they do, is ignored on request.
     """
 
     parts: list[str]
     direction: tuple[float, ...]
     travel: float
     within: int | None
+    ignored: list[tuple[str, str]]
 
 
 @dataclass(frozen=True)
 class Stuck:
-    """Parts that straight moves cannot part.
+    """Parts that no single straight motion along the directions asked takes apart.
+
+    Along other directions, or in several moves, they may come apart.
 
     Attributes
     ----------
     parts : list of str
+    directions : int
+        How many different directions were asked.
     holds : dict of str to list of list of str
         For each part the least sets of others that hold it.
     """
 
     parts: list[str]
+    directions: int
     holds: dict[str, list[list[str]]]
 
 
@@ -106,7 +115,7 @@ class Plan:
     steps : list of Step
         In order.
     left : list of str
-        Parts that stay: fixed, or stuck to each other.
+        Parts that stay: fixed, or not moved by any direction asked.
     stuck : list of Stuck
     """
 
@@ -230,9 +239,14 @@ class Assembly:
         """The same with these parts never moved."""
         return self._of(self._assembly.with_fixed(list(names)))
 
-    def with_ignored(self, *pairs: tuple[str, str]) -> "Assembly":
-        """The same with these pairs of parts passing through each other."""
-        return self._of(self._assembly.with_ignored(list(pairs)))
+    def with_ignored(self, *pairs: tuple[str, str], always: bool = False) -> "Assembly":
+        """The same with these pairs of parts let pass, though they overlap at the start.
+
+        They pass with a tolerance of their own, a little more than the depth of that overlap: what
+        would make it deeper blocks, and so do contacts that begin later. With ``always`` nothing
+        between them does, whatever they run through.
+        """
+        return self._of(self._assembly.with_ignored(list(pairs), always))
 
     def rooms(
         self,
@@ -304,7 +318,9 @@ class Assembly:
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
     ) -> Plan:
-        """Takes everything apart that straight moves take apart, the smallest groups first.
+        """Takes apart what single straight moves along the directions asked take apart.
+
+        The smallest groups come first.
 
         Parameters
         ----------
@@ -322,14 +338,24 @@ class Assembly:
         steps, left, stuck = self._assembly.plan(directions, samples, tolerance, ignore_overlaps)
         names = self.parts
         return Plan(
-            [Step(self._names(parts), tuple(d), travel, at) for parts, d, travel, at in steps],
+            [
+                Step(
+                    self._names(parts),
+                    tuple(d),
+                    travel,
+                    within,
+                    [(names[a], names[b]) for a, b in ignored],
+                )
+                for parts, d, travel, within, ignored in steps
+            ],
             self._names(left),
             [
                 Stuck(
                     self._names(parts),
+                    directions,
                     {names[part]: [self._names(group) for group in sets] for part, sets in holds},
                 )
-                for parts, holds in stuck
+                for parts, directions, holds in stuck
             ],
         )
 

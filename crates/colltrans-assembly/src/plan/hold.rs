@@ -1,4 +1,4 @@
-//! What holds parts that are stuck.
+//! What holds parts that none of the directions asked takes apart.
 
 use std::fmt::Write;
 
@@ -73,14 +73,14 @@ impl Stuck {
         let mut text = match (&self.overlapping[..], self.fixed) {
             ([], false) => {
                 format!(
-                    "they hold each other along all of {directions} directions: translations \
-                         cannot take them apart"
+                    "no single straight motion along the {directions} directions asked takes them \
+                     apart"
                 )
             }
             ([], true) => {
                 format!(
-                    "they are held, along all of {directions} directions, by what is fixed or \
-                         by each other"
+                    "no single straight motion along the {directions} directions asked takes any of \
+                     them from what is fixed or from each other"
                 )
             }
             ([[a, b], rest @ ..], _) => {

@@ -21,6 +21,7 @@ use super::Way;
 use crate::blocking::Blocking;
 use crate::bodies::{Bodies, Room};
 use crate::error::AssemblyError;
+use crate::matrix::bits;
 use crate::watch::Watch;
 use crate::witness::Witnesses;
 
@@ -31,17 +32,13 @@ pub(super) struct Known(HashMap<[u64; 3], Answers>);
 type Answers = HashMap<[usize; 2], bool>;
 
 impl Known {
-    fn key(d: DVec3) -> [u64; 3] {
-        d.to_array().map(f64::to_bits)
-    }
-
     fn take(&mut self, d: DVec3) -> Mutex<Answers> {
-        Mutex::new(self.0.remove(&Self::key(d)).unwrap_or_default())
+        Mutex::new(self.0.remove(&bits(d)).unwrap_or_default())
     }
 
     fn put_back(&mut self, d: DVec3, answers: Mutex<Answers>) {
         let answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
-        self.0.entry(Self::key(d)).or_default().extend(answers);
+        self.0.entry(bits(d)).or_default().extend(answers);
     }
 }
 

@@ -40,7 +40,7 @@ pub(super) fn checked(
         }
     }
     for &[a, b] in &ahead {
-        let overlapping = start == StartOverlap::Ignore && bodies.overlaps(a, b);
+        let overlapping = bodies.lets_pass(a, b, start);
         let place = PLACES.iter().map(|share| share * travel);
         let met = |t: &f64| bodies.overlaps_displaced(a, d * *t, b);
         if let Some(t) = place.filter(|t| *t > 0.0).find(met).filter(|_| !overlapping) {

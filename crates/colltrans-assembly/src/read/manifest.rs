@@ -1,4 +1,4 @@
-//! A manifest: which files, where, which of them stay, and pairs not to ask about.
+//! A manifest: which files, where, which of them stay, and pairs that let each other pass.
 //!
 //! The same fields in TOML and JSON; `docs/assemblies.md` lists them.
 
@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::{ReadOptions, assembled, contents, in_file, io, piece, stem};
 use crate::error::ReadError;
-use crate::part::{Assembly, Part};
+use crate::part::{Assembly, Ignored, Part};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,6 +19,8 @@ struct Manifest {
     parts: Vec<Entry>,
     #[serde(default)]
     ignore: Vec<[String; 2]>,
+    #[serde(default)]
+    ignore_always: Vec<[String; 2]>,
 }
 
 #[derive(Deserialize)]
@@ -102,9 +104,12 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
     }
     let mut assembly = assembled(path, parts, read)?;
     let known = |n: &String| missing.is_empty() || assembly.index(n).is_ok();
-    let ignore: Vec<[String; 2]> =
-        manifest.ignore.iter().filter(|pair| pair.iter().all(known)).cloned().collect();
-    assembly = assembly.with_ignored(&ignore).map_err(in_file(path))?;
+    let found = |pairs: &[[String; 2]]| -> Vec<[String; 2]> {
+        pairs.iter().filter(|pair| pair.iter().all(known)).cloned().collect()
+    };
+    let (ignore, always) = (found(&manifest.ignore), found(&manifest.ignore_always));
+    assembly = assembly.with_ignored(&ignore, Ignored::Overlap).map_err(in_file(path))?;
+    assembly = assembly.with_ignored(&always, Ignored::Always).map_err(in_file(path))?;
     for file in missing {
         assembly = assembly.with_note(format!("{file} cannot be found and is left out"));
     }

@@ -93,6 +93,10 @@ fn steps(f: &Findings) -> Vec<Value> {
             "direction": s.direction.to_array(),
             "travel": s.travel,
         });
+        if !s.ignored.is_empty() {
+            let pairs: Vec<_> = s.ignored.iter().map(|p| f.bodies.assembly().names(p)).collect();
+            step["ignored"] = json!(pairs);
+        }
         if let Some(within) = s.within {
             step["within"] = json!(within);
         }

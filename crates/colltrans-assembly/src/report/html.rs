@@ -62,7 +62,7 @@ fn overview(text: &mut String, f: &Findings) {
     let _ = writeln!(
         text,
         "<p>{} parts, {} × {} × {}{unit}; {word} {}{unit}; {} directions asked of all parts. Plan: \
-         {} steps, {} parts left, {} groups that translations cannot take apart.</p>",
+         {} steps, {} parts left, {} groups that none of the directions asked takes apart.</p>",
         assembly.parts().len(),
         short(size.x),
         short(size.y),
@@ -138,13 +138,16 @@ fn steps(text: &mut String, f: &Findings) {
         let picture = step_picture(f, k, &gone);
         let within =
             step.within.map_or(String::new(), |w| format!(" (of the group of step {})", w + 1));
+        let ignored = step.ignores(f.bodies.assembly()).map_or(String::new(), |text| {
+            format!("<br><span class=\"warn\">{}</span>", escaped(&text))
+        });
         let travel =
             if step.travel > 0.0 { format!(", {}", short(step.travel)) } else { String::new() };
         let names: Vec<String> =
             f.bodies.assembly().names(&step.parts).into_iter().map(escaped).collect();
         let _ = writeln!(
             text,
-            "<figure>{picture}<figcaption><b>{}.</b> {}{within}: {}{travel}</figcaption></figure>",
+            "<figure>{picture}<figcaption><b>{}.</b> {}{within}: {}{travel}{ignored}</figcaption></figure>",
             k + 1,
             names.join(", "),
             arrow(step.direction)
@@ -210,7 +213,7 @@ fn stuck(text: &mut String, f: &Findings) {
     if f.plan.stuck.is_empty() {
         return;
     }
-    text.push_str("<h2>What cannot be taken apart</h2>\n<ul>\n");
+    text.push_str("<h2>What none of the directions asked takes apart</h2>\n<ul>\n");
     for s in &f.plan.stuck {
         let names: Vec<String> =
             f.bodies.assembly().names(&s.parts).into_iter().map(escaped).collect();

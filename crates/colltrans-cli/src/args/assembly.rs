@@ -41,9 +41,12 @@ pub(crate) struct AssemblyArguments {
     /// Parts that overlap at the start do not block each other until contacts that begin later
     #[arg(long)]
     pub(crate) ignore_overlaps: bool,
-    /// Two parts that may overlap and never block each other
+    /// Two parts that overlap at the start, which lets them pass; contacts that begin later block
     #[arg(long, value_name = "A,B")]
     pub(crate) ignore: Vec<String>,
+    /// Two parts that never block each other, whatever they run through
+    #[arg(long, value_name = "A,B")]
+    pub(crate) ignore_always: Vec<String>,
     /// A part that is never moved
     #[arg(long, value_name = "PART")]
     pub(crate) fixed: Vec<String>,

@@ -123,7 +123,8 @@ a URDF file (metres); .glb, .gltf (metres) or .3mf (the unit it says).
 
 A manifest, in TOML (JSON has the same fields):
   unit = "mm"                                # said, never guessed; may be missing
-  ignore = [["pin", "block"]]                # pairs that may overlap and never block
+  ignore = [["pin", "block"]]                # pairs whose overlap at the start lets them pass
+  ignore_always = [["rubber", "lid"]]        # pairs that never block each other
   [[part]]
   file = "pin.stl"                           # or several: ["a.stl", "b.stl"]
   name = "pin"                               # the file's name, if missing
@@ -137,7 +138,7 @@ With --json:
    "overlaps": [{"parts": [a, b], "depth"}], "suggested_tolerance",
    "liaisons": [{"parts": [a, b], "area", "center"}],
    "rooms": [{"part", "direction", "outcome", "distance", "by", "nominal", "point", "normal"}],
-   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within"}],
+   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within", "ignored"}],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
    "maps": [...]}
   Directions have length 1, so distances are lengths; distance is that of the bodies shrunk by half

@@ -101,12 +101,20 @@ fn summary(f: &Findings) -> String {
         let [x, y, z] = step.direction.to_array();
         let way = format!("{} along {x},{y},{z}", step.travel);
         let _ = writeln!(text, "  {}. {}{within}: {way}", k + 1, names(&step.parts));
+        if let Some(ignored) = step.ignores(assembly) {
+            let _ = writeln!(text, "     {ignored}");
+        }
     }
     if !f.plan.left.is_empty() {
         let _ = writeln!(text, "left\n  {}", names(&f.plan.left));
     }
     for stuck in &f.plan.stuck {
-        let _ = writeln!(text, "stuck\n  {}: {}", names(&stuck.parts), stuck.because(f.bodies));
+        let _ = writeln!(
+            text,
+            "stuck along the directions asked\n  {}: {}",
+            names(&stuck.parts),
+            stuck.because(f.bodies)
+        );
     }
     for (name, map) in f.maps {
         let share = 100.0 * map.free_share();

@@ -17,6 +17,7 @@
 //!   the witness points from below: two bodies whose witness points come within `r` overlap by at
 //!   least `-r`.
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 use std::fmt;
 
@@ -27,7 +28,7 @@ use glam::DVec3;
 
 use crate::exact::{Dyadic, Ratio, Vector};
 use crate::scene::Scene;
-use crate::shadow::sideways_overlap;
+use crate::shadow::{SignedDistance, sideways_overlap};
 use crate::simplex::collision_translation;
 
 /// How many units of rounding error ([`Scene::noise`]) two different computations of the same
@@ -104,12 +105,51 @@ pub struct Judge<'a> {
     pub scene: Scene,
     /// The query.
     pub cast: Cast<'a>,
+    /// The points that the bodies were made of, where these are known and are not the vertices alone.
+    input: Option<Scene>,
+    truth: OnceCell<Truth>,
+    truth_of_input: OnceCell<Truth>,
+}
+
+/// What the oracle says of a scene: it takes long, so it is asked once.
+#[derive(Debug)]
+struct Truth {
+    translation: Option<Ratio>,
+    overlap: SignedDistance,
+}
+
+impl Truth {
+    fn of(scene: &Scene) -> Self {
+        Self { translation: collision_translation(scene), overlap: sideways_overlap(scene) }
+    }
 }
 
 impl<'a> Judge<'a> {
     /// Of answers to a query.
     pub fn new(cast: Cast<'a>) -> Self {
-        Self { scene: Scene::of(&cast), cast }
+        Self {
+            scene: Scene::of(&cast),
+            cast,
+            input: None,
+            truth: OnceCell::new(),
+            truth_of_input: OnceCell::new(),
+        }
+    }
+
+    /// Of answers about bodies that were made of these points.
+    #[must_use]
+    pub fn with_input(mut self, moving: &[DVec3], fixed: &[DVec3]) -> Self {
+        let has_dropped =
+            moving.len() > self.scene.moving.len() || fixed.len() > self.scene.fixed.len();
+        self.input = has_dropped.then(|| {
+            let poses = (self.cast.moving_pose(), self.cast.fixed_pose());
+            Scene::new((moving, &poses.0), (fixed, &poses.1), self.cast.direction())
+        });
+        self
+    }
+
+    fn truth(&self) -> &Truth {
+        self.truth.get_or_init(|| Truth::of(&self.scene))
     }
 
     /// Re-verifies everything an answer carries.
@@ -124,14 +164,77 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Compares an answer with the linear programme and the exact sideways overlap: outcome
-    /// exactly, value within the stated bound.
+    /// Compares an answer with the linear programme and the exact sideways overlap, of the vertices:
+    /// outcome exactly, value within the stated bound; and of the input points: within what the
+    /// bodies' hull errors allow ([`input`](crate::input)).
     ///
     /// # Errors
     /// How they disagree.
     pub fn compare_with_oracle(&self, outcome: &Outcome) -> Result<(), Objection> {
-        let overlap = sideways_overlap(&self.scene);
-        let truth = collision_translation(&self.scene);
+        self.compare_vertices(outcome)?;
+        let Some(input) = &self.input else { return Ok(()) };
+        self.compare_input(outcome, input).map_err(|e| Objection(format!("of the input: {e}")))
+    }
+
+    /// The consequences of [`input`](crate::input).
+    fn compare_input(&self, outcome: &Outcome, input: &Scene) -> Result<(), Objection> {
+        let Truth { translation: truth, overlap } =
+            self.truth_of_input.get_or_init(|| Truth::of(input));
+        let off = self.hull_errors();
+        match outcome {
+            Outcome::Separated(separated) => {
+                let allowed = off - separated.certificate.margin;
+                require!(
+                    if allowed < 0.0 { truth.is_none() } else { !overlap.exceeds(allowed) },
+                    "separated, but the shadows overlap by {:e}",
+                    overlap.to_f64()
+                );
+                Ok(())
+            }
+            Outcome::Contact(contact) => {
+                require!(truth.is_some(), "contact, but they never meet");
+                self.encloses(contact, truth.as_ref(), off)
+            }
+            Outcome::Grazing(grazing) => {
+                let allowed = grazing.overlap + off + TWO_ROUNDINGS * self.scene.noise;
+                require!(
+                    !overlap.exceeds(allowed),
+                    "grazing, but the shadows overlap by {:e}",
+                    overlap.to_f64()
+                );
+                self.encloses(&grazing.contact, truth.as_ref(), off)
+            }
+        }
+    }
+
+    /// The bounds enclose the true value of bodies that reach up to `off` beyond these.
+    fn encloses(
+        &self,
+        contact: &Contact,
+        truth: Option<&Ratio>,
+        off: f64,
+    ) -> Result<(), Objection> {
+        let Some(truth) = truth else { return Ok(()) };
+        let Certificate { normal, lower, upper, .. } = contact.certificate;
+        let along = Vector::new(normal).dot(&self.scene.direction);
+        let lower = Ratio::from_f64(lower).minus(&Ratio::new(Dyadic::new(off), along));
+        require!(
+            lower <= *truth && (upper == f64::INFINITY || *truth <= Ratio::from_f64(upper)),
+            "the true value {:e} is not between {:e} and {upper:e}",
+            truth.to_f64(),
+            lower.to_f64()
+        );
+        Ok(())
+    }
+
+    /// The hull errors of both bodies together, in the world: poses may stretch lengths by a
+    /// millionth, and normals are unit vectors up to rounding.
+    fn hull_errors(&self) -> f64 {
+        (self.cast.moving().hull_error() + self.cast.fixed().hull_error()) * (1.0 + 4e-6)
+    }
+
+    fn compare_vertices(&self, outcome: &Outcome) -> Result<(), Objection> {
+        let Truth { translation: truth, overlap } = self.truth();
         let meets = overlap.sign != Ordering::Less;
         require!(truth.is_some() == meets, "the oracle contradicts itself");
         let slack = TWO_ROUNDINGS * self.scene.noise;
@@ -146,7 +249,7 @@ impl<'a> Judge<'a> {
                     overlap.exceeds(border - slack),
                     "contact, but the shadows overlap by {is:e} only (grazing up to {border:e})"
                 );
-                self.agrees(contact, &truth)
+                self.agrees(contact, truth)
             }
             Outcome::Separated(_) => {
                 require!(!meets, "separated, but the shadows overlap by {is:e}");
@@ -159,9 +262,9 @@ impl<'a> Judge<'a> {
                 );
                 match truth {
                     Some(truth) if overlap.exceeds(self.scene.touching + slack) => {
-                        self.agrees(&grazing.contact, &truth)
+                        self.agrees(&grazing.contact, truth)
                     }
-                    Some(truth) => Self::not_later(&grazing.contact, &truth),
+                    Some(truth) => Self::not_later(&grazing.contact, truth),
                     None => Ok(()),
                 }
             }
@@ -276,9 +379,9 @@ impl<'a> Judge<'a> {
         let is_later =
             upper < f64::INFINITY && crossing.as_ref().is_some_and(|u| *u > claimed_upper);
         if is_later {
-            let truth = collision_translation(&self.scene);
+            let truth = &self.truth().translation;
             require!(
-                truth.is_some_and(|truth| truth <= claimed_upper),
+                truth.as_ref().is_some_and(|truth| *truth <= claimed_upper),
                 "upper bound {upper:e} is less than what the pairs prove, and less than the truth"
             );
         }

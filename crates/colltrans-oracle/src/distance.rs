@@ -248,6 +248,12 @@ fn point_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     }
 }
 
+/// The distance of a point from a triangle, up to rounding.
+pub(crate) fn point_to_triangle_or_edges(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let edges = [[a, b], [b, c], [c, a]].map(|edge| point_to_segment(point, edge));
+    edges.into_iter().fold(point_to_triangle(point, [a, b, c]), f64::min)
+}
+
 /// The least of: inner points of both, if the lines' feet are inner points, and each end against
 /// the other segment.
 fn segment_to_segment([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {

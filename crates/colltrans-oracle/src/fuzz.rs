@@ -10,7 +10,7 @@ use colltrans::{
 };
 use glam::{DQuat, DVec3};
 
-use crate::exact::Vector;
+use crate::input;
 use crate::settings::{Bodies, Setting};
 use crate::solids::facets::{rule, triangles};
 use crate::solids::proof::{MOST_PAIRS, approve};
@@ -72,9 +72,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The convex hull of any points is a body whose vertices are among the points, that is the same
-/// when it is built again from its own vertices' bits, and that leaves no point farther outside
-/// than it says.
+/// The convex hull of any points is a body that is the same when it is built again, whose vertices are
+/// among the points, and that leaves none farther away than it says.
 ///
 /// # Panics
 /// If it is not.
@@ -87,11 +86,8 @@ pub fn hull(bytes: &[u8]) {
     let Ok(body) = ConvexPolyhedron::from_points(&points) else { return };
     let again = ConvexPolyhedron::from_points(&points).expect("it worked before");
     assert_eq!(body.vertices(), again.vertices(), "two hulls of the same points");
-    for (vertex, &index) in body.vertices().iter().zip(body.input_indices()) {
-        assert_eq!(*vertex, points[index as usize], "a vertex that is not a point");
-    }
     check_surface(&body);
-    check_inside(&body, &points);
+    input::judge(&points, &body).unwrap_or_else(|e| panic!("{e}"));
 }
 
 /// A mesh is refused, or is a body with a closed surface whose vertices are its own.
@@ -121,6 +117,7 @@ pub fn from_mesh(bytes: &[u8]) {
 pub fn cast(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let Some((setting, bodies)) = read_setting(&mut reader) else { return };
+    setting.judge_bodies(&bodies).unwrap_or_else(|e| panic!("{e}"));
     for solver in [Solver::Cta, Solver::Portal, Solver::Auto] {
         let outcome = match setting.cast(&bodies, solver) {
             Ok(outcome) => outcome,
@@ -282,40 +279,4 @@ fn check_surface(body: &ConvexPolyhedron) {
     assert_eq!(sides, if faces == 0 { 0 } else { 2 * edges }, "an edge has two faces");
     let degrees: usize = (0..vertices as u32).map(|v| body.neighbours(v).len()).sum();
     assert_eq!(degrees, 2 * edges, "an edge has two ends");
-}
-
-/// No point is farther outside a face's plane than the hull's own error says, with the plane taken
-/// through the face's corners.
-///
-/// The plane is exact: of a narrow face one with a rounded normal is turned by more than is allowed.
-fn check_inside(body: &ConvexPolyhedron, points: &[DVec3]) {
-    let reach = points.iter().map(|p| p.length()).fold(0.0, f64::max);
-    for face in 0..body.face_count() as u32 {
-        let corners: Vec<DVec3> =
-            body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();
-        let Some(normal) = newell_normal(&corners) else { continue };
-        let anchor = Vector::new(corners[0]);
-        let length = Vector::dot(&normal, &normal).to_f64().sqrt();
-        for point in points {
-            let outside = normal.dot(&Vector::new(*point).minus(&anchor)).to_f64() / length;
-            let allowed = 4.0 * body.hull_error() + 64.0 * f64::EPSILON * reach;
-            assert!(
-                outside <= allowed,
-                "{point} is {outside:e} outside face {face}, hull error {:e}",
-                body.hull_error()
-            );
-        }
-    }
-}
-
-/// A face's exact normal, by Newell's sum in units of its own extent; `None` for faces too narrow to
-/// have one.
-fn newell_normal(corners: &[DVec3]) -> Option<Vector> {
-    let extent = corners.iter().map(|c| c.distance(corners[0])).fold(0.0, f64::max);
-    // A power of two: dividing by it is exact.
-    let unit = extent.log2().floor().exp2();
-    let anchor = Vector::new(corners[0] / unit);
-    let spokes = corners.iter().map(|c| Vector::new(*c / unit).minus(&anchor)).collect::<Vec<_>>();
-    let sum = spokes.windows(2).map(|w| w[0].cross(&w[1])).reduce(|a, b| a.plus(&b))?;
-    (sum.dot(&sum).to_f64() > 1e-6).then_some(sum)
 }

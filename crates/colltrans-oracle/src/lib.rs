@@ -10,6 +10,7 @@ pub mod check;
 pub mod distance;
 pub mod exact;
 pub mod fuzz;
+pub mod input;
 pub mod scene;
 pub mod sequences;
 pub mod settings;

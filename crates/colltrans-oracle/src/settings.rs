@@ -10,7 +10,8 @@ use std::fmt;
 use colltrans::{BuildError, Cast, ConvexPolyhedron, Outcome, Pose, QueryError, Solver};
 use glam::{DQuat, DVec3};
 
-use crate::check::Judge;
+use crate::check::{Judge, Objection};
+use crate::input::{self, Kept};
 
 /// Splitmix64: small, and good enough to draw test cases.
 #[derive(Debug, Clone)]
@@ -164,7 +165,19 @@ impl Setting {
     /// # Panics
     /// If the library refuses the query.
     pub fn judge<'a>(&self, bodies: &'a Bodies) -> Judge<'a> {
-        Judge::new(self.query(bodies).expect("a query"))
+        Judge::new(self.query(bodies).expect("a query")).with_input(&self.moving, &self.fixed)
+    }
+
+    /// Holds both bodies against the points that they were made of.
+    ///
+    /// # Errors
+    /// Which one does not keep them, and how; as [`input::judge`].
+    pub fn judge_bodies(&self, bodies: &Bodies) -> Result<[Kept; 2], Objection> {
+        let named = |name: &'static str| move |e| Objection(format!("{name} body: {e}"));
+        Ok([
+            input::judge(&self.moving, &bodies.moving).map_err(named("moving"))?,
+            input::judge(&self.fixed, &bodies.fixed).map_err(named("fixed"))?,
+        ])
     }
 
     /// All numbers of the setting, for a report.
@@ -201,6 +214,20 @@ pub const FAMILIES: &[Family] = &[
     ("cylinders", cylinders),
     ("magnitude", magnitude),
     ("narrow-rings", nearly_flat_faces),
+    ("nearly-flat-disc", |rng| onto_nearly_flat(rng, disc)),
+    ("nearly-flat-prism", |rng| onto_nearly_flat(rng, flat_prism)),
+    ("nearly-flat-plate", |rng| onto_nearly_flat(rng, plate)),
+    ("nearly-flat-lattice", |rng| onto_nearly_flat(rng, lattice)),
+    ("nearly-straight", |rng| onto_nearly_flat(rng, needle)),
+];
+
+/// The families of bodies that are hardly thicker than rounding, or less.
+pub const NEARLY_FLAT: &[&str] = &[
+    "nearly-flat-disc",
+    "nearly-flat-prism",
+    "nearly-flat-plate",
+    "nearly-flat-lattice",
+    "nearly-straight",
 ];
 
 /// A setting before it is turned and scaled as a whole.
@@ -635,6 +662,94 @@ fn magnitude(rng: &mut Rng) -> Draft {
     draft.moving_at *= factor;
     draft.fixed_at *= factor;
     draft
+}
+
+/// Corners on an ellipse, each a share of the thickness off its plane.
+fn disc(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+    let (sides, width) = (rng.int(5, 24), rng.pick(&[1.0, 1.0, 0.3, 1e-3]));
+    let first_rad = rng.pick(&[0.0, 0.3]);
+    (0..sides)
+        .map(|k| first_rad + TAU * k as f64 / sides as f64)
+        .map(|a| DVec3::new(a.cos(), width * a.sin(), thickness * rng.range(-0.5, 0.5)))
+        .collect()
+}
+
+fn flat_prism(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+    prism(rng.int(3, 16) as u32, 1.0, 0.5 * thickness, rng.pick(&[0.0, 0.3]))
+}
+
+/// A box, or points in one, dense or in a wedge.
+fn plate(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+    let half = DVec3::new(1.0, rng.pick(&[1.0, 0.5, 1e-2]), 0.5 * thickness);
+    match rng.int(0, 2) {
+        0 => cuboid(half),
+        1 => (0..rng.int(5, 24)).map(|_| rng.vector() * half).collect(),
+        _ => (0..rng.int(5, 24))
+            .map(|_| rng.vector() * half)
+            .map(|v| v.with_z(v.z * (1.0 + v.x)))
+            .collect(),
+    }
+}
+
+/// Points of a grid in a plane, each a share of the thickness off it.
+fn lattice(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+    let [columns, rows] = [0; 2].map(|_| rng.int(2, 5));
+    let mut points = Vec::new();
+    for i in 0..columns {
+        for j in 0..rows {
+            points.push(DVec3::new(i as f64, j as f64, thickness * rng.range(-0.5, 0.5)));
+        }
+    }
+    points
+}
+
+/// Points along an axis, each a share of the thickness off it.
+fn needle(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+    let across = DVec3::new(0.0, thickness, thickness * rng.pick(&[1.0, 1.0, 1e-2, 1e2]));
+    (0..rng.int(4, 16)).map(|_| rng.vector() * across + DVec3::X * rng.range(-1.0, 1.0)).collect()
+}
+
+/// A nearly flat body of a shape: `1e-16` to `1e-11` thick, most turned in its frame, some modelled far
+/// from the origin and brought back, or left there.
+fn nearly_flat(rng: &mut Rng, shape: fn(&mut Rng, f64) -> Vec<DVec3>) -> Vec<DVec3> {
+    let some = 10_f64.powf(rng.range(-16.0, -11.0));
+    let thickness = if rng.one_in(5) { 0.0 } else { some };
+    let mut points = shape(rng, thickness);
+    if !rng.one_in(4) {
+        let turn = rng.rotation();
+        points.iter_mut().for_each(|v| *v = turn * *v);
+    }
+    if rng.one_in(2) {
+        let far = rng.direction() * 10_f64.powf(rng.range(0.0, 5.0));
+        points.iter_mut().for_each(|v| *v += far);
+        let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+        let back = rng.pick(&[far, middle, middle, DVec3::ZERO]);
+        points.iter_mut().for_each(|v| *v -= back);
+    }
+    points
+}
+
+/// A point, a cloud or another such body onto one of the points that a nearly flat body is made of, or
+/// next to it.
+fn onto_nearly_flat(rng: &mut Rng, shape: fn(&mut Rng, f64) -> Vec<DVec3>) -> Draft {
+    let fixed = nearly_flat(rng, shape);
+    let moving = match rng.int(0, 3) {
+        0 => cloud(rng),
+        1 => nearly_flat(rng, shape),
+        _ => vec![DVec3::ZERO],
+    };
+    let target = rng.pick(&fixed);
+    let middle = fixed.iter().sum::<DVec3>() / fixed.len() as f64;
+    let inwards = rng.pick(&[0.0, 1e-15, 1e-12, 1e-6, 0.1, 1.0]);
+    // Across the rim, along the body, or anyhow.
+    let (rim, any) = ((middle - target).normalize_or(DVec3::Z), rng.direction());
+    let side = (rng.pick(&fixed) - rng.pick(&fixed)).normalize_or(any);
+    let direction = rng.pick(&[any, any, rim, side]);
+    let [moving_turn, fixed_turn] =
+        [0; 2].map(|_| if rng.one_in(2) { rng.rotation() } else { DQuat::IDENTITY });
+    let start = moving_turn * rng.pick(&moving) + direction * rng.range(-0.5, 5.0);
+    let at = start - fixed_turn * target.lerp(middle, inwards);
+    Draft::new(moving, fixed, at, direction).turned(moving_turn, fixed_turn)
 }
 
 /// Rings of a narrow ellipse, the upper ones with corners a few roundings off their plane, above a

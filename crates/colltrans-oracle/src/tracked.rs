@@ -100,7 +100,7 @@ impl<'a> Lanes<'a> {
             [Solver::Auto, Solver::Cta].map(|solver| cast.with_solver(solver).first_contact());
         let asked = self.asked;
         self.asked += 1;
-        let judge = Judge::new(cast);
+        let judge = Judge::new(cast).with_input(&setting.moving, &setting.fixed);
         let find = |(lane, tracker): &mut (Lane, Tracker<'a>)| {
             let solver = lane.solvers[asked % lane.solvers.len()];
             let answer = tracker.first_contact(&cast.with_solver(solver));

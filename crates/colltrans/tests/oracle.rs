@@ -1,4 +1,4 @@
-//! Random and tied settings against exact arithmetic: a sample of the long campaign.
+//! Random and tied settings against exact arithmetic, of the input points: a sample of the long campaign.
 
 use colltrans::{Outcome, Solver};
 use colltrans_oracle::settings::{FAMILIES, setting};
@@ -20,6 +20,9 @@ fn check_family(family: &str) {
 fn check_setting(family: &str, seed: u64, by_lp: bool) -> Vec<String> {
     let setting = setting(family, seed);
     let bodies = setting.bodies().expect("a body");
+    if let Err(objection) = setting.judge_bodies(&bodies) {
+        return vec![format!("{setting} {objection}")];
+    }
     let judge = setting.judge(&bodies);
     let verdict = |solver| {
         let answer = setting.cast(&bodies, solver).map_err(|e| e.to_string())?;
@@ -137,4 +140,9 @@ families! {
     cylinders => "cylinders",
     magnitudes => "magnitude",
     nearly_flat_faces => "narrow-rings",
+    nearly_flat_discs => "nearly-flat-disc",
+    nearly_flat_prisms => "nearly-flat-prism",
+    nearly_flat_plates => "nearly-flat-plate",
+    nearly_flat_lattices => "nearly-flat-lattice",
+    nearly_straight_needles => "nearly-straight",
 }

@@ -1,6 +1,7 @@
-//! Convex bodies as solids, against the convex core and against the rule over all pairs of facets.
+//! Convex bodies as solids, against the convex core and against the rule over all pairs of facets; the
+//! bodies against the points that they were made of.
 
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Solid, SolidOptions};
+use colltrans::{Cast, Clearance, Outcome, Solid, SolidOptions};
 
 use super::facets::{rule, triangles};
 use super::settings::Seen;
@@ -17,12 +18,13 @@ const AGREEMENT: f64 = 512.0;
 /// # Errors
 /// What disagrees.
 pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
-    let hull = |points| ConvexPolyhedron::from_points(points).map_err(|e| e.to_string());
-    let (p, q) = (hull(&setting.moving)?, hull(&setting.fixed)?);
+    let bodies = setting.bodies().map_err(|e| e.to_string())?;
+    setting.judge_bodies(&bodies).map_err(|e| e.to_string())?;
+    let (p, q) = (&bodies.moving, &bodies.fixed);
     if p.dimension() < 3 || q.dimension() < 3 {
         return Ok(None);
     }
-    let (Ok(a), Ok(b)) = (Solid::from_convex(&p), Solid::from_convex(&q)) else { return Ok(None) };
+    let (Ok(a), Ok(b)) = (Solid::from_convex(p), Solid::from_convex(q)) else { return Ok(None) };
     let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
     let (s, t) = (&setting.moving_pose, &setting.fixed_pose);
     let cast = Cast::new(a.at(*s), b.at(*t), setting.direction)

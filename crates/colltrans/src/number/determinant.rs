@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
+use super::double::Double;
 use super::error_free::product_error;
 
 /// `a.x b.y - a.y b.x` with an error relative to the result, not to its terms.
@@ -25,6 +26,19 @@ pub(crate) fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
     )
 }
 
+/// Twice the area of the triangle `a b c`, positive if counter-clockwise, with an error of some
+/// `2^-100` of the product of its extents: relative to the result for slivers as well.
+pub(crate) fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    let mut sum = Double::ZERO;
+    for (to_b, to_c, sign) in [
+        (Double::difference(b.x, a.x), Double::difference(c.y, a.y), 1.0),
+        (Double::difference(b.y, a.y), Double::difference(c.x, a.x), -1.0),
+    ] {
+        sum.add_double_product(&to_b, &to_c, sign);
+    }
+    sum.value()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -40,6 +54,21 @@ mod tests {
             let exact = rational(v.x) * rational(w.y) - rational(v.y) * rational(w.x);
             let off = (rational(accurate_det(v, w)) - exact.clone()).to_f64().value();
             prop_assert!(off.abs() <= 4.0 * f64::EPSILON * exact.to_f64().value().abs());
+        }
+
+        #[test]
+        fn areas_of_slivers_are_accurate(
+            a in -1.0..1.0_f64, b in -1.0..1.0_f64, k in -30..30_i32, l in -30..30_i32, s in 0.0..2.0_f64,
+        ) {
+            // Nearly collinear: a few roundings off the line.
+            let off = DVec2::new(f64::from(k), f64::from(l)) * 2.0_f64.powi(-54);
+            let [p, q] = [DVec2::new(a, b), DVec2::new(b, -0.7 * a)];
+            let r = p.lerp(q, s) + off;
+            let d = |to: f64, from: f64| rational(to) - rational(from);
+            let exact = d(q.x, p.x) * d(r.y, p.y) - d(q.y, p.y) * d(r.x, p.x);
+            let error = (rational(triangle_area(p, q, r)) - exact.clone()).to_f64().value().abs();
+            let exact = exact.to_f64().value().abs();
+            prop_assert!(error <= 2.0_f64.powi(-98) + f64::EPSILON * exact, "{error:e} of {exact:e}");
         }
     }
 }

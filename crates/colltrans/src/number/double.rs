@@ -4,7 +4,7 @@
 
 use std::cmp::Ordering;
 
-use super::error_free::{product_error, split, sum_error};
+use super::error_free::{difference_error, product_error, split, sum_error};
 
 /// Products of this size or more have low parts that are not lost.
 pub(super) const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
@@ -19,6 +19,16 @@ pub(crate) struct Double {
 
 impl Double {
     pub(super) const ZERO: Self = Self { high: 0.0, low: 0.0, error: 0.0 };
+
+    /// `a - b`, exactly.
+    pub(super) fn difference(a: f64, b: f64) -> Self {
+        Self { high: a - b, low: difference_error(a, b), error: 0.0 }
+    }
+
+    /// The nearest `f64`, up to the error.
+    pub(super) fn value(&self) -> f64 {
+        self.high + self.low
+    }
 
     #[inline(always)]
     pub(super) fn add(&mut self, x: f64) {

@@ -44,6 +44,11 @@
 //!   been rounded about eight times at the magnitude `r` of its coordinates, so it is off its plane
 //!   by up to `8 u r sqrt(3)`; a plane through three such points is off by as much again, more
 //!   beyond their triangle. Points within `64 u r` of a face are taken to lie on it.
+//! - *Witness.* A point `a + s (b - a) + t (c - a)` of a triangle, `s, t >= 0`, is compared with a
+//!   point `p` in the order `(p - a) - s (b - a) - t (c - a)`. With coordinates up to `r`, each of
+//!   the result's is off by `4 u r` for the differences, `2 u r` for the products, `2 u r` for the
+//!   first sum, `2 u r` for the last one and `2 u r` because the rounded `s + t` is at most 1; its
+//!   length by `10 u r` more: together less than `(12 sqrt(3) + 10) u r < 32 u r`.
 //! - *Section.* A sum of a few products in section coordinates, with a margin for the errors of
 //!   their factors. Only guesses hang on it.
 
@@ -88,6 +93,9 @@ pub(crate) const GAIN: f64 = 8.0 * ROUNDING;
 
 /// Distance from a face, in multiples of the largest coordinate, within which points lie on it.
 pub(crate) const COPLANAR: f64 = 64.0 * ROUNDING;
+
+/// Bound on the error of a point's distance from a triangle's, in multiples of the largest coordinate.
+pub(crate) const WITNESS: f64 = 32.0 * ROUNDING;
 
 /// Relative rounding error of sums in section coordinates.
 pub(crate) const SECTION: f64 = 128.0 * ROUNDING;

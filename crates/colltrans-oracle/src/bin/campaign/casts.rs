@@ -1,4 +1,5 @@
-//! Single settings: cast with every solver, each answer checked exactly, a sample solved again.
+//! Single settings: bodies held against their input points, cast with every solver, each answer checked
+//! exactly, a sample solved again.
 
 use colltrans::{NarrowFrom, Narrowing, Options, Outcome, QueryError, Solver};
 use colltrans_oracle::check::Proof;
@@ -109,7 +110,7 @@ pub(crate) fn examine(family: &str, seed: u64, every: u64, tally: &mut Tally) {
 }
 
 /// Casts with every solver, checks every answer, and compares the answers.
-fn examine_setting(setting: &Setting, with_oracle: bool, tally: &mut Tally) {
+pub(crate) fn examine_setting(setting: &Setting, with_oracle: bool, tally: &mut Tally) {
     tally.settings += 1;
     let bodies = match setting.bodies() {
         Ok(bodies) => bodies,
@@ -118,6 +119,9 @@ fn examine_setting(setting: &Setting, with_oracle: bool, tally: &mut Tally) {
             return;
         }
     };
+    if let Err(objection) = setting.judge_bodies(&bodies) {
+        tally.disagreements.push(format!("{setting} {objection}"));
+    }
     let judge = setting.judge(&bodies);
     let mut oracle_asked = false;
     for (index, (name, solver, narrowing)) in WHO.into_iter().enumerate() {

@@ -1,16 +1,20 @@
 //! The long campaign: many settings of every family, each cast with every solver, every certificate
 //! re-verified in exact arithmetic, and a sample compared with the rational linear programme. Or
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
-//! compared with those of one-off queries.
+//! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
+//! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
+//! that answers are judged for the input.
 //!
 //! ```text
 //! campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
 //! campaign --sequences QUERIES [--seed S] [--only FAMILY]
 //! campaign --solids N [--seed S] [--only FAMILY]
+//! campaign --bodies N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 //! ```
 //! Exit code 1 if anything disagrees.
 
+mod bodies;
 mod casts;
 mod sequences;
 mod solids;
@@ -19,7 +23,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::Instant;
 
-use colltrans_oracle::settings::FAMILIES;
+use colltrans_oracle::settings::{FAMILIES, NEARLY_FLAT};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
@@ -30,6 +34,7 @@ struct Arguments {
     settings: u64,
     sequences: Option<u64>,
     solids: Option<u64>,
+    bodies: Option<u64>,
     lp: u64,
     seed: u64,
     only: Option<String>,
@@ -54,11 +59,14 @@ fn main() -> ExitCode {
     if let Some(count) = arguments.solids {
         return exit_code(solids::run(count, arguments.seed, arguments.only.as_deref()));
     }
-    exit_code(if let Some(queries) = arguments.sequences {
-        run(&arguments, queries.div_ceil(sequences::QUERIES), sequences::examine)
+    let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
+    exit_code(if let Some(count) = arguments.bodies {
+        run(&arguments, NEARLY_FLAT, count, bodies::examine)
+    } else if let Some(queries) = arguments.sequences {
+        run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
     } else {
         let every = (arguments.settings / arguments.lp.max(1)).max(1);
-        run(&arguments, arguments.settings, |name, seed, tally| {
+        run(&arguments, &families, arguments.settings, |name, seed, tally| {
             casts::examine(name, seed, every, tally);
         })
     })
@@ -73,6 +81,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         settings: 20_000,
         sequences: None,
         solids: None,
+        bodies: None,
         lp: 1_000,
         seed: 1,
         only: None,
@@ -84,6 +93,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--settings" => arguments.settings = number(&value)?,
             "--sequences" => arguments.sequences = Some(number(&value)?),
             "--solids" => arguments.solids = Some(number(&value)?),
+            "--bodies" => arguments.bodies = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,
             "--only" => arguments.only = Some(value),
@@ -116,12 +126,13 @@ trait Tally: Default + Send {
 /// Examines so many seeds, the same number of each family; `true` if nothing disagrees.
 fn run<T: Tally>(
     arguments: &Arguments,
+    families: &[&str],
     count: u64,
     examine: impl Fn(&str, u64, &mut T) + Sync,
 ) -> bool {
-    let families: Vec<&str> = FAMILIES
+    let families: Vec<&str> = families
         .iter()
-        .map(|f| f.0)
+        .copied()
         .filter(|name| arguments.only.as_ref().is_none_or(|only| only == name))
         .collect();
     let per_family = count.div_ceil(families.len().max(1) as u64);

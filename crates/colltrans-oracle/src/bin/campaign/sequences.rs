@@ -1,5 +1,5 @@
-//! Sequences of settings: every lane of trackers asked at every step, each answer checked exactly
-//! and compared with the one-off answer, a sample solved again.
+//! Sequences of settings: bodies held against their input points, every lane of trackers asked at every
+//! step, each answer checked exactly and compared with the one-off answer, a sample solved again.
 
 use std::mem::discriminant;
 
@@ -133,6 +133,9 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
             return;
         }
     };
+    if let Err(objection) = walk.setting.judge_bodies(&bodies) {
+        tally.disagreements.push(format!("{walk} {objection}"));
+    }
     let mut lanes = Lanes::new(&bodies);
     let mut before: Vec<Finding> = Vec::new();
     for step in 0..STEPS {

@@ -100,8 +100,8 @@ impl ConvexPolyhedron {
         self.topology.neighbours(vertex)
     }
 
-    /// The largest distance by which an input point lies outside a face plane: the hull's own
-    /// error, in the unit of the input.
+    /// A bound on the distance of an input point from the body, and on that of a vertex outside a
+    /// face plane: the hull's own error, in the unit of the input.
     pub fn hull_error(&self) -> f64 {
         self.hull_error
     }

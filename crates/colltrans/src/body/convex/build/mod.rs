@@ -23,7 +23,7 @@ impl ConvexPolyhedron {
     /// The convex hull of `points` (body frame, any unit).
     ///
     /// Coplanar triangles are merged into polygons and points within rounding error of a face
-    /// or an edge are no vertices; [`Self::hull_error`] says how far outside the faces any
+    /// or an edge are no vertices; [`Self::hull_error`] says how far from the body any
     /// input point was left. Takes `O(n log n)` for points in general.
     ///
     /// # Errors
@@ -121,7 +121,11 @@ impl ConvexPolyhedron {
         hull::check_points(vertices)?;
         let sound_error = (0.0..=crate::MAX_MAGNITUDE).contains(&hull_error);
         let vertex_count = vertices.len();
-        let like = hull::convex_hull(vertices);
+        let mut like = hull::convex_hull(vertices);
+        if like.vertices.len() < vertex_count {
+            // A body hardly thicker than the tolerance has all corners of the exact hull.
+            like = hull::exact_hull(vertices);
+        }
         let same = like.vertices.len() == vertex_count && input_indices.len() == vertex_count;
         let flat = if faces.is_empty() { vertex_count <= 2 } else { like.dimension >= 2 };
         if !same || !flat || !sound_error {

@@ -7,6 +7,12 @@
 //!
 //! Tolerance. Points within [`noise::COPLANAR`] of the largest coordinate of a face are taken to lie
 //! on it.
+//!
+//! What was left out is within [`BEYOND`] tolerances of the body, and [`violation`] bounds how far:
+//! whatever is dropped is measured in the end, by its distance from the *body*. Points that
+//! [`quickhull`] drops as inside are in the hull of the others, exactly, and the distance from a
+//! convex body is greatest at one of those. A point that is too far away is kept for good; where that
+//! does not help, all corners are, and nothing is merged ([`exact_hull`]).
 
 mod convex_mesh;
 mod merge;
@@ -21,6 +27,7 @@ use crate::error::{BuildError, TopologyError};
 use crate::number::noise;
 use crate::number::range::in_exact_range;
 use quickhull::Simplicial;
+use violation::Gauge;
 pub(super) use violation::Locator;
 
 /// Which input points are vertices, and the faces over them.
@@ -32,7 +39,7 @@ pub(crate) struct Hull {
     pub(crate) vertices: Vec<u32>,
     /// The faces over positions in `vertices`. A flat polygon has a front and a back face.
     pub(crate) topology: Topology,
-    /// Largest distance of an input point outside a face plane.
+    /// Bound on the distance of an input point from the body, and of a vertex outside a face plane.
     pub(crate) violation: f64,
 }
 
@@ -40,28 +47,12 @@ pub(crate) struct Hull {
 const MAX_ROUNDS: usize = 16;
 
 /// A point within the tolerance of two planes is far beyond the edge where they meet if that is as
-/// sharp as a knife's. So many tolerances outside the finished faces, it is made a vertex.
+/// sharp as a knife's, and of a body that is hardly thicker than the tolerance all is such an edge.
+/// So many tolerances away from the finished body, it is made a vertex.
 const BEYOND: f64 = 16.0;
 
 /// Most points: vertex and half-edge numbers must fit 31 bits.
 const MAX_POINTS: usize = (u32::MAX / 16) as usize;
-
-impl Hull {
-    /// Which of the points `near` the surface are outside the faces by more than a distance.
-    fn beyond(&self, points: &[DVec3], near: &[u32], distance: f64) -> Vec<u32> {
-        if self.violation <= distance {
-            return Vec::new();
-        }
-        let corners: Vec<DVec3> = self.vertices.iter().map(|&i| points[i as usize]).collect();
-        let locator = Locator::of_faces(&corners, &self.topology);
-        let mut face = 0;
-        let is_beyond = |&i: &u32| locator.outside(points[i as usize], &mut face) > distance;
-        let mut found: Vec<u32> = near.iter().copied().filter(is_beyond).collect();
-        found.sort_unstable();
-        found.dedup();
-        found
-    }
-}
 
 /// Checks that points are finite, in range, and not too many.
 pub(super) fn check_points(points: &[DVec3]) -> Result<(), BuildError> {
@@ -111,6 +102,8 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
             Some(simplicial) => simplicial,
             None => match quickhull::simplicial_hull(points, &kept, &forced, tolerance) {
                 Ok(simplicial) => simplicial,
+                // What is left may be flat where the whole is not.
+                Err(_) if kept.len() < points.len() => break,
                 Err(flat) => return planar::hull(points, &kept, flat, tolerance),
             },
         };
@@ -118,11 +111,14 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
         let regions = merge::regions(points, &simplicial, tolerance);
         let redundant = merge::redundant(points, &simplicial, &regions, tolerance, &forced);
         if redundant.is_empty() {
-            let hull = finish(points, &simplicial, &regions, &near);
-            let mut beyond = hull.beyond(points, &near, BEYOND * tolerance);
-            beyond.retain(|v| forced.binary_search(v).is_err());
+            let (hull, mut beyond) = finish(points, &simplicial, &regions, &near, tolerance);
             if beyond.is_empty() {
                 return hull;
+            }
+            beyond.retain(|v| forced.binary_search(v).is_err());
+            if beyond.is_empty() {
+                // Merging swallows what was forced.
+                break;
             }
             kept = simplicial.vertices();
             for list in [&mut kept, &mut forced] {
@@ -143,32 +139,68 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
         kept.extend(lost);
         kept.sort_unstable();
     }
-    // Rounds always end long before; if not, the triangles themselves are a correct answer.
+    exact_hull(points)
+}
+
+/// The hull with every point that is a corner in exact arithmetic, unless all points are within the
+/// tolerance of a plane; its faces are triangles.
+pub(super) fn exact_hull(points: &[DVec3]) -> Hull {
+    let tolerance = tolerance(points);
     let all: Vec<u32> = (0..points.len() as u32).collect();
-    match quickhull::simplicial_hull(points, &all, &forced, tolerance) {
+    match quickhull::simplicial_hull(points, &all, &all, tolerance) {
         Ok(simplicial) => {
             let regions = merge::Regions::triangles(&simplicial);
-            finish(points, &simplicial, &regions, &simplicial.near)
+            finish(points, &simplicial, &regions, &[], tolerance).0
         }
         Err(flat) => planar::hull(points, &all, flat, tolerance),
     }
 }
 
-/// Polygons, vertex numbers and the measured violation.
+/// Polygons, vertex numbers and the measured violation; and which points are too far away, ascending.
 fn finish(
     points: &[DVec3],
     simplicial: &Simplicial,
     regions: &merge::Regions,
     near: &[u32],
-) -> Hull {
+    tolerance: f64,
+) -> (Hull, Vec<u32>) {
     let (vertices, topology) = faces(points, simplicial, regions).unwrap_or_else(|_| {
         // Rounding can make coplanar regions that do not fit together; the triangles always do.
         faces(points, simplicial, &merge::Regions::triangles(simplicial))
             .expect("the triangles of a simplicial hull are a closed surface")
     });
     let corners: Vec<DVec3> = vertices.iter().map(|&i| points[i as usize]).collect();
-    let violation = violation::measure(points, &corners, &topology, near);
-    Hull { dimension: 3, vertices, topology, violation }
+    let mut gauge = Gauge::new(&corners, &topology, points.len(), rounding(tolerance));
+    let mut violation = violation::unevenness(&gauge.locator, &corners, &topology);
+    let mut beyond = Vec::new();
+    let mut face = 0;
+    let is_vertex = is_among(points.len(), &vertices);
+    // A corner of triangles that have become one polygon may be none of its corners.
+    let dropped = near.iter().copied().chain(simplicial.vertices());
+    for v in dropped.filter(|&v| !is_vertex[v as usize]) {
+        let away = gauge.distance(points[v as usize], BEYOND * tolerance, &mut face);
+        violation = violation.max(away);
+        if away > BEYOND * tolerance {
+            beyond.push(v);
+        }
+    }
+    beyond.sort_unstable();
+    beyond.dedup();
+    (Hull { dimension: 3, vertices, topology, violation }, beyond)
+}
+
+/// The rounding error of a witness, for points of which this is the tolerance.
+fn rounding(tolerance: f64) -> f64 {
+    noise::WITNESS / noise::COPLANAR * tolerance
+}
+
+/// For each of so many points, whether it is one of these.
+fn is_among(count: usize, these: &[u32]) -> Vec<bool> {
+    let mut among = vec![false; count];
+    for &v in these {
+        among[v as usize] = true;
+    }
+    among
 }
 
 /// The vertices, in the order of the input because whoever wrote it kept neighbours together, and

@@ -51,7 +51,8 @@ struct Growing {
 #[derive(Debug)]
 pub(super) struct Simplicial {
     pub(super) triangles: Vec<Triangle>,
-    /// Points not inserted that are outside by up to, or inside by less than, the tolerance.
+    /// Points not inserted that are outside by up to, or inside by less than, the tolerance. All others
+    /// are inside, exactly.
     pub(super) near: Vec<u32>,
 }
 
@@ -147,7 +148,7 @@ enum Assigned {
     To(u32),
     /// Within the tolerance of a triangle, outside none by more.
     Near,
-    /// Nowhere: it is inside of all.
+    /// Nowhere: it is inside of all, exactly.
     Inside,
 }
 
@@ -237,7 +238,7 @@ impl<'a> Builder<'a> {
             normal: if area > 0.0 { normal / area } else { DVec3::ZERO },
             doubt: if area > 0.0 { doubt } else { f64::INFINITY },
             outside: NONE,
-            farthest: (0.0, NONE),
+            farthest: (f64::NEG_INFINITY, NONE),
             alive: true,
             stamp: 0,
             seen: false,
@@ -258,22 +259,29 @@ impl<'a> Builder<'a> {
     }
 
     /// Puts a point on the list of the triangle it is farthest outside of, if by more than the
-    /// tolerance or the point is forced.
+    /// tolerance or the point is forced: then the exact sign alone decides, whatever the rounded
+    /// distance says.
     fn assign(&mut self, i: u32, faces: impl Iterator<Item = u32>) -> Assigned {
         let p = self.at(i);
         let is_forced = self.forced.binary_search(&i).is_ok();
-        let mut best = (if is_forced { 0.0 } else { self.tolerance }, NONE);
-        let mut nearest = f64::NEG_INFINITY;
+        let mut best = (if is_forced { f64::NEG_INFINITY } else { self.tolerance }, NONE);
+        let mut is_near = false;
         for face in faces {
             let distance = self.distance(face, p);
-            nearest = nearest.max(distance);
+            let is_sharp = self.triangles[face as usize].doubt <= self.tolerance;
             if distance > best.0 && self.is_outside(face, p, distance) {
                 best = (distance, face);
             }
+            // The rounded distance from a sliver's plane says nothing.
+            is_near |= if is_sharp {
+                distance > -self.tolerance
+            } else {
+                self.is_outside(face, p, distance)
+            };
         }
         let (distance, face) = best;
         if face == NONE {
-            return if nearest > -self.tolerance { Assigned::Near } else { Assigned::Inside };
+            return if is_near { Assigned::Near } else { Assigned::Inside };
         }
         let triangle = &mut self.triangles[face as usize];
         self.next[i as usize] = triangle.outside;

@@ -1,9 +1,16 @@
-//! How far outside its face planes a hull leaves the points it was made of.
+//! How far from itself a hull leaves the points it was made of.
+//!
+//! The distance of a point from a body is bounded from above by that from a *witness*, a point of a
+//! triangle of the body's corners. Whatever chose the triangle and the weights, a walk that rounding
+//! misled or a projection of a sliver, a bad choice makes the bound larger and never wrong. So it does
+//! not depend on how thin the body is, as distances from face planes do: within a rounding of two of
+//! them, a point can be a body's width away from it.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::quickhull::Simplicial;
+use super::quickhull::{Simplicial, side};
 use crate::body::topology::Topology;
+use crate::number::determinant::triangle_area;
 use crate::number::plane::polygon_normal;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to
@@ -110,21 +117,206 @@ impl Locator {
     }
 }
 
-/// The largest distance of a point outside a face plane, over the hull's vertices and the points
-/// `near` its surface.
-pub(super) fn measure(
-    points: &[DVec3],
-    vertices: &[DVec3],
-    topology: &Topology,
-    near: &[u32],
-) -> f64 {
-    let locator = Locator::of_faces(vertices, topology);
+/// The largest distance of a hull's vertex outside a face plane: polygons are flat only up to
+/// rounding.
+pub(super) fn unevenness(locator: &Locator, vertices: &[DVec3], topology: &Topology) -> f64 {
     let mut worst = 0.0_f64;
     for (face, (normal, offset)) in locator.planes.iter().enumerate() {
         for v in topology.face_vertices(face as u32) {
             worst = worst.max(normal.dot(vertices[v as usize] - locator.center) - offset);
         }
     }
-    let mut face = 0;
-    near.iter().map(|&i| locator.outside(points[i as usize], &mut face)).fold(worst, f64::max)
+    worst
+}
+
+/// Looks at all faces, one by one, in multiples of the number of faces and points.
+const LOOKS: usize = 64;
+
+/// How far points are from a body, bounded from above.
+pub(super) struct Gauge<'a> {
+    pub(super) locator: Locator,
+    vertices: &'a [DVec3],
+    topology: &'a Topology,
+    /// Bound on the rounding errors of a witness.
+    rounding: f64,
+    /// How far the locator's centre is from the body: rounding can leave it outside of a thin one.
+    center_off: Option<f64>,
+    /// Faces that may still be looked at for points of which the walk does not tell enough.
+    looks: usize,
+}
+
+impl<'a> Gauge<'a> {
+    /// For so many points; `rounding` is that of a witness at their size.
+    pub(super) fn new(
+        vertices: &'a [DVec3],
+        topology: &'a Topology,
+        points: usize,
+        rounding: f64,
+    ) -> Self {
+        Self {
+            locator: Locator::of_faces(vertices, topology),
+            vertices,
+            topology,
+            rounding,
+            center_off: None,
+            looks: LOOKS * (topology.face_count() + points),
+        }
+    }
+
+    /// A bound on the distance of a point from the body; more than `enough` only if no witness is
+    /// nearer than that, or too many points have taken a look at all faces.
+    /// `near`: where the walk starts, and where it ended.
+    pub(super) fn distance(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
+        self.locator.walk(p - self.locator.center, near);
+        let outside = self.to_face(p, *near);
+        if outside <= enough {
+            return outside;
+        }
+        let inside = self.from_inside(p, *near);
+        let count = self.topology.face_count();
+        if inside <= enough || self.looks < count {
+            return outside.min(inside);
+        }
+        self.looks -= count;
+        self.from_all(p).min(inside)
+    }
+
+    /// The bound of a point that its face leaves inside: on the way from the centre to where its ray
+    /// passes the face, the distance from a convex body is at most the weighted mean of that at
+    /// both ends.
+    fn from_inside(&mut self, p: DVec3, face: usize) -> f64 {
+        let ray = p - self.locator.center;
+        let (normal, offset) = self.locator.planes[face];
+        let share = normal.dot(ray) / offset;
+        if !(share > 0.0 && share < 1.0) {
+            return f64::INFINITY;
+        }
+        let center_off = self.center_off.unwrap_or_else(|| self.from_all(self.locator.center));
+        self.center_off = Some(center_off);
+        let exit = self.locator.center + ray / share;
+        // Scaling the ray is off by as little as a witness.
+        (1.0 - share) * center_off + self.to_face(exit, face) + self.rounding
+    }
+
+    /// The bound from all faces: 0 inside, exactly.
+    fn from_all(&self, p: DVec3) -> f64 {
+        if self.contains(p) {
+            return 0.0;
+        }
+        let faces = 0..self.topology.face_count();
+        faces.map(|face| self.to_face(p, face)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a point is above none of the triangles of the faces' fans, and below some; exact.
+    ///
+    /// All of them turn the same way around it then: the closed surface winds around the point.
+    fn contains(&self, p: DVec3) -> bool {
+        let mut is_below_some = false;
+        for face in 0..self.topology.face_count() as u32 {
+            let range = self.topology.face(face);
+            let at = |h: u32| self.vertices[self.topology.half_edge(h).origin as usize];
+            for h in range.start + 1..range.end - 1 {
+                let height = side(at(range.start), at(h), at(h + 1), p);
+                if height > 0.0 {
+                    return false;
+                }
+                is_below_some |= height < 0.0;
+            }
+        }
+        is_below_some
+    }
+
+    fn to_face(&self, p: DVec3, face: usize) -> f64 {
+        let range = self.topology.face(face as u32);
+        let corner = |k: usize| {
+            self.vertices[self.topology.half_edge(range.start + k as u32).origin as usize]
+        };
+        to_polygon(p, range.len(), &corner, self.locator.planes[face].0, self.rounding)
+    }
+}
+
+/// A bound on the distance of a point from a polygon of `count` corners, counter-clockwise around
+/// the unit vector `normal` up to rounding, in `O(log count)`: from the triangle of its fan where the foot of
+/// the perpendicular falls. 0 only if the point lies in that triangle, exactly.
+pub(super) fn to_polygon(
+    p: DVec3,
+    count: usize,
+    corner: &dyn Fn(usize) -> DVec3,
+    normal: DVec3,
+    rounding: f64,
+) -> f64 {
+    let project = Projection::along(normal);
+    let first = corner(0);
+    let foot = project.of(p - normal * normal.dot(p - first));
+    // The last corner that the foot is not clockwise of, as seen from the first one.
+    let (mut low, mut high) = (1, count - 1);
+    while low + 1 < high {
+        let middle = low.midpoint(high);
+        if turn(project.of(first), project.of(corner(middle)), foot) >= 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let triangle = [first, corner(low), corner(low + 1)];
+    let away = to_triangle(p, triangle, triangle.map(|a| project.of(a)), foot) + rounding;
+    if away <= 2.0 * rounding && is_in_triangle(p, triangle, project) {
+        return 0.0;
+    }
+    away
+}
+
+/// The distance of a point from the point of a triangle above `foot`, or from one on its edges.
+fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3], [u, v, w]: [DVec2; 3], foot: DVec2) -> f64 {
+    let whole = triangle_area(u, v, w);
+    let (s, t) = (triangle_area(u, foot, w) / whole, triangle_area(u, v, foot) / whole);
+    if s >= 0.0 && t >= 0.0 && s + t <= 1.0 {
+        return ((p - a) - (b - a) * s - (c - a) * t).length();
+    }
+    to_segment(p, a, b).min(to_segment(p, b, c)).min(to_segment(p, c, a))
+}
+
+/// The distance of a point from the nearest one of a segment.
+pub(super) fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let edge = b - a;
+    let share = (p - a).dot(edge) / edge.length_squared();
+    // A segment without length has no share.
+    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
+    ((p - a) - edge * share).length()
+}
+
+/// Whether a point lies in a triangle, exactly; its projection must not be flat.
+fn is_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3], project: Projection) -> bool {
+    let [u, v, w, q] = [a, b, c, p].map(|point| project.of(point));
+    let is_left = |from: DVec2, to: DVec2| turn(from, to, q) >= 0.0;
+    turn(u, v, w) > 0.0
+        && is_left(u, v)
+        && is_left(v, w)
+        && is_left(w, u)
+        && side(a, b, c, p) == 0.0
+}
+
+/// Positive if `a b c` is a turn to the left; exact sign.
+pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    let coord = |v: DVec2| robust::Coord { x: v.x, y: v.y };
+    robust::orient2d(coord(a), coord(b), coord(c))
+}
+
+/// Points on the two coordinates orthogonal to a normal's largest component, so that what is
+/// counter-clockwise around the normal stays so.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Projection {
+    axes: [usize; 2],
+}
+
+impl Projection {
+    pub(super) fn along(normal: DVec3) -> Self {
+        let main = normal.abs().max_position();
+        let axes = [(main + 1) % 3, (main + 2) % 3];
+        Self { axes: if normal[main] < 0.0 { [axes[1], axes[0]] } else { axes } }
+    }
+
+    pub(super) fn of(self, p: DVec3) -> DVec2 {
+        DVec2::new(p[self.axes[0]], p[self.axes[1]])
+    }
 }

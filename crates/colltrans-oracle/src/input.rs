@@ -32,7 +32,7 @@ use glam::DVec3;
 
 use crate::check::Objection;
 use crate::distance::{distance, point_to_triangle_or_edges};
-use crate::exact::{Ratio, Vector};
+use crate::exact::{Dyadic, Ratio, Vector};
 
 /// The largest hull error that rounding explains, in multiples of the largest coordinate: 16
 /// tolerances of 64 roundings.
@@ -62,10 +62,15 @@ pub fn judge(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Kept, Objectio
     let allowed = Ratio::from_f64(claimed);
     let allowed = allowed.times(&allowed);
     let mut kept = Kept { dropped: dropped.len(), farthest: 0.0 };
+    let triangles = triangles(body);
     for index in dropped {
-        let mut square = square_from_guess(points[index], body);
+        let point = points[index];
+        if is_in_some_tetrahedron(point, body.vertices(), &triangles) {
+            continue;
+        }
+        let mut square = square_from_nearest(point, body.vertices(), &triangles);
         if square > allowed {
-            square = square_from(points[index], body.vertices());
+            square = square_from(point, body.vertices());
         }
         let away = square.sqrt_to_f64();
         if square > allowed {
@@ -96,19 +101,60 @@ fn square_from(point: DVec3, others: &[DVec3]) -> Ratio {
     distance(&[Vector::new(point)], &others).square
 }
 
-/// The squared distance from one triangle of the body's vertices, exactly: no less than that from the body.
-/// Which triangle is a guess, the nearest one up to rounding.
-fn square_from_guess(point: DVec3, body: &ConvexPolyhedron) -> Ratio {
-    let fans = (0..body.face_count() as u32).flat_map(|face| {
+/// The faces as triangles. They only help to guess which vertices are near a point: what these prove is
+/// proven whether they make a surface or not.
+fn triangles(body: &ConvexPolyhedron) -> Vec<[DVec3; 3]> {
+    let fan = |face: u32| {
         let corners: Vec<DVec3> =
             body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();
         let first = corners[0];
         corners[1..].windows(2).map(|pair| [first, pair[0], pair[1]]).collect::<Vec<_>>()
-    });
-    let away = |triangle: &[DVec3; 3]| point_to_triangle_or_edges(point, *triangle);
-    let nearest = fans.min_by(|a, b| away(a).total_cmp(&away(b)));
+    };
+    (0..body.face_count() as u32).flat_map(fan).collect()
+}
+
+/// The squared distance from the triangle that is nearest up to rounding, exactly: no less than that from
+/// the body.
+fn square_from_nearest(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3; 3]]) -> Ratio {
+    let away = |triangle: &&[DVec3; 3]| point_to_triangle_or_edges(point, **triangle);
+    let nearest = triangles.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
     // A point or a segment has no triangles.
-    nearest.map_or_else(|| square_from(point, body.vertices()), |t| square_from(point, &t))
+    square_from(point, nearest.map_or(vertices, |t| t))
+}
+
+/// Whether a point is in the tetrahedron of the farthest vertex and the triangle that is opposite up to
+/// rounding, exactly: then it is in the body.
+fn is_in_some_tetrahedron(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3; 3]]) -> bool {
+    let farther = |a: &&DVec3, b: &&DVec3| a.distance(point).total_cmp(&b.distance(point));
+    let Some(&apex) = vertices.iter().max_by(farther) else { return false };
+    let least = |&&[b, c, d]: &&[DVec3; 3]| {
+        let volume = |[a, b, c, d]: [DVec3; 4]| (b - a).cross(c - a).dot(d - a);
+        let whole = volume([apex, b, c, d]);
+        let shares = faces_with(point, [apex, b, c, d]).map(|corners| volume(corners) / whole);
+        shares.into_iter().fold(f64::INFINITY, |x, y| if y < x || y.is_nan() { y } else { x })
+    };
+    let deeper = |a: &&[DVec3; 3], b: &&[DVec3; 3]| least(a).total_cmp(&least(b));
+    let found = triangles.iter().filter(|t| least(t) >= 0.0).max_by(deeper);
+    found.is_some_and(|&[b, c, d]| is_in_tetrahedron(point, [apex, b, c, d]))
+}
+
+/// The tetrahedron with each of its corners replaced by a point.
+fn faces_with(point: DVec3, corners: [DVec3; 4]) -> [[DVec3; 4]; 4] {
+    std::array::from_fn(|k| std::array::from_fn(|i| if i == k { point } else { corners[i] }))
+}
+
+/// Exactly; never in one without a volume.
+fn is_in_tetrahedron(point: DVec3, corners: [DVec3; 4]) -> bool {
+    let volume = |corners: [DVec3; 4]| {
+        let [a, b, c, d] = corners.map(Vector::new);
+        b.minus(&a).cross(&c.minus(&a)).dot(&d.minus(&a))
+    };
+    let is_reversed = match volume(corners) {
+        v if v.is_zero() => return false,
+        v => v.is_negative(),
+    };
+    let is_other_side = |v: Dyadic| if is_reversed { v.is_positive() } else { v.is_negative() };
+    !faces_with(point, corners).into_iter().any(|corners| is_other_side(volume(corners)))
 }
 
 #[cfg(test)]
@@ -126,6 +172,7 @@ mod tests {
             judge(&points, &body)
         };
         assert_eq!(with(DVec3::new(0.5, 1.0, -1.0)), Ok(Kept { dropped: 1, farthest: 0.0 }));
+        assert_eq!(with(DVec3::new(0.3, 0.1, -0.2)), Ok(Kept { dropped: 1, farthest: 0.0 }));
         assert_eq!(with(DVec3::splat(0.25)), Ok(Kept { dropped: 1, farthest: 0.0 }));
         for outside in [DVec3::X * 1.0_f64.next_up(), DVec3::splat(1.0_f64.next_up())] {
             assert!(with(outside).is_err(), "{outside}");

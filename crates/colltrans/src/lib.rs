@@ -124,6 +124,7 @@ mod number;
 mod setting;
 mod solve;
 mod tracker;
+mod work;
 
 pub use answer::{
     Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,

@@ -78,10 +78,6 @@ fn check(body: &ConvexPolyhedron, points: &[DVec3]) {
     }
 }
 
-/// What takes about a second, and minutes if it becomes quadratic, may take this long on a machine
-/// that is busy with other things.
-const PATIENCE: std::time::Duration = std::time::Duration::from_mins(1);
-
 #[test]
 fn rotated_grids_are_boxes() {
     let mut random = Random(1);
@@ -327,7 +323,7 @@ proptest! {
 }
 
 #[test]
-fn a_large_sphere_is_built_quickly() {
+fn a_large_sphere_and_its_mesh() {
     let mut random = Random(7);
     let count = if cfg!(debug_assertions) { 5_000 } else { 200_000 };
     let points: Vec<DVec3> = (0..count)
@@ -340,34 +336,16 @@ fn a_large_sphere_is_built_quickly() {
             }
         })
         .collect();
-    let start = std::time::Instant::now();
-    let body = ConvexPolyhedron::from_points(&points).unwrap();
-    println!(
-        "{count} points on a sphere: {:?}, hull error {:e}",
-        start.elapsed(),
-        body.hull_error()
-    );
-    assert!(body.vertices().len() > count * 999 / 1000);
-    assert!(start.elapsed() < PATIENCE);
-    let faces: Vec<Vec<u32>> =
-        (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
-    let start = std::time::Instant::now();
-    ConvexPolyhedron::from_mesh(body.vertices(), &faces, 0.0).unwrap();
-    println!("the same from its mesh: {:?}", start.elapsed());
-    let points = rings(count.isqrt() * 7 / 10, count.isqrt() * 14 / 10, DVec3::new(0.7, 1.0, 1.3));
-    let start = std::time::Instant::now();
-    let body = ConvexPolyhedron::from_points(&points).unwrap();
-    println!(
-        "{} points in rings: {:?}, bytes {}",
-        points.len(),
-        start.elapsed(),
-        body.memory_bytes() / points.len()
-    );
-    let faces: Vec<Vec<u32>> =
-        (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
-    let start = std::time::Instant::now();
-    ConvexPolyhedron::from_mesh(body.vertices(), &faces, 0.0).unwrap();
-    println!("the same from its mesh: {:?}", start.elapsed());
+    let in_rings =
+        rings(count.isqrt() * 7 / 10, count.isqrt() * 14 / 10, DVec3::new(0.7, 1.0, 1.3));
+    for points in [points, in_rings] {
+        let body = ConvexPolyhedron::from_points(&points).unwrap();
+        assert!(body.vertices().len() > points.len() * 999 / 1000);
+        let faces: Vec<Vec<u32>> =
+            (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
+        let again = ConvexPolyhedron::from_mesh(body.vertices(), &faces, 0.0).unwrap();
+        assert_eq!(again.vertices().len(), body.vertices().len());
+    }
 }
 
 #[test]
@@ -395,9 +373,7 @@ fn single_precision_meshes_are_nearly_convex() {
         .iter()
         .map(|p| DVec3::from_array(p.to_array().map(|c| f64::from(c as f32))))
         .collect();
-    let start = std::time::Instant::now();
     let defect = convexity_defect(&rounded, &faces).unwrap();
-    println!("{} vertices in single precision: {defect:?}, {:?}", rounded.len(), start.elapsed());
     assert!(defect.depth > 0.0 && defect.depth < 2e-7);
     assert!(ConvexPolyhedron::from_mesh(&rounded, &faces, 1e-6).is_ok());
 }
@@ -413,11 +389,9 @@ fn many_points_on_a_flat_circle() {
             rotation * DVec3::new(angle.cos(), angle.sin(), 0.0)
         })
         .collect();
-    let start = std::time::Instant::now();
     let body = ConvexPolyhedron::from_points(&points).unwrap();
     assert_eq!((body.dimension(), body.vertices().len()), (2, points.len()));
     assert!(body.hull_error() < 1e-13);
-    assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
 }
 
 /// A cloud with noise, stretched along its axes and turned.
@@ -462,7 +436,7 @@ proptest! {
 }
 
 #[test]
-fn exactly_planar_caps_cost_no_more() {
+fn exactly_planar_caps_are_one_face() {
     let sides = 8_000;
     let ring = |z: f64| {
         (0..sides).map(move |k| {
@@ -471,41 +445,8 @@ fn exactly_planar_caps_cost_no_more() {
         })
     };
     let prism: Vec<DVec3> = ring(0.0).chain(ring(1.0)).collect();
-    let start = std::time::Instant::now();
     let body = ConvexPolyhedron::from_points(&prism).unwrap();
-    println!("prism with {sides} sides: {:?}", start.elapsed());
     assert_eq!(body.face_count(), sides as usize + 2);
-    assert!(start.elapsed() < PATIENCE);
-}
-
-/// Two rings, as of a prism, a frustum or a bottle: once a quadratic case, because one ring was
-/// finished before the other was begun.
-#[test]
-fn large_rings_grow_no_faster_than_clouds() {
-    let ring = |sides: u32, radius: f64, z: f64| {
-        (0..sides).map(move |k| {
-            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
-            DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
-        })
-    };
-    let once = |sides: u32, top: f64, apex: Option<DVec3>| {
-        let points: Vec<DVec3> =
-            ring(sides, 1.0, 0.0).chain(ring(sides, top, 1.0)).chain(apex).collect();
-        let start = std::time::Instant::now();
-        let body = ConvexPolyhedron::from_points(&points).unwrap();
-        assert_eq!(body.vertices().len(), points.len());
-        start.elapsed().as_secs_f64()
-    };
-    let few = if cfg!(debug_assertions) { 1_000 } else { 12_000 };
-    for (what, top, apex) in
-        [("prism", 1.0, None), ("frustum", 0.7, None), ("bottle", 0.9, Some(DVec3::Z * 1.5))]
-    {
-        let seconds = |sides| once(sides, top, apex).min(once(sides, top, apex));
-        let growth = seconds(5 * few) / seconds(few);
-        println!("{what}: {growth:.1} times as long for 5 times the points");
-        // Quadratic would be 25; n log n and a colder cache measured 5 to 8.
-        assert!(growth < 15.0, "{what}: {growth}");
-    }
 }
 
 /// Bent outwards at every edge and every face away from its middle, and yet not convex: it goes

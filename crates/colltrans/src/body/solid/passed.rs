@@ -20,6 +20,7 @@ use glam::DVec3;
 use super::exact::side;
 use super::tree::{self, Node};
 use super::{Solid, shells};
+use crate::work;
 
 /// Facets within so many roundings of the largest coordinate of a plane lie in it.
 const FLAT: f64 = 64.0 * f64::EPSILON;
@@ -251,12 +252,14 @@ impl Placing<'_> {
         let fences = Fences::new(self);
         let mut stack = vec![[0, 0]];
         while let Some([a, b]) = stack.pop() {
+            work::count(1);
             if fences.part(a, b) {
                 continue;
             }
             let [m, n] = [a, b].map(|k| &self.solid.nodes[k]);
             let halves = |k: usize| [0, 1].map(|n| k + self.solid.nodes[k].skip as usize + n);
             if m.is_leaf() && n.is_leaf() {
+                work::count(m.facets().len() * n.facets().len());
                 for s in m.facets() {
                     n.facets().filter(|&t| a != b || s < t).for_each(|t| visit([s, t]));
                 }

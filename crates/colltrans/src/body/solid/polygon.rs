@@ -12,6 +12,8 @@
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use robust::{Coord, orient2d};
 
+use crate::work;
+
 /// Fewer corners than this are looked at one by one.
 const MANY: usize = 64;
 
@@ -81,6 +83,7 @@ impl Ring {
         let inside =
             |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
         let leaves_free = |m: usize| {
+            work::count(1);
             let p = self.flat[m];
             // A corner passed twice (a slit to a hole) lies on the ear without being in it.
             p == a || p == b || p == c || !inside(p)

@@ -8,6 +8,7 @@
 use glam::DVec3;
 
 use super::quickhull::{Simplicial, Triangle, simplicial_hull};
+use crate::work;
 
 const NONE: u32 = u32::MAX;
 
@@ -68,6 +69,7 @@ fn grow(
     members.push(seed);
     let mut k = 0;
     while k < members.len() {
+        work::count(1);
         for n in triangles[members[k] as usize].neighbours {
             let free = regions.of[n as usize] == NONE;
             if free && triangles[n as usize].corners.into_iter().all(on_plane) {
@@ -126,6 +128,7 @@ fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Opt
     let mut corners = Vec::new();
     loop {
         corners.push(triangles[t as usize].corners[side]);
+        work::count(1);
         // Around the edge's end, triangle by triangle, to the next edge of the rim.
         side = (side + 1) % 3;
         loop {
@@ -133,6 +136,7 @@ fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Opt
             if regions.of[other as usize] != region {
                 break;
             }
+            work::count(1);
             let pivot = triangles[t as usize].corners[side];
             let at = triangles[other as usize].corners.iter().position(|&c| c == pivot)?;
             (t, side) = (other, at);

@@ -6,6 +6,7 @@ use super::quickhull::Flat;
 use super::violation::{Projection, to_polygon, to_segment, turn};
 use super::{BEYOND, Hull, is_among, rounding};
 use crate::body::topology::Topology;
+use crate::work;
 
 pub(super) fn hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> Hull {
     match flat {
@@ -100,6 +101,7 @@ impl Plane<'_> {
         let mut corners: Vec<u32> = Vec::with_capacity(chain.len());
         for &c in chain {
             while let [.., a, b] = corners[..] {
+                work::count(1);
                 if !is_on_edge(a, b, c) {
                     break;
                 }
@@ -139,6 +141,7 @@ fn half_chain(order: impl Iterator<Item = u32>, project: &dyn Fn(u32) -> DVec2) 
     let mut chain: Vec<u32> = Vec::new();
     for i in order {
         while let [.., a, b] = chain[..] {
+            work::count(1);
             if turn(project(a), project(b), project(i)) > 0.0 {
                 break;
             }

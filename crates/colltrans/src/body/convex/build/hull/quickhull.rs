@@ -16,6 +16,7 @@ use std::collections::VecDeque;
 use glam::DVec3;
 
 use crate::number::plane::triangle_normal;
+use crate::work;
 
 const NONE: u32 = u32::MAX;
 
@@ -267,6 +268,7 @@ impl<'a> Builder<'a> {
         let mut best = (if is_forced { f64::NEG_INFINITY } else { self.tolerance }, NONE);
         let mut is_near = false;
         for face in faces {
+            work::count(1);
             let distance = self.distance(face, p);
             let is_sharp = self.triangles[face as usize].doubt <= self.tolerance;
             if distance > best.0 && self.is_outside(face, p, distance) {
@@ -324,6 +326,7 @@ impl<'a> Builder<'a> {
                 self.pending.push_back(face);
                 return;
             }
+            work::count(1);
             if self.sees(face, p) {
                 stack.extend(self.triangles[face as usize].neighbours);
             }
@@ -385,6 +388,7 @@ impl<'a> Builder<'a> {
             let Growing { corners, neighbours, .. } = self.triangles[face as usize];
             for side in 0..3 {
                 let other = neighbours[side];
+                work::count(1);
                 if self.triangles[other as usize].stamp != self.insertion {
                     let seen = self.sees(other, p);
                     self.mark(other, seen);

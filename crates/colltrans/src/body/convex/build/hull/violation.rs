@@ -12,6 +12,7 @@ use super::quickhull::{Simplicial, side};
 use crate::body::topology::Topology;
 use crate::number::determinant::triangle_area;
 use crate::number::plane::polygon_normal;
+use crate::work;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to
 /// face.
@@ -113,6 +114,7 @@ impl Locator {
 
     fn around(&self, face: usize) -> impl Iterator<Item = usize> + '_ {
         let range = self.neighbour_start[face] as usize..self.neighbour_start[face + 1] as usize;
+        work::count(range.len());
         self.neighbours[range].iter().map(|&f| f as usize)
     }
 }
@@ -204,6 +206,7 @@ impl<'a> Gauge<'a> {
             return 0.0;
         }
         let faces = 0..self.topology.face_count();
+        work::count(2 * faces.len());
         faces.map(|face| self.to_face(p, face)).fold(f64::INFINITY, f64::min)
     }
 
@@ -251,6 +254,7 @@ pub(super) fn to_polygon(
     // The last corner that the foot is not clockwise of, as seen from the first one.
     let (mut low, mut high) = (1, count - 1);
     while low + 1 < high {
+        work::count(1);
         let middle = low.midpoint(high);
         if turn(project.of(first), project.of(corner(middle)), foot) >= 0.0 {
             low = middle;

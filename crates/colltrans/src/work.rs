@@ -1,0 +1,174 @@
+//! How much is looked at, for tests of how it grows: nothing in ordinary builds.
+//!
+//! Loops whose length depends on the input call [`count`]. No clock, so no machine disturbs a test.
+
+/// So many points, faces or pairs more have been looked at.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "it is nothing")]
+pub(crate) fn count(looks: usize) {
+    #[cfg(test)]
+    tests::LOOKS.set(tests::LOOKS.get() + looks);
+    #[cfg(not(test))]
+    let _ = looks;
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::f64::consts::TAU;
+
+    use colltrans_kit::random::Random;
+    use colltrans_kit::shapes::{Mesh, even_rings, random_hull, ring_points};
+    use colltrans_kit::solids::washer;
+    use glam::{DQuat, DVec3};
+
+    use crate::{ConvexPolyhedron, Solid};
+
+    thread_local! {
+        pub(super) static LOOKS: Cell<usize> = const { Cell::new(0) };
+    }
+
+    /// How many times as much is looked at for five times the input must be less: 5 would be linear, `n
+    /// log n` is 6 to 7, quadratic 25.
+    const MOST: f64 = 12.0;
+
+    fn looks(run: impl FnOnce()) -> usize {
+        let before = LOOKS.get();
+        run();
+        LOOKS.get() - before
+    }
+
+    /// Holds the growth of what is looked at, from `few` to five times as many.
+    fn assert_growth(what: &str, few: usize, run: impl Fn(usize)) {
+        let [less, more] = [few, 5 * few].map(|count| looks(|| run(count)));
+        assert!(less >= few, "{what}: {less} looks at {few} are not all that there is");
+        let growth = more as f64 / less as f64;
+        println!("{what}: {less} looks at {few}, {growth:.1} times as many at five times as many");
+        assert!(growth < MOST, "{what}: {growth:.1} times as many looks");
+    }
+
+    fn hull(points: &[DVec3]) -> ConvexPolyhedron {
+        ConvexPolyhedron::from_points(points).expect("points")
+    }
+
+    fn faces(body: &ConvexPolyhedron) -> Vec<Vec<u32>> {
+        (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect()
+    }
+
+    fn ring(sides: usize, radius: f64, z: f64) -> impl Iterator<Item = DVec3> + Clone {
+        (0..sides).map(move |k| {
+            let (sine, cosine) = (TAU * k as f64 / sides as f64).sin_cos();
+            DVec3::new(radius * cosine, radius * sine, z)
+        })
+    }
+
+    fn rotation() -> DQuat {
+        Random::new(5, &[]).rotation()
+    }
+
+    #[test]
+    fn hulls_of_spheres() {
+        let random = |count: usize| {
+            let mut random = Random::new(7, &[]);
+            (0..count).map(|_| random.direction()).collect::<Vec<_>>()
+        };
+        let in_rings = |count: usize| {
+            let [around, rings] = even_rings(count);
+            ring_points(around, rings, 0.0).into_iter().map(|v| rotation() * v).collect()
+        };
+        let of_points = |points: Vec<DVec3>| {
+            let body = hull(&points);
+            assert!(body.vertices().len() > points.len() * 9 / 10);
+        };
+        let of_meshes = |points: Vec<DVec3>| {
+            let body = hull(&points);
+            ConvexPolyhedron::from_mesh(body.vertices(), &faces(&body), 0.0).expect("its own");
+        };
+        assert_growth("sphere", 2_000, |count| of_points(random(count)));
+        assert_growth("sphere's mesh", 2_000, |count| of_meshes(random(count)));
+        assert_growth("rings", 2_000, |count| of_points(in_rings(count)));
+        assert_growth("rings' mesh", 2_000, |count| of_meshes(in_rings(count)));
+    }
+
+    #[test]
+    fn hulls_of_flat_circles() {
+        assert_growth("circle", 4_000, |count| {
+            let points: Vec<DVec3> = ring(count, 1.0, 0.0).map(|p| rotation() * p).collect();
+            let body = hull(&points);
+            assert_eq!((body.dimension(), body.vertices().len()), (2, count));
+        });
+    }
+
+    /// Two rings, as of a prism, a frustum or a bottle: quadratic where one ring is finished before the
+    /// other is begun.
+    #[test]
+    fn hulls_of_large_rings() {
+        let apex = DVec3::Z * 1.5;
+        for (what, top, apex) in
+            [("prism", 1.0, None), ("frustum", 0.7, None), ("bottle", 0.9, Some(apex))]
+        {
+            for (how, turn) in [("upright", DQuat::IDENTITY), ("turned", rotation())] {
+                assert_growth(&format!("{what}, {how}"), 2_000, |sides| {
+                    let points = ring(sides, 1.0, 0.0).chain(ring(sides, top, 1.0)).chain(apex);
+                    let points: Vec<DVec3> = points.map(|p| turn * p).collect();
+                    assert_eq!(hull(&points).vertices().len(), points.len());
+                });
+            }
+        }
+    }
+
+    /// Of what is dropped as lying on a face, how far it is from the body is measured.
+    #[test]
+    fn hulls_of_grids() {
+        assert_growth("faces of a grid", 2_000, |count| {
+            let side = (count / 6).isqrt() as i32;
+            let along = |k: i32| f64::from(k) / f64::from(side);
+            let square = (0..=side).flat_map(|i| (0..=side).map(move |j| (along(i), along(j))));
+            let points = square.flat_map(|(x, y)| {
+                [0.0, 1.0].into_iter().flat_map(move |z| {
+                    [DVec3::new(x, y, z), DVec3::new(y, z, x), DVec3::new(z, x, y)]
+                })
+            });
+            let points: Vec<DVec3> = points.map(|p| rotation() * p).collect();
+            assert_eq!(hull(&points).vertices().len(), 8);
+        });
+    }
+
+    #[test]
+    fn bodies_that_shrink_and_grow() {
+        assert_growth("offset", 2_000, |count| {
+            let body = hull(&random_hull(count, &mut Random::new(9, &[])).vertices);
+            body.shrunk(0.1).expect("it fits");
+            body.grown(0.1).expect("an amount");
+        });
+    }
+
+    /// Boxes of thin triangles in one plane overlap by the thousand.
+    #[test]
+    fn thin_triangles_of_large_faces() {
+        assert_growth("washer", 1_000, |sides| {
+            let Mesh { vertices, faces } = washer([1.0, 2.0], [0.0, 1.0], sides);
+            let ring = Solid::from_mesh(&vertices, &faces).expect("a washer");
+            assert!(ring.shrink_report(1e-4).inverted.is_empty());
+        });
+    }
+
+    #[test]
+    fn solids_with_faces_of_many_corners() {
+        for (what, radii) in [("round", [1.0, 1.0]), ("jagged", [1.0, 0.6])] {
+            assert_growth(what, 2_000, |sides| {
+                let jagged = |z: f64| {
+                    ring(sides, 1.0, z)
+                        .enumerate()
+                        .map(move |(k, p)| (p.with_z(0.0) * radii[k % 2]).with_z(z))
+                };
+                let vertices: Vec<DVec3> = jagged(0.0).chain(jagged(1.0)).collect();
+                let n = sides as u32;
+                let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+                faces.extend((0..n).map(|k| vec![k, (k + 1) % n, n + (k + 1) % n, n + k]));
+                let prism = Solid::from_mesh(&vertices, &faces).expect("a prism");
+                assert_eq!(prism.triangles().len(), 4 * sides - 4);
+            });
+        }
+    }
+}

@@ -85,7 +85,7 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
             line(
                 &mut text,
                 "hull error",
-                &format!("{error} (largest distance of a vertex outside a face of the hull)"),
+                &format!("{error} (no vertex of the mesh is farther from the hull)"),
             );
         }
         Err(error) => line(&mut text, "hull", &format!("none: {error}")),

@@ -717,14 +717,20 @@ fn nearly_flat(rng: &mut Rng, shape: fn(&mut Rng, f64) -> Vec<DVec3>) -> Vec<DVe
     let mut points = shape(rng, thickness);
     if !rng.one_in(4) {
         let turn = rng.rotation();
-        points.iter_mut().for_each(|v| *v = turn * *v);
+        for v in &mut points {
+            *v = turn * *v;
+        }
     }
     if rng.one_in(2) {
         let far = rng.direction() * 10_f64.powf(rng.range(0.0, 5.0));
-        points.iter_mut().for_each(|v| *v += far);
+        for v in &mut points {
+            *v += far;
+        }
         let middle = points.iter().sum::<DVec3>() / points.len() as f64;
         let back = rng.pick(&[far, middle, middle, DVec3::ZERO]);
-        points.iter_mut().for_each(|v| *v -= back);
+        for v in &mut points {
+            *v -= back;
+        }
     }
     points
 }

@@ -188,7 +188,7 @@ impl ConvexPolyhedron {
         self.0.dimension()
     }
 
-    /// float: How far outside the hull an input point lies at most, a length.
+    /// float: How far from the body an input point lies at most, a length of the size of rounding.
     #[getter]
     fn hull_error(&self) -> f64 {
         self.0.hull_error()

@@ -2,7 +2,7 @@
 #![cfg(feature = "json")]
 
 use colltrans::{Case, CaseError, Narrowing, Options, Solver};
-use colltrans_oracle::settings::{FAMILIES, setting};
+use colltrans_oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
 
 #[test]
 fn every_family_comes_back_in_bits() {
@@ -24,6 +24,20 @@ fn every_family_comes_back_in_bits() {
                 });
                 assert_eq!(answers[0], answers[1], "{setting}");
             }
+        }
+    }
+}
+
+/// Their vertices are corners of a hull in which nothing is merged, or little.
+#[test]
+fn nearly_flat_bodies_come_back() {
+    for family in NEARLY_FLAT {
+        for seed in 0..1_000 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let saved = setting.query(&bodies).expect("a query").to_json();
+            let case = Case::from_json(&saved).unwrap_or_else(|e| panic!("{setting}: {e}"));
+            assert_eq!(case.cast().expect("checked").to_json(), saved, "{setting}");
         }
     }
 }

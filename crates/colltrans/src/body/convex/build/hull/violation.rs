@@ -174,26 +174,26 @@ impl<'a> Gauge<'a> {
         if outside <= enough {
             return outside;
         }
-        let inside = self.from_inside(p, *near);
+        let inside = self.by_ray(p, *near);
         let count = self.topology.face_count();
         if inside <= enough || self.looks < count {
             return outside.min(inside);
         }
         self.looks -= count;
-        self.from_all(p).min(inside)
+        self.by_all_faces(p).min(inside)
     }
 
     /// The bound of a point that its face leaves inside: on the way from the centre to where its ray
     /// passes the face, the distance from a convex body is at most the weighted mean of that at
     /// both ends.
-    fn from_inside(&mut self, p: DVec3, face: usize) -> f64 {
+    fn by_ray(&mut self, p: DVec3, face: usize) -> f64 {
         let ray = p - self.locator.center;
         let (normal, offset) = self.locator.planes[face];
         let share = normal.dot(ray) / offset;
         if !(share > 0.0 && share < 1.0) {
             return f64::INFINITY;
         }
-        let center_off = self.center_off.unwrap_or_else(|| self.from_all(self.locator.center));
+        let center_off = self.center_off.unwrap_or_else(|| self.by_all_faces(self.locator.center));
         self.center_off = Some(center_off);
         let exit = self.locator.center + ray / share;
         // Scaling the ray is off by as little as a witness.
@@ -201,7 +201,7 @@ impl<'a> Gauge<'a> {
     }
 
     /// The bound from all faces: 0 inside, exactly.
-    fn from_all(&self, p: DVec3) -> f64 {
+    fn by_all_faces(&self, p: DVec3) -> f64 {
         if self.contains(p) {
             return 0.0;
         }

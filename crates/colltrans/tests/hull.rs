@@ -325,7 +325,7 @@ proptest! {
 #[test]
 fn a_large_sphere_and_its_mesh() {
     let mut random = Random(7);
-    let count = if cfg!(debug_assertions) { 5_000 } else { 200_000 };
+    let count: usize = if cfg!(debug_assertions) { 5_000 } else { 200_000 };
     let points: Vec<DVec3> = (0..count)
         .map(|_| {
             loop {

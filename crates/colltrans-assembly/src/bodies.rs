@@ -1,12 +1,12 @@
 //! Two parts and a direction: everything that is asked of `colltrans`.
 //!
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
-//! with a margin `M` every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
+//! to keep `M` apart every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
 
 use std::collections::BTreeMap;
 
 use colltrans::{
-    Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
+    Bounded, Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
 };
 use glam::DVec3;
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub enum Fit {
     Tolerance(f64),
     /// Both bodies are grown by half of this length: that far apart they must stay. Pairs that touch
     /// on purpose have to be listed as ignored.
-    Margin(f64),
+    Apart(f64),
 }
 
 /// The default tolerance: a few last digits of single precision, in which most files are written.
@@ -36,11 +36,11 @@ impl Fit {
         Self::Tolerance(assembly.size() * SINGLE_DIGITS)
     }
 
-    /// The tolerance; a margin is a negative one.
+    /// The tolerance; a length to keep is a negative one.
     pub const fn tolerance(self) -> f64 {
         match self {
             Self::Tolerance(length) => length,
-            Self::Margin(length) => -length,
+            Self::Apart(length) => -length,
         }
     }
 }
@@ -48,11 +48,12 @@ impl Fit {
 /// What stops a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// How far the bodies, shrunk or grown, can move; never negative.
+    /// How far it is safe to move: up to here the bodies, shrunk or grown, do not overlap, which is
+    /// proven, and what stops them has not met in its true place, before it was shrunk or grown.
+    /// Never negative: 7 for a head that stops at 7, and what a length to keep leaves of it.
     pub distance: f64,
-    /// Where what stops them meets in its true place, before it was shrunk or grown; never negative.
-    /// What a person expects to read: 7 for a head that stops at 7.
-    pub nominal: f64,
+    /// How far the bodies, shrunk or grown, can move; never negative.
+    pub displaced: Bounded,
     /// Unit contact normal in the world, from the moving part to the other one.
     pub normal: DVec3,
     /// The contact point on the other part, in the world.
@@ -97,11 +98,11 @@ impl<'a> Bodies<'a> {
     /// Makes the bodies ready, and looks which pairs overlap where they are.
     ///
     /// # Errors
-    /// A tolerance or margin that is negative, not finite or too large for a part.
+    /// A tolerance, or length to keep, that is negative, not finite or too large for a part.
     pub fn new(assembly: &'a Assembly, fit: Fit) -> Result<Self, AssemblyError> {
         let (what, value) = match fit {
             Fit::Tolerance(value) => ("tolerance", value),
-            Fit::Margin(value) => ("margin", value),
+            Fit::Apart(value) => ("length to keep", value),
         };
         if !(value.is_finite() && value >= 0.0) {
             return Err(AssemblyError::Length { what, value });
@@ -110,7 +111,7 @@ impl<'a> Bodies<'a> {
             let refused = |source| AssemblyError::Part { part: part.name().into(), source };
             let solid = match fit {
                 Fit::Tolerance(length) => part.solid().shrunk(length / 2.0),
-                Fit::Margin(length) => part.solid().grown(length / 2.0),
+                Fit::Apart(length) => part.solid().grown(length / 2.0),
             };
             solid.map_err(refused)
         };
@@ -180,7 +181,7 @@ impl<'a> Bodies<'a> {
         let ShrinkReport { stuck, inverted, .. } = &self.displaced[part];
         let mut said = match self.fit {
             Fit::Tolerance(_) => vec!["shrunk by half the tolerance".to_owned()],
-            Fit::Margin(_) => vec!["grown by half the margin".to_owned()],
+            Fit::Apart(_) => vec!["grown by half the length to keep".to_owned()],
         };
         let given = self.assembly.parts()[part].solid();
         if self.solids[part].is_closed() && volume(given) > 0.0 && volume(&self.solids[part]) <= 0.0
@@ -273,10 +274,7 @@ impl<'a> Bodies<'a> {
             overlapping: Some(overlapping),
         };
         let contact = met([&self.solids[a], &self.solids[b]], d, options, workspace);
-        contact.map_or(Room::Free, |(distance, c)| {
-            let meeting = if passing.is_some() { c.nominal } else { distance };
-            Room::Blocked(self.stop([a, b], d, [distance, meeting], c.triangles, &c))
-        })
+        contact.map_or(Room::Free, |c| Room::Blocked(self.stop([a, b], d, c.triangles, &c)))
     }
 
     /// Two triangles of the bodies of two parts, as bodies of their own.
@@ -312,39 +310,36 @@ impl<'a> Bodies<'a> {
             overlapping: Some(start == StartOverlap::Ignore && self.overlaps(a, b)),
         };
         let contact = met([&facets[0], &facets[1]], d, options, workspace);
-        contact.map_or(Room::Free, |(distance, c)| {
-            Room::Blocked(self.stop([a, b], d, [distance; 2], triangles, &c))
-        })
+        contact.map_or(Room::Free, |c| Room::Blocked(self.stop([a, b], d, triangles, &c)))
     }
 
-    /// From how far the two can go, and after how far their facets meet.
     fn stop(
         &self,
         pair: [usize; 2],
         d: DVec3,
-        [distance, meeting]: [f64; 2],
         triangles: [u32; 2],
         contact: &SolidContact,
     ) -> Stop {
-        let nominal = self.nominal(pair, d, meeting, triangles, contact);
-        let SolidContact { normal, point_on_fixed: point, .. } = *contact;
-        Stop { distance, nominal, normal, point, triangles }
+        let SolidContact { normal, point_on_fixed: point, translation: displaced, .. } = *contact;
+        let place = displaced.value + self.moved_back(pair, d, triangles, contact);
+        // Moved back by a length that is not finite, it says nothing.
+        let distance = if place.is_finite() { displaced.lower.min(place) } else { displaced.lower };
+        Stop { distance: distance.max(0.0), displaced, normal, point, triangles }
     }
 
-    /// The contact points are put back to where they are on the parts as they were given.
-    fn nominal(
+    /// How much farther the contact points, put back to where they are on the parts as they were given,
+    /// have to go.
+    fn moved_back(
         &self,
         [a, b]: [usize; 2],
         d: DVec3,
-        distance: f64,
         triangles: [u32; 2],
         contact: &SolidContact,
     ) -> f64 {
         let [moving, fixed] = triangles.map(|t| t as usize);
         let moved = self.displacement(a, moving, contact.point_on_moving)
             - self.displacement(b, fixed, contact.point_on_fixed);
-        let nominal = distance + contact.normal.dot(moved) / contact.normal.dot(d);
-        if nominal.is_finite() { nominal.max(0.0) } else { distance }
+        contact.normal.dot(moved) / contact.normal.dot(d)
     }
 
     /// How far a point of a triangle was displaced when the part was shrunk or grown: its corners
@@ -415,17 +410,17 @@ fn volume(solid: &Solid) -> f64 {
     solid.triangles().iter().map(of).sum()
 }
 
-/// Where two bodies meet, and after how far.
+/// Where two bodies meet.
 fn met(
     [moving, fixed]: [&Solid; 2],
     d: DVec3,
     options: SolidOptions,
     workspace: &mut Workspace,
-) -> Option<(f64, SolidContact)> {
+) -> Option<SolidContact> {
     let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY), d);
     // Directions and tolerances are checked at the door, so nothing is refused here.
     match cast.and_then(|c| c.with_options(options)).ok()?.clearance_in(workspace) {
-        Clearance::Blocked { distance, contact } => Some((distance, contact)),
+        Clearance::Blocked { contact, .. } => Some(contact),
         _ => None,
     }
 }

@@ -195,17 +195,17 @@ impl<'a> Mapper<'a> {
             for t in self.sphere.leaves() {
                 let corners = self.sphere.triangles[t].corners.map(|k| k as usize);
                 let best =
-                    corners.map(|k| self.rooms[k].distance()).into_iter().fold(0.0, f64::max);
+                    corners.map(|k| self.rooms[k].displaced_distance()).into_iter().fold(0.0, f64::max);
                 for k in corners {
                     highest[k] = highest[k].max(best);
                 }
             }
             let peak = |k: &usize| {
-                let distance = self.rooms[*k].distance();
+                let distance = self.rooms[*k].displaced_distance();
                 distance.is_finite() && distance > 0.0 && distance >= highest[*k]
             };
             let mut peaks: Vec<usize> = (0..self.rooms.len()).filter(peak).collect();
-            let far = |k: usize| self.rooms[k].distance();
+            let far = |k: usize| self.rooms[k].displaced_distance();
             peaks.sort_by(|a, b| far(*b).total_cmp(&far(*a)).then(a.cmp(b)));
             peaks.truncate(MOST_PEAKS);
             let peaks: BTreeSet<u32> = peaks.into_iter().map(|k| k as u32).collect();

@@ -32,16 +32,21 @@ pub struct Meeting {
 }
 
 impl Meeting {
-    /// How far; 0 if they overlap where they are.
+    /// How far it is safe to move; 0 if they overlap where they are.
     pub fn distance(&self) -> f64 {
         self.stop.map_or(0.0, |stop| stop.distance)
+    }
+
+    /// How far the bodies go that were shrunk, or grown: what decides who comes first.
+    pub fn displaced_distance(&self) -> f64 {
+        self.stop.map_or(0.0, |stop| stop.displaced.value)
     }
 
     /// The same meeting, as the other part sees it that moves along the opposite of `d`.
     fn mirrored(&self, d: DVec3) -> Self {
         let turn = |s: Stop| Stop {
             normal: -s.normal,
-            point: s.point - d * s.distance,
+            point: s.point - d * s.displaced.value,
             triangles: [s.triangles[1], s.triangles[0]],
             ..s
         };
@@ -118,7 +123,7 @@ impl Matrix {
     pub fn room(&self, direction: usize, part: usize) -> PartRoom {
         let met = self.of_part(direction, part);
         let first = met.iter().min_by(|x, y| {
-            let key = |m: &Meeting| (m.stop.is_some(), m.distance());
+            let key = |m: &Meeting| (m.stop.is_some(), m.displaced_distance());
             key(x).partial_cmp(&key(y)).unwrap_or(std::cmp::Ordering::Equal)
         });
         match first {

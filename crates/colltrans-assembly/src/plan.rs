@@ -344,7 +344,7 @@ impl Planner<'_> {
         (0..matrix.directions().len()).any(|k| {
             let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
             let mut met = met.filter(|m| alive[m.fixed] && !group.contains(&m.fixed));
-            met.all(|m| m.distance() >= LOOSE * size)
+            met.all(|m| m.displaced_distance() >= LOOSE * size)
         })
     }
 

@@ -51,12 +51,20 @@ impl PartRoom {
         }
     }
 
-    /// How far: infinite if free, 0 if overlapping.
+    /// How far it is safe to move: infinite if free, 0 if overlapping.
     pub const fn distance(&self) -> f64 {
         match self {
             Self::Free => f64::INFINITY,
             Self::Blocked { stop, .. } => stop.distance,
             Self::Overlapping { .. } => 0.0,
+        }
+    }
+
+    /// How far the bodies go that were shrunk, or grown: what decides who comes first.
+    pub const fn displaced_distance(&self) -> f64 {
+        match self {
+            Self::Blocked { stop, .. } => stop.displaced.value,
+            _ => self.distance(),
         }
     }
 
@@ -102,7 +110,7 @@ fn room_with(
     let mut best = PartRoom::Free;
     for &part in group {
         let ahead = bodies.ahead(part, d);
-        if start == StartOverlap::Ignore && best.distance() > bodies.noise() {
+        if start == StartOverlap::Ignore && best.displaced_distance() > bodies.noise() {
             // What is farther away cannot overlap.
             let near = ahead.iter().take_while(|x| x.0 <= bodies.noise()).map(|x| x.1);
             let mut near = near.filter(|&by| others[by] && !group.contains(&by));
@@ -114,32 +122,32 @@ fn room_with(
             best = known.unwrap_or(best);
         }
         for (bound, by) in ahead {
-            if bound > best.distance() {
+            if bound > best.displaced_distance() {
                 break;
             }
             let overlapping = bodies.overlaps(part, by);
-            let at_once = start == StartOverlap::Ignore && best.distance() <= bodies.noise();
+            let at_once = start == StartOverlap::Ignore && best.displaced_distance() <= bodies.noise();
             if !others[by] || group.contains(&by) || (overlapping && at_once) {
                 continue;
             }
             // Of equal distances only those are let through that would be named instead.
             let before = match best {
                 PartRoom::Blocked { part: p, by: b, stop } if (part, by) < (p, b) => {
-                    Some(stop.distance.next_up())
+                    Some(stop.displaced.value.next_up())
                 }
-                PartRoom::Blocked { stop, .. } => Some(stop.distance),
+                PartRoom::Blocked { stop, .. } => Some(stop.displaced.value),
                 _ => None,
             };
             match bodies.room([part, by], d, before, start, workspace) {
                 Room::Free => (),
                 Room::Overlapping => return PartRoom::Overlapping { part, by },
                 Room::Blocked(stop) => {
-                    if overlapping && stop.distance <= bodies.noise() {
+                    if overlapping && stop.displaced.value <= bodies.noise() {
                         witnesses.keep(bodies, [part, by], &stop);
                     }
                     let nearer = match best {
                         PartRoom::Blocked { part: p, by: b, stop: s } => {
-                            (stop.distance, part, by) < (s.distance, p, b)
+                            (stop.displaced.value, part, by) < (s.displaced.value, p, b)
                         }
                         _ => true,
                     };

@@ -59,6 +59,6 @@ impl Witnesses {
                 _ => None,
             }
         })
-        .find(|stop| stop.distance <= within)
+        .find(|stop| stop.displaced.value <= within)
     }
 }

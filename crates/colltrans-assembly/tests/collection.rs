@@ -91,11 +91,11 @@ fn rooms_of_overlapping_pieces_are_those_of_all_pairs() {
             let others = (0..bodies.len()).filter(|&b| b != a);
             let rooms = others.map(|b| bodies.room([a, b], d, None, start, &mut workspace));
             let distance = |room: Room| match room {
-                Room::Blocked(stop) => stop.distance,
+                Room::Blocked(stop) => stop.displaced.value,
                 _ => f64::INFINITY,
             };
             let least = rooms.map(distance).fold(f64::INFINITY, f64::min);
-            let found = row[k].distance();
+            let found = row[k].displaced_distance();
             let same = found == least || (found - least).abs() < 1e-9;
             assert!(same || (least..=at_once).contains(&found), "{a} {d}: {found} {least}");
         }

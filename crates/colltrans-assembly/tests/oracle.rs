@@ -118,12 +118,12 @@ fn rooms_of_boxes_are_intervals() {
                     (Some(t), PartRoom::Overlapping { .. }) if t < 1e-9 => overlapping += 1,
                     (Some(t), PartRoom::Blocked { stop, by, .. }) => {
                         blocked += 1;
-                        assert!(t > -1e-9 && (stop.distance - t).abs() < 1e-9, "{t}, {stop:?}");
+                        assert!(t > -1e-9 && (stop.displaced.value - t).abs() < 1e-9, "{t}, {stop:?}");
                         let own = room_of_boxes(boxes[a], boxes[by], d).unwrap();
                         assert!((own - t).abs() < 1e-9, "{by} is at {own}, not {t}");
                         // Faces that were moved by half of the tolerance each.
-                        let nominal = t - tolerance / stop.normal.dot(d);
-                        assert!((stop.nominal - nominal.max(0.0)).abs() < 1e-9, "{stop:?}");
+                        let place = t - tolerance / stop.normal.dot(d);
+                        assert!((stop.distance - place.max(0.0)).abs() < 1e-9, "{stop:?}");
                     }
                     // Rounding: corners that pass corners in a direction that is no axis.
                     (expected, found) => {
@@ -192,10 +192,10 @@ fn a_bolt_stops_where_its_head_sits() {
     };
     assert!(room(DVec3::Z).is_free());
     let PartRoom::Blocked { stop, .. } = room(DVec3::NEG_Z) else { panic!("it is stopped") };
-    assert!((stop.distance - 1.02).abs() < 1e-9 && (stop.nominal - 1.0).abs() < 1e-9, "{stop:?}");
+    assert!((stop.displaced.value - 1.02).abs() < 1e-9 && (stop.distance - 1.0).abs() < 1e-9, "{stop:?}");
     assert_eq!(stop.normal, DVec3::NEG_Z);
     assert!((stop.point.z + 0.01).abs() < 1e-9);
-    assert!((room(DVec3::X).distance() - 0.02).abs() < 1e-9);
+    assert!((room(DVec3::X).displaced_distance() - 0.02).abs() < 1e-9);
     let (assembly, plan) = taken_apart(parts, 0.02);
     assert_eq!(names(&assembly, &plan), [["bolt"], ["block"]]);
     assert!((plan.steps[0].travel - 4.0).abs() < 0.1);

@@ -37,9 +37,9 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let assembly = assembly(arguments)?;
     let groups = groups(arguments, &assembly)?;
     output::refuse_inputs(arguments, &assembly)?;
-    let fit = match (arguments.tolerance, arguments.margin) {
+    let fit = match (arguments.tolerance, arguments.keep_apart) {
         (Some(tolerance), _) => Fit::Tolerance(tolerance),
-        (None, Some(margin)) => Fit::Margin(margin),
+        (None, Some(length)) => Fit::Apart(length),
         (None, None) => Fit::default_for(&assembly),
     };
     let bar = ProgressBar::new(0);

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, OverlapAhead,
+    Bounded, Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, OverlapAhead,
     Separated, Solver, Steps, WhyFree,
 };
 use serde::Serialize;
@@ -22,24 +22,25 @@ pub(crate) struct Record {
     /// Of a scan.
     pub(crate) direction: Option<[f64; 3]>,
     pub(crate) distance: Option<f64>,
-    /// Of solids.
-    pub(crate) nominal: Option<f64>,
     pub(crate) back: Option<f64>,
     pub(crate) on: Option<f64>,
-    pub(crate) translation: Option<f64>,
-    pub(crate) exit: Option<f64>,
+    pub(crate) translation: Option<Bounded>,
+    /// Of solids.
+    pub(crate) shrunk_distance: Option<Bounded>,
+    pub(crate) exit: Option<Bounded>,
     /// The file that touches, of a body of several.
     pub(crate) moving: Option<String>,
     pub(crate) fixed: Option<String>,
     pub(crate) normal: Option<[f64; 3]>,
     pub(crate) point: Option<[f64; 3]>,
-    pub(crate) lower: Option<f64>,
-    pub(crate) upper: Option<f64>,
+    pub(crate) rounding: Option<f64>,
+    /// Of solids.
     pub(crate) tolerance: Option<f64>,
     /// Of solids.
     pub(crate) start_overlaps: Vec<StartOverlap>,
     pub(crate) features: Option<Features>,
     pub(crate) margin: Option<f64>,
+    pub(crate) overlap: Option<f64>,
     pub(crate) hull: Option<Hulls>,
     pub(crate) solver: Option<&'static str>,
     pub(crate) steps: Option<StepCounts>,
@@ -119,7 +120,7 @@ pub(crate) struct Features {
 }
 
 /// A feature by the indices of the input.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct FeatureRecord {
     pub(crate) kind: &'static str,
     pub(crate) vertices: Vec<u32>,
@@ -142,7 +143,7 @@ impl Record {
             }
             ContactRange::Grazing { first, last } => Self {
                 outcome: Name::Grazing,
-                margin: Some(0.0 - first.overlap),
+                overlap: Some(first.overlap),
                 message: Some(describe(first)),
                 ..Self::of_contact(&first.contact, &last.contact, cast)
             },
@@ -160,17 +161,15 @@ impl Record {
             },
             Clearance::Free(WhyFree::Slides(grazing)) => Self {
                 outcome: Name::Slides,
-                margin: Some(0.0 - grazing.overlap),
+                overlap: Some(grazing.overlap),
                 message: Some(describe(grazing)),
                 ..Self::of_first(&grazing.contact, cast)
             },
             // The last contact is the first one of the way back.
             Clearance::Free(WhyFree::Behind(last)) => Self {
                 outcome: Name::Behind,
-                exit: Some(exit_of(last)),
+                exit: Some(last.exit()),
                 translation: None,
-                lower: None,
-                upper: None,
                 ..Self::of_first(last, &cast.reversed())
             },
             Clearance::Free(WhyFree::Separated(separated)) => Self::of_separated(separated),
@@ -202,11 +201,16 @@ impl Record {
             Kind::Blocked(stop) => Self {
                 outcome: Name::Blocked,
                 distance: Some(stop.distance),
-                nominal: Some(stop.nominal),
+                translation: Some(stop.translation),
+                shrunk_distance: Some(stop.shrunk),
                 moving: name(stop.moving.file),
                 fixed: name(stop.fixed.file),
                 normal: Some(coordinates(stop.normal)),
                 point: Some(coordinates(stop.point)),
+                features: Some(Features {
+                    moving: stop.moving.feature.clone(),
+                    fixed: stop.fixed.feature.clone(),
+                }),
                 ..Self::default()
             },
         };
@@ -241,19 +245,16 @@ impl Record {
     }
 
     fn of_contact(first: &Contact, last: &Contact, cast: &Cast) -> Self {
-        Self { exit: Some(exit_of(last)), ..Self::of_first(first, cast) }
+        Self { exit: Some(last.exit()), ..Self::of_first(first, cast) }
     }
 
     fn of_first(first: &Contact, cast: &Cast) -> Self {
         let features = first.features(cast);
         Self {
-            translation: Some(first.translation),
+            translation: Some(first.bounded()),
             normal: Some(coordinates(first.normal)),
             point: Some(coordinates(first.points(cast).on_fixed)),
-            lower: Some(first.certificate.lower),
-            // Bodies that only touch claim no upper bound.
-            upper: Some(first.certificate.upper).filter(|upper| upper.is_finite()),
-            tolerance: Some(first.certificate.tolerance),
+            rounding: Some(first.certificate.rounding),
             features: Some(Features {
                 moving: FeatureRecord::of(features.moving, cast.moving()),
                 fixed: FeatureRecord::of(features.fixed, cast.fixed()),
@@ -267,9 +268,7 @@ impl Record {
 
 impl FeatureRecord {
     fn of(feature: Feature, body: &ConvexPolyhedron) -> Self {
-        let input = body.input_indices();
-        let vertices = feature.vertices(body).into_iter().map(|v| input[v as usize]).collect();
-        Self { kind: feature.kind(), vertices }
+        Self { kind: feature.kind(), vertices: feature.vertices(body) }
     }
 }
 
@@ -279,12 +278,6 @@ impl StepCounts {
         let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
         Self { planar_problems, supports, pivots }
     }
-}
-
-/// The translation of the last contact, which its own cast counts backwards.
-pub(crate) fn exit_of(last: &Contact) -> f64 {
-    // Not -0.
-    0.0 - last.translation
 }
 
 /// Without -0.

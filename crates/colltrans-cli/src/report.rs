@@ -4,13 +4,13 @@ use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Steps, WhyFree,
+    Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Steps, WhyFree,
 };
 
 use crate::cast::Asked;
 use crate::excess::Excess;
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
-use crate::record::{FeatureRecord, Hulls, Name, Record, exit_of, solver_name};
+use crate::record::{FeatureRecord, Hulls, Name, Record, solver_name};
 
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;
@@ -45,25 +45,26 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
     match answer {
         Clearance::Blocked { distance, contact: first } => {
             text.push_str("blocked\n");
-            let touch = first.translation.abs() <= first.certificate.tolerance;
+            let touch = first.translation.abs() <= first.certificate.rounding;
             let remark = if touch { " (the bodies touch)" } else { "" };
-            let free = along(first.translation.max(0.0), first.certificate.tolerance, direction);
-            line(&mut text, "free", &format!("{free}{remark}"));
-            line(&mut text, "certain", &times(*distance));
+            let [far, length] = safe(Some(*distance), direction);
+            let far = format!("{far} times the direction, a length of {length}{remark}");
+            line(&mut text, "distance", &far);
+            let translation = along(first.translation, first.certificate.rounding, direction);
+            line(&mut text, "translation", &translation);
             contact(&mut text, first, record, direction);
         }
         Clearance::Free(WhyFree::Slides(grazing)) => {
             text.push_str("slides: free, the bodies slide along each other\n");
             overlap(&mut text, grazing);
             let first = &grazing.contact;
-            let translation = along(first.translation, first.certificate.tolerance, direction);
+            let translation = along(first.translation, first.certificate.rounding, direction);
             line(&mut text, "translation", &translation);
             contact(&mut text, first, record, direction);
         }
         Clearance::Free(WhyFree::Behind(last)) => {
             text.push_str("behind: free, the bodies only meet behind\n");
-            let exit = along(exit_of(last), last.certificate.tolerance, direction);
-            line(&mut text, "last contact", &exit);
+            line(&mut text, "last contact", &exit(last, direction));
         }
         Clearance::Free(WhyFree::Separated(answer)) => {
             text.push_str("separated: free, the bodies never meet along this direction\n");
@@ -73,9 +74,9 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
             text.push_str("overlapping: the bodies overlap now\n");
             // The last contact is the first one of the way back.
             for (name, contact, way) in [("free after", first, "back"), ("or after", last, "on")] {
-                let far = along(-contact.translation, contact.certificate.tolerance, direction);
-                line(&mut text, name, &format!("{far}, {way}"));
-                line(&mut text, "certain", &times(-contact.certificate.lower));
+                line(&mut text, name, &format!("{}, {way}", times(-contact.certificate.lower)));
+                let far = along(-contact.translation, contact.certificate.rounding, direction);
+                line(&mut text, "", &format!("best estimate {far}"));
             }
         }
     }
@@ -85,13 +86,13 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
 
 /// One line of a scan, under [`scan_head`].
 pub(crate) fn scan_line(record: &Record, asked: Asked, direction: DVec3) -> String {
-    let (length, error) = (direction.length(), record.tolerance.unwrap_or_default());
+    let (length, error) = (direction.length(), record.rounding.unwrap_or_default());
     let mut columns = vec![record.outcome.text().to_owned()];
     match (record.outcome, asked) {
         (Name::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
         (_, Asked::Clearance) => columns.extend(safe(record.distance, direction)),
         (_, Asked::Contact) => columns.extend(match record.translation {
-            Some(t) => [known(t, error), known(t * length, error * length)],
+            Some(Bounded { value: t, .. }) => [known(t, error), known(t * length, error * length)],
             None => ["-", "-"].map(str::to_owned),
         }),
     }
@@ -141,6 +142,25 @@ pub(crate) fn along(t: f64, error: f64, direction: DVec3) -> String {
     format!("{} times the direction, a length of {shown}", known(t, error))
 }
 
+/// A translation that is safe, and its length: with the digits that are known, where such a number is
+/// still safe for the shrunk bodies; else the proven one with all its digits.
+pub(crate) fn safely(t: f64, error: f64, [lower, limit]: [f64; 2], direction: DVec3) -> String {
+    let length = direction.length();
+    let shown = [known(t, error), known(t * length, error * length)];
+    let most = [limit, (1.0 - 4.0 * f64::EPSILON) * limit * length];
+    let is_safe = |(text, most): (&String, f64)| text.parse::<f64>().is_ok_and(|t| t <= most);
+    let all = shown.iter().zip(most).all(is_safe);
+    let [far, length] = if all { shown } else { safe(Some(lower), direction) };
+    format!("{far} times the direction, a length of {length}")
+}
+
+/// Where bodies meet last, and from where on they certainly do no more.
+fn exit(last: &Contact, direction: DVec3) -> String {
+    let Bounded { value, upper, .. } = last.exit();
+    let shown = along(value, last.certificate.rounding, direction);
+    format!("{shown}; never after {}", number(upper))
+}
+
 /// A proven bound, with all its digits.
 pub(crate) fn times(t: f64) -> String {
     format!("{} times the direction", number(t))
@@ -151,12 +171,12 @@ fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
     let remark = match (ContactRange::Contact { first: *first, last: *last }).clearance() {
         Clearance::Free(WhyFree::Behind(_)) => " (the contact lies behind)",
         Clearance::Overlapping(_) => " (the bodies overlap now)",
-        _ if first.translation.abs() <= first.certificate.tolerance => " (the bodies touch)",
+        _ if first.translation.abs() <= first.certificate.rounding => " (the bodies touch)",
         _ => "",
     };
-    let translation = along(first.translation, first.certificate.tolerance, direction);
+    let translation = along(first.translation, first.certificate.rounding, direction);
     line(text, "translation", &format!("{translation}{remark}"));
-    line(text, "exit", &along(exit_of(last), last.certificate.tolerance, direction));
+    line(text, "exit", &exit(last, direction));
 }
 
 fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3) {
@@ -164,7 +184,7 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
     line(text, "normal", &unit_vector(first.normal));
     if let Some(point) = record.point {
         let point = DVec3::from_array(point);
-        line(text, "point", &known_vector(point, proof.tolerance * direction.length()));
+        line(text, "point", &known_vector(point, proof.rounding * direction.length()));
     }
     if let Some(features) = &record.features {
         line(text, "moving", &feature(&features.moving));
@@ -176,7 +196,7 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
             number(proof.lower),
             number(proof.upper),
             about(proof.gap()),
-            about(proof.tolerance)
+            about(proof.rounding)
         )
     } else {
         format!("at least {}; whether they touch is beyond rounding", number(proof.lower))
@@ -259,7 +279,8 @@ pub(crate) fn line(text: &mut String, name: &str, value: &str) {
     let _ = writeln!(text, "  {name:<12} {value}");
 }
 
-fn feature(feature: &FeatureRecord) -> String {
+/// A feature by its vertices, a few of them where there are many.
+pub(crate) fn feature(feature: &FeatureRecord) -> String {
     let count = feature.vertices.len();
     let mut text = feature.kind.to_owned();
     if count != 1 {

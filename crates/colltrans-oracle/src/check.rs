@@ -276,7 +276,7 @@ impl<'a> Judge<'a> {
     #[expect(clippy::unused_self, reason = "reads like its siblings")]
     fn agrees(&self, contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
         Self::not_below(contact, truth)?;
-        let Certificate { upper, tolerance, .. } = contact.certificate;
+        let Certificate { upper, rounding, .. } = contact.certificate;
         require!(
             upper == f64::INFINITY || *truth <= Ratio::from_f64(upper),
             "upper bound {upper:e} is less than the true value {:e}",
@@ -284,8 +284,8 @@ impl<'a> Judge<'a> {
         );
         let error = Ratio::from_f64(contact.translation).minus(truth);
         require!(
-            error.is_within(tolerance),
-            "translation {:e}, true value {:e}, off by {:e} (tolerated: {tolerance:e})",
+            error.is_within(rounding),
+            "translation {:e}, true value {:e}, off by {:e} (tolerated: {rounding:e})",
             contact.translation,
             truth.to_f64(),
             error.to_f64()
@@ -298,7 +298,7 @@ impl<'a> Judge<'a> {
     /// for the slope of their faces at the rim to say.
     fn not_later(contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
         Self::not_below(contact, truth)?;
-        let tolerance = contact.certificate.tolerance;
+        let tolerance = contact.certificate.rounding;
         let late = Ratio::from_f64(contact.translation).minus(truth);
         require!(
             late.is_within(tolerance) || contact.translation < truth.to_f64(),
@@ -348,7 +348,7 @@ impl<'a> Judge<'a> {
         translation: f64,
         roundings: f64,
     ) -> Result<Proof, Objection> {
-        let Certificate { normal, lower, upper, tolerance, .. } = *certificate;
+        let Certificate { normal, lower, upper, rounding: tolerance, .. } = *certificate;
         require!(is_unit(normal), "the normal {normal} is no unit vector");
         let normal = Vector::new(normal);
         let along = normal.dot(&self.scene.direction);
@@ -488,7 +488,7 @@ impl<'a> Judge<'a> {
         let miss = self.across(&q.minus(&moved), &contact.certificate);
         require!(miss <= tolerance, "the witness points miss each other by {miss:e}");
         // The points are those of the upper bound, the plane is that of the lower one.
-        let gap = contact.certificate.gap().min(contact.certificate.tolerance);
+        let gap = contact.certificate.gap().min(contact.certificate.rounding);
         let off_plane = tolerance + gap * normal.dot(self.scene.direction.to_f64());
         let normal = Vector::new(normal);
         let below = |points: &[Vector], sign: f64, at: &Vector| {
@@ -524,7 +524,7 @@ impl<'a> Judge<'a> {
         let top = points.iter().map(|v| normal.dot(v)).max().expect("a body has a point");
         // A body's own faces are flat up to what its hull states.
         let tolerance = (TWO_ROUNDINGS + 1.0) * self.scene.noise + 2.0 * body.hull_error();
-        for vertex in feature.vertices(body) {
+        for vertex in feature.own_vertices(body) {
             let depth = (&top - &normal.dot(&points[vertex as usize])).to_f64();
             require!(
                 depth <= tolerance,
@@ -594,7 +594,7 @@ pub fn same(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
         _ => return Err(Objection(format!("{} and {}", kind(first), kind(second)))),
     };
     let (error, tolerance) =
-        ((a.translation - b.translation).abs(), a.certificate.tolerance + b.certificate.tolerance);
+        ((a.translation - b.translation).abs(), a.certificate.rounding + b.certificate.rounding);
     require!(
         error <= tolerance,
         "translations {:e} and {:e}, {error:e} apart (tolerated: {tolerance:e})",
@@ -643,10 +643,10 @@ mod tests {
     fn changed_contacts_are_refused() {
         type Change = fn(&mut Contact);
         let changes: [(&str, Change); 8] = [
-            ("later", |c| c.translation += 4.0 * c.certificate.tolerance),
-            ("earlier", |c| c.translation -= 4.0 * c.certificate.tolerance),
-            ("lower bound", |c| c.certificate.lower += 4.0 * c.certificate.tolerance),
-            ("upper bound", |c| c.certificate.upper -= 100.0 * c.certificate.tolerance),
+            ("later", |c| c.translation += 4.0 * c.certificate.rounding),
+            ("earlier", |c| c.translation -= 4.0 * c.certificate.rounding),
+            ("lower bound", |c| c.certificate.lower += 4.0 * c.certificate.rounding),
+            ("upper bound", |c| c.certificate.upper -= 100.0 * c.certificate.rounding),
             ("turned normal", |c| {
                 let aside = c.normal.any_orthonormal_vector();
                 c.normal = (c.normal + aside * 1e-3).normalize();

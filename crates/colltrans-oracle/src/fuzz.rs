@@ -12,6 +12,7 @@ use glam::{DQuat, DVec3};
 
 use crate::input;
 use crate::settings::{Bodies, Setting};
+use crate::solids::encloses;
 use crate::solids::facets::{rule, triangles};
 use crate::solids::proof::{MOST_PAIRS, approve};
 use crate::tracked::{Finding, Lanes};
@@ -189,12 +190,14 @@ pub fn solids(bytes: &[u8]) {
         triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
     };
     let right = rule(&placed(&a, &s), &placed(&b, &t), direction).stop;
-    let right = right.map(|r| r.to_f64());
     match (&answer, right) {
         (Clearance::Free(_), None) => {}
-        (Clearance::Blocked { distance, .. }, Some(right)) if (distance - right).abs() <= slack => {
+        (Clearance::Blocked { contact, .. }, Some(right))
+            if (contact.translation.value - right.to_f64()).abs() <= slack
+                && encloses(&contact.translation, &right) => {}
+        (found, right) => {
+            panic!("{found:?}, by the rule {:?}", right.map(|right| right.to_f64()))
         }
-        (found, right) => panic!("{found:?}, by the rule {right:?}"),
     }
 }
 

@@ -175,7 +175,7 @@ fn verify(judge: &Judge, answer: &Outcome) -> Result<(), Objection> {
         Outcome::Contact(Contact { certificate, .. })
         | Outcome::Grazing(Grazing { contact: Contact { certificate, .. }, .. }) => {
             judge.cast.verify(certificate).map_err(refused)?;
-            let (gap, tolerance) = (certificate.gap(), certificate.tolerance);
+            let (gap, tolerance) = (certificate.gap(), certificate.rounding);
             if gap <= tolerance || matches!(answer, Outcome::Grazing(_)) {
                 Ok(())
             } else {

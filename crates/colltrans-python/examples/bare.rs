@@ -42,7 +42,7 @@ fn casts(
                 contact.translation,
                 proof.lower,
                 proof.upper,
-                proof.tolerance,
+                proof.rounding,
                 0.0,
             ]);
         }

@@ -45,7 +45,7 @@ impl Certificate {
     /// float: What rounding alone can make of the gap.
     #[getter]
     fn tolerance(&self) -> f64 {
-        self.proof.tolerance
+        self.proof.rounding
     }
 
     /// ndarray of shape (3,): Unit normal of the supporting plane, in the world.

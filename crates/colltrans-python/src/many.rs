@@ -145,7 +145,7 @@ impl Row {
         row.with(TRANSLATION, first.translation)
             .with(LOWER, proof.lower)
             .with(UPPER, proof.upper)
-            .with(TOLERANCE, proof.tolerance)
+            .with(TOLERANCE, proof.rounding)
     }
 
     fn separated(outcome: u8, separated: &colltrans::Separated) -> Self {
@@ -161,7 +161,7 @@ impl Row {
             }
             // The last contact is the first one of the way back, whose bounds are not this way's.
             Clearance::Free(WhyFree::Behind(last)) => Self {
-                numbers: Self::NONE.with(TOLERANCE, last.certificate.tolerance).numbers,
+                numbers: Self::NONE.with(TOLERANCE, last.certificate.rounding).numbers,
                 ..Self::of(2, last, &cast.reversed())
             }
             .with(EXIT, 0.0 - last.translation),

@@ -225,7 +225,7 @@ fn pair_of([moving, fixed]: [u32; 2]) -> VertexPair {
 }
 
 pub(crate) fn proof_parts(proof: &colltrans::Certificate) -> Proof {
-    let bounds = [proof.lower, proof.upper, proof.tolerance];
+    let bounds = [proof.lower, proof.upper, proof.rounding];
     let pairs = proof.pairs.map(|pair| [pair.moving, pair.fixed]);
     (proof.normal.to_array(), bounds, pairs, proof.weights)
 }

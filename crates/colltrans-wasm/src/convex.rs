@@ -55,7 +55,7 @@ fn touch(contact: &Contact, cast: &Cast) -> Value {
             "upper": proof.upper,
             "pairs": proof.pairs.map(|pair| [pair.moving, pair.fixed]),
             "weights": proof.weights,
-            "tolerance": proof.tolerance,
+            "tolerance": proof.rounding,
         },
     })
 }

@@ -38,7 +38,7 @@
 //! assert_eq!((features.moving.kind(), features.fixed.kind()), ("vertex", "face"));
 //!
 //! // The proof: checked against the two bodies alone.
-//! assert!(cast.verify(&contact.certificate)? <= contact.certificate.tolerance);
+//! assert!(cast.verify(&contact.certificate)? <= contact.certificate.rounding);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -94,7 +94,7 @@
 //! its body frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise*
 //! `32 u S`, with `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two
 //! points. The bounds differ by at most 15 noises, and what a body may reach beyond a support point
-//! that was found by climbing, divided by `n . d` ([`Certificate::tolerance`]); if they do not come
+//! that was found by climbing, divided by `n . d` ([`Certificate::rounding`]); if they do not come
 //! that close, the query returns [`QueryError::NotConverged`], never a number. A displacement of both
 //! bodies together costs the translation nothing. The same input gives the same bits on every run,
 //! thread and platform.
@@ -127,7 +127,7 @@ mod tracker;
 mod work;
 
 pub use answer::{
-    Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
+    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
     Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver, StartedFrom, Steps,
     WhyFree,
 };

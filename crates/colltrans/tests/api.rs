@@ -292,7 +292,7 @@ fn tampered_certificates_are_refused() {
         assert!(verify(&Certificate { lower: bad, ..good }).is_err());
         // An infinite upper bound claims nothing.
         assert_eq!(verify(&Certificate { upper: bad, ..good }).is_ok(), bad == f64::INFINITY);
-        assert!(verify(&Certificate { tolerance: bad, ..good }).is_err());
+        assert!(verify(&Certificate { rounding: bad, ..good }).is_err());
         assert!(verify(&Certificate { normal: DVec3::splat(bad), ..good }).is_err());
         assert!(verify(&Certificate { weights: [bad, 0.0, 0.0], ..good }).is_err());
     }
@@ -309,9 +309,9 @@ fn tampered_certificates_are_refused() {
         let refused = verify(&Certificate { upper: lie, ..good }).unwrap_err();
         assert!(matches!(refused, CertificateError::Bound { .. }), "{refused}");
     }
-    for lie in [-1e-15, -1.0, 100.0 * good.tolerance] {
-        let refused = verify(&Certificate { tolerance: lie, ..good }).unwrap_err();
-        assert!(matches!(refused, CertificateError::Tolerance { .. }), "{refused}");
+    for lie in [-1e-15, -1.0, 100.0 * good.rounding] {
+        let refused = verify(&Certificate { rounding: lie, ..good }).unwrap_err();
+        assert!(matches!(refused, CertificateError::Rounding { .. }), "{refused}");
     }
     let mut pairs = good.pairs;
     pairs[0].fixed = 99;

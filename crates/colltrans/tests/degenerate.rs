@@ -83,7 +83,7 @@ fn point_onto_solid() {
     let cube = cuboid(DVec3::ONE);
     let hit = cast(&POINT, &cube, DVec3::new(0.25, 0.5, 4.0), DVec3::Z);
     let Outcome::Contact(contact) = hit else { panic!("{hit:?}") };
-    assert!((contact.translation - 3.0).abs() <= contact.certificate.tolerance);
+    assert!((contact.translation - 3.0).abs() <= contact.certificate.rounding);
     let kinds = touching(&POINT, &cube, DVec3::new(0.25, 0.5, 4.0));
     assert_eq!(kinds, ["vertex", "face"]);
 }
@@ -92,7 +92,7 @@ fn point_onto_solid() {
 fn crossing_segments() {
     let hit = cast(&SEGMENT, &CROSSING, DVec3::new(0.25, 0.5, 2.0), DVec3::Z);
     let Outcome::Contact(contact) = hit else { panic!("{hit:?}") };
-    assert!((contact.translation - 2.0).abs() <= contact.certificate.tolerance);
+    assert!((contact.translation - 2.0).abs() <= contact.certificate.rounding);
     assert_eq!(touching(&SEGMENT, &CROSSING, DVec3::new(0.25, 0.5, 2.0)), ["edge", "edge"]);
     let miss = cast(&SEGMENT, &CROSSING, DVec3::new(1.25, 0.5, 2.0), DVec3::Z);
     assert!(matches!(miss, Outcome::Separated(_)), "{miss:?}");
@@ -114,12 +114,12 @@ fn parallel_and_collinear_segments() {
 fn triangles_edge_on_and_face_on() {
     let face_on = cast(&TRIANGLE, &TRIANGLE, DVec3::new(0.1, 0.1, 2.0), DVec3::Z);
     let Outcome::Contact(contact) = face_on else { panic!("{face_on:?}") };
-    assert!((contact.translation - 2.0).abs() <= contact.certificate.tolerance);
+    assert!((contact.translation - 2.0).abs() <= contact.certificate.rounding);
     let edge_on = cast(&TRIANGLE, &TRIANGLE, DVec3::new(0.0, 4.0, 0.0), DVec3::Y);
     assert!(matches!(edge_on, Outcome::Grazing(_)), "{edge_on:?}");
     let knife = cast(&TRIANGLE, &cuboid(DVec3::ONE), DVec3::new(0.0, 4.0, 0.0), DVec3::Y);
     let Outcome::Contact(contact) = knife else { panic!("{knife:?}") };
-    assert!((contact.translation - 2.0).abs() <= contact.certificate.tolerance);
+    assert!((contact.translation - 2.0).abs() <= contact.certificate.rounding);
 }
 
 /// Slabs that become thinner and thinner until they are flat.

@@ -85,7 +85,7 @@ impl Hash {
         let proof = &contact.certificate;
         self.number(contact.translation);
         self.vector(contact.normal);
-        for x in [proof.lower, proof.upper, proof.tolerance] {
+        for x in [proof.lower, proof.upper, proof.rounding] {
             self.number(x);
         }
         for weight in proof.weights {
@@ -99,7 +99,7 @@ impl Hash {
         self.vector(points.on_fixed);
         let features = contact.features(cast);
         for (feature, body) in [(features.moving, cast.moving()), (features.fixed, cast.fixed())] {
-            for vertex in feature.vertices(body) {
+            for vertex in feature.own_vertices(body) {
                 self.bits(vertex.into());
             }
         }
@@ -185,9 +185,9 @@ fn solids(family: &str) -> u64 {
             let cast = cast.with_tolerance(tolerance).expect("a tolerance");
             match cast.clearance() {
                 Clearance::Free(_) => hash.bits(0),
-                Clearance::Blocked { distance, contact } => {
-                    hash.number(distance);
-                    hash.number(contact.nominal);
+                Clearance::Blocked { contact, .. } => {
+                    hash.number(contact.shrunk_distance.value);
+                    hash.number(contact.translation.value);
                     hash.vector(contact.normal);
                 }
                 Clearance::Overlapping(overlap) => hash.number(overlap.depth.unwrap_or(-1.0)),

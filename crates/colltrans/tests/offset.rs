@@ -294,7 +294,7 @@ proptest! {
                 Clearance::Blocked { distance, contact },
                 Clearance::Blocked { distance: other, .. },
             ) => {
-                let both = contact.certificate.tolerance + 1e-9;
+                let both = contact.certificate.rounding + 1e-9;
                 prop_assert!((distance - other).abs() < both, "{distance} and {other}");
             }
             (Clearance::Free(_), Clearance::Free(_)) => (),

@@ -25,7 +25,7 @@ fn scene(setting: &Setting, bodies: &Bodies) -> Scene {
 /// Translation and tolerance, if the bodies meet.
 fn value(outcome: &Outcome) -> Option<(f64, f64)> {
     match outcome {
-        Outcome::Contact(contact) => Some((contact.translation, contact.certificate.tolerance)),
+        Outcome::Contact(contact) => Some((contact.translation, contact.certificate.rounding)),
         Outcome::Grazing(_) | Outcome::Separated(_) => None,
     }
 }
@@ -120,7 +120,7 @@ proptest! {
                 let error = (s.translation - t.translation).abs();
                 // A tie at an edge of the shadow may fall to the face beyond the edge.
                 let jump = sideways_overlap(&a).to_f64() <= rounding;
-                let tolerance = s.certificate.tolerance + t.certificate.tolerance + rounding / along;
+                let tolerance = s.certificate.rounding + t.certificate.rounding + rounding / along;
                 prop_assert!(jump || error <= tolerance, "{setting}: {error:e} > {tolerance:e}");
             }
             (s, t) if std::mem::discriminant(&s) == std::mem::discriminant(&t) => {}
@@ -146,7 +146,7 @@ proptest! {
         let size = scene(&setting, &bodies).size + setting.direction.length() * found.translation.abs()
             + setting.moving_pose.translation().length();
         let rounding = 64.0 * f64::EPSILON * size / found.normal.dot(setting.direction);
-        prop_assume!(step > 4.0 * (found.certificate.tolerance + rounding));
+        prop_assume!(step > 4.0 * (found.certificate.rounding + rounding));
         let meets = |t: f64| {
             let there = Setting { moving_pose: advanced(&setting, t), ..setting.clone() };
             there.query(&bodies).and_then(|cast| cast.intersects()).map(|found| found.meets)

@@ -71,7 +71,7 @@ fn cubes_without_a_gap_graze() {
     let world = Pose::IDENTITY;
     let outcome = colltrans::cast(&cube, &pose, &cube, &world, DVec3::X).expect("an answer");
     let Outcome::Grazing(grazing) = outcome else { panic!("{outcome:?}") };
-    assert!((grazing.contact.translation - 2.0).abs() <= grazing.contact.certificate.tolerance);
+    assert!((grazing.contact.translation - 2.0).abs() <= grazing.contact.certificate.rounding);
     assert!(grazing.separating_direction.distance(DVec3::NEG_Y) < 1e-12);
     let cast = Cast::new(cube.at(pose), cube.at(world), DVec3::X).expect("a query");
     assert_eq!(cast.clearance(), Ok(Clearance::Free(WhyFree::Slides(grazing))));

@@ -1,7 +1,7 @@
 //! Solids in the situations that people have names for.
 
 use colltrans::{
-    Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
+    Bounded, Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
     SolidOverlap, StartOverlap,
 };
 use colltrans_kit::shapes::Mesh;
@@ -26,9 +26,10 @@ fn with_tolerance(cast: Cast<'_, Solid>, tolerance: f64) -> Cast<'_, Solid> {
     cast.with_tolerance(tolerance).expect("a tolerance")
 }
 
+/// Of the shrunk bodies.
 fn distance(cast: &Cast<Solid>) -> f64 {
     match cast.clearance() {
-        Clearance::Blocked { distance, .. } => distance,
+        Clearance::Blocked { contact, .. } => contact.shrunk_distance.value,
         other => panic!("{other:?}"),
     }
 }
@@ -51,7 +52,10 @@ fn pins_in_holes_of_one_radius() {
             // Prisms of the same sides have no shadows in common; others are out after 3.
             match out.exit() {
                 None => assert_eq!(pin_sides, hole_sides),
-                Some(exit) => assert!((exit - 3.0).abs() < 1e-12, "{exit}"),
+                Some(exit) => {
+                    assert!((exit.value - 3.0).abs() < 1e-12, "{exit:?}");
+                    assert!(exit.lower <= 3.0 && 3.0 <= exit.upper, "{exit:?}");
+                }
             }
         }
         let aside = with_tolerance(cast(&pin, &plate, DVec3::X), 2.0 * fit);
@@ -73,9 +77,13 @@ fn a_bolt_whose_head_stops_at_seven() {
     let Clearance::Blocked { distance, contact } = in_hole.clearance() else {
         panic!("{:?}", in_hole.clearance())
     };
-    let nominal = contact.nominal;
-    assert!((nominal - 7.0).abs() < 1e-9, "{nominal}");
-    assert!((distance - 7.0 - fit).abs() < 1e-9, "the shrunk bodies meet later: {distance}");
+    assert!(distance <= 7.0 && 7.0 - distance < 1e-12, "safe to move by: {distance}");
+    let Bounded { value, lower, upper } = contact.translation;
+    assert!((value - 7.0).abs() < 1e-12, "{value}");
+    assert!(lower == distance && upper >= 7.0 && upper - lower < 1e-12, "{contact:?}");
+    let shrunk = contact.shrunk_distance;
+    assert!((shrunk.value - 7.0 - fit).abs() < 1e-9, "the shrunk bodies meet later: {shrunk:?}");
+    assert!(shrunk.upper - shrunk.lower < 1e-12, "{shrunk:?}");
     assert_eq!(contact.normal, DVec3::NEG_Z);
     assert!((in_hole.depth().expect("slivers overlap") - fit).abs() < fit);
 }
@@ -155,7 +163,7 @@ fn a_blind_press_fit() {
     let Clearance::Blocked { contact, .. } = tolerated(DVec3::NEG_Z).clearance() else {
         panic!("the bottom")
     };
-    assert!((contact.nominal - 1.0).abs() < 1e-9, "{contact:?}");
+    assert!((contact.translation.value - 1.0).abs() < 1e-9, "{contact:?}");
     // Ignored, the overlap does not hide the bottom either.
     let ignore = SolidOptions { start_overlap: StartOverlap::Ignore, ..SolidOptions::default() };
     let ignoring = press(DVec3::NEG_Z).with_options(ignore).expect("choices");
@@ -172,7 +180,9 @@ fn a_part_sealed_in_a_cavity() {
     let part = cuboid([-0.5; 3], [0.5; 3]);
     assert_eq!(distance(&cast(&part, &hollow, DVec3::X)), 1.5);
     assert!(!cast(&part, &hollow, DVec3::X).overlaps());
-    assert_eq!(cast(&part, &hollow, DVec3::X).exit(), Some(3.5));
+    let exit = cast(&part, &hollow, DVec3::X).exit().expect("walls behind");
+    assert_eq!(exit.value, 3.5);
+    assert!(exit.lower < 3.5 && 3.5 < exit.upper && exit.upper - exit.lower < 1e-12, "{exit:?}");
 }
 
 #[test]
@@ -421,8 +431,8 @@ fn a_zero_clearance_slide_of_100_000_facets() {
         };
         assert!(ask(DVec3::X).is_free(), "{rotation}");
         assert!(ask(DVec3::Z).is_free(), "{rotation}");
-        let Clearance::Blocked { distance, .. } = ask(DVec3::Y) else { panic!("{rotation}") };
-        assert!(distance < 1e-12, "{distance}");
+        let Clearance::Blocked { contact, .. } = ask(DVec3::Y) else { panic!("{rotation}") };
+        assert!(contact.shrunk_distance.upper < 1e-11, "{contact:?}");
     }
 }
 
@@ -455,7 +465,7 @@ fn answers_do_not_depend_on_order_subdivision_or_displacement() {
         let pose = Pose::from_translation(by).expect("in range");
         let cast = Cast::new(a.at(pose), b.at(pose), direction).expect("a direction");
         match cast.clearance() {
-            Clearance::Blocked { distance, .. } => Some(distance),
+            Clearance::Blocked { contact, .. } => Some(contact.translation.value),
             Clearance::Free(_) => None,
             Clearance::Overlapping(_) => panic!("apart"),
         }

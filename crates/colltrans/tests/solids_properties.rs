@@ -17,7 +17,7 @@ fn solid((vertices, facets): &Mesh) -> Solid {
     Solid::from_mesh(vertices, facets).expect("a closed mesh")
 }
 
-/// What was answered, with numbers: an overlap, a distance, nothing.
+/// What was answered, with numbers: an overlap, a distance (of the shrunk bodies), nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Said {
     Overlapping,
@@ -29,7 +29,7 @@ fn said(answer: &Clearance<Solid>) -> Said {
     match answer {
         Clearance::Overlapping(_) => Said::Overlapping,
         Clearance::Free(_) => Said::Free,
-        Clearance::Blocked { distance, .. } => Said::At(*distance),
+        Clearance::Blocked { contact, .. } => Said::At(contact.shrunk_distance.value),
     }
 }
 
@@ -173,12 +173,13 @@ proptest! {
             let is_sliver = !matches!(shrunk, Said::At(s) if s < t + 1e-7 * (1.0 + t));
             prop_assert!(is_sliver || ask_from(t + 1e-6 * (1.0 + t)).overlaps());
         }
-        let exit = here.exit().map_or(0.0, |t| t + 1e-6 * (1.0 + t));
+        let exit = here.exit().map_or(0.0, |exit| exit.upper * (1.0 + 1e-15));
         let beyond = slightly_shrunk(ask_from(exit)).clearance();
         prop_assert!(beyond.is_free(), "{exit}: {beyond:?}");
     }
 
-    /// With a tolerance a body goes no shorter way, and the nominal distance is not beyond.
+    /// With a tolerance the shrunk bodies go no shorter way; what is said of the bodies as they are is
+    /// not beyond that, and its bounds are in order.
     #[test]
     fn a_tolerance_lengthens_the_way(setting in any_setting(), tolerance in 1e-6..1e-2_f64) {
         let [a, b] = [solid(&setting.surfaces[0]), solid(&setting.surfaces[1])];
@@ -191,8 +192,13 @@ proptest! {
             (said(&cast.clearance()), &shrunk)
         {
             // A vertex that stays leaves sloping facets around it, which are not inside the body.
-            prop_assert!(stuck || *distance >= t - 1e-11, "{distance} < {t}");
-            prop_assert!(contact.nominal <= *distance + 1e-11);
+            let (place, shrunk) = (contact.translation, contact.shrunk_distance);
+            prop_assert!(stuck || shrunk.value >= t - 1e-11, "{shrunk:?} < {t}");
+            for found in [place, shrunk] {
+                prop_assert!(found.lower <= found.value && found.value <= found.upper, "{found:?}");
+            }
+            prop_assert!(place.lower <= shrunk.lower && place.upper <= shrunk.upper, "{contact:?}");
+            prop_assert_eq!(*distance, place.lower.max(0.0));
         }
     }
 

@@ -116,7 +116,7 @@ fn clearances_agree(setting: &Setting, bodies: &Bodies, a: &Clearance, b: &Clear
 fn tolerance_of(setting: &Setting, sign: f64, bodies: &Bodies) -> f64 {
     let aimed = Setting { direction: setting.direction * sign, ..setting.clone() };
     match aimed.cast(bodies, Solver::Auto) {
-        Ok(Outcome::Contact(contact)) => contact.certificate.tolerance,
+        Ok(Outcome::Contact(contact)) => contact.certificate.rounding,
         _ => 0.0,
     }
 }

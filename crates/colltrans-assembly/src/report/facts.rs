@@ -4,6 +4,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 
 use super::Findings;
+use crate::bodies::Fit;
 use crate::rooms::PartRoom;
 
 /// All findings; `docs/assemblies.md` describes the fields.
@@ -40,10 +41,14 @@ pub fn json(f: &Findings) -> Value {
             json!({ "parts": l.parts.map(name), "area": l.area(), "center": center })
         })
         .collect();
+    let (fit, length) = match f.bodies.fit() {
+        Fit::Tolerance(length) => ("tolerance", length),
+        Fit::Apart(length) => ("keep_apart", length),
+    };
     json!({
         "parts": parts,
         "unit": assembly.unit(),
-        "tolerance": f.bodies.fit().tolerance(),
+        fit: length,
         "overlaps": overlaps,
         "suggested_tolerance": f.start.suggested,
         "liaisons": touching,
@@ -79,7 +84,12 @@ fn room(f: &Findings, part: usize, d: DVec3, room: &PartRoom) -> Value {
         "by": room.by().map(name),
     });
     if let PartRoom::Blocked { stop, .. } = room {
-        entry["nominal"] = json!(stop.nominal);
+        let name = match f.bodies.fit() {
+            Fit::Tolerance(_) => "shrunk_distance",
+            Fit::Apart(_) => "grown_distance",
+        };
+        entry[name] = json!(stop.displaced.value);
+        entry[format!("{name}_bounds")] = json!(stop.displaced.bounds());
         entry["point"] = json!(stop.point.to_array());
         entry["normal"] = json!(stop.normal.to_array());
     }

@@ -57,7 +57,7 @@ fn overview(text: &mut String, f: &Findings) {
     let unit = assembly.unit().map_or(String::new(), |unit| format!(" {unit}"));
     let (tolerance, word) = match f.bodies.fit() {
         crate::Fit::Tolerance(length) => (length, "tolerance"),
-        crate::Fit::Margin(length) => (length, "margin to be kept"),
+        crate::Fit::Apart(length) => (length, "length to keep"),
     };
     let _ = writeln!(
         text,
@@ -263,7 +263,7 @@ fn rooms(text: &mut String, f: &Findings) {
                 PartRoom::Free => "free".into(),
                 PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(by)),
                 PartRoom::Blocked { by, stop, .. } => {
-                    format!("{} {}", short(tidy(stop.nominal, size)), name(by))
+                    format!("{} {}", short(tidy(stop.distance, size)), name(by))
                 }
             };
             let _ = write!(text, "<td class=\"{}\">{cell}</td>", room.outcome());

@@ -253,7 +253,7 @@ impl Table<'_> {
 fn agree(a: &Result<Outcome, QueryError>, b: &Result<Outcome, QueryError>) -> bool {
     match (a, b) {
         (Ok(Outcome::Contact(a)), Ok(Outcome::Contact(b))) => {
-            let tolerance = a.certificate.tolerance.max(b.certificate.tolerance);
+            let tolerance = a.certificate.rounding.max(b.certificate.rounding);
             (a.translation - b.translation).abs() <= tolerance
         }
         (Ok(Outcome::Separated(_)), Ok(Outcome::Separated(_)))

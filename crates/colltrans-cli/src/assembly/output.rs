@@ -83,7 +83,7 @@ fn summary(f: &Findings) -> String {
     let names = |parts: &[usize]| assembly.names(parts).join(", ");
     let fit = match f.bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {length}"),
-        Fit::Margin(length) => format!("margin {length}"),
+        Fit::Apart(length) => format!("{length} to keep apart"),
     };
     let mut text = format!("{} parts, {fit}\n", assembly.parts().len());
     for (k, p) in assembly.parts().iter().enumerate() {

@@ -1,11 +1,11 @@
 //! The answer in words.
 
-use colltrans::Feature;
+use colltrans::Bounded;
 use colltrans::glam::DVec3;
 
 use crate::numbers::{decade, known_vector, number, unit_vector};
 use crate::record::Record;
-use crate::report::{along, line, times};
+use crate::report::{feature, line, safely, times};
 use crate::solid::{Answer, Kind, Overlap, Stop, Touch};
 
 /// Below this many tolerances a body hardly moves: perhaps a fit is tighter than the tolerance.
@@ -28,7 +28,7 @@ pub(super) fn answer(answer: &Answer<'_>, direction: DVec3, is_default: bool) ->
         Kind::Overlapping => text.push_str("overlapping: the bodies overlap now\n"),
     }
     if let Some(exit) = answer.exit {
-        let exit = along(exit, answer.error / direction.length(), direction);
+        let exit = times(exit.upper);
         line(&mut text, "exit", &format!("{exit}; after it they never meet"));
     }
     overlaps(&mut text, answer);
@@ -43,7 +43,7 @@ pub(super) fn answer(answer: &Answer<'_>, direction: DVec3, is_default: bool) ->
 
 /// The heads of the columns of [`scan_line`].
 pub(super) fn scan_head() -> String {
-    columns("direction", ["outcome", "nominal", "distance", "exit"].map(str::to_owned))
+    columns("direction", ["outcome", "distance", "shrunk", "exit"].map(str::to_owned))
 }
 
 /// The answer for one of many directions.
@@ -56,25 +56,29 @@ pub(super) fn scan_line(record: &Record) -> String {
             [record.outcome.text().into(), message.clone(), String::new(), String::new()],
         );
     }
+    let shrunk = record.shrunk_distance.map(|shrunk| shrunk.lower);
+    let exit = record.exit.map(|exit| exit.upper);
     let or_none = |t: Option<f64>| t.map_or_else(|| "-".into(), number);
-    let [nominal, distance, exit] = [record.nominal, record.distance, record.exit].map(or_none);
-    columns(&direction, [record.outcome.text().into(), nominal, distance, exit])
+    let [distance, shrunk, exit] = [record.distance, shrunk, exit].map(or_none);
+    columns(&direction, [record.outcome.text().into(), distance, shrunk, exit])
 }
 
 fn columns(direction: &str, others: [String; 4]) -> String {
-    let [outcome, nominal, distance, exit] = others;
-    let text = format!("{direction:<24} {outcome:<11} {nominal:<19} {distance:<19} {exit}");
+    let [outcome, distance, shrunk, exit] = others;
+    let text = format!("{direction:<24} {outcome:<11} {distance:<19} {shrunk:<19} {exit}");
     text.trim_end().to_owned() + "\n"
 }
 
 fn blocked(text: &mut String, answer: &Answer<'_>, stop: &Stop<'_>, direction: DVec3) {
     let error = answer.error / direction.length();
-    let touch = stop.nominal.abs() <= error;
-    let remark = if touch { " (the parts touch)" } else { "" };
-    // Not the rounding error of a touch.
-    let nominal = if touch { 0.0 } else { stop.nominal };
-    line(text, "nominal", &format!("{}{remark}", along(nominal, error, direction)));
-    line(text, "distance", &format!("{}, of the shrunk bodies", times(stop.distance)));
+    let Bounded { value, lower, upper } = stop.translation;
+    let remark = if value.abs() <= error { " (the parts touch)" } else { "" };
+    let far = safely(value.max(0.0), error, [stop.distance, stop.shrunk.lower], direction);
+    line(text, "distance", &format!("{far}{remark}"));
+    line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+    if answer.tolerance > 0.0 {
+        line(text, "shrunk", &format!("{}, for the shrunk bodies", times(stop.shrunk.lower)));
+    }
     line(text, "moving", &touched(&stop.moving));
     line(text, "fixed", &touched(&stop.fixed));
     line(text, "normal", &unit_vector(stop.normal));
@@ -82,12 +86,7 @@ fn blocked(text: &mut String, answer: &Answer<'_>, stop: &Stop<'_>, direction: D
 }
 
 fn touched(touch: &Touch<'_>) -> String {
-    let feature = match touch.feature {
-        Feature::Vertex(v) => format!("vertex {v}"),
-        Feature::Edge([a, b]) => format!("edge from vertex {a} to {b}"),
-        Feature::Face(f) => format!("face {f}"),
-    };
-    format!("{feature} of {}", touch.file.display())
+    format!("{} of {}", feature(&touch.feature), touch.file.display())
 }
 
 fn overlaps(text: &mut String, answer: &Answer<'_>) {

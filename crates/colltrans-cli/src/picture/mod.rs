@@ -86,9 +86,9 @@ pub(crate) fn draw(scene: &Scene<'_>) -> String {
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
     cast.draw(&mut page, &view, &story, on_page);
-    if let Some(features) = story.features {
-        cast.fixed.mark_hidden(&mut page, features.fixed, FIXED_MARK, on_page);
-        cast.stop.mark_hidden(&mut page, features.moving, MOVING_MARK, on_page);
+    if let Some(marks) = story.marks {
+        cast.fixed.mark_hidden(&mut page, marks.fixed, FIXED_MARK, on_page);
+        cast.stop.mark_hidden(&mut page, marks.moving, MOVING_MARK, on_page);
     }
     page.close_group();
     let notes = Notes { cast: &cast, story: &story, layout: &layout, view: &view };
@@ -142,8 +142,8 @@ impl Cast {
                 draw_start(page);
             }
             self.stop.draw(page, view, &MOVING, on_page);
-            if let Some(features) = story.features {
-                self.stop.mark(page, view, features.moving, MOVING_MARK, on_page);
+            if let Some(marks) = story.marks {
+                self.stop.mark(page, view, marks.moving, MOVING_MARK, on_page);
             }
             if !stop_is_nearer && !is_behind {
                 draw_start(page);
@@ -151,8 +151,8 @@ impl Cast {
         };
         let draw_fixed = |page: &mut Page| {
             self.fixed.draw(page, view, &FIXED, on_page);
-            if let Some(features) = story.features {
-                self.fixed.mark(page, view, features.fixed, FIXED_MARK, on_page);
+            if let Some(marks) = story.marks {
+                self.fixed.mark(page, view, marks.fixed, FIXED_MARK, on_page);
             }
         };
         let draw_plane = |page: &mut Page| {

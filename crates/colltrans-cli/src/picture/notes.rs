@@ -162,7 +162,7 @@ impl Notes<'_> {
     }
 
     fn draw_legend(&self, page: &mut Page, at: DVec2, look: &str) {
-        let Story { touches, margin, features, .. } = self.story;
+        let Story { touches, margin, marks, .. } = self.story;
         let stop = match (touches, margin) {
             (true, _) => "moving, at contact",
             (false, Some(_)) => "moving, beside the fixed one",
@@ -174,7 +174,7 @@ impl Notes<'_> {
         }
         entries.push(("#9db8de", MOVING.line, stop));
         entries.push(("#d9cfbe", FIXED.line, "fixed"));
-        if features.is_some() {
+        if marks.is_some() {
             entries.push(("#ffffff", MOVING_MARK, "contact feature, moving"));
             entries.push(("#ffffff", FIXED_MARK, "contact feature, fixed"));
         }

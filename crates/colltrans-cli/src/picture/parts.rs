@@ -66,23 +66,26 @@ fn story(question: &Question<'_>, answer: &Answer<'_>) -> Story {
         }
         Kind::Blocked(stop) => {
             touching = Some(stop);
-            let [moving, fixed] = [stop.moving.file, stop.fixed.file].map(name);
-            details
-                .push(format!("{moving} touches {fixed}; normal n = {}", components(stop.normal)));
-            format!("Blocked at {}", quantity(nominal(stop, answer), length))
+            let [moving, fixed] = [&stop.moving, &stop.fixed]
+                .map(|touch| format!("{} of {}", touch.feature.kind, name(touch.file)));
+            details.push(format!(
+                "{moving} touches {fixed}; normal n = {}",
+                components(stop.normal)
+            ));
+            format!("Blocked at {}", quantity(place(stop, answer), length))
         }
     };
     let exit =
-        answer.exit.map_or(String::new(), |exit| format!("; exit at {}", quantity(exit, length)));
+        answer.exit.map_or(String::new(), |exit| format!("; exit at {}", quantity(exit.value, length)));
     details.push(format!("tolerance {}{exit}", short(answer.tolerance)));
     Story {
         origin: touching.map_or(question.fixed_pose.translation(), |stop| stop.point),
-        stop: touching.map_or(0.0, |stop| nominal(stop, answer) * length),
+        stop: touching.map_or(0.0, |stop| place(stop, answer) * length),
         normal: touching.map_or(DVec3::ZERO, |stop| stop.normal),
         touches: touching.is_some(),
-        features: None,
+        marks: None,
         margin: None,
-        way: touching.map_or("d".into(), |stop| quantity(nominal(stop, answer), length)),
+        way: touching.map_or("d".into(), |stop| quantity(place(stop, answer), length)),
         headline,
         details,
     }
@@ -93,9 +96,10 @@ fn name(file: &Path) -> String {
     file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Without the rounding error of a touch.
-fn nominal(stop: &Stop<'_>, answer: &Answer<'_>) -> f64 {
-    if stop.nominal.abs() <= answer.error { 0.0 } else { stop.nominal }
+/// Where it stops, without the rounding error of a touch.
+fn place(stop: &Stop<'_>, answer: &Answer<'_>) -> f64 {
+    let place = stop.translation.value;
+    if place.abs() <= answer.error { 0.0 } else { place }
 }
 
 /// Two ends, and the faces at the edge.

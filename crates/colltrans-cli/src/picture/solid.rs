@@ -52,6 +52,24 @@ impl Paint {
     }
 }
 
+/// A feature by the numbers of the body that is drawn.
+#[derive(Clone, Copy)]
+pub(super) enum Mark {
+    Vertex(u32),
+    Edge([u32; 2]),
+    Face(u32),
+}
+
+impl Mark {
+    pub(super) fn of(feature: Feature, body: &ConvexPolyhedron) -> Self {
+        match (feature, &feature.own_vertices(body)[..]) {
+            (Feature::Face(face), _) => Self::Face(face),
+            (Feature::Edge(_), &[a, b]) => Self::Edge([a, b]),
+            (_, vertices) => Self::Vertex(vertices[0]),
+        }
+    }
+}
+
 impl Solid {
     pub(super) fn new(body: &ConvexPolyhedron, pose: &Pose, origin: DVec3) -> Self {
         // The difference of the translations first: it is exact where the bodies are near.
@@ -206,7 +224,7 @@ impl Solid {
         &self,
         page: &mut Page,
         view: &View,
-        feature: Feature,
+        feature: Mark,
         colour: &'static str,
         on_page: impl Fn(DVec3) -> DVec2,
     ) {
@@ -225,7 +243,7 @@ impl Solid {
     pub(super) fn mark_hidden(
         &self,
         page: &mut Page,
-        feature: Feature,
+        feature: Mark,
         colour: &'static str,
         on_page: impl Fn(DVec3) -> DVec2,
     ) {
@@ -237,21 +255,21 @@ impl Solid {
         }
     }
 
-    fn first_vertex(&self, feature: Feature) -> DVec3 {
+    fn first_vertex(&self, feature: Mark) -> DVec3 {
         let vertex = match feature {
-            Feature::Vertex(v) | Feature::Edge([v, _]) => v,
-            Feature::Face(face) => self.faces[face as usize][0],
+            Mark::Vertex(v) | Mark::Edge([v, _]) => v,
+            Mark::Face(face) => self.faces[face as usize][0],
         };
         self.vertices[vertex as usize]
     }
 
     /// The edges of a feature; none of a vertex.
-    fn lines(&self, feature: Feature, on_page: impl Fn(DVec3) -> DVec2) -> Vec<[DVec2; 2]> {
+    fn lines(&self, feature: Mark, on_page: impl Fn(DVec3) -> DVec2) -> Vec<[DVec2; 2]> {
         let line = |a: u32, b: u32| [a, b].map(|v| on_page(self.vertices[v as usize]));
         match feature {
-            Feature::Vertex(_) => Vec::new(),
-            Feature::Edge([a, b]) => vec![line(a, b)],
-            Feature::Face(face) => {
+            Mark::Vertex(_) => Vec::new(),
+            Mark::Edge([a, b]) => vec![line(a, b)],
+            Mark::Face(face) => {
                 let corners = &self.faces[face as usize];
                 corners
                     .iter()
@@ -263,15 +281,15 @@ impl Solid {
     }
 
     /// Whether a face that the feature belongs to looks towards the viewer.
-    fn is_in_front(&self, view: &View, feature: Feature) -> bool {
+    fn is_in_front(&self, view: &View, feature: Mark) -> bool {
         let has = |face: &Vec<u32>| match feature {
-            Feature::Vertex(v) => face.contains(&v),
-            Feature::Edge(ends) => ends.iter().all(|v| face.contains(v)),
-            Feature::Face(_) => false,
+            Mark::Vertex(v) => face.contains(&v),
+            Mark::Edge(ends) => ends.iter().all(|v| face.contains(v)),
+            Mark::Face(_) => false,
         };
         let looks = |area: &DVec3| area.dot(view.toward) > 0.0;
         match feature {
-            Feature::Face(face) => looks(&self.areas[face as usize]),
+            Mark::Face(face) => looks(&self.areas[face as usize]),
             _ if self.faces.is_empty() => true,
             _ => self.faces.iter().zip(&self.areas).any(|(face, area)| looks(area) && has(face)),
         }

@@ -1,11 +1,19 @@
 //! What a picture has to tell, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Clearance, Contact, ContactRange, Feature, Features, Separated, WhyFree};
+use colltrans::{Clearance, Contact, ContactRange, Separated, WhyFree};
 
 use super::size::working_size;
+use super::solid::Mark;
 use super::{Cast, Scene, Solid};
 use crate::numbers::decade;
+
+/// What touches, of either body as it is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Marks {
+    pub(super) moving: Mark,
+    pub(super) fixed: Mark,
+}
 
 /// What is shown and said.
 pub(super) struct Story {
@@ -18,7 +26,7 @@ pub(super) struct Story {
     /// Whether the bodies touch where the moving one stops, which is at the origin.
     pub(super) touches: bool,
     /// What touches there.
-    pub(super) features: Option<Features>,
+    pub(super) marks: Option<Marks>,
     pub(super) margin: Option<f64>,
     /// What the way is labelled with.
     pub(super) way: String,
@@ -60,7 +68,7 @@ impl Story {
         details.push(touch);
         let agreement = if proof.upper.is_finite() {
             // The gap itself changes with the last bits of a search.
-            let within = proof.gap().max(proof.tolerance);
+            let within = proof.gap().max(proof.rounding);
             format!("proven lower and upper bound of t agree to {within:.0e}")
         } else {
             "t is a proven lower bound".into()
@@ -71,7 +79,10 @@ impl Story {
             stop: contact.translation * length,
             normal: contact.normal,
             touches: true,
-            features: Some(features),
+            marks: Some(Marks {
+                moving: Mark::of(features.moving, scene.cast.moving()),
+                fixed: Mark::of(features.fixed, scene.cast.fixed()),
+            }),
             margin: None,
             headline: match (ContactRange::Contact { first: *contact, last: *last }).clearance() {
                 Clearance::Overlapping(_) => {
@@ -100,7 +111,7 @@ impl Story {
             stop: ahead.max(0.0),
             normal,
             touches: false,
-            features: None,
+            marks: None,
             margin: Some(margin),
             way: "d".into(),
             headline: "Separated: the bodies never meet along d".into(),
@@ -115,9 +126,9 @@ impl Story {
     /// The normal, or its opposite where that shows the contact face of the moving body: a face is
     /// seen from its own side, and the body that has only a vertex or an edge there hides less.
     pub(super) fn looked_along(&self) -> DVec3 {
-        let is_face = |feature| matches!(feature, Feature::Face(_));
-        match self.features {
-            Some(f) if is_face(f.moving) && !is_face(f.fixed) => -self.normal,
+        let is_face = |mark| matches!(mark, Mark::Face(_));
+        match self.marks {
+            Some(m) if is_face(m.moving) && !is_face(m.fixed) => -self.normal,
             _ => self.normal,
         }
     }

@@ -5,6 +5,7 @@
 //! them with: the shortest that read back to the same bits. What is rare or holds any text is left to
 //! `serde_json`.
 
+use colltrans::Bounded;
 use serde::Serialize;
 
 use crate::excess::Excess;
@@ -40,21 +41,21 @@ impl Record {
             outcome: _,
             direction,
             distance,
-            nominal,
             back,
             on,
             translation,
+            shrunk_distance,
             exit,
             moving,
             fixed,
             normal,
             point,
-            lower,
-            upper,
+            rounding,
             tolerance,
             start_overlaps,
             features,
             margin,
+            overlap,
             hull,
             solver,
             steps,
@@ -63,21 +64,21 @@ impl Record {
         } = self;
         field(text, r#","direction":"#, *direction, vector);
         field(text, r#","distance":"#, *distance, number);
-        field(text, r#","nominal":"#, *nominal, number);
         field(text, r#","back":"#, *back, number);
         field(text, r#","on":"#, *on, number);
-        field(text, r#","translation":"#, *translation, number);
-        field(text, r#","exit":"#, *exit, number);
+        bounded(text, "translation", *translation);
+        bounded(text, "shrunk_distance", *shrunk_distance);
+        bounded(text, "exit", *exit);
         field(text, r#","moving":"#, moving.as_ref(), any);
         field(text, r#","fixed":"#, fixed.as_ref(), any);
         field(text, r#","normal":"#, *normal, vector);
         field(text, r#","point":"#, *point, vector);
-        field(text, r#","lower":"#, *lower, number);
-        field(text, r#","upper":"#, *upper, number);
+        field(text, r#","rounding":"#, *rounding, number);
         field(text, r#","tolerance":"#, *tolerance, number);
         field(text, r#","start_overlaps":"#, some(start_overlaps), any);
         field(text, r#","features":"#, features.as_ref(), touching);
         field(text, r#","margin":"#, *margin, number);
+        field(text, r#","overlap":"#, *overlap, number);
         field(text, r#","hull":"#, *hull, hulls);
         field(text, r#","solver":"#, *solver, quoted);
         field(text, r#","steps":"#, steps.as_ref(), counts);
@@ -97,6 +98,24 @@ fn field<T>(text: &mut Vec<u8>, name: &str, value: Option<T>, write: impl Fn(&mu
         text.extend_from_slice(name.as_bytes());
         write(text, value);
     }
+}
+
+fn key(text: &mut Vec<u8>, name: &str, end: &[u8]) {
+    text.extend_from_slice(b",\"");
+    text.extend_from_slice(name.as_bytes());
+    text.extend_from_slice(end);
+}
+
+/// A number, and its bounds; `null` where nothing is known.
+fn bounded(text: &mut Vec<u8>, name: &str, value: Option<Bounded>) {
+    let Some(Bounded { value, lower, upper }) = value else { return };
+    key(text, name, b"\":");
+    number(text, value);
+    key(text, name, b"_bounds\":[");
+    number(text, lower);
+    text.push(b',');
+    number(text, upper);
+    text.push(b']');
 }
 
 /// Whatever serde can write.
@@ -193,26 +212,27 @@ mod tests {
     fn full() -> Record {
         let excess = Excess { hull_volume: 0.1, part_volume: None, depth: Some(2.0) };
         let overlap = StartOverlap { moving: Some("a\"b".into()), fixed: None, depth: Some(0.5) };
+        let bounded = |value| Bounded { value, lower: 2.0, upper: f64::INFINITY };
         let feature = |vertices| FeatureRecord { kind: "edge", vertices };
         Record {
             outcome: Name::Blocked,
             direction: Some([1.0, -2.5, 1e-7]),
             distance: Some(1e300),
-            nominal: Some(f64::from_bits(1)),
             back: Some(1.0 / 3.0),
             on: Some(123_456_789.0),
-            translation: Some(-0.0),
-            exit: Some(f64::NAN),
+            translation: Some(bounded(-0.0)),
+            shrunk_distance: Some(bounded(f64::from_bits(1))),
+            exit: Some(bounded(f64::NAN)),
             moving: Some("μ\n".into()),
             fixed: Some("b\\c".into()),
             normal: Some([0.0, 0.6, 0.8]),
             point: Some([1e16, 1e15, 123_456.789]),
-            lower: Some(2.0),
-            upper: Some(f64::INFINITY),
-            tolerance: Some(4.3e-13),
+            rounding: Some(4.3e-13),
+            tolerance: Some(0.1),
             start_overlaps: vec![overlap],
             features: Some(Features { moving: feature(vec![7, 12]), fixed: feature(vec![]) }),
             margin: Some(5.0),
+            overlap: Some(-0.25),
             hull: Hulls::of(Some(excess), Some(Excess { part_volume: Some(3.0), ..excess })),
             solver: Some("portal"),
             steps: Some(StepCounts { planar_problems: 1, supports: 2, pivots: u32::MAX }),
@@ -228,24 +248,27 @@ mod tests {
             "outcome": "blocked",
             "direction": [1.0, -2.5, 1e-7],
             "distance": 1e300,
-            "nominal": f64::from_bits(1),
             "back": 1.0 / 3.0,
             "on": 123_456_789.0,
             "translation": -0.0,
+            "translation_bounds": [2.0, null],
+            "shrunk_distance": f64::from_bits(1),
+            "shrunk_distance_bounds": [2.0, null],
             "exit": null,
+            "exit_bounds": [2.0, null],
             "moving": "μ\n",
             "fixed": "b\\c",
             "normal": [0.0, 0.6, 0.8],
             "point": [1e16, 1e15, 123_456.789],
-            "lower": 2.0,
-            "upper": null,
-            "tolerance": 4.3e-13,
+            "rounding": 4.3e-13,
+            "tolerance": 0.1,
             "start_overlaps": [{"moving": "a\"b", "depth": 0.5}],
             "features": {
                 "moving": {"kind": "edge", "vertices": [7, 12]},
                 "fixed": {"kind": "edge", "vertices": []},
             },
             "margin": 5.0,
+            "overlap": -0.25,
             "hull": {
                 "moving": {"hull_volume": 0.1, "depth": 2.0},
                 "fixed": {"hull_volume": 0.1, "part_volume": 3.0, "depth": 2.0},

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOptions, SolidOverlap,
-    StartOverlap,
+    Bounded, Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOptions,
+    SolidOverlap, StartOverlap,
 };
 
 use super::{Body, Piece};
 use crate::numbers::counted;
+use crate::record::FeatureRecord;
 
 /// Default tolerance, in multiples of the precisions of both files together: both ends of a fit
 /// are off by less than one of them, and a slanting facet makes more of it.
@@ -36,7 +37,7 @@ pub(crate) struct Answer<'a> {
     /// The tolerance that was used, a length.
     pub(crate) tolerance: f64,
     /// The translation after which the bodies never meet; `None` if they never do.
-    pub(crate) exit: Option<f64>,
+    pub(crate) exit: Option<Bounded>,
     /// What overlaps at the start, the deepest first; looked at where it matters.
     pub(crate) overlaps: Vec<Overlap<'a>>,
     /// What could not be shrunk as the tolerance asks for.
@@ -54,10 +55,12 @@ pub(crate) enum Kind<'a> {
 
 /// What stops the moving body.
 pub(crate) struct Stop<'a> {
-    /// Of the shrunk bodies, in multiples of the direction.
+    /// How far it is safe to move, in multiples of the direction.
     pub(crate) distance: f64,
-    /// Of the facets in their true place.
-    pub(crate) nominal: f64,
+    /// Where the facets that stop it meet in their true place.
+    pub(crate) translation: Bounded,
+    /// How far the shrunk bodies go.
+    pub(crate) shrunk: Bounded,
     pub(crate) normal: DVec3,
     /// On the fixed body.
     pub(crate) point: DVec3,
@@ -68,7 +71,7 @@ pub(crate) struct Stop<'a> {
 /// What of a file is touched: a feature by the numbers of the file.
 pub(crate) struct Touch<'a> {
     pub(crate) file: &'a Path,
-    pub(crate) feature: Feature,
+    pub(crate) feature: FeatureRecord,
 }
 
 /// Two files that overlap where they are.
@@ -138,14 +141,14 @@ impl<'a> Question<'a> {
     }
 
     fn stop(&self, distance: f64, contact: &SolidContact) -> Stop<'a> {
-        let [moving, fixed] = contact.triangles;
         Stop {
             distance,
-            nominal: contact.nominal,
+            translation: contact.translation,
+            shrunk: contact.shrunk_distance,
             normal: contact.normal,
             point: contact.point_on_fixed,
-            moving: self.moving.touch(moving, contact.moving_feature),
-            fixed: self.fixed.touch(fixed, contact.fixed_feature),
+            moving: self.moving.touch(contact.moving_feature),
+            fixed: self.fixed.touch(contact.fixed_feature),
         }
     }
 
@@ -191,27 +194,22 @@ impl<'a> Question<'a> {
 }
 
 impl Body {
-    /// The file of a triangle, and a feature in its numbers.
-    fn touch(&self, triangle: u32, feature: Feature) -> Touch<'_> {
-        // Pieces are numbered through, each from one after the largest number of those before.
-        let corner = self.solid().triangles()[triangle as usize][0] as usize;
-        let (mut used, mut vertex, mut face) = (0, 0, 0);
-        let after = |indices: &[u32]| indices.iter().max().map_or(0, |last| last + 1);
+    /// The file of a feature, and the feature in its numbers.
+    fn touch(&self, feature: Feature) -> Touch<'_> {
+        let mut vertices = feature.vertices(self.solid());
+        let (mut first, mut base) = (vertices.first().copied().unwrap_or(0), 0);
         let mut owner = &self.pieces[0];
+        // The inputs of the pieces are numbered through.
         for piece in &self.pieces {
             owner = piece;
-            used += piece.solid.vertices().len();
-            if corner < used {
+            let [count, _] = piece.solid.input_counts();
+            if first < count {
                 break;
             }
-            vertex += after(piece.solid.vertex_indices());
-            face += after(piece.solid.facet_indices());
+            (first, base) = (first - count, base + count);
         }
-        let feature = match feature {
-            Feature::Vertex(v) => Feature::Vertex(v - vertex),
-            Feature::Edge(ends) => Feature::Edge(ends.map(|v| v - vertex)),
-            Feature::Face(f) => Feature::Face(f - face),
-        };
+        vertices.iter_mut().for_each(|v| *v -= base);
+        let feature = FeatureRecord { kind: feature.kind(), vertices };
         Touch { file: &owner.file, feature }
     }
 }

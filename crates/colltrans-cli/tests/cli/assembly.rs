@@ -95,10 +95,10 @@ fn rooms_say_how_far_and_who() {
     assert!(down["nominal"].as_f64().unwrap() < 1e-12);
     assert_eq!(room("high", 1.0)["outcome"], "free");
     assert_eq!(room("low", 1.0)["by"], "high");
-    // Grown by a margin they overlap.
-    let tight = facts(folder.path(), &["two.toml", "--margin", "0.1", "--direction", "z"]);
+    // Grown to keep apart they overlap.
+    let tight = facts(folder.path(), &["two.toml", "--keep-apart", "0.1", "--direction", "z"]);
     assert_eq!(tight["rooms"][0]["outcome"], "overlapping");
-    let listed = ["two.toml", "--margin", "0.1", "--ignore", "low,high"];
+    let listed = ["two.toml", "--keep-apart", "0.1", "--ignore", "low,high"];
     assert_eq!(facts(folder.path(), &listed)["rooms"][0]["outcome"], "free");
     let fixed = facts(folder.path(), &["two.toml", "--fixed", "low"]);
     assert_eq!(names(&fixed["left"]), ["low"]);
@@ -267,7 +267,7 @@ fn flags_that_are_wrong_are_refused_before_anything_is_asked() {
     let cases: [(&[&str], &[&str]); 14] = [
         (&["--tolerance", "-1"], &["--tolerance", "-1"]),
         (&["--tolerance", "wide"], &["--tolerance", "wide"]),
-        (&["--tolerance", "1", "--margin", "1"], &["--tolerance", "--margin"]),
+        (&["--tolerance", "1", "--keep-apart", "1"], &["--tolerance", "--keep-apart"]),
         (&["--direction", "0,0"], &["--direction"]),
         (&["--map", "hig"], &["no part is named hig; is it high?"]),
         (&["--map", "q*"], &["no part is named q*"]),

@@ -1,8 +1,9 @@
 //! Convex bodies as solids, against the convex core and against the rule over all pairs of facets; the
 //! bodies against the points that they were made of.
 
-use colltrans::{Cast, Clearance, Outcome, Solid, SolidOptions};
+use colltrans::{Bounded, Cast, Clearance, Outcome, Solid, SolidOptions};
 
+use super::encloses;
 use super::facets::{rule, triangles};
 use super::settings::Seen;
 use crate::exact::Ratio;
@@ -33,7 +34,7 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
     let overlaps = cast.overlaps();
     let found = if overlaps { None } else { Some(cast.clearance()) };
     if let Some(found) = &found {
-        against_rule(setting, &a, &b, found)?;
+        against_rule(setting, &a, &b, found, cast.exit())?;
     }
     let core = Cast::new(p.at(*s), q.at(*t), setting.direction).and_then(|c| c.first_contact());
     against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), noise(setting, &a, &b))
@@ -52,6 +53,7 @@ fn against_rule(
     a: &Solid,
     b: &Solid,
     found: &Clearance<Solid>,
+    exit: Option<Bounded>,
 ) -> Result<(), String> {
     if a.triangles().len() * b.triangles().len() > MOST_PAIRS {
         return Ok(());
@@ -60,12 +62,23 @@ fn against_rule(
         triangles(s.vertices(), s.triangles(), (pose.matrix(), pose.translation()))
     };
     let (f, g) = (placed(a, &setting.moving_pose), placed(b, &setting.fixed_pose));
-    let right = rule(&f, &g, setting.direction).stop;
+    let right = rule(&f, &g, setting.direction);
+    let zero = || Ratio::from_f64(0.0);
+    match (exit, right.exit.map(|exit| exit.max(zero()))) {
+        (None, None) => {}
+        (Some(found), Some(right)) if encloses(&found, &right) => {}
+        (found, right) => {
+            return Err(format!("exit {found:?}, not {:?}", right.map(|r| r.to_f64())));
+        }
+    }
+    let right = right.stop;
     let tolerance = AGREEMENT * noise(setting, a, b);
     let agree = match (found, &right) {
         (Clearance::Free(_), None) => true,
-        (Clearance::Blocked { distance, .. }, Some(right)) => {
-            right.minus(&Ratio::from_f64(*distance)).is_within(tolerance)
+        (Clearance::Blocked { distance, contact }, Some(right)) => {
+            let place = &contact.translation;
+            let near = |found: f64| right.minus(&Ratio::from_f64(found)).is_within(tolerance);
+            near(*distance) && near(place.value) && encloses(place, right)
         }
         _ => false,
     };
@@ -94,7 +107,7 @@ fn against_core(
     match core {
         Outcome::Separated(_) if overlaps || distance.is_some() => wrong(),
         Outcome::Contact(contact) => {
-            let tolerance = contact.certificate.tolerance + AGREEMENT * noise;
+            let tolerance = contact.certificate.rounding + AGREEMENT * noise;
             let ahead = contact.translation > tolerance;
             let near = distance.is_some_and(|d| (d - contact.translation).abs() <= tolerance);
             if ahead && !near { wrong() } else { Ok(Some(seen)) }

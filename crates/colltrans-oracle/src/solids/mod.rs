@@ -8,5 +8,17 @@ pub mod facets;
 pub mod proof;
 pub mod settings;
 
+use colltrans::Bounded;
+
+use crate::exact::Ratio;
 pub use convex::as_solids;
 pub use settings::Seen;
+
+/// Whether a number lies between bounds, exactly, and the estimate too.
+pub(crate) fn encloses(found: &Bounded, right: &Ratio) -> bool {
+    let Bounded { value, lower, upper } = *found;
+    lower <= value
+        && value <= upper
+        && Ratio::from_f64(lower) <= *right
+        && (upper == f64::INFINITY || *right <= Ratio::from_f64(upper))
+}

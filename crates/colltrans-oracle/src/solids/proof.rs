@@ -53,10 +53,10 @@ pub fn approve(
     let Some(stop) = &certificate.stop else { return Ok(()) };
     let [s, t] = stop.triangles.map(|k| k as usize);
     let value = judge.gaps(&moving[s], &fixed[t]).contribution();
-    let near = |v: &Ratio| v.minus(&Ratio::from_f64(stop.distance)).is_within(slack);
+    let near = |v: &Ratio| v.minus(&Ratio::from_f64(stop.shrunk_distance)).is_within(slack);
     match value {
         Some(value) if near(&value) => Ok(()),
-        other => Err(format!("facets {s} and {t} stop it at {other:?}, not {}", stop.distance)),
+        other => Err(format!("facets {s} and {t} stop it at {other:?}, not {}", stop.shrunk_distance)),
     }
 }
 

@@ -4,6 +4,7 @@ use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::{Cells, Motion, motion};
+use super::encloses;
 use super::proof::{MOST_PAIRS, approve};
 use crate::exact::{Ratio, Vector};
 use crate::settings::Rng;
@@ -142,8 +143,10 @@ impl Setting {
         let exit = cast.exit();
         match (&expected.exit, exit) {
             (None, None) => {}
-            (Some(right), Some(found)) if found == 0.0 && right.to_f64() <= tolerance => {}
-            (Some(right), Some(found)) if near(found, right) => {}
+            (Some(right), Some(found))
+                if encloses(&found, &right.clone().max(Ratio::from_f64(0.0)))
+                    && (near(found.value, right)
+                        || found.value == 0.0 && right.to_f64() <= tolerance) => {}
             (right, found) => {
                 return Err(format!("exit {found:?}, not {:?}", right.as_ref().map(Ratio::to_f64)));
             }
@@ -163,7 +166,11 @@ impl Setting {
         }
         match (found, expected.overlaps, &expected.stop) {
             (Clearance::Free(_), false, None) => Ok(Seen::Free),
-            (Clearance::Blocked { distance, .. }, false, Some(stop)) if near(distance, stop) => {
+            (Clearance::Blocked { distance, contact }, false, Some(stop))
+                if near(distance, stop)
+                    && near(contact.translation.value, stop)
+                    && encloses(&contact.translation, stop) =>
+            {
                 Ok(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked })
             }
             (found, overlaps, stop) => Err(format!(

@@ -74,7 +74,7 @@ pub(crate) fn along(matrix: &Matrix, bodies: &Bodies) -> Answer {
             "moving": meeting.moving,
             "fixed": meeting.fixed,
             // None where they overlap.
-            "distance": meeting.stop.map(|stop| stop.nominal),
+            "distance": meeting.stop.map(|stop| stop.distance),
             "point": meeting.stop.map(|stop| (stop.point - middle).to_array()),
         })
     });
@@ -82,7 +82,7 @@ pub(crate) fn along(matrix: &Matrix, bodies: &Bodies) -> Answer {
         PartRoom::Free => json!({ "outcome": "free" }),
         PartRoom::Overlapping { by, .. } => json!({ "outcome": "overlapping", "by": by }),
         PartRoom::Blocked { by, stop, .. } => {
-            json!({ "outcome": "blocked", "by": by, "distance": stop.nominal })
+            json!({ "outcome": "blocked", "by": by, "distance": stop.distance })
         }
     };
     let graph = Blocking::new(matrix, 0, &vec![true; bodies.len()]);

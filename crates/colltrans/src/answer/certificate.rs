@@ -8,7 +8,7 @@
 //!   `sum w_i (q_i - p_i) = t d`; then `coll <= t`.
 //! - Separation: `n` with `n.d = 0` and `min_Q n.q - max_P n.p > 0`.
 //!
-//! Rounding: see [`noise`]. The two bounds differ by at most [`Certificate::tolerance`]. A search lowers
+//! Rounding: see [`noise`]. The two bounds differ by at most [`Certificate::rounding`]. A search lowers
 //! what it computed by more than its rounding can be. The check computes the heights of the vertices
 //! along the normal with hardly any ([`extent`](crate::number::extent)), so it accepts no lower bound
 //! and no margin beyond what the plane proves, and still each that a search has lowered.
@@ -52,7 +52,7 @@ pub struct Certificate {
     /// noises (see [the crate's introduction](crate#accuracy)) and what the bodies may reach beyond
     /// their support points, over `normal . d`, in multiples of the direction. Where bodies that only
     /// touch were widened sideways for an answer, what the widening can make of the translation, too.
-    pub tolerance: f64,
+    pub rounding: f64,
 }
 
 /// The proof that two bodies never meet along the direction: a plane parallel to it lies between
@@ -115,9 +115,9 @@ pub enum CertificateError {
         /// The upper bound.
         upper: f64,
     },
-    /// The tolerance is negative, no number, or more than rounding explains.
-    #[error("the tolerance {claimed:e} is not between 0 and what rounding explains, {derived:e}")]
-    Tolerance {
+    /// What is said of rounding is negative, no number, or more than it explains.
+    #[error("the rounding {claimed:e} is not between 0 and what rounding explains, {derived:e}")]
+    Rounding {
         /// The one claimed.
         claimed: f64,
         /// The largest that rounding explains.
@@ -215,7 +215,7 @@ fn distance_along(setting: &Setting, normal: DVec3) -> f64 {
 /// What rounding, and a widening sideways, can make of the difference between the estimates of the
 /// upper and the lower bound for a normal, in multiples of the direction.
 #[inline]
-pub(crate) fn gap_tolerance(setting: &Setting, normal: DVec3, noise: Noise, widening: f64) -> f64 {
+pub(crate) fn gap_rounding(setting: &Setting, normal: DVec3, noise: Noise, widening: f64) -> f64 {
     // Unwidened bodies, almost all, need no length.
     let across = if widening == 0.0 { 0.0 } else { normal.cross(setting.unit).length() };
     noise.gap(across, widening) / normal.dot(setting.direction)
@@ -241,7 +241,7 @@ impl Certificate {
         let noise = setting.noise();
         let upper = self.proven_upper(setting)? + noise.above_mean() / steepness;
         let lower = proven_lower(setting, normal)?;
-        let derived = derived_tolerance(setting, normal);
+        let derived = derived_rounding(setting, normal);
         if self.lower.is_nan() || self.lower > lower {
             return Err(CertificateError::Bound { proven: lower, claimed: self.lower });
         }
@@ -249,8 +249,8 @@ impl Certificate {
         if self.upper != f64::INFINITY && !is_proven {
             return Err(CertificateError::Bound { proven: upper, claimed: self.upper });
         }
-        if !(0.0..=derived).contains(&self.tolerance) {
-            return Err(CertificateError::Tolerance { claimed: self.tolerance, derived });
+        if !(0.0..=derived).contains(&self.rounding) {
+            return Err(CertificateError::Rounding { claimed: self.rounding, derived });
         }
         Ok(upper - lower)
     }
@@ -298,9 +298,9 @@ fn proven_lower(setting: &Setting, normal: DVec3) -> Result<f64, CertificateErro
     Ok((distance / if distance < 0.0 { least } else { most }).next_down())
 }
 
-/// The largest tolerance that a certificate may state: what it says of it proves nothing, so it is
+/// The largest rounding that a certificate may state: what it says of it proves nothing, so it is
 /// derived anew, from other support points, which may let the bodies reach twice as far beyond.
-fn derived_tolerance(setting: &Setting, normal: DVec3) -> f64 {
+fn derived_rounding(setting: &Setting, normal: DVec3) -> f64 {
     let noise = setting.noise();
     let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
     let found = VertexPair {
@@ -310,7 +310,7 @@ fn derived_tolerance(setting: &Setting, normal: DVec3) -> f64 {
     let (support, beyond) = setting.settled(&normals, found);
     let along = Along::new(setting, noise, normal, &normals, support, beyond);
     let rounding = (noise.raised() + along.error) / normal.dot(setting.direction);
-    2.0 * (gap_tolerance(setting, normal, noise, noise.widest()) + rounding)
+    2.0 * (gap_rounding(setting, normal, noise, noise.widest()) + rounding)
 }
 
 impl Separation {

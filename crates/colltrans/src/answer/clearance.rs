@@ -17,9 +17,9 @@ use crate::body::{Body, ConvexPolyhedron};
 pub enum Clearance<B: Body = ConvexPolyhedron> {
     /// Until it touches.
     Blocked {
-        /// How far it may safely move, in multiples of the direction: never negative. Between convex
-        /// bodies never more than the true distance, so less than [`Contact::translation`] by the
-        /// rounding error; between solids that of the bodies shrunk by half the tolerance each.
+        /// How far it may safely move, in multiples of the direction: the lower bound of where it is
+        /// stopped, and never negative. So it is less than the estimate, [`Contact::translation`] or
+        /// [`SolidContact::translation`](crate::SolidContact::translation), by the rounding error.
         distance: f64,
         /// The contact that stops it.
         contact: B::Contact,
@@ -55,7 +55,7 @@ impl Clearance {
     /// That of a first contact which is ahead, or here to within rounding.
     #[inline]
     pub(crate) fn blocked(first: &Contact) -> Option<Self> {
-        let is_ahead = first.translation >= -first.certificate.tolerance;
+        let is_ahead = first.translation >= -first.certificate.rounding;
         let distance = first.certificate.lower.max(0.0);
         is_ahead.then_some(Self::Blocked { distance, contact: *first })
     }
@@ -63,7 +63,7 @@ impl Clearance {
     /// That of a first contact which is not.
     #[inline]
     pub(crate) fn past(first: Contact, last: Contact) -> Self {
-        if last.translation < -last.certificate.tolerance {
+        if last.translation < -last.certificate.rounding {
             Self::Overlapping(OverlapAhead { first, last })
         } else {
             Self::Free(WhyFree::Behind(last))

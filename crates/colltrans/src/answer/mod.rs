@@ -1,12 +1,14 @@
 //! What a query answers, and how anyone checks it.
 
+mod bounded;
 mod certificate;
 mod clearance;
 mod outcome;
 mod range;
 mod steps;
 
-pub(crate) use certificate::{Along, gap_tolerance};
+pub use bounded::Bounded;
+pub(crate) use certificate::{Along, gap_rounding};
 pub use certificate::{Certificate, CertificateError, Proof, Separation};
 pub use clearance::{Clearance, OverlapAhead, WhyFree};
 pub use outcome::{Contact, Grazing, Outcome, Separated};

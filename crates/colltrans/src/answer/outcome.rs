@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::bounded::Bounded;
 use super::certificate::{Certificate, Separation};
 use super::steps::{Solver, Steps};
 use crate::setting::VertexPair;
@@ -50,6 +51,22 @@ pub struct Contact {
     pub solver: Solver,
     /// Work done.
     pub steps: Steps,
+}
+
+impl Contact {
+    /// The translation with its proven bounds. `upper` is infinite where the bodies slide so lightly
+    /// that they may not touch.
+    pub fn bounded(&self) -> Bounded {
+        let Certificate { lower, upper, .. } = self.certificate;
+        Bounded { value: self.translation, lower, upper }
+    }
+
+    /// Of the first contact of a [reversed](crate::Cast::reversed) cast: where the bodies meet last
+    /// along the direction itself, in multiples of it, with its proven bounds. Beyond `upper` they
+    /// never meet.
+    pub fn exit(&self) -> Bounded {
+        self.bounded().negated()
+    }
 }
 
 /// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.

@@ -32,7 +32,8 @@ pub enum ContactRange {
 impl ContactRange {
     /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet.
     ///
-    /// Best estimates; the certificates' bounds enclose them.
+    /// Best estimates; the certificates' bounds enclose them, and are those of [`Contact::bounded`] of
+    /// the first contact and of [`Contact::exit`] of the last one.
     pub fn interval(&self) -> Option<[f64; 2]> {
         let (first, last) = match self {
             Self::Contact { first, last } => (first, last),

@@ -2,19 +2,24 @@
 
 use glam::DVec3;
 
+use super::placed::{Body, sealed};
 use super::ConvexPolyhedron;
 
-/// A vertex, an edge or a face of a [`ConvexPolyhedron`], by its own indices.
+/// A vertex, an edge or a face of a body, as an answer names it: **by the numbers of the input**, that
+/// is, of the points or mesh vertices that the body was made from, for bodies of either kind.
 ///
-/// [`ConvexPolyhedron::input_indices`] leads from there to the points or mesh vertices it was made
-/// from.
+/// Of vertices with the same coordinates the first one counts. An edge of a
+/// [`Solid`](crate::Solid) runs from corner to corner, however finely its mesh divides it, and a face
+/// is the whole polygon that its coplanar facets make up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Feature {
     /// A vertex.
     Vertex(u32),
-    /// An edge, by its two vertices.
+    /// An edge, by its two ends.
     Edge([u32; 2]),
-    /// A face; its vertices are [`ConvexPolyhedron::face_vertices`].
+    /// A face: of a [`Solid`](crate::Solid) the least number of the input's facets that it is made of,
+    /// of a [`ConvexPolyhedron`], whose faces are those of a hull, that of
+    /// [`ConvexPolyhedron::face_vertices`].
     Face(u32),
 }
 
@@ -28,15 +33,48 @@ impl Feature {
         }
     }
 
-    /// The vertices of the feature, as indices into [`ConvexPolyhedron::vertices`] of `body`.
+    /// The vertices of the feature, by their numbers in the input; those of a face are its corners, one
+    /// loop after the other, the outer one first.
     ///
     /// # Panics
     /// If the feature is not one of `body`.
-    pub fn vertices(self, body: &ConvexPolyhedron) -> Vec<u32> {
+    pub fn vertices<B: Body>(self, body: &B) -> Vec<u32> {
         match self {
             Self::Vertex(v) => vec![v],
             Self::Edge(ends) => ends.to_vec(),
-            Self::Face(face) => body.face_vertices(face).collect(),
+            Self::Face(_) => {
+                let own = self.own_vertices(body);
+                own.into_iter().map(|v| body.inputs()[v as usize]).collect()
+            }
+        }
+    }
+
+    /// The same vertices, as positions among the vertices that the body has kept:
+    /// [`ConvexPolyhedron::vertices`] or [`Solid::vertices`](crate::Solid::vertices).
+    ///
+    /// # Panics
+    /// If the feature is not one of `body`.
+    pub fn own_vertices<B: Body>(self, body: &B) -> Vec<u32> {
+        sealed::vertices_of(body, self)
+    }
+}
+
+/// A feature of a convex body by its own numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Own {
+    Vertex(u32),
+    Edge([u32; 2]),
+    Face(u32),
+}
+
+impl Own {
+    /// By the numbers of the input.
+    pub(crate) fn named(self, body: &ConvexPolyhedron) -> Feature {
+        let input = |v: u32| body.input_indices()[v as usize];
+        match self {
+            Self::Vertex(v) => Feature::Vertex(input(v)),
+            Self::Edge(ends) => Feature::Edge(ends.map(input)),
+            Self::Face(face) => Feature::Face(face),
         }
     }
 }
@@ -44,7 +82,7 @@ impl Feature {
 /// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body
 /// frame).
 #[inline]
-pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Feature {
+pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Own {
     let vertices = body.vertices();
     let height = outward.dot(vertices[vertex as usize]);
     let slack = noise + body.hull_error();
@@ -59,7 +97,7 @@ pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, nois
         hits |= u32::from(in_plane(neighbours[wrapped(first + k)])) << k;
     }
     if hits == 0 {
-        return Feature::Vertex(vertex);
+        return Own::Vertex(vertex);
     }
     let outgoing = topology.outgoing(vertex);
     let all_round = count == neighbours.len() && count > 1;
@@ -74,11 +112,11 @@ pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, nois
         // A face that is flat only nearly may have corners above the plane, too.
         let near_plane = |w: u32| (outward.dot(vertices[w as usize]) - height).abs() <= slack;
         if looks && spread(topology.face_vertices(face), near_plane) {
-            return Feature::Face(face);
+            return Own::Face(face);
         }
         corners &= corners - 1;
     }
-    Feature::Edge([vertex, neighbours[wrapped(first + hits.trailing_zeros() as usize)]])
+    Own::Edge([vertex, neighbours[wrapped(first + hits.trailing_zeros() as usize)]])
 }
 
 /// Whether something holds for up to [`SAMPLES`] vertices, spread over a face: those near a vertex

@@ -18,11 +18,39 @@ pub trait Body: sealed::Sealed {
 }
 
 pub(crate) mod sealed {
+    use crate::body::Feature;
+
     /// Bodies are those of this crate.
-    pub trait Sealed {}
+    pub trait Sealed {
+        /// For each vertex of the body its number in the input.
+        fn inputs(&self) -> &[u32];
+        /// The corners of a face, as positions among the body's vertices.
+        fn corners_of_face(&self, face: u32) -> Vec<u32>;
+    }
+
+    /// The vertices of a feature, as positions among the body's vertices.
+    pub(crate) fn vertices_of<B: Sealed>(body: &B, feature: Feature) -> Vec<u32> {
+        let position = |v: u32| {
+            let found = body.inputs().iter().position(|input| *input == v);
+            found.expect("a feature of this body") as u32
+        };
+        match feature {
+            Feature::Vertex(v) => vec![position(v)],
+            Feature::Edge(ends) => ends.map(position).to_vec(),
+            Feature::Face(face) => body.corners_of_face(face),
+        }
+    }
 }
 
-impl sealed::Sealed for ConvexPolyhedron {}
+impl sealed::Sealed for ConvexPolyhedron {
+    fn inputs(&self) -> &[u32] {
+        self.input_indices()
+    }
+
+    fn corners_of_face(&self, face: u32) -> Vec<u32> {
+        self.face_vertices(face).collect()
+    }
+}
 
 /// A body placed in the world, from [`ConvexPolyhedron::at`].
 #[derive(Debug)]

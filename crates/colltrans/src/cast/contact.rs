@@ -55,8 +55,10 @@ impl Contact {
         let noise = setting.noise().point();
         let outward = [setting.moving_normal(self.normal), -setting.fixed_normal(self.normal)];
         Features {
-            moving: feature(setting.moving, outward[0], self.support.moving, noise),
-            fixed: feature(setting.fixed, outward[1], self.support.fixed, noise),
+            moving: feature(setting.moving, outward[0], self.support.moving, noise)
+                .named(setting.moving),
+            fixed: feature(setting.fixed, outward[1], self.support.fixed, noise)
+                .named(setting.fixed),
         }
     }
 

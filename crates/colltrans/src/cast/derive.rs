@@ -94,7 +94,7 @@ pub(crate) fn intersection_of<'a>(
     let outcome = run(&through)?;
     let meets = match &outcome {
         Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {
-            contact.translation <= contact.certificate.tolerance
+            contact.translation <= contact.certificate.rounding
         }
         Outcome::Separated(_) => false,
     };

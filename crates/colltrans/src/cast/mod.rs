@@ -53,7 +53,7 @@ pub use replay::{Case, CaseError};
 /// assert_eq!((features.moving.kind(), features.fixed.kind()), ("face", "face"));
 /// // The proof: checked against the two bodies alone.
 /// let gap = cast.verify(&contact.certificate)?;
-/// assert!(gap <= contact.certificate.tolerance);
+/// assert!(gap <= contact.certificate.rounding);
 ///
 /// assert!(cast.contact_range()?.interval() == Some([2.0, 4.0]));
 /// assert!(matches!(cast.reversed().clearance()?, Clearance::Free(WhyFree::Behind(_))));
@@ -351,7 +351,7 @@ impl Cast<'_> {
     ///     unreachable!("the same triangle, five units further")
     /// };
     /// let proof = contact.certificate;
-    /// assert!(cast.verify(&proof)? <= proof.tolerance);
+    /// assert!(cast.verify(&proof)? <= proof.rounding);
     ///
     /// let mut lie = proof;
     /// lie.lower += 1.0;

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::answer::{
-    Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_tolerance,
+    Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_rounding,
 };
 use crate::error::{QueryError, Stalled};
 use crate::number::noise::UNIT_VECTOR;
@@ -21,7 +21,7 @@ pub(crate) struct Proven<'a> {
     translation: f64,
     lower: f64,
     upper: f64,
-    tolerance: f64,
+    rounding: f64,
 }
 
 impl<'a> Proven<'a> {
@@ -43,13 +43,13 @@ impl<'a> Proven<'a> {
         let [u, v, w] = weights;
         let [a, b, c] = portal.each_ref().map(Point::height);
         let estimate = (a * u + b * v + c * w) / setting.length;
-        let tolerance = gap_tolerance(setting, normal, noise, difference.widening);
+        let most = gap_rounding(setting, normal, noise, difference.widening);
         let lower = along.distance / steepness;
         let gap = estimate - lower;
         // A plane along the direction bounds nothing.
         let is_upward = steepness > UNIT_VECTOR * setting.length;
-        if !is_upward || gap.is_nan() || gap > tolerance {
-            let reason = Stalled::Gap { lower, upper: estimate, tolerance };
+        if !is_upward || gap.is_nan() || gap > most {
+            let reason = Stalled::Gap { lower, upper: estimate, tolerance: most };
             return Err(QueryError::NotConverged { reason });
         }
         let lower = along.lower(steepness);
@@ -59,9 +59,9 @@ impl<'a> Proven<'a> {
         } else {
             f64::INFINITY
         };
-        let tolerance = tolerance + (noise.raised() + along.error) / steepness;
+        let rounding = most + (noise.raised() + along.error) / steepness;
         let translation = estimate.max(lower);
-        Ok(Self { portal, plane, weights, translation, lower, upper, tolerance })
+        Ok(Self { portal, plane, weights, translation, lower, upper, rounding })
     }
 
     /// What a later query may start from.
@@ -87,7 +87,7 @@ impl<'a> Proven<'a> {
                 pairs: self.portal.each_ref().map(|p| p.pair),
                 weights: self.weights,
                 upper: self.upper,
-                tolerance: self.tolerance,
+                rounding: self.rounding,
             },
             solver,
             steps,

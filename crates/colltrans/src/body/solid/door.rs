@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::edges::{self, Edges};
 use super::error::SolidError;
 use super::exact::{between, collinear};
+use super::faces::Faces;
 use super::polygon::triangulate;
 use super::report::SolidReport;
 use super::weld::first_equals;
@@ -30,6 +31,10 @@ pub(crate) struct Surface {
     /// The input facet of each triangle.
     pub(crate) facet_index: Vec<u32>,
     pub(crate) neighbours: Vec<[u32; 3]>,
+    /// How many vertices and facets the input had.
+    pub(crate) input_counts: [u32; 2],
+    /// Where they are known: those of a body that was shrunk.
+    pub(crate) faces: Option<Faces>,
 }
 
 /// Checks and joins; a surface that is `open` on purpose may have edges without a neighbour.
@@ -58,7 +63,8 @@ pub(super) fn surface<F: AsRef<[u32]>>(
     report.crowded_edges += edges.crowded;
     report.open_edges += edges.open.len();
     soup.check_edges(&edges, open)?;
-    Ok(soup.compact(vertices, &first, edges.neighbours, report))
+    let input_counts = [vertices.len() as u32, facets.len() as u32];
+    Ok(Surface { input_counts, ..soup.compact(vertices, &first, edges.neighbours, report) })
 }
 
 fn check_input<F: AsRef<[u32]>>(vertices: &[DVec3], facets: &[F]) -> Result<(), SolidError> {
@@ -67,7 +73,8 @@ fn check_input<F: AsRef<[u32]>>(vertices: &[DVec3], facets: &[F]) -> Result<(), 
             return Err(SolidError::Coordinate { vertex, point });
         }
     }
-    let count = facets.iter().map(|f| f.as_ref().len()).sum::<usize>().max(vertices.len());
+    let count = facets.iter().map(|f| f.as_ref().len()).sum::<usize>();
+    let count = count.max(vertices.len()).max(facets.len());
     let limit = u32::MAX as usize / 4;
     if count > limit {
         return Err(SolidError::TooMany { count, limit });
@@ -232,6 +239,8 @@ impl Soup {
             vertex_index,
             facet_index: self.facet_index,
             neighbours,
+            input_counts: [0; 2],
+            faces: None,
         }
     }
 }

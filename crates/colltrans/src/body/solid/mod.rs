@@ -9,6 +9,7 @@ mod door;
 pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
+mod faces;
 mod passed;
 mod polygon;
 mod report;
@@ -26,6 +27,7 @@ use crate::body::ConvexPolyhedron;
 use crate::body::placed::sealed;
 pub(crate) use door::Surface;
 pub use error::SolidError;
+use faces::Faces;
 pub use report::{Shell, SolidReport};
 pub use shrink::ShrinkReport;
 pub(crate) use shrink::{Shrinking, displace};
@@ -76,8 +78,22 @@ pub struct Solid {
     spans: Vec<Span>,
     closed: bool,
     reach: f64,
+    /// How many vertices and facets the input had.
+    input_counts: [u32; 2],
     report: SolidReport,
     shrinking: OnceLock<Shrinking>,
+    /// Made when a feature is first named.
+    faces: OnceLock<Faces>,
+}
+
+impl sealed::Sealed for Solid {
+    fn inputs(&self) -> &[u32] {
+        &self.vertex_index
+    }
+
+    fn corners_of_face(&self, face: u32) -> Vec<u32> {
+        self.face_corners(face)
+    }
 }
 
 /// What a [`Solid`] can be asked against, and made of. Sealed.
@@ -146,8 +162,8 @@ impl Solid {
         Ok(Self::assemble(surface, report, false))
     }
 
-    /// The union of several solids or convex polyhedra, which may overlap. Vertices and facets are
-    /// numbered through.
+    /// The union of several solids or convex polyhedra, which may overlap. The inputs of the pieces are
+    /// numbered through, with all that they had ([`Self::input_counts`]), used or not.
     ///
     /// # Errors
     /// No pieces, more facets than 32-bit indices can number, or a point or segment among them.
@@ -160,27 +176,30 @@ impl Solid {
             triangles: Vec::new(),
             facet_index: Vec::new(),
             neighbours: Vec::new(),
+            input_counts: [0; 2],
+            faces: None,
         };
         let mut report = SolidReport::default();
         let mut closed = true;
-        let (mut vertex_base, mut facet_base) = (0, 0);
         for piece in pieces {
             let piece = piece.as_solid()?;
             let (v, t) = (all.vertices.len() as u32, all.triangles.len() as u32);
+            let [vertex_base, facet_base] = all.input_counts;
             all.vertices.extend_from_slice(&piece.vertices);
             all.vertex_index.extend(piece.vertex_index.iter().map(|i| i + vertex_base));
             all.triangles.extend(piece.triangles.iter().map(|c| c.map(|k| k + v)));
             all.facet_index.extend(piece.facet_index.iter().map(|f| f + facet_base));
             let shift = |n: u32| if n == edges::NONE { n } else { n + t };
             all.neighbours.extend(piece.neighbours.iter().map(|n| n.map(shift)));
-            vertex_base += piece.vertex_index.iter().max().map_or(0, |i| i + 1);
-            facet_base += piece.facet_index.iter().max().map_or(0, |f| f + 1);
             report.absorb(&piece.report);
             closed &= piece.closed;
-            let (count, limit) = (all.triangles.len(), u32::MAX as usize / 8);
+            let inputs = [0, 1].map(|k| all.input_counts[k] as usize + piece.input_counts[k] as usize);
+            let limit = u32::MAX as usize / 8;
+            let count = all.triangles.len().max(inputs[0]).max(inputs[1]);
             if count > limit {
                 return Err(SolidError::TooMany { count, limit });
             }
+            all.input_counts = inputs.map(|count| count as u32);
         }
         if all.triangles.is_empty() {
             return Err(SolidError::Empty);
@@ -188,15 +207,22 @@ impl Solid {
         Ok(Self::from_surface(all, report, closed))
     }
 
-    /// A convex polyhedron, its faces cut into triangles. Vertices and faces keep their numbers. A flat
-    /// polygon becomes a sheet with two sides and no volume; it overlaps what it is inside of.
+    /// A convex polyhedron, its faces cut into triangles. Vertices keep the numbers of its input, and
+    /// faces their numbers. A flat polygon becomes a sheet with two sides and no volume; it overlaps
+    /// what it is inside of.
     ///
     /// # Errors
     /// A point or a segment.
     pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
         let facets: Vec<Vec<u32>> =
             (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
-        Self::from_mesh(body.vertices(), &facets)
+        let mut solid = Self::from_mesh(body.vertices(), &facets)?;
+        let inputs = body.input_indices();
+        for v in &mut solid.vertex_index {
+            *v = inputs[*v as usize];
+        }
+        solid.input_counts[0] = inputs.iter().max().map_or(0, |last| last + 1);
+        Ok(solid)
     }
 
     fn assemble(mut surface: Surface, mut report: SolidReport, closed: bool) -> Self {
@@ -213,6 +239,7 @@ impl Solid {
         let shift = |n: u32| if n == edges::NONE { n } else { place[n as usize] };
         let old = |k: &u32| *k as usize;
         let reach = surface.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let faces = surface.faces.map_or_else(OnceLock::new, |f| f.ordered(&order).into());
         let mut solid = Self {
             triangles: order.iter().map(|k| surface.triangles[old(k)]).collect(),
             facet_index: order.iter().map(|k| surface.facet_index[old(k)]).collect(),
@@ -223,8 +250,10 @@ impl Solid {
             spans: Vec::new(),
             closed,
             reach,
+            input_counts: surface.input_counts,
             report,
             shrinking: OnceLock::new(),
+            faces,
         };
         solid.spans = solid.find_spans();
         solid
@@ -256,6 +285,12 @@ impl Solid {
     /// For each of [`Self::vertices`], its index in the input.
     pub fn vertex_indices(&self) -> &[u32] {
         &self.vertex_index
+    }
+
+    /// How many vertices and facets the input had, used or not; of a convex polyhedron, vertices up to
+    /// the last one in use.
+    pub fn input_counts(&self) -> [u32; 2] {
+        self.input_counts
     }
 
     /// The triangles, as indices into [`Self::vertices`].
@@ -300,6 +335,7 @@ impl Solid {
             + self.spans.capacity() * size_of::<Span>()
             + self.report.shells.capacity() * size_of::<Shell>()
             + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
+            + self.faces.get().map_or(0, Faces::heap_bytes)
     }
 
     /// The largest distance of a vertex from the origin of the body frame.

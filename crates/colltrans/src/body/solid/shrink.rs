@@ -130,6 +130,8 @@ impl Solid {
             triangles: self.triangles.clone(),
             facet_index: self.facet_index.clone(),
             neighbours: self.neighbours.clone(),
+            input_counts: self.input_counts,
+            faces: Some(self.faces().clone()),
         };
         let mut noticed = self.report.clone();
         for (shell, volume) in noticed.shells.iter_mut().zip(self.volumes_of(&surface.vertices)) {

@@ -11,8 +11,7 @@ use super::overlap::{self, Overlap};
 use super::scene::Scene;
 use super::search::{Aim, Found, Search, Workspace};
 use super::separate::separation;
-use crate::answer::{Clearance, Separation};
-use crate::body::placed::sealed;
+use crate::answer::{Bounded, Clearance, Separation};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
 use crate::cast::Cast;
@@ -62,8 +61,6 @@ pub struct SolidOverlap {
     /// The least tolerance with which they would not overlap, from above; `None` if there is none.
     pub depth: Option<f64>,
 }
-
-impl sealed::Sealed for Solid {}
 
 impl Body for Solid {
     type Options = SolidOptions;
@@ -202,9 +199,8 @@ impl<'a> Cast<'a, Solid> {
             None if self.options.before.is_none() => Clearance::Free(separation(scene)),
             None => Clearance::Free(None),
             Some(found) => {
-                let distance = found.gap / scene.length;
-                let origin = self.moving_pose().translation();
-                Clearance::Blocked { distance, contact: contact(scene, found, distance, origin) }
+                let contact = contact(scene, found, self.moving_pose().translation());
+                Clearance::Blocked { distance: contact.translation.lower.max(0.0), contact }
             }
         }
     }
@@ -271,17 +267,18 @@ impl<'a> Cast<'a, Solid> {
         Some(high)
     }
 
-    /// The translation after which the bodies, as they are, never meet again: the largest gap between
-    /// a back facet of the moving and a front facet of the fixed body; `None` if none face each other.
-    pub fn exit(&self) -> Option<f64> {
+    /// The translation after which the bodies, as they are, never meet again, in multiples of the
+    /// direction: the largest gap between a back facet of the moving and a front facet of the fixed
+    /// body; `None` if none face each other. Beyond `upper` they are apart for certain.
+    pub fn exit(&self) -> Option<Bounded> {
         self.exit_in(&mut Workspace::default())
     }
 
     /// The same with a queue that is kept.
-    pub fn exit_in(&self, workspace: &mut Workspace) -> Option<f64> {
+    pub fn exit_in(&self, workspace: &mut Workspace) -> Option<Bounded> {
         let scene = self.scene(0.0).reversed();
         let found = first(&scene, Aim::Least, f64::INFINITY, workspace)?;
-        Some((-found.gap / scene.length).max(0.0))
+        Some(found.bounded(&scene).negated().clamped())
     }
 
     /// Pairs of nodes and of leaves that a search for the clearance looks at.
@@ -292,6 +289,7 @@ impl<'a> Cast<'a, Solid> {
             aim: Aim::Stop,
             limit: f64::INFINITY,
             found: None,
+            others: f64::INFINITY,
             cut: |_, _| (),
             steps: [0; 2],
         };
@@ -302,5 +300,6 @@ impl<'a> Cast<'a, Solid> {
 
 /// The least gap below a limit.
 fn first(scene: &Scene, aim: Aim, limit: f64, workspace: &mut Workspace) -> Option<Found> {
-    Search { scene, aim, limit, found: None, cut: |_, _| (), steps: [0; 2] }.run(workspace)
+    let others = f64::INFINITY;
+    Search { scene, aim, limit, found: None, others, cut: |_, _| (), steps: [0; 2] }.run(workspace)
 }

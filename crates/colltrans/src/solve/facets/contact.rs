@@ -1,23 +1,58 @@
-//! From a pair of facets to a contact: points, normal, features, and where the bodies as they are
-//! would have met.
+//! From a pair of facets to a contact: points, normal, features, and where it is, with bounds.
+//!
+//! Two numbers say how far a body goes that was shrunk, each with its bounds; without a tolerance they
+//! are one.
+//!
+//! *The shrunk bodies.* A search ends with a pair of facets whose gap `v` is off by at most its own
+//! error `e`, so that `v + e` is an upper bound. Below, all other pairs were left out for one of two
+//! reasons. Either their own gap, less its error, or that of a pair that was the best before, is at
+//! least a number that the search has kept ([`Found::others`]); or a bound, of nodes or of the facets,
+//! was not less than the limit of that time, which was not less than the last one, and bounds of nodes
+//! are off by less than [`node_rounding`](super::proof::node_rounding). The least of the three, less one
+//! blur, which is more than what the roundings of these few operations and of the division by the
+//! direction's length can be (some `8 u S` of `32 u S`), is the lower bound.
+//!
+//! *The true place.* The same two facets are looked at once more, as they are. Where they face each
+//! other and their shadows overlap, decided exactly, their gap is where they meet, to within its error,
+//! and from there on the bodies as they are overlap. Where they do not (the floor of a pocket grows
+//! when its walls are moved back, so that facets at its rim may have no room for each other as they
+//! are), the place is that of their planes at the contact point, and all that is known from above is
+//! that the shrunk bodies overlap beyond their own upper bound. Whatever comes out, no bound is larger
+//! than that of the shrunk bodies.
+//!
+//! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, and those two
+//! facets have not met; beyond `upper` the bodies overlap. Nothing is said of other facets of the
+//! bodies as they are: that they may overlap on the way by less than the tolerance is what a tolerance
+//! is for. Without one, both bounds are those of the bodies as given.
 
 use glam::DVec3;
 
-use super::leaf::Meeting;
+use super::leaf::{self, Meeting};
 use super::scene::{Scene, Side};
 use super::search::Found;
+use crate::answer::Bounded;
 use crate::body::Feature;
 
 /// Where a solid is stopped.
 ///
 /// Points are those of the bodies as they are, not shrunk: the same shares of the facets' corners as
-/// where the shrunk bodies touch. Without a tolerance they come together at the distance; with one,
-/// at [`Self::nominal`] along the normal, and sideways to within what shrinking has moved them.
+/// where the shrunk bodies touch. They come together at [`Self::translation`], along the normal, and
+/// sideways to within what shrinking has moved them.
+///
+/// What of a body meets there: of all that holds the contact point the face that lies in the contact
+/// plane, else the edge that does, else the smallest, be it a corner, an edge or a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidContact {
     /// Where the facets that stop the shrunk bodies meet in their true place, in multiples of the
-    /// direction: what a person expects to read. May be negative where the bodies as they are overlap.
-    pub nominal: f64,
+    /// direction: 7 for a head that stops at 7. Negative where these facets, as they are, overlap.
+    ///
+    /// Up to `lower` the shrunk bodies do not overlap, and these facets have not met; beyond `upper` the
+    /// bodies overlap: as they are, where these facets meet; else shrunk, and so as they are, if
+    /// shrinking took nothing but material away ([`Solid::shrink_report`](crate::Solid::shrink_report)).
+    pub translation: Bounded,
+    /// How far the bodies go that were shrunk by half the tolerance each, in multiples of the direction:
+    /// beyond the translation by about the tolerance. Without a tolerance it is the same.
+    pub shrunk_distance: Bounded,
     /// Unit contact normal in the world, from the moving body to the fixed one;
     /// `normal . direction > 0`. Where corners meet, or parallel edges, it is one of several.
     pub normal: DVec3,
@@ -58,8 +93,18 @@ impl Foot {
     }
 }
 
-/// The contact, for a gap given in multiples of the direction.
-pub(super) fn contact(scene: &Scene, found: &Found, distance: f64, origin: DVec3) -> SolidContact {
+impl Found {
+    /// The gap as a translation with its bounds; see the module's head.
+    pub(super) fn bounded(&self, scene: &Scene) -> Bounded {
+        let lower = self.others.min(self.gap - self.error) - scene.blur;
+        let upper = self.gap + self.error + scene.blur;
+        let [value, lower, upper] = [self.gap, lower, upper].map(|length| length / scene.length);
+        Bounded { value, lower, upper }
+    }
+}
+
+/// The contact of a search with the bodies as `scene` has them.
+pub(super) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidContact {
     let (moving, fixed) = (&scene.moving, &scene.fixed);
     let f = moving.solid.triangles()[found.moving as usize];
     let mut g = fixed.solid.triangles()[found.fixed as usize];
@@ -69,31 +114,79 @@ pub(super) fn contact(scene: &Scene, found: &Found, distance: f64, origin: DVec3
     let (p, q) = (f.map(|v| at(moving, v)), g.map(|v| at(fixed, v)));
     let (on_f, on_g, normal) = match found.at {
         Meeting::Corner(k) => {
-            (corner(k), over(q, p[k as usize]), -(q[2] - q[0]).cross(q[1] - q[0]))
+            let vertex = f[k as usize];
+            let within = moving.solid.is_within_face(vertex, found.moving);
+            (corner(k), over(q, p[k as usize]), plane(if within { p } else { q }))
         }
-        Meeting::Under(k) => (over(p, q[k as usize]), corner(k), (p[1] - p[0]).cross(p[2] - p[0])),
+        Meeting::Under(k) => {
+            let vertex = g[k as usize];
+            let within = fixed.solid.is_within_face(vertex, found.fixed);
+            (over(p, q[k as usize]), corner(k), plane(if within { q } else { p }))
+        }
         Meeting::Sides(k, j) => {
             let (k, j) = (k as usize, j as usize);
             let (a, b) = ([p[k], p[(k + 1) % 3]], [q[j], q[(j + 1) % 3]]);
             let (s, t) = meeting(a, b);
-            let normal = (a[1] - a[0]).cross(b[1] - b[0]);
+            // What is no edge, or no corner, but within a face touches with that.
+            let flat_f = !moving.solid.is_sharp(found.moving, k);
+            let flat_g = !fixed.solid.is_sharp(found.fixed, 2 - j);
+            let normal = match (flat_f, flat_g) {
+                (_, true) => plane(q),
+                (true, _) => plane(p),
+                _ => (a[1] - a[0]).cross(b[1] - b[0]),
+            };
             (along(k, s), along(j, t), normal * normal.z.signum())
         }
     };
     let (on_f, on_g) = (Foot { vertices: f, weights: on_f }, Foot { vertices: g, weights: on_g });
     let normal = (scene.frame.transpose() * normal).normalize_or_zero();
-    let shift = on_f.displacement(moving) - on_g.displacement(fixed);
-    let slope = normal.dot(scene.direction);
-    let nominal = if slope > 0.0 { distance + normal.dot(shift) / slope } else { distance };
+    // Nothing stops a body before 0.
+    let shrunk_distance = found.bounded(scene).clamped();
+    let translation = if moving.amount == 0.0 && fixed.amount == 0.0 {
+        shrunk_distance
+    } else {
+        let shift = on_f.displacement(moving) - on_g.displacement(fixed);
+        true_place(scene, found, shrunk_distance, normal, shift)
+    };
     SolidContact {
-        nominal,
+        translation,
+        shrunk_distance,
         normal,
         point_on_moving: on_f.point(moving) + origin,
         point_on_fixed: on_g.point(fixed) + origin,
-        moving_feature: feature(moving, found.moving, &on_f),
-        fixed_feature: feature(fixed, found.fixed, &on_g),
+        moving_feature: feature(scene, moving, found.moving, &on_f, normal),
+        fixed_feature: feature(scene, fixed, found.fixed, &on_g, normal),
         triangles: [found.moving, found.fixed],
     }
+}
+
+/// Where the facets of a contact of shrunk bodies meet as they are; `shift` is what shrinking has moved
+/// the one contact point against the other.
+fn true_place(
+    scene: &Scene,
+    found: &Found,
+    shrunk: Bounded,
+    normal: DVec3,
+    shift: DVec3,
+) -> Bounded {
+    let bare = scene.shrunk(0.0, 0.0);
+    let place = leaf::gap_of(&bare, [found.moving, found.fixed]).map_or_else(
+        || {
+            let slope = normal.dot(scene.direction);
+            let back = if slope > 0.0 { normal.dot(shift) / slope } else { 0.0 };
+            let value = shrunk.value + back;
+            Bounded { value, lower: value - scene.blur / scene.length, upper: f64::INFINITY }
+        },
+        |(gap, error)| Found { gap, error, others: gap, ..*found }.bounded(&bare),
+    );
+    let upper = place.upper.min(shrunk.upper);
+    let value = place.value.min(shrunk.value).min(upper);
+    Bounded { value, lower: place.lower.min(shrunk.lower).min(value), upper }
+}
+
+/// A normal of the plane through three points.
+fn plane([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
 }
 
 fn corner(k: u8) -> DVec3 {
@@ -126,19 +219,9 @@ fn meeting(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
     (share(w.perp_dot(v)), share(w.perp_dot(u)))
 }
 
-/// What the weights name: a vertex, an edge or the whole facet.
-fn feature(side: &Side, triangle: u32, foot: &Foot) -> Feature {
-    let index = |k: usize| side.solid.vertex_indices()[foot.vertices[k] as usize];
-    let used: Vec3Used = foot.weights.to_array().map(|w| w != 0.0);
-    match used {
-        [true, false, false] => Feature::Vertex(index(0)),
-        [false, true, false] => Feature::Vertex(index(1)),
-        [false, false, true] => Feature::Vertex(index(2)),
-        [true, true, false] => Feature::Edge([index(0), index(1)]),
-        [false, true, true] => Feature::Edge([index(1), index(2)]),
-        [true, false, true] => Feature::Edge([index(2), index(0)]),
-        _ => Feature::Face(side.solid.facet_indices()[triangle as usize]),
-    }
+/// What a foot names, to within the precision of the coordinates and rounding.
+fn feature(scene: &Scene, side: &Side, triangle: u32, foot: &Foot, normal: DVec3) -> Feature {
+    let at = foot.mean(|v| side.solid.vertices()[v as usize]);
+    let slack = 2.0 * side.solid.precision() + scene.blur;
+    side.solid.feature_at(triangle, at, side.matrix.transpose() * normal, slack)
 }
-
-type Vec3Used = [bool; 3];

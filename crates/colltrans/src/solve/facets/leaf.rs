@@ -241,6 +241,18 @@ pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
     exact(scene, f, g, &of_f, &of_g, |_| true)
 }
 
+/// The least gap of two triangles, the moving body's first, where they block each other, and its error.
+pub(super) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
+    let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
+    let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
+    let gap = gap(scene, &f, &g, f64::INFINITY, Wanted::NotParting).filter(Gap::counts)?;
+    Some(if gap.error <= FINE * scene.blur {
+        (gap.least, gap.error)
+    } else {
+        (least_exactly(scene, &f, &g).0, 0.0)
+    })
+}
+
 /// Whether side `k` of a facet has no corner of the other on its inner side, exactly.
 fn separates(scene: &Scene, facet: &Facet, k: usize, other: &Facet) -> bool {
     let [a, b] = facet.side(k);

@@ -32,7 +32,7 @@ pub struct SolidCertificate {
     pub tolerance: f64,
     /// Whether the bodies overlap where they are.
     pub start: StartProof,
-    /// No pair of facets stops the body before, in multiples of the direction; infinite if none ever
+    /// No pair of facets of the shrunk bodies stops them before, in multiples of the direction; infinite if none ever
     /// does, 0 for an overlap that is the answer.
     pub lower: f64,
     /// What stops it.
@@ -55,8 +55,9 @@ pub enum StartProof {
 /// The pair of facets that stops the moving body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StopProof {
-    /// Their least gap, in multiples of the direction, or 0.
-    pub distance: f64,
+    /// Their least gap, of the shrunk bodies, in multiples of the direction, or 0: the value of
+    /// [`SolidContact::shrunk_distance`](crate::SolidContact::shrunk_distance).
+    pub shrunk_distance: f64,
     /// Positions in [`Solid::triangles`] of the moving and of the fixed body.
     pub triangles: [u32; 2],
 }
@@ -193,12 +194,14 @@ impl Cast<'_, Solid> {
         let cut = |nodes, reason| {
             cuts.insert(nodes, reason);
         };
-        let mut search = Search { scene: &scene, aim, limit, found: None, cut, steps: [0; 2] };
+        let others = f64::INFINITY;
+        let mut search =
+            Search { scene: &scene, aim, limit, found: None, others, cut, steps: [0; 2] };
         let found = search.run(&mut Workspace::default());
         let end = search.limit;
         certificate.cover = Cover::new(bodies, &cuts);
         certificate.stop = found.map(|found| StopProof {
-            distance: found.gap / scene.length,
+            shrunk_distance: found.gap / scene.length,
             triangles: [found.moving, found.fixed],
         });
         certificate.lower = proven(&scene, aim, end, &certificate.cover) / scene.length;

@@ -40,7 +40,7 @@ impl SolidCertificate {
                 StartProof::Overlapping(Overlap::FixedInside(t)) => Start::FixedInside(*t),
             },
             lower: Some(self.lower).filter(|lower| lower.is_finite()),
-            stop: self.stop.map(|s| Stop { distance: s.distance, triangles: s.triangles }),
+            stop: self.stop.map(|s| Stop { distance: s.shrunk_distance, triangles: s.triangles }),
             cover: self.cover.to_letters(),
         };
         serde_json::to_string(&file).expect("numbers and letters")
@@ -65,7 +65,7 @@ impl SolidCertificate {
                 Start::FixedInside(t) => StartProof::Overlapping(Overlap::FixedInside(t)),
             },
             lower: file.lower.unwrap_or(f64::INFINITY),
-            stop: file.stop.map(|s| StopProof { distance: s.distance, triangles: s.triangles }),
+            stop: file.stop.map(|s| StopProof { shrunk_distance: s.distance, triangles: s.triangles }),
             cover: Cover::from_letters(&file.cover)?,
         })
     }
@@ -112,6 +112,7 @@ enum Start {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Stop {
+    /// Of the shrunk bodies.
     distance: f64,
     triangles: [u32; 2],
 }

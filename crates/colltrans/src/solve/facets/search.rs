@@ -13,6 +13,7 @@ use std::ops::Range;
 use super::bound::{Profile, Reason, Shade, dismissed, least_gap};
 use super::fan::{Fan, Reach};
 use super::leaf::{self, Facet, Gap, Meeting, Wanted};
+use super::proof::node_rounding;
 use super::scene::{Scene, Side};
 use crate::body::solid::tree::Node;
 
@@ -64,6 +65,9 @@ pub(super) struct Found {
     pub(super) fixed: u32,
     pub(super) at: Meeting,
     pub(super) error: f64,
+    /// No other pair contributes less: their gaps less their errors, and the limit up to which bounds
+    /// were looked at, less what bounds are off by.
+    pub(super) others: f64,
 }
 
 impl Found {
@@ -220,6 +224,8 @@ pub(super) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
     /// What a gap has to stay below to be of interest.
     pub(super) limit: f64,
     pub(super) found: Option<Found>,
+    /// The least of the gaps of pairs that were looked at and are not `found`, each less its error.
+    pub(super) others: f64,
     /// Told of every pair of nodes that is not split, and why.
     pub(super) cut: F,
     /// Pairs of nodes looked at, and pairs of leaves.
@@ -281,7 +287,10 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
                 next = None;
             }
         }
-        self.found.map(|found| found.sharpened(self.scene, self.aim))
+        // A little more, for the roundings of a bound on its way into a proof.
+        let bounds = self.limit - 1.0625 * node_rounding(scene);
+        let others = self.others.min(bounds);
+        self.found.map(|found| Found { others, ..found.sharpened(scene, self.aim) })
     }
 
     /// A pair with its bound, unless it is cut.
@@ -313,15 +322,30 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
                 let wanted = self.aim.wanted();
                 let Some(gap) = leaf::gap(scene, f, g, self.limit, wanted) else { continue };
                 let Some(value) = self.aim.value(&gap) else { continue };
-                if value < self.limit {
+                let (moving, fixed) = (f.triangle, g.triangle);
+                let (at, error) = (gap.at, gap.error);
+                let others = f64::INFINITY;
+                let pair = Found { gap: value, moving, fixed, at, error, others };
+                if value >= self.limit {
+                    self.set_aside(pair);
+                } else {
                     // What could be better by less is not worth a look: rounding is as much.
                     self.limit = value - SLACK * scene.blur;
-                    let (moving, fixed) = (f.triangle, g.triangle);
-                    let (at, error) = (gap.at, gap.error);
-                    self.found = Some(Found { gap: value, moving, fixed, at, error });
+                    if let Some(before) = self.found.replace(pair) {
+                        self.set_aside(before);
+                    }
                 }
             }
         }
+    }
+
+    /// A pair that is not the best: how much less than the best it might be is kept.
+    fn set_aside(&mut self, pair: Found) {
+        // Below 0 nothing is of interest, unless all is.
+        let matters = pair.gap - pair.error < self.limit
+            && (self.limit > 0.0 || self.aim == Aim::Least);
+        let pair = if matters { pair.sharpened(self.scene, self.aim) } else { pair };
+        self.others = self.others.min(pair.gap - pair.error);
     }
 }
 

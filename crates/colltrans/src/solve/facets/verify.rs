@@ -79,12 +79,12 @@ impl Cast<'_, Solid> {
             return if reached { Ok(0.0) } else { Err(unproven) };
         };
         verify_stop(&scene, aim, stop)?;
-        let gap = stop.distance - *lower;
+        let gap = stop.shrunk_distance - *lower;
         let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.blur / scene.length;
         if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
             Ok(gap.max(0.0))
         } else {
-            Err(CertificateError::Bound { proven: *lower, claimed: stop.distance })
+            Err(CertificateError::Bound { proven: *lower, claimed: stop.shrunk_distance })
         }
     }
 
@@ -165,9 +165,9 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), Certific
     let gap = leaf::sharpened(scene, &f, &g);
     let proven = aim.clamp(gap.least) / scene.length;
     let tolerance = (gap.error + leaf::FINE * scene.blur) / scene.length;
-    if (stop.distance - proven).abs() <= tolerance {
+    if (stop.shrunk_distance - proven).abs() <= tolerance {
         Ok(())
     } else {
-        Err(CertificateError::Bound { proven, claimed: stop.distance })
+        Err(CertificateError::Bound { proven, claimed: stop.shrunk_distance })
     }
 }

@@ -91,7 +91,7 @@ def test_a_proof_proves_its_own_query_only() -> None:
     contact = cast(CUBE, CUBE, [1, 0, 0], moving_pose=[-3, 0.5, 0])
     assert isinstance(contact, Contact)
     proof = contact.certificate
-    assert 0 <= proof.verify() <= proof.tolerance
+    assert 0 <= proof.verify() <= proof.rounding
     assert proof.lower <= 2 <= proof.upper and proof.gap == proof.upper - proof.lower
     assert proof.pairs.shape == (3, 2) and abs(proof.weights.sum() - 1) < 1e-15
     nearer = Cast(CUBE, CUBE, [1, 0, 0], moving_pose=[-2, 0.5, 0])
@@ -124,7 +124,7 @@ def test_every_answer_of_many_is_proven() -> None:
                 for end in (first, last):
                     contact = end.contact if isinstance(end, Grazing) else end
                     if np.isfinite(contact.certificate.upper):
-                        assert contact.certificate.verify() <= contact.certificate.tolerance
+                        assert contact.certificate.verify() <= contact.certificate.rounding
             case Separated() as apart:
                 assert query.verify(apart.certificate) > 0
 

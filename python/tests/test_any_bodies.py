@@ -91,7 +91,9 @@ def test_columns_of_solids_are_the_single_answers() -> None:
         assert np.array_equal(columns.distance[i], distance, equal_nan=True)
         if isinstance(one, SolidBlocked):
             assert columns.normal[i].tobytes() == one.contact.normal.tobytes()
-            assert columns.nominal[i] == one.contact.nominal
+            assert columns.translation[i] == one.contact.translation
+            bounds = (columns.translation_lower[i], columns.translation_upper[i])
+            assert bounds == one.contact.translation_bounds
     alone = clearance_many([BOLT, CUBE], PLATE, DOWN, **arguments, threads=1)
     assert alone.distance.tobytes() == columns.distance.tobytes()
     assert alone.point.tobytes() == columns.point.tobytes()

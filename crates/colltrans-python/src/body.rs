@@ -58,7 +58,7 @@ impl ConvexPolyhedron {
     ///     In the body frame. Those that no face uses are ignored.
     /// faces : array_like of shape (M, k), or a sequence of sequences
     ///     Vertex indices, counter-clockwise as seen from outside.
-    /// tolerance : float
+    /// convex_tolerance : float
     ///     How far below the convex hull the surface may lie, a length. Rounding error is
     ///     tolerated in any case. The hull is what is kept.
     ///
@@ -83,15 +83,15 @@ impl ConvexPolyhedron {
     /// ...     print(error)
     /// the surface is open: the edge from vertex 0 to vertex 2 of face 0 has no face on its other side
     #[staticmethod]
-    #[pyo3(signature = (vertices, faces, tolerance=0.0))]
+    #[pyo3(signature = (vertices, faces, convex_tolerance=0.0))]
     fn from_mesh(
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
-        tolerance: f64,
+        convex_tolerance: f64,
     ) -> PyResult<Self> {
         let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
-        py.detach(|| colltrans::ConvexPolyhedron::from_mesh(&vertices, &faces, tolerance))
+        py.detach(|| colltrans::ConvexPolyhedron::from_mesh(&vertices, &faces, convex_tolerance))
             .or_raise()
             .map(Self)
     }
@@ -101,17 +101,17 @@ impl ConvexPolyhedron {
     /// Parameters
     /// ----------
     /// mesh : object
-    /// tolerance : float
+    /// convex_tolerance : float
     ///     As for :meth:`from_mesh`.
     ///
     /// Returns
     /// -------
     /// ConvexPolyhedron
     #[staticmethod]
-    #[pyo3(signature = (mesh, tolerance=0.0))]
-    fn from_trimesh(py: Python<'_>, mesh: &Bound<'_, PyAny>, tolerance: f64) -> PyResult<Self> {
+    #[pyo3(signature = (mesh, convex_tolerance=0.0))]
+    fn from_trimesh(py: Python<'_>, mesh: &Bound<'_, PyAny>, convex_tolerance: f64) -> PyResult<Self> {
         let [vertices, faces] = arrays::mesh(mesh)?;
-        Self::from_mesh(py, &vertices, &faces, tolerance)
+        Self::from_mesh(py, &vertices, &faces, convex_tolerance)
     }
 
     /// The box between two corners.

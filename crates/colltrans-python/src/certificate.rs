@@ -44,7 +44,7 @@ impl Certificate {
 
     /// float: What rounding alone can make of the gap.
     #[getter]
-    fn tolerance(&self) -> f64 {
+    fn rounding(&self) -> f64 {
         self.proof.rounding
     }
 

@@ -86,9 +86,7 @@ impl Feature {
 }
 
 pub(crate) fn feature(feature: colltrans::Feature, body: &colltrans::ConvexPolyhedron) -> Feature {
-    let input = body.input_indices();
-    let vertices = feature.vertices(body).into_iter().map(|v| input[v as usize]).collect();
-    Feature { kind: feature.kind(), vertices }
+    Feature { kind: feature.kind(), vertices: feature.vertices(body) }
 }
 
 /// The parts of both bodies that touch.

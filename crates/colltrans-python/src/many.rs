@@ -47,8 +47,20 @@ struct Row {
 }
 
 /// The names of [`Row::numbers`].
-const NUMBERS: [&str; 9] =
-    ["distance", "translation", "exit", "back", "on", "lower", "upper", "tolerance", "margin"];
+const NUMBERS: [&str; 12] = [
+    "distance",
+    "translation",
+    "exit",
+    "back",
+    "on",
+    "translation_lower",
+    "translation_upper",
+    "rounding",
+    "margin",
+    "exit_lower",
+    "exit_upper",
+    "overlap",
+];
 const DISTANCE: usize = 0;
 const TRANSLATION: usize = 1;
 const EXIT: usize = 2;
@@ -56,8 +68,11 @@ const BACK: usize = 3;
 const ON: usize = 4;
 const LOWER: usize = 5;
 const UPPER: usize = 6;
-const TOLERANCE: usize = 7;
+const ROUNDING: usize = 7;
 const MARGIN: usize = 8;
+const EXIT_LOWER: usize = 9;
+const EXIT_UPPER: usize = 10;
+const OVERLAP: usize = 11;
 
 /// Which question is asked of every row.
 #[derive(Clone, Copy)]
@@ -80,10 +95,15 @@ impl Question {
     /// The columns that its answers fill.
     fn numbers(self) -> &'static [usize] {
         match self {
-            Self::Contact => &[TRANSLATION, LOWER, UPPER, TOLERANCE, MARGIN],
-            Self::Range => &[TRANSLATION, EXIT, LOWER, UPPER, TOLERANCE, MARGIN],
+            Self::Contact => &[TRANSLATION, LOWER, UPPER, ROUNDING, MARGIN, OVERLAP],
+            Self::Range => &[
+                TRANSLATION, EXIT, LOWER, UPPER, ROUNDING, MARGIN, EXIT_LOWER, EXIT_UPPER, OVERLAP,
+            ],
             Self::Clearance => {
-                &[DISTANCE, TRANSLATION, EXIT, BACK, ON, LOWER, UPPER, TOLERANCE, MARGIN]
+                &[
+                    DISTANCE, TRANSLATION, EXIT, BACK, ON, LOWER, UPPER, ROUNDING, MARGIN, EXIT_LOWER,
+                    EXIT_UPPER, OVERLAP,
+                ]
             }
         }
     }
@@ -103,17 +123,17 @@ impl Question {
             Self::Contact => match cast.first_contact()? {
                 Outcome::Contact(contact) => Row::of(0, &contact, cast),
                 Outcome::Grazing(grazing) => {
-                    Row::of(1, &grazing.contact, cast).with(MARGIN, 0.0 - grazing.overlap)
+                    Row::of(1, &grazing.contact, cast).with(OVERLAP, grazing.overlap)
                 }
                 Outcome::Separated(separated) => Row::separated(2, &separated),
             },
             Self::Range => match cast.contact_range()? {
                 ContactRange::Contact { first, last } => {
-                    Row::of(0, &first, cast).with(EXIT, 0.0 - last.translation)
+                    Row::of(0, &first, cast).with_exit(&last)
                 }
                 ContactRange::Grazing { first, last } => Row::of(1, &first.contact, cast)
-                    .with(EXIT, 0.0 - last.contact.translation)
-                    .with(MARGIN, 0.0 - first.overlap),
+                    .with_exit(&last.contact)
+                    .with(OVERLAP, first.overlap),
                 ContactRange::Separated(separated) => Row::separated(2, &separated),
             },
             Self::Clearance => Row::clearance(&cast.clearance()?, cast),
@@ -134,6 +154,11 @@ impl Row {
         self
     }
 
+    fn with_exit(self, last: &Contact) -> Self {
+        let exit = last.exit();
+        self.with(EXIT, exit.value).with(EXIT_LOWER, exit.lower).with(EXIT_UPPER, exit.upper)
+    }
+
     fn of(outcome: u8, first: &Contact, cast: &Cast<'_>) -> Self {
         let row = Self {
             outcome,
@@ -145,7 +170,7 @@ impl Row {
         row.with(TRANSLATION, first.translation)
             .with(LOWER, proof.lower)
             .with(UPPER, proof.upper)
-            .with(TOLERANCE, proof.rounding)
+            .with(ROUNDING, proof.rounding)
     }
 
     fn separated(outcome: u8, separated: &colltrans::Separated) -> Self {
@@ -157,17 +182,17 @@ impl Row {
         let row = match answer {
             Clearance::Blocked { contact, .. } => Self::of(0, contact, cast),
             Clearance::Free(WhyFree::Slides(grazing)) => {
-                Self::of(1, &grazing.contact, cast).with(MARGIN, 0.0 - grazing.overlap)
+                Self::of(1, &grazing.contact, cast).with(OVERLAP, grazing.overlap)
             }
             // The last contact is the first one of the way back, whose bounds are not this way's.
             Clearance::Free(WhyFree::Behind(last)) => Self {
-                numbers: Self::NONE.with(TOLERANCE, last.certificate.rounding).numbers,
+                numbers: Self::NONE.with(ROUNDING, last.certificate.rounding).numbers,
                 ..Self::of(2, last, &cast.reversed())
             }
-            .with(EXIT, 0.0 - last.translation),
+            .with_exit(last),
             Clearance::Free(WhyFree::Separated(separated)) => Self::separated(3, separated),
             Clearance::Overlapping(OverlapAhead { first, last }) => Self::of(4, first, cast)
-                .with(EXIT, 0.0 - last.translation)
+                .with_exit(last)
                 .with(BACK, -first.certificate.lower)
                 .with(ON, -last.certificate.lower),
         };

@@ -4,7 +4,7 @@
 //! believed, as all that is pickled; a proof in it is checked by `verify` as ever.
 
 use colltrans::glam::DVec3;
-use colltrans::{SolidOptions, StartOverlap, StartedFrom, VertexPair};
+use colltrans::{Bounded, SolidOptions, StartOverlap, StartedFrom, VertexPair};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -192,11 +192,14 @@ fn solid_cast(state: &Bound<'_, PyTuple>) -> PyResult<SolidCast> {
 }
 
 fn solid_contact(state: &Bound<'_, PyTuple>) -> PyResult<SolidContact> {
-    type State = (Py<SolidCast>, f64, [[f64; 3]; 3], [(String, Vec<u32>); 2], [u32; 2]);
-    let (query, nominal, vectors, [moving, fixed], triangles): State = state.extract()?;
+    type State = (Py<SolidCast>, [[f64; 3]; 2], [[f64; 3]; 3], [(String, Vec<u32>); 2], [u32; 2]);
+    let (query, numbers, vectors, [moving, fixed], triangles): State = state.extract()?;
+    let [translation, shrunk_distance] =
+        numbers.map(|[value, lower, upper]| Bounded { value, lower, upper });
     let [normal, point_on_moving, point_on_fixed] = vectors.map(DVec3::from_array);
     let contact = colltrans::SolidContact {
-        nominal,
+        translation,
+        shrunk_distance,
         normal,
         point_on_moving,
         point_on_fixed,
@@ -230,9 +233,9 @@ pub(crate) fn proof_parts(proof: &colltrans::Certificate) -> Proof {
     (proof.normal.to_array(), bounds, pairs, proof.weights)
 }
 
-fn proof_of((normal, [lower, upper, tolerance], pairs, weights): Proof) -> colltrans::Certificate {
+fn proof_of((normal, [lower, upper, rounding], pairs, weights): Proof) -> colltrans::Certificate {
     let pairs = pairs.map(pair_of);
-    colltrans::Certificate { normal: normal.into(), lower, pairs, weights, upper, tolerance }
+    colltrans::Certificate { normal: normal.into(), lower, pairs, weights, upper, rounding }
 }
 
 fn separation_of((normal, margin): ([f64; 3], f64)) -> colltrans::Separation {

@@ -23,12 +23,34 @@ pub(crate) struct SolidContact {
 impl SolidContact {
     #[classattr]
     #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str, &'static str) = ("nominal", "normal", "point");
+    const MATCH_ARGS: (&'static str, &'static str, &'static str) = ("translation", "normal", "point");
 
-    /// float: Where the bodies as they are, not shrunk, meet, in multiples of the direction.
+    /// float: Where the faces that stop the body meet in their true place, not shrunk, in multiples of
+    /// the direction; the best estimate.
     #[getter]
-    fn nominal(&self) -> f64 {
-        self.contact.nominal
+    fn translation(&self) -> f64 {
+        self.contact.translation.value
+    }
+
+    /// tuple of (float, float): Its proven bounds. Up to the first the shrunk bodies do not overlap and
+    /// those two faces have not met; beyond the second the bodies overlap: as they are, or, where
+    /// those faces pass each other as they are, shrunk.
+    #[getter]
+    fn translation_bounds(&self) -> (f64, f64) {
+        self.contact.translation.bounds().into()
+    }
+
+    /// float: How far the bodies go that were shrunk by half the tolerance each, in multiples of the
+    /// direction.
+    #[getter]
+    fn shrunk_distance(&self) -> f64 {
+        self.contact.shrunk_distance.value
+    }
+
+    /// tuple of (float, float): Its proven bounds.
+    #[getter]
+    fn shrunk_distance_bounds(&self) -> (f64, f64) {
+        self.contact.shrunk_distance.bounds().into()
     }
 
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
@@ -49,7 +71,8 @@ impl SolidContact {
         row(py, self.contact.point_on_moving)
     }
 
-    /// Feature: What of the moving body touches; of a face its vertices in the input's numbers.
+    /// Feature: What of the moving body touches: a corner, an edge from corner to corner, or the whole
+    /// polygon of a face.
     #[getter]
     fn moving_feature(&self) -> PyResult<Feature> {
         feature(self.contact.moving_feature, &self.query.get().bodies[0])
@@ -78,12 +101,14 @@ impl SolidContact {
         let vectors = [c.normal, c.point_on_moving, c.point_on_fixed].map(|v| v.to_array());
         let features = [c.moving_feature, c.fixed_feature].map(parts);
         let query = self.query.clone_ref(py);
-        saved(py, "SolidContact", (query, c.nominal, vectors, features, c.triangles))
+        let numbers =
+            [c.translation, c.shrunk_distance].map(|n| [n.value, n.lower, n.upper]);
+        saved(py, "SolidContact", (query, numbers, vectors, features, c.triangles))
     }
 
     fn __repr__(&self) -> String {
-        let (t, n) = (self.contact.nominal, coordinates(self.contact.normal));
-        format!("SolidContact(nominal={t:?}, normal={n:?})")
+        let (t, n) = (self.contact.translation.value, coordinates(self.contact.normal));
+        format!("SolidContact(translation={t:?}, normal={n:?})")
     }
 }
 
@@ -97,22 +122,9 @@ fn parts(feature: colltrans::Feature) -> (&'static str, Vec<u32>) {
     (feature.kind(), numbers)
 }
 
-/// A feature by the numbers of the input; a face by the vertices of all its triangles.
+/// A feature by the numbers of the input.
 fn feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
-    let vertices = match feature {
-        colltrans::Feature::Vertex(v) => vec![v],
-        colltrans::Feature::Edge(ends) => ends.to_vec(),
-        colltrans::Feature::Face(face) => {
-            let solid = body.solid().or_raise()?;
-            let triangles = solid.triangles().iter().zip(solid.facet_indices());
-            let corners = triangles.filter(|(_, f)| **f == face).flat_map(|(t, _)| *t);
-            let mut found: Vec<u32> = corners.map(|v| solid.vertex_indices()[v as usize]).collect();
-            found.sort_unstable();
-            found.dedup();
-            found
-        }
-    };
-    Ok(Feature::new(feature.kind(), vertices))
+    Ok(Feature::new(feature.kind(), feature.vertices(body.solid().or_raise()?)))
 }
 
 /// A solid can move until it touches.
@@ -128,7 +140,8 @@ impl SolidBlocked {
     #[pyo3(name = "__match_args__")]
     const MATCH_ARGS: (&'static str, &'static str) = ("distance", "contact");
 
-    /// float: How far, in multiples of the direction, the bodies shrunk by half the tolerance each.
+    /// float: How far it may safely move, in multiples of the direction: the lower bound of where it is
+    /// stopped, and never negative.
     #[getter]
     fn distance(&self) -> f64 {
         self.distance
@@ -297,7 +310,7 @@ impl SolidCertificate {
         self.0.tolerance
     }
 
-    /// float: The proven lower bound of the distance, in multiples of the direction.
+    /// float: The proven lower bound of the shrunk bodies' distance, in multiples of the direction.
     #[getter]
     fn lower(&self) -> f64 {
         self.0.lower

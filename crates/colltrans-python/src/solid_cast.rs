@@ -41,8 +41,11 @@ use crate::solid_answer::{SolidCertificate, SolidOverlapping, solid_answer};
 /// >>> from colltrans import Solid, SolidCast
 /// >>> bolt, plate = Solid.read("data/bolt.stl"), Solid.read("data/plate.off")
 /// >>> query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
-/// >>> query.clearance()
-/// SolidBlocked(distance=7.0)
+/// >>> found = query.clearance()
+/// >>> found.contact.translation
+/// 7.0
+/// >>> 7 - 1e-11 < found.distance <= 7
+/// True
 /// >>> query.exit()
 /// 12.0
 #[pyclass(frozen, module = "colltrans")]
@@ -208,9 +211,15 @@ impl SolidCast {
         found.map(|found| SolidOverlapping::of(&found, slf)).transpose()
     }
 
-    /// The translation after which the bodies never meet again, None if nothing faces.
+    /// Where the bodies, as they are, meet last, in multiples of the direction; None if nothing faces.
+    /// The best estimate: for one that is safe see ``exit_bounds``.
     fn exit(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
-        Self::ask(slf, |cast| cast.exit())
+        Self::ask(slf, |cast| cast.exit().map(|exit| exit.value))
+    }
+
+    /// The proven bounds of ``exit``, None if nothing faces: beyond the second they never meet again.
+    fn exit_bounds(slf: &Bound<'_, Self>) -> PyResult<Option<(f64, f64)>> {
+        Self::ask(slf, |cast| cast.exit().map(|exit| exit.bounds().into()))
     }
 
     /// float: The tolerance that is used, a length.

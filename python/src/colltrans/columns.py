@@ -190,21 +190,25 @@ class Columns(Table[Answer_co]):
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)
         Contact points, in the world.
-    lower, upper : ndarray of shape (N,)
-        Proven bounds of the translation, in multiples of the direction.
+    translation_lower, translation_upper : ndarray of shape (N,)
+        Proven bounds of the translation, in multiples of the direction; infinite where nothing is
+        known.
     translation : ndarray of shape (N,)
         Of the first contact, in multiples of the direction.
-    tolerance : ndarray of shape (N,)
-        What rounding can make of ``upper - lower``.
+    rounding : ndarray of shape (N,)
+        What rounding alone can make of the difference of these bounds.
     margin : ndarray of shape (N,)
-        How far the shadows are apart, a length; negative where they overlap and graze.
+        How far the shadows of separated bodies are apart at least, a length.
+    overlap : ndarray of shape (N,)
+        By how much the shadows of bodies overlap that graze, a length; negative where they may not.
     """
 
     translation: Floats
-    lower: Floats
-    upper: Floats
-    tolerance: Floats
+    translation_lower: Floats
+    translation_upper: Floats
+    rounding: Floats
     margin: Floats
+    overlap: Floats
     normal: Floats
     point: Floats
 
@@ -248,9 +252,13 @@ class RangeColumns(Columns[ContactRange | Separated]):
     ----------
     exit : ndarray of shape (N,)
         The translation of the last contact, in multiples of the direction.
+    exit_lower, exit_upper : ndarray of shape (N,)
+        Its proven bounds: beyond the upper one the bodies never meet.
     """
 
     exit: Floats
+    exit_lower: Floats
+    exit_upper: Floats
 
     _question = staticmethod(_colltrans.contact_range)
 
@@ -266,12 +274,16 @@ class ClearanceColumns(Columns[Blocked | Slides | Behind | Separated | Overlappi
         nothing blocks, NaN where the bodies overlap.
     exit : ndarray of shape (N,)
         The translation of the last contact, where it is behind or the bodies overlap.
+    exit_lower, exit_upper : ndarray of shape (N,)
+        Its proven bounds: beyond the upper one the bodies never meet.
     back, on : ndarray of shape (N,)
         How far a body that overlaps has to go, back or on, until it does not.
     """
 
     distance: Floats
     exit: Floats
+    exit_lower: Floats
+    exit_upper: Floats
     back: Floats
     on: Floats
 

@@ -171,7 +171,7 @@ def _mark(name: str, contact: Contact) -> _Mark:
 
 def _solid_mark(contact: SolidContact) -> _Mark:
     direction = contact.query.direction
-    return _Mark("blocked", contact.nominal, contact.point, contact.normal, direction)
+    return _Mark("blocked", contact.translation, contact.point, contact.normal, direction)
 
 
 Placed: TypeAlias = tuple[Floats, NDArray[np.uint32], NDArray[Any]]

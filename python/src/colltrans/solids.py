@@ -17,6 +17,17 @@ from colltrans.errors import InputError
 from colltrans.queries import Floats, Queries, row_of
 
 OUTCOMES = ("blocked", "free", "overlapping", "error")
+#: The columns of numbers, in the order of :func:`_values`.
+_NUMBERS = (
+    "distance",
+    "translation",
+    "translation_lower",
+    "translation_upper",
+    "shrunk_distance",
+    "shrunk_distance_lower",
+    "shrunk_distance_upper",
+    "depth",
+)
 #: Between two looks at signals, in seconds.
 PATIENCE = 0.1
 
@@ -46,10 +57,16 @@ class SolidColumns(Table[SolidBlocked | SolidFree | SolidOverlapping]):
     Attributes
     ----------
     distance : ndarray of shape (N,)
-        How far the moving body may move, in multiples of the direction, both bodies shrunk by half
-        the tolerance: infinite where nothing blocks, NaN where the bodies overlap.
-    nominal : ndarray of shape (N,)
-        Where the bodies as they are meet, in multiples of the direction.
+        How far the moving body may safely move, in multiples of the direction: infinite where
+        nothing blocks, NaN where the bodies overlap.
+    translation : ndarray of shape (N,)
+        Where the faces that stop it meet in their true place, in multiples of the direction.
+    translation_lower, translation_upper : ndarray of shape (N,)
+        The proven bounds of the translation.
+    shrunk_distance : ndarray of shape (N,)
+        How far the bodies go that were shrunk by half the tolerance each.
+    shrunk_distance_lower, shrunk_distance_upper : ndarray of shape (N,)
+        The proven bounds of that.
     depth : ndarray of shape (N,)
         The least tolerance with which bodies that overlap would not, a length.
     normal : ndarray of shape (N, 3)
@@ -59,7 +76,12 @@ class SolidColumns(Table[SolidBlocked | SolidFree | SolidOverlapping]):
     """
 
     distance: Floats
-    nominal: Floats
+    translation: Floats
+    translation_lower: Floats
+    translation_upper: Floats
+    shrunk_distance: Floats
+    shrunk_distance_lower: Floats
+    shrunk_distance_upper: Floats
     depth: Floats
     normal: Floats
     point: Floats
@@ -69,23 +91,25 @@ class SolidColumns(Table[SolidBlocked | SolidFree | SolidOverlapping]):
     def _is_row(self, answer: Any, i: int) -> bool:
         if answer is None:
             return False
-        code, distance, nominal, *_ = _values(answer)
-        told = (self.outcome[i], self.distance[i], self.nominal[i])
-        return np.array_equal(told, (code, distance, nominal), equal_nan=True)
+        code, distance, translation, *_ = _values(answer)
+        told = (self.outcome[i], self.distance[i], self.translation[i])
+        return np.array_equal(told, (code, distance, translation), equal_nan=True)
 
 
-def _values(answer: Any) -> tuple[int, float, float, float, Any, Any]:
+def _values(answer: Any) -> tuple[Any, ...]:
     """The outcome and the numbers of a row."""
-    nothing = np.full(3, np.nan)
+    nothing, none = np.full(3, np.nan), [np.nan] * 6
     match answer:
         case SolidBlocked(distance=distance, contact=contact):
-            return 0, distance, contact.nominal, np.nan, contact.normal, contact.point
+            place = (contact.translation, *contact.translation_bounds)
+            shrunk = (contact.shrunk_distance, *contact.shrunk_distance_bounds)
+            return 0, distance, *place, *shrunk, np.nan, contact.normal, contact.point
         case SolidFree(normal=normal):
             normal = nothing if normal is None else normal
-            return 1, np.inf, np.nan, np.nan, normal, nothing
+            return 1, np.inf, *none, np.nan, normal, nothing
         case SolidOverlapping(depth=depth):
             depth = np.nan if depth is None else depth
-            return 2, np.nan, np.nan, depth, nothing, nothing
+            return 2, np.nan, *none, depth, nothing, nothing
     raise TypeError(type(answer).__name__)
 
 
@@ -99,11 +123,11 @@ def ask_solids(
         outcomes=OUTCOMES,
         errors={},
         _queries=asked,
-        **{name: np.full(n, np.nan) for name in ("distance", "nominal", "depth")},
+        **{name: np.full(n, np.nan) for name in _NUMBERS},
         **{name: np.full((n, 3), np.nan) for name in ("normal", "point")},
     )
-    numbers = [columns.outcome, columns.distance, columns.nominal, columns.depth]
-    places: list[Any] = [*numbers, columns.normal, columns.point]
+    numbers = [getattr(columns, name) for name in _NUMBERS]
+    places: list[Any] = [columns.outcome, *numbers, columns.normal, columns.point]
     rows, failed, stopped = iter(range(n)), {}, False
 
     def work() -> None:

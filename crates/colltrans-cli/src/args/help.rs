@@ -42,19 +42,22 @@ Example:
 pub(super) const CLEAR_ANSWERS: &str = "\
 Answers:
   free         it can go on for ever
-  blocked      it can go so far: `nominal` is the distance at which the faces that stop it meet,
-               `distance` that of the bodies shrunk by half the tolerance, for which it is exact
+  blocked      it can go so far, perhaps 0: `distance` is safe to move by. The faces that stop it meet
+               in their true place within `translation_bounds`; the bodies shrunk by half the tolerance
+               go as far as `shrunk_distance`
   overlapping  the bodies overlap now, by more than the tolerance; `depth` is the least tolerance
                with which they would not
-`exit` is the distance after which they never meet again. Distances are in multiples of the
-direction; tolerance, depth and point are in the unit of the meshes. Vertices and faces are numbered
-from 0 as in their files.
+`exit` is where they meet last: beyond the upper one of `exit_bounds` they never do. Distances are in
+multiples of the direction; tolerance, depth and point are in the unit of the meshes. Vertices are
+numbered from 0 as in their files; a face is the whole polygon, an edge runs from corner to corner.
 
 With --json one object, with those of these fields that apply:
-  {\"outcome\": \"free\"|\"blocked\"|\"overlapping\", \"distance\", \"nominal\", \"exit\",
-   \"moving\": FILE, \"fixed\": FILE (what touches, or overlaps deepest), \"point\": [x,y,z] (of the
-   contact, on the fixed part), \"normal\": [x,y,z] (from moving to fixed), \"tolerance\",
-   \"start_overlaps\": [{\"moving\": FILE, \"fixed\": FILE, \"depth\"}]}
+  {\"outcome\": \"free\"|\"blocked\"|\"overlapping\", \"distance\", \"translation\",
+   \"translation_bounds\": [at least, at most], \"shrunk_distance\", \"shrunk_distance_bounds\",
+   \"exit\", \"exit_bounds\", \"moving\": FILE, \"fixed\": FILE (what touches, or overlaps deepest),
+   \"normal\": [x,y,z] (from moving to fixed), \"point\": [x,y,z] (of the contact, on the fixed part),
+   \"tolerance\", \"start_overlaps\": [{\"moving\": FILE, \"fixed\": FILE, \"depth\"}],
+   \"features\": {\"moving\": {\"kind\": \"vertex\"|\"edge\"|\"face\", \"vertices\": [...]}, \"fixed\": ...}}
 
 Examples:
   How far does a bolt go down into a plate with a hole, from 7 above it?
@@ -86,25 +89,29 @@ Each result is one JSON object with those of these fields that apply:
   outcome      "contact", "grazing", "separated" or "error"; of a clearance: "blocked", "slides",
                "behind", "separated" or "overlapping"; of solids: "free", "blocked" or "overlapping"
   direction    with --directions: the direction as it was read
-  distance     of a clearance, blocked: how far the body can go for certain; of solids: how far, when
-               both are shrunk by half the tolerance
-  nominal      of solids, blocked: where the faces that stop them meet in their true place
+  distance     of a clearance, blocked: how far it is safe to move, the lower one of
+               translation_bounds, and never negative
   back on      of a clearance, overlapping: how far to go back, or on, to be free for certain
-  translation  first contact, in multiples of the direction; negative: behind, or overlapping
-  exit         last contact; behind: where that is (and normal, point, features are those there);
-               of solids: after it they never meet
-  tolerance    what rounding alone can make of upper - lower; digits below it are not known; of
-               solids: the one that was used
+  translation  first contact, in multiples of the direction; negative: behind, or overlapping; of
+               solids: where the faces that stop them meet in their true place
+  exit         last contact; behind: where that is (and normal, point, features are those there)
+  shrunk_distance  of solids, blocked: how far they go, shrunk by half the tolerance each
+  translation_bounds exit_bounds shrunk_distance_bounds
+               [at least, at most] of the number before them, proven: [lower, upper]; null where
+               nothing is known, as of bodies that slide so lightly that they may not touch. Of
+               solids the upper bound of translation holds of the parts as they are, or else, where
+               the two faces pass each other as they are, of the shrunk ones
+  rounding     of convex bodies: what rounding alone can make of the bounds' difference
+  tolerance    of solids: the one that was used, both are shrunk by half of it
   start_overlaps  of solids that overlap now: [{"depth"}], the least tolerance with which they
                would not
   normal       unit normal from moving to fixed: of the contact plane, or of the separating plane
   point        the contact point on the fixed body, in the world
-  lower upper  the proven bounds of translation: never above, never below the true one; upper is
-               missing where bodies slide so lightly that they may not touch
   features     {"moving": {"kind": "vertex"|"edge"|"face", "vertices": [...]}, "fixed": ...} by the
                indices of the points or mesh vertices in the input
-  margin       gap between the shadows (the projections along the direction), measured along
-               normal: a lower bound of their distance; grazing: minus their overlap
+  margin       separated: gap between the shadows (the projections along the direction), measured
+               along normal, a lower bound of their distance
+  overlap      grazing, slides: by how much the shadows overlap; negative where they may not
   hull         {"moving": EXCESS, "fixed": EXCESS} where the hull of a mesh was taken that is not
                convex. EXCESS = {"hull_volume", "part_volume" (of a closed mesh), "depth"}: the
                largest depth of the mesh's surface below the hull's. Then "separated" holds for the
@@ -113,8 +120,8 @@ Each result is one JSON object with those of these fields that apply:
   message      what is wrong; grazing: along which direction the shadows overlap
   notes        what was merged or mended when the meshes were read
 
-Translations, bounds and tolerance are in multiples of the direction, other lengths in the unit of
-the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
+Distances, translations, their bounds and rounding are in multiples of the direction, other lengths
+in the unit of the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
 that exists is replaced when all lines are answered, and never if a query reads it. A line may have
 up to 64 MiB."#;
 
@@ -134,15 +141,18 @@ A manifest, in TOML (JSON has the same fields):
   fixed = true                               # never moved
 
 With --json:
-  {"parts": [{"name", "facets", "volume"}], "unit", "tolerance",
+  {"parts": [{"name", "facets", "volume"}], "unit", "tolerance" (or "keep_apart"),
    "overlaps": [{"parts": [a, b], "depth"}], "suggested_tolerance",
    "liaisons": [{"parts": [a, b], "area", "center"}],
-   "rooms": [{"part", "direction", "outcome", "distance", "by", "nominal", "point", "normal"}],
+   "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
+     "shrunk_distance", "shrunk_distance_bounds" (or "grown_distance", "grown_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within", "ignored"}],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
    "maps": [...]}
-  Directions have length 1, so distances are lengths; distance is that of the bodies shrunk by half
-  the tolerance each, nominal that of the parts as they are. outcome is "free", "blocked" or
+  Directions have length 1, so distances are lengths; distance is safe to move by: what stops the part
+  has not met in its true place, and the parts, shrunk by half the tolerance each or grown by half
+  the length to keep, do not overlap, which they do from grown_ or shrunk_distance on. The two of
+  _bounds enclose that one, proven. outcome is "free", "blocked" or
   "overlapping". A step with "within" takes apart the group that step (from 0) took out.
 
 With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each

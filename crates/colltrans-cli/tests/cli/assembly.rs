@@ -92,12 +92,16 @@ fn rooms_say_how_far_and_who() {
     };
     let down = room("high", -1.0);
     assert_eq!((&down["outcome"], &down["by"]), (&"blocked".into(), &"low".into()));
-    assert!(down["nominal"].as_f64().unwrap() < 1e-12);
+    assert_eq!(down["distance"], 0.0);
+    let bounds: Vec<f64> = serde_json::from_value(down["shrunk_distance_bounds"].clone()).unwrap();
+    let shrunk = down["shrunk_distance"].as_f64().unwrap();
+    assert!(bounds[0] <= shrunk && shrunk <= bounds[1] && bounds[1] < 1e-4, "{down}");
     assert_eq!(room("high", 1.0)["outcome"], "free");
     assert_eq!(room("low", 1.0)["by"], "high");
     // Grown to keep apart they overlap.
     let tight = facts(folder.path(), &["two.toml", "--keep-apart", "0.1", "--direction", "z"]);
     assert_eq!(tight["rooms"][0]["outcome"], "overlapping");
+    assert_eq!((&tight["keep_apart"], tight.get("tolerance")), (&0.1.into(), None));
     let listed = ["two.toml", "--keep-apart", "0.1", "--ignore", "low,high"];
     assert_eq!(facts(folder.path(), &listed)["rooms"][0]["outcome"], "free");
     let fixed = facts(folder.path(), &["two.toml", "--fixed", "low"]);

@@ -55,9 +55,9 @@ fn a_contact_as_json() {
             "exit",
             "normal",
             "point",
-            "lower",
-            "upper",
-            "tolerance",
+            "translation_bounds",
+            "exit_bounds",
+            "rounding",
             "features",
             "solver",
             "steps",
@@ -68,8 +68,11 @@ fn a_contact_as_json() {
         let field = |name: &str| answer[name].as_f64().unwrap();
         assert!((field("translation") - 2.0).abs() < 1e-14, "{answer}");
         assert!((field("exit") - 4.0).abs() < 1e-14, "{answer}");
-        assert!(field("lower") <= 2.0 && 2.0 <= field("upper"), "{answer}");
-        assert!(field("upper") - field("lower") <= field("tolerance"), "{answer}");
+        for (name, right) in [("translation_bounds", 2.0), ("exit_bounds", 4.0)] {
+            let [lower, upper] = [0, 1].map(|k| answer[name][k].as_f64().unwrap());
+            assert!(lower <= right && right <= upper, "{name}: {answer}");
+            assert!(upper - lower <= field("rounding"), "{name}: {answer}");
+        }
         assert_eq!(answer["features"]["moving"]["kind"], "face");
         let mut corners: Vec<u64> = answer["features"]["moving"]["vertices"]
             .as_array()
@@ -108,7 +111,7 @@ fn other_outcomes() {
     assert_eq!(outcome("0.75,0,9", &[])["outcome"], "contact");
     let tolerant = outcome("0.75,0,9", &["--graze-tolerance", "0.25"]);
     assert_eq!(tolerant["outcome"], "grazing");
-    assert_eq!(tolerant["margin"], -0.25);
+    assert_eq!((&tolerant["overlap"], tolerant.get("margin")), (&0.25.into(), None));
     let opposite = outcome("0.75,0,9", &["--fixed-pose", "-1,-2,-3"]);
     assert_eq!(opposite["outcome"], "separated", "poses may begin with a minus sign");
     // A quarter turn about z takes the cube to x from -1 to 0.

@@ -149,6 +149,11 @@ fn number(value: &Value, field: &str) -> f64 {
     value[field].as_f64().unwrap_or_else(|| panic!("{field} in {value}"))
 }
 
+fn bounds(value: &Value, name: &str) -> [f64; 2] {
+    let bounds = &value[&format!("{name}_bounds")];
+    [0, 1].map(|k| bounds[k].as_f64().unwrap_or_else(|| panic!("{name}: {value}")))
+}
+
 fn fields(value: &Value) -> Vec<&str> {
     let mut names: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
     names.sort_unstable();
@@ -163,28 +168,47 @@ fn a_bolt_stops_where_its_head_does() {
     let expected = [
         "distance",
         "exit",
+        "exit_bounds",
+        "features",
         "fixed",
         "moving",
-        "nominal",
         "normal",
         "outcome",
         "point",
+        "shrunk_distance",
+        "shrunk_distance_bounds",
         "tolerance",
+        "translation",
+        "translation_bounds",
     ];
     assert_eq!(fields(&answer), expected);
     assert_eq!(answer["outcome"], "blocked");
-    assert!((number(&answer, "nominal") - 7.0).abs() < 1e-9, "{answer}");
+    let distance = number(&answer, "distance");
+    assert!(distance <= 7.0 && distance > 7.0 - 1e-12, "safe to move by: {answer}");
     let tolerance = number(&answer, "tolerance");
     assert!(tolerance > 1e-7 && tolerance < 1e-5, "single precision: {answer}");
-    assert!((number(&answer, "distance") - 7.0 - tolerance).abs() < 1e-9, "{answer}");
-    assert_eq!(number(&answer, "exit"), 12.0, "the head's top leaves the plate's underside");
+    assert!((number(&answer, "shrunk_distance") - 7.0 - tolerance).abs() < 1e-9, "{answer}");
+    // The head's top leaves the plate's underside after 12.
+    for (name, right) in [("translation", 7.0), ("exit", 12.0)] {
+        let [lower, upper] = bounds(&answer, name);
+        assert!(lower <= right && right <= upper && upper - lower < 1e-11, "{name}: {answer}");
+        assert!((number(&answer, name) - right).abs() < 1e-12, "{name}: {answer}");
+    }
+    let [lower, upper] = bounds(&answer, "shrunk_distance");
+    assert!(lower <= 7.0 + tolerance && 7.0 + tolerance <= upper + 1e-12, "{answer}");
+    assert_eq!(bounds(&answer, "translation")[0], distance);
+    let features = &answer["features"];
+    let feature = |side: &str| (features[side]["kind"].as_str(), &features[side]["vertices"]);
+    let corners = |side: &str| feature(side).1.as_array().unwrap().len();
+    assert_eq!([feature("moving").0, feature("fixed").0], [Some("face"); 2], "{answer}");
+    assert!(corners("moving") > 8 && corners("fixed") > 8, "rims and holes: {answer}");
     assert_eq!((&answer["moving"], &answer["fixed"]), (&"bolt.stl".into(), &"plate.off".into()));
     assert_eq!(answer["normal"], serde_json::json!([0.0, 0.0, -1.0]));
     let up = words.replace("-z", "z");
     assert_eq!(ask(&data(), &up).0["outcome"], "free");
     let text = stdout(&run(&data(), words, &[]));
-    assert!(text.starts_with("blocked\n  nominal      7 times the direction, a length of 7\n"));
-    for part in ["distance     7.0000", "of bolt.stl", "of plate.off", "from the files' precision"]
+    assert!(text.starts_with("blocked\n  distance     7 times the direction, a length of 7\n"));
+    for part in ["shrunk       7.0000", "of bolt.stl", "of plate.off", "from the files' precision"]
     {
         assert!(text.contains(part), "{part:?} is not in {text}");
     }
@@ -212,11 +236,11 @@ fn a_pin_goes_through_a_hole_of_its_size_with_the_chord_errors_as_tolerance() {
     let words = "pin.off --from plate.off --direction -z --moving-pose 0,0,3";
     let (stopped, _) = ask(folder.path(), words);
     assert_eq!(stopped["outcome"], "blocked", "by slivers of the sides");
-    assert!((number(&stopped, "nominal") - 3.0).abs() < 1e-9, "{stopped}");
+    assert!((number(&stopped, "translation") - 3.0).abs() < 1e-9, "{stopped}");
     let text = stdout(&run(folder.path(), &words.replace(",3", ",0"), &[]));
     assert!(text.contains("(the parts touch)") && text.contains("chord errors"), "{text}");
     let (free, _) = ask(folder.path(), &format!("{words} --tolerance 0.01"));
-    assert_eq!(fields(&free), ["exit", "outcome", "tolerance"], "{free}");
+    assert_eq!(fields(&free), ["exit", "exit_bounds", "outcome", "tolerance"], "{free}");
     assert_eq!((&free["outcome"], number(&free, "tolerance")), (&"free".into(), 0.01));
     // Beside the hole it stops, whatever is tolerated.
     let beside = format!("{words} --tolerance 0.01").replace("0,0,3", "0.5,0,3");
@@ -228,7 +252,7 @@ fn a_block_on_a_table() {
     let folder = folder();
     let (down, _) = ask(folder.path(), "block.off --from table.off --direction 0,0,-2");
     assert_eq!(down["outcome"], "blocked");
-    assert!(number(&down, "nominal").abs() < 1e-12, "{down}");
+    assert!(number(&down, "translation").abs() < 1e-12, "{down}");
     for aside in ["z", "x", "1,1,0", "-y"] {
         let words = format!("block.off --from table.off --direction {aside}");
         assert_eq!(ask(folder.path(), &words).0["outcome"], "free", "{aside}");
@@ -238,7 +262,7 @@ fn a_block_on_a_table() {
         ask(folder.path(), &format!("block.off --from table.off --direction y {turned}"));
     // The table stands at y from 2 to 4; the block's corner is at cos 30 + sin 30.
     let expected = 2.0 - (30.0_f64.to_radians().cos() + 0.5);
-    assert!((number(&turned, "nominal") - expected).abs() < 1e-9, "{turned}");
+    assert!((number(&turned, "translation") - expected).abs() < 1e-9, "{turned}");
 }
 
 #[test]
@@ -263,7 +287,7 @@ fn overlaps_are_told_file_by_file() {
     let (up, _) = ask(folder.path(), &format!("{alone} --tolerance 0.2501"));
     assert_eq!(up["outcome"], "free");
     let down = format!("{alone} --tolerance 0.2501").replace("direction z", "direction -z");
-    assert!(number(&ask(folder.path(), &down).0, "distance") < 1e-3);
+    assert!(number(&ask(folder.path(), &down).0, "shrunk_distance") < 1e-3);
     let (ignored, _) = ask(folder.path(), &format!("{alone} --ignore-start-overlaps"));
     assert_eq!(ignored["outcome"], "free");
     assert_eq!(ignored["start_overlaps"][0]["fixed"], "table.off", "said all the same");
@@ -287,11 +311,11 @@ fn the_files_that_touch_are_named() {
                  --moving-pose 0,0,9";
     let (answer, _) = ask(folder.path(), words);
     // The block is 8 above the plate, the near one 13 above the table.
-    assert!((number(&answer, "nominal") - 8.0).abs() < 1e-9, "{answer}");
+    assert!((number(&answer, "translation") - 8.0).abs() < 1e-9, "{answer}");
     assert_eq!((&answer["moving"], &answer["fixed"]), (&"block.off".into(), &"plate.off".into()));
     let aside = words.replace("0,0,9", "-10.5,-10.5,9").replace("-z --", "-z --tolerance 0 --");
     let (answer, _) = ask(folder.path(), &aside);
-    assert!((number(&answer, "nominal") - 13.0).abs() < 1e-9, "{answer}");
+    assert!((number(&answer, "translation") - 13.0).abs() < 1e-9, "{answer}");
     assert_eq!((&answer["moving"], &answer["fixed"]), (&"near.off".into(), &"table.off".into()));
     // The numbers of features are those of the file.
     let text = stdout(&run(folder.path(), &aside, &[]));
@@ -327,13 +351,13 @@ fn open_surfaces_are_refused_unless_they_are_meant() {
     let parts = ["open.off", "not closed: 4 edges", "--merge-tolerance", "--open"];
     refused(folder.path(), words, 3, &parts);
     let (answer, notes) = ask(folder.path(), &format!("{words} --open"));
-    assert!((number(&answer, "nominal") - 4.0).abs() < 1e-9, "{answer}");
+    assert!((number(&answer, "translation") - 4.0).abs() < 1e-9, "{answer}");
     assert!(notes.contains("open.off: an open surface (4 open edges)"), "{notes}");
     // Its floor looks downwards: it blocks from there only.
     let inside = "block.off --from open.off --direction -z --moving-scale 0.5 --open";
     assert_eq!(ask(folder.path(), inside).0["outcome"], "free", "nothing is inside it");
     let below = format!("{inside} --moving-pose 0,0,-4").replace("-z", "z");
-    assert!((number(&ask(folder.path(), &below).0, "nominal") - 2.5).abs() < 1e-9);
+    assert!((number(&ask(folder.path(), &below).0, "translation") - 2.5).abs() < 1e-9);
 }
 
 #[test]
@@ -352,7 +376,7 @@ fn what_is_wrong_is_said() {
     refused(folder, &words.replace(" z", " 0,0,0"), 2, &["direction"]);
     refused(folder, &format!("{words} --picture a.png"), 2, &["a.svg"]);
     let help = stdout(&run(folder, "--help", &[]));
-    for part in ["Examples:", "Exit codes:", "in the unit", "start_overlaps", "nominal"] {
+    for part in ["Examples:", "Exit codes:", "in the unit", "start_overlaps", "shrunk_distance"] {
         assert!(help.contains(part), "{part:?} is not in {help}");
     }
 }
@@ -415,10 +439,24 @@ fn batches_take_solids() {
     let outcomes: Vec<&str> = results.iter().map(|r| r["outcome"].as_str().unwrap()).collect();
     assert_eq!(outcomes[..4], ["blocked", "free", "blocked", "blocked"], "{results:?}");
     assert_eq!(outcomes[4..9], ["error"; 5], "{results:?}");
-    let names = ["distance", "exit", "id", "nominal", "normal", "outcome", "point", "tolerance"];
+    let names = [
+        "distance",
+        "exit",
+        "exit_bounds",
+        "features",
+        "id",
+        "normal",
+        "outcome",
+        "point",
+        "shrunk_distance",
+        "shrunk_distance_bounds",
+        "tolerance",
+        "translation",
+        "translation_bounds",
+    ];
     assert_eq!(fields(&results[0]), names);
-    assert!((number(&results[0], "nominal") - 3.0).abs() < 1e-9);
-    assert!((number(&results[2], "nominal") - 2.0).abs() < 1e-9, "block on plate");
+    assert!((number(&results[0], "translation") - 3.0).abs() < 1e-9);
+    assert!((number(&results[2], "translation") - 2.0).abs() < 1e-9, "block on plate");
     assert!((number(&results[3], "distance") - 1.0).abs() < 1e-9, "as convex bodies");
     for (result, word) in results[4..9].iter().chain(&results[10..]).zip([
         "asked for their clearance",
@@ -481,7 +519,7 @@ fn many_directions_give_one_answer_a_line() {
     assert_eq!(stderr(&output), "error: 1 of 4 directions have no answer\n");
     let text = stdout(&output);
     let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
-    assert_eq!(lines[0], ["direction", "outcome", "nominal", "distance", "exit"]);
+    assert_eq!(lines[0], ["direction", "outcome", "distance", "shrunk", "exit"]);
     assert_eq!(lines[1][..2], ["0,0,-1", "blocked"]);
     assert_eq!(lines[2][..4], ["0,0,1", "free", "-", "-"]);
     assert_eq!(lines[3][..2], ["0,0,-2", "blocked"]);
@@ -490,8 +528,8 @@ fn many_directions_give_one_answer_a_line() {
 
     let records: Vec<Value> = stdout(&ask(&["--json"])).lines().map(json).collect();
     assert_eq!(records.len(), 4);
-    assert!((number(&records[0], "nominal") - 1.0).abs() < 1e-9, "{}", records[0]);
-    assert!((number(&records[2], "nominal") - 0.5).abs() < 1e-9, "{}", records[2]);
+    assert!((number(&records[0], "translation") - 1.0).abs() < 1e-9, "{}", records[0]);
+    assert!((number(&records[2], "translation") - 0.5).abs() < 1e-9, "{}", records[2]);
     assert_eq!(records[2]["direction"], serde_json::json!([0.0, 0.0, -2.0]));
     assert_eq!(records[3]["outcome"], "error");
     let both = ask(&["--direction", "x"]);

@@ -279,11 +279,11 @@ fn clearance_tells_its_cases_apart() {
         answered(folder.path(), &[&first[..], &[pose], more].concat())
     };
     let cases = [
-        ("-3,0.5,0", "blocked", "free         1 times the direction, a length of 2"),
+        ("-3,0.5,0", "blocked", "translation  1 times the direction, a length of 2"),
         (
             "-1,0.5,0",
             "blocked",
-            "free         0 times the direction, a length of 0 (the bodies touch)",
+            "distance     0 times the direction, a length of 0 (the bodies touch)",
         ),
         ("-3,1,0", "slides", "free, the bodies slide along each other"),
         ("3,0.5,0", "behind", "last contact -1 times the direction, a length of -2"),
@@ -291,7 +291,7 @@ fn clearance_tells_its_cases_apart() {
         (
             "0.5,0.5,0",
             "overlapping",
-            "free after   0.75 times the direction, a length of 1.5, back",
+            "best estimate 0.75 times the direction, a length of 1.5",
         ),
     ];
     for (pose, outcome, part) in cases {
@@ -304,21 +304,24 @@ fn clearance_tells_its_cases_apart() {
         assert_eq!(record["outcome"], outcome, "{record}");
         assert_eq!(record.get("distance").is_some(), outcome == "blocked", "{record}");
     }
-    // What is called certain is on the safe side.
-    let certain = |text: &str| -> Vec<f64> {
-        let lines = text.lines().filter_map(|line| line.trim().strip_prefix("certain"));
-        lines.map(|l| l.split_whitespace().next().unwrap().parse().unwrap()).collect()
+    // The first number is on the safe side.
+    let after = |text: &str, name: &str| -> f64 {
+        let line = text.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap();
+        line.split_whitespace().next().unwrap().parse().unwrap()
     };
-    let ahead = certain(&clearance("-3,0.5,0", &[]));
-    assert!(ahead.len() == 1 && ahead[0] <= 1.0 && ahead[0] > 1.0 - 1e-12, "{ahead:?}");
-    let ways = certain(&clearance("0.5,0.5,0", &[]));
-    assert!(ways.len() == 2 && ways[0] >= 0.75 && ways[1] >= 0.25, "{ways:?}");
+    let text = clearance("-3,0.5,0", &[]);
+    assert!(text.starts_with("blocked\n  distance "), "{text}");
+    let ahead = after(&text, "distance");
+    assert!(ahead <= 1.0 && ahead > 1.0 - 1e-12, "{text}");
+    let text = clearance("0.5,0.5,0", &[]);
+    let ways = ["free after", "or after"].map(|name| after(&text, name));
+    assert!(ways[0] >= 0.75 && ways[1] >= 0.25, "{text}");
     let record = json(&clearance("0.5,0.5,0", &["--json"]));
     assert_eq!([&record["back"], &record["on"]].map(|v| v.as_f64().unwrap()), ways[..], "{record}");
     let record = json(&clearance("-3,0.5,0", &["--json"]));
-    let (distance, lower) = (&record["distance"], &record["lower"]);
+    let (distance, lower) = (&record["distance"], &record["translation_bounds"][0]);
     assert!(distance.as_f64() <= lower.as_f64() && lower.as_f64().is_some(), "{record}");
-    assert!(record["tolerance"].as_f64().unwrap() > 0.0);
+    assert!(record["rounding"].as_f64().unwrap() > 0.0);
     assert!(clearance("-3,0.5,0", &["--picture", "free.svg"]).starts_with("blocked"));
     assert!(folder.path().join("free.svg").is_file());
 }

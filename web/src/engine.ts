@@ -45,7 +45,7 @@ export interface Certificate {
   upper: number | null;
   pairs: [number, number][];
   weights: Vec;
-  tolerance: number;
+  rounding: number;
 }
 
 export interface Touch {
@@ -71,6 +71,8 @@ export interface ConvexAnswer {
   outcome: "contact" | "grazing" | "separated";
   first?: Touch;
   exit?: number | null;
+  /** Beyond the second they never meet; `null`: nothing is known. */
+  exit_bounds?: [number | null, number | null] | null;
   overlap?: number;
   sideways?: Vec;
   margin?: number;
@@ -83,7 +85,14 @@ export interface SolidAnswer {
   outcome: "free" | "blocked" | "overlapping";
   first?: Touch;
   exit: number | null;
+  exit_bounds: [number, number] | null;
+  /** Safe to move by. */
   distance?: number;
+  /** Of `first.t`, where the faces that stop it meet in their true place. */
+  bounds?: [number, number];
+  /** Of the bodies shrunk by half the tolerance each. */
+  shrunk_distance?: number;
+  shrunk_distance_bounds?: [number, number];
   depth?: number | null;
   tolerance: number;
   precision: number;
@@ -106,7 +115,7 @@ export interface SolidProof {
   tolerance: number;
   /** `null`: nothing ever stops the body. */
   lower: number | null;
-  stop: { distance: number; triangles: [number, number] } | null;
+  stop: { shrunk_distance: number; triangles: [number, number] } | null;
   overlap: { kind: string; triangles: number[] } | null;
   start_entries: number;
   start_claims: Claims[] | null;

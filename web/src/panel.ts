@@ -301,9 +301,9 @@ function solidProof(answer: SolidAnswer, { solidProof: proof, bodies }: Shown): 
   }
   const lower = proof.lower === null ? "ever" : "before ";
   return [
-    ...(stop ? [bounds({ lower: proof.lower ?? 0, upper: stop.distance, tolerance: Math.abs(stop.distance - (proof.lower ?? 0)) })] : []),
+    ...(stop ? [bounds({ lower: proof.lower ?? 0, upper: stop.shrunk_distance, rounding: Math.abs(stop.shrunk_distance - (proof.lower ?? 0)) })] : []),
     text(`Of ${all} none stops the moving body ${lower}`, ...(proof.lower === null ? [] : [h("b", {}, String(proof.lower))]),
-      ...(stop ? [`; triangles ${stop.triangles.join(" and ")} do at `, h("b", {}, String(stop.distance))] : []), proof.tolerance ? `, both bodies being shrunk by half of ${short(proof.tolerance, 3)}.` : "."),
+      ...(stop ? [`; triangles ${stop.triangles.join(" and ")} do at `, h("b", {}, String(stop.shrunk_distance))] : []), proof.tolerance ? `, both bodies being shrunk by half of ${short(proof.tolerance, 3)}.` : "."),
     table(proof.claims, pairs),
     ...(proof.start_claims ? [text("That they do not overlap where they are:"), table(proof.start_claims, pairs)] : []),
     ...plane,
@@ -317,9 +317,9 @@ function table(claims: Claims[], pairs: number): HTMLElement {
 }
 
 /** Both bounds on a line that shows nothing but the gap, and what rounding alone can make of it. */
-function bounds(proof: Pick<Certificate, "lower" | "upper" | "tolerance">): SVGSVGElement {
-  const upper = proof.upper ?? proof.lower + proof.tolerance;
-  const width = Math.max(upper - proof.lower, proof.tolerance, Number.MIN_VALUE);
+function bounds(proof: Pick<Certificate, "lower" | "upper" | "rounding">): SVGSVGElement {
+  const upper = proof.upper ?? proof.lower + proof.rounding;
+  const width = Math.max(upper - proof.lower, proof.rounding, Number.MIN_VALUE);
   const x = (t: number) => 8 + (300 * (t - proof.lower)) / width;
   const picture = svg("svg", { class: "bounds", viewBox: "0 0 320 44", role: "img", "aria-label": "Lower and upper bound" });
   picture.append(
@@ -327,7 +327,7 @@ function bounds(proof: Pick<Certificate, "lower" | "upper" | "tolerance">): SVGS
     svg("line", { x1: x(proof.lower), x2: x(upper), y1: 22, y2: 22, stroke: "var(--free)", "stroke-width": 6, "stroke-linecap": "round" }),
     svg("text", { x: 8, y: 11 }, "lower"),
     svg("text", { x: Math.max(60, x(upper)), y: 11, "text-anchor": "end" }, proof.upper === null ? "" : "upper"),
-    svg("text", { x: 308, y: 40, "text-anchor": "end" }, `rounding alone: ${short(proof.tolerance, 2)}`),
+    svg("text", { x: 308, y: 40, "text-anchor": "end" }, `rounding alone: ${short(proof.rounding, 2)}`),
   );
   return picture;
 }

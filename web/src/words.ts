@@ -13,18 +13,29 @@ export interface Said {
 }
 
 /** A feature, by the numbers of its file. */
-export function feature(of: Feature, solid: boolean): string {
-  const list = of.file.length > 8 ? `${of.file.slice(0, 8).join(" ")} …` : of.file.join(" ");
+export function feature(of: Feature): string {
+  const list = of.file.length > 8 ? `${of.file.slice(0, 8).join(" ")} … (${of.file.length} in all)` : of.file.join(" ");
   if (of.kind === "vertex") return `vertex ${list}`;
-  if (of.kind === "edge") return `edge ${of.file.join("–")}`;
-  return solid ? `face ${list}` : `face of vertices ${list}`;
+  return of.kind === "edge" ? `edge ${of.file.join("–")}` : `face of vertices ${list}`;
 }
 
-/** A translation, and as a length where that is another number. */
-function way(t: number, state: State): string {
-  const l = length(state.direction);
-  return Math.abs(l - 1) < 1e-12 ? `${short(t)}` : `${short(t)} d, a length of ${short(t * l)}`;
+/** A number that is not beyond a limit: a few digits where they are not, else a dozen, rounded down. */
+function within(x: number, limit: number): string {
+  const text = short(x);
+  if (Number(text.replace("−", "-")) <= limit) return text;
+  const step = 10 ** (Math.floor(Math.log10(Math.abs(limit))) - 11);
+  return short(Math.floor(limit / step) * step, 12);
 }
+
+/** A translation up to a limit, and as a length where that is another number. */
+function way(t: number, limit: number, state: State): string {
+  const l = length(state.direction);
+  const far = within(t, limit);
+  return Math.abs(l - 1) < 1e-12 ? far : `${far} d, a length of ${within(t * l, limit * l * (1 - 1e-15))}`;
+}
+
+const proven = (bounds: readonly (number | null)[] | null | undefined) =>
+  (bounds ?? []).map((x) => (x === null ? "?" : short(x, 15))).join(" to ");
 
 export function say(answer: Answer, state: State): Said {
   return answer.kind === "convex" ? convex(answer, state) : solid(answer, state);
@@ -42,12 +53,14 @@ function convex(answer: ConvexAnswer, state: State): Said {
   }
   const rows: [string, string][] = [
     ["first contact t", short(first.t, 12)],
+    ["proven", proven(first.proof && [first.proof.lower, first.proof.upper])],
     ["last contact t", short(answer.exit ?? first.t, 12)],
+    ["proven", proven(answer.exit_bounds)],
     ["length", short(first.t * length(state.direction), 12)],
     ["normal n", shown(first.normal)],
     ["point", first.on_fixed.map((x) => short(x, 7)).join(", ")],
-    ["moving", feature(first.moving, false)],
-    ["fixed", feature(first.fixed, false)],
+    ["moving", feature(first.moving)],
+    ["fixed", feature(first.fixed)],
   ];
   const touch = `${kind(first.moving)} of the moving body meets ${kind(first.fixed)} of the fixed one`;
   const { kind: free, distance } = answer.clearance;
@@ -80,7 +93,7 @@ function convex(answer: ConvexAnswer, state: State): Said {
   return {
     kind: "stop",
     headline: `Contact at t = ${short(first.t)}`,
-    sentence: `Free for ${way(distance ?? first.t, state)}; then ${touch}.`,
+    sentence: `Free for ${way(first.t, distance ?? first.t, state)}; then ${touch}.`,
     rows,
   };
 }
@@ -89,7 +102,7 @@ const kind = (of: Feature) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
 
 function solid(answer: SolidAnswer, state: State): Said {
   const tolerance: [string, string] = ["tolerance", short(answer.tolerance, 3)];
-  const exit: [string, string][] = answer.exit === null || answer.exit <= 0 ? [] : [["parted for good after t", short(answer.exit, 9)]];
+  const exit: [string, string][] = !answer.exit_bounds || answer.exit_bounds[1] <= 0 ? [] : [["parted for good after t", String(answer.exit_bounds[1])]];
   const { first } = answer;
   if (answer.outcome === "free") {
     return {
@@ -115,18 +128,22 @@ function solid(answer: SolidAnswer, state: State): Said {
       rows: [...(depth === null ? [] : [["depth", short(depth, 9)] as [string, string]]), ...exit, tolerance],
     };
   }
+  const [shrunk] = answer.shrunk_distance_bounds!;
   return {
     kind: "stop",
-    headline: `Blocked at t = ${short(first.t)}`,
-    sentence: `Free for ${way(first.t, state)}; then ${kind(first.moving)} of the moving body meets ${kind(first.fixed)} of the fixed one.`,
+    headline: `Blocked at t = ${within(Math.max(first.t, 0), shrunk)}`,
+    sentence: `Free for ${way(Math.max(first.t, 0), shrunk, state)}; then ${kind(first.moving)} of the moving body meets ${kind(first.fixed)} of the fixed one.`,
     rows: [
+      ["safe for t up to", String(answer.distance)],
       ["t, bodies as they are", short(first.t, 12)],
-      ["t, bodies shrunk", short(answer.distance ?? first.t, 12)],
+      ["proven", proven(answer.bounds)],
+      ["t, bodies shrunk", short(answer.shrunk_distance!, 12)],
+      ["proven", proven(answer.shrunk_distance_bounds)],
       ...exit,
       ["normal n", shown(first.normal)],
       ["point", first.on_fixed.map((x) => short(x, 7)).join(", ")],
-      ["moving", feature(first.moving, true)],
-      ["fixed", feature(first.fixed, true)],
+      ["moving", feature(first.moving)],
+      ["fixed", feature(first.fixed)],
       tolerance,
     ],
   };

@@ -252,7 +252,7 @@ fn of_solid(body: &Solid) -> Drawn {
     let sharp = sides.iter().filter(|(_, (_, smooth))| !smooth).map(|(edge, _)| *edge);
     let mut edges: Vec<[u32; 2]> = sharp.collect();
     edges.sort_unstable();
-    Drawn { triangles: body.triangles().to_vec(), faces: body.facet_indices().to_vec(), edges }
+    Drawn { triangles: body.triangles().to_vec(), faces: body.face_numbers().to_vec(), edges }
 }
 
 fn answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
@@ -290,32 +290,14 @@ pub(crate) struct Lit {
     vertices: Vec<u32>,
     /// The face of the body as drawn, for a face.
     face: Option<u32>,
-    /// The vertices' numbers in the file; for a solid's face, the face's.
+    /// The vertices' numbers in the file.
     file: Vec<u32>,
 }
 
 impl Lit {
-    pub(crate) fn of_hull(feature: Feature, body: &ConvexPolyhedron) -> Self {
-        let vertices = feature.vertices(body);
-        let file = vertices.iter().map(|v| body.input_indices()[*v as usize]).collect();
+    pub(crate) fn of<B: colltrans::Body>(feature: Feature, body: &B) -> Self {
+        let (vertices, file) = (feature.own_vertices(body), feature.vertices(body));
         let face = if let Feature::Face(face) = feature { Some(face) } else { None };
-        Self { kind: feature.kind(), vertices, face, file }
-    }
-
-    /// A solid's features are told by the numbers of its file.
-    pub(crate) fn of_solid(feature: Feature, triangle: u32, body: &Solid) -> Self {
-        let corners = body.triangles()[triangle as usize];
-        let drawn = |number: u32| {
-            let here = corners.iter().find(|v| body.vertex_indices()[**v as usize] == number);
-            here.copied()
-        };
-        let (vertices, face, file) = match feature {
-            Feature::Vertex(v) => (drawn(v).into_iter().collect(), None, vec![v]),
-            Feature::Edge(ends) => {
-                (ends.iter().filter_map(|v| drawn(*v)).collect(), None, ends.to_vec())
-            }
-            Feature::Face(face) => (corners.to_vec(), Some(face), vec![face]),
-        };
         Self { kind: feature.kind(), vertices, face, file }
     }
 

@@ -43,7 +43,7 @@ pub(crate) fn certify(bodies: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal
         "tolerance": certificate.tolerance,
         // Infinite where nothing ever stops the body, which JSON writes as null.
         "lower": certificate.lower,
-        "stop": certificate.stop.map(|s| json!({ "distance": s.distance, "triangles": s.triangles })),
+        "stop": certificate.stop.map(|s| json!({ "shrunk_distance": s.shrunk_distance, "triangles": s.triangles })),
         "overlap": overlap,
         "start_entries": start.map_or(0, Cover::len),
         "start_claims": claims(start),
@@ -114,7 +114,7 @@ fn certificate(claimed: &Claimed, entries: &[u8]) -> Result<SolidCertificate, Re
         tolerance: claimed.tolerance,
         start,
         lower: claimed.lower,
-        stop: claimed.stop.map(|(distance, triangles)| StopProof { distance, triangles }),
+        stop: claimed.stop.map(|(shrunk_distance, triangles)| StopProof { shrunk_distance, triangles }),
         cover: cover(after)?,
     })
 }

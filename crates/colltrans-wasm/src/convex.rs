@@ -46,8 +46,8 @@ fn touch(contact: &Contact, cast: &Cast) -> Value {
         "normal": contact.normal.to_array(),
         "on_moving": points.on_moving.to_array(),
         "on_fixed": points.on_fixed.to_array(),
-        "moving": Lit::of_hull(features.moving, cast.moving()).told(),
-        "fixed": Lit::of_hull(features.fixed, cast.fixed()).told(),
+        "moving": Lit::of(features.moving, cast.moving()).told(),
+        "fixed": Lit::of(features.fixed, cast.fixed()).told(),
         "proof": {
             "normal": proof.normal.to_array(),
             "lower": proof.lower,
@@ -55,7 +55,7 @@ fn touch(contact: &Contact, cast: &Cast) -> Value {
             "upper": proof.upper,
             "pairs": proof.pairs.map(|pair| [pair.moving, pair.fixed]),
             "weights": proof.weights,
-            "tolerance": proof.rounding,
+            "rounding": proof.rounding,
         },
     })
 }
@@ -67,7 +67,13 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let range = cast.contact_range_observed(seen).map_err(|error| error.to_string())?;
     seen.clear();
     let clearance = cast.clearance_observed(seen).map_err(|error| error.to_string())?;
-    let exit = range.interval().map(|[_, exit]| exit);
+    let exit = match &range {
+        ContactRange::Contact { last, .. } => Some(last.exit()),
+        ContactRange::Grazing { last, .. } => Some(last.contact.exit()),
+        ContactRange::Separated(_) => None,
+    };
+    let exit_bounds = exit.map(|exit| exit.bounds());
+    let exit = exit.map(|exit| exit.value);
     let free = free(&clearance);
     let told = match range {
         ContactRange::Contact { first, .. } => json!({
@@ -75,6 +81,7 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
             "outcome": "contact",
             "first": touch(&first, &cast),
             "exit": exit,
+            "exit_bounds": exit_bounds,
             "clearance": free,
             "steps": work(first.solver, &first.steps),
         }),
@@ -83,6 +90,7 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
             "outcome": "grazing",
             "first": touch(&first.contact, &cast),
             "exit": exit,
+            "exit_bounds": exit_bounds,
             "overlap": first.overlap,
             "sideways": first.separating_direction.to_array(),
             "clearance": free,
@@ -122,7 +130,7 @@ pub(crate) fn verify(bodies: [&Hull; 2], pair: &Pair, proof: &Proof) -> Result<A
             upper: given.upper.unwrap_or(f64::INFINITY),
             pairs: given.pairs.map(|[moving, fixed]| VertexPair { moving, fixed }),
             weights: given.weights,
-            tolerance: given.tolerance,
+            rounding: given.rounding,
         }),
         Proof::Separation { normal, margin } => cast
             .verify(&colltrans::Separation { normal: DVec3::from_array(*normal), margin: *margin }),

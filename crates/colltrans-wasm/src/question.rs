@@ -94,7 +94,7 @@ pub(crate) struct Certificate {
     pub(crate) upper: Option<f64>,
     pub(crate) pairs: [[u32; 2]; 3],
     pub(crate) weights: [f64; 3],
-    pub(crate) tolerance: f64,
+    pub(crate) rounding: f64,
 }
 
 /// What a proof between solids says; its entries come as the file, a byte each.
@@ -103,7 +103,7 @@ pub(crate) struct Claimed {
     pub(crate) tolerance: f64,
     /// Infinite where nothing ever stops the body.
     pub(crate) lower: f64,
-    /// The distance, and the two triangles.
+    /// The shrunk bodies' distance, and the two triangles.
     pub(crate) stop: Option<(f64, [u32; 2])>,
     /// Where they overlap at the start: in which way, and the triangles.
     pub(crate) overlap: Option<(String, Vec<u32>)>,
@@ -210,7 +210,7 @@ impl Read for Fields<'_> {
             upper: given.number("upper")?,
             pairs: pairs(given.need("pairs")?).ok_or("pairs are not three pairs of vertices")?,
             weights: given.array("weights")?,
-            tolerance: number("tolerance")?,
+            rounding: number("rounding")?,
         }))
     }
 
@@ -221,7 +221,8 @@ impl Read for Fields<'_> {
         let missing = |key: &str| format!("{key} is missing");
         let stop = self.get("stop").is_some().then(|| -> Result<_, String> {
             let stop = self.object("stop")?;
-            let distance = stop.number("distance")?.ok_or_else(|| missing("distance"))?;
+            let distance =
+                stop.number("shrunk_distance")?.ok_or_else(|| missing("shrunk_distance"))?;
             let two = triangles("triangles", &stop)?.try_into();
             Ok((distance, two.map_err(|_| "triangles are not two".to_owned())?))
         });

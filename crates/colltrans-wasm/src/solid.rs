@@ -19,7 +19,8 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
     let exit = cast.exit();
     let mut told = json!({
         "kind": "solid",
-        "exit": exit,
+        "exit": exit.map(|exit| exit.value),
+        "exit_bounds": exit.map(|exit| exit.bounds()),
         "tolerance": cast.options().tolerance,
         "precision": moving.precision + fixed.precision,
     });
@@ -33,17 +34,19 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
             json!({ "outcome": "overlapping", "depth": overlap.depth })
         }
         Clearance::Blocked { distance, contact } => {
-            let [on_moving, on_fixed] = contact.triangles;
             json!({
                 "outcome": "blocked",
                 "distance": distance,
+                "bounds": contact.translation.bounds(),
+                "shrunk_distance": contact.shrunk_distance.value,
+                "shrunk_distance_bounds": contact.shrunk_distance.bounds(),
                 "first": {
-                    "t": contact.nominal,
+                    "t": contact.translation.value,
                     "normal": contact.normal.to_array(),
                     "on_moving": contact.point_on_moving.to_array(),
                     "on_fixed": contact.point_on_fixed.to_array(),
-                    "moving": Lit::of_solid(contact.moving_feature, on_moving, &moving.body).told(),
-                    "fixed": Lit::of_solid(contact.fixed_feature, on_fixed, &fixed.body).told(),
+                    "moving": Lit::of(contact.moving_feature, &moving.body).told(),
+                    "fixed": Lit::of(contact.fixed_feature, &fixed.body).told(),
                 },
             })
         }

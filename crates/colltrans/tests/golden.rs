@@ -192,7 +192,7 @@ fn solids(family: &str) -> u64 {
                 }
                 Clearance::Overlapping(overlap) => hash.number(overlap.depth.unwrap_or(-1.0)),
             }
-            hash.number(cast.exit().unwrap_or(-1.0));
+            hash.number(cast.exit().map_or(-1.0, |exit| exit.value));
         }
     }
     hash.0

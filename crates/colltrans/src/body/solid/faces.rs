@@ -131,6 +131,12 @@ impl Sharp {
 }
 
 impl Solid {
+    /// For each of [`Self::triangles`], the number of the face that it is part of, as in
+    /// [`Feature::Face`]: the least number of the input's facets that make up its polygon.
+    pub fn face_numbers(&self) -> &[u32] {
+        &self.faces().of
+    }
+
     pub(super) fn faces(&self) -> &Faces {
         self.faces.get_or_init(|| Faces::new(self))
     }

@@ -20,7 +20,7 @@ pub(crate) struct AssemblyArguments {
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,
     /// How far parts must stay apart when they pass; every part is grown by half of it
-    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, conflicts_with = "tolerance")]
+    #[arg(long, alias = "margin", value_name = "L", allow_hyphen_values = true, value_parser = length, conflicts_with = "tolerance")]
     pub(crate) keep_apart: Option<f64>,
     /// A direction to ask first: three numbers or an axis (x, -x, ...); may be given several times
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]

@@ -169,15 +169,28 @@ fn finish(
         faces(points, simplicial, &merge::Regions::triangles(simplicial))
             .expect("the triangles of a simplicial hull are a closed surface")
     });
-    let corners: Vec<DVec3> = vertices.iter().map(|&i| points[i as usize]).collect();
-    let mut gauge = Gauge::new(&corners, &topology, points.len(), rounding(tolerance));
-    let mut violation = violation::unevenness(&gauge.locator, &corners, &topology);
+    // A corner of triangles that have become one polygon may be none of its corners.
+    let others = near.iter().copied().chain(simplicial.vertices());
+    measured(points, Hull { dimension: 3, vertices, topology, violation: 0.0 }, others, tolerance)
+}
+
+/// A hull with faces and its violation, and those of the `others` that are too far away, ascending.
+fn measured(
+    points: &[DVec3],
+    hull: Hull,
+    others: impl Iterator<Item = u32>,
+    tolerance: f64,
+) -> (Hull, Vec<u32>) {
+    let corners: Vec<DVec3> = hull.vertices.iter().map(|&i| points[i as usize]).collect();
+    let mut gauge = Gauge::new(&corners, &hull.topology, points.len(), rounding(tolerance));
+    let mut violation = violation::unevenness(&gauge.locator, &corners, &hull.topology);
     let mut beyond = Vec::new();
     let mut face = 0;
-    let is_vertex = is_among(points.len(), &vertices);
-    // A corner of triangles that have become one polygon may be none of its corners.
-    let dropped = near.iter().copied().chain(simplicial.vertices());
-    for v in dropped.filter(|&v| !is_vertex[v as usize]) {
+    let mut is_vertex = vec![false; points.len()];
+    for &v in &hull.vertices {
+        is_vertex[v as usize] = true;
+    }
+    for v in others.filter(|&v| !is_vertex[v as usize]) {
         let away = gauge.distance(points[v as usize], BEYOND * tolerance, &mut face);
         violation = violation.max(away);
         if away > BEYOND * tolerance {
@@ -186,21 +199,12 @@ fn finish(
     }
     beyond.sort_unstable();
     beyond.dedup();
-    (Hull { dimension: 3, vertices, topology, violation }, beyond)
+    (Hull { violation, ..hull }, beyond)
 }
 
 /// The rounding error of a witness, for points of which this is the tolerance.
 fn rounding(tolerance: f64) -> f64 {
     noise::WITNESS / noise::COPLANAR * tolerance
-}
-
-/// For each of so many points, whether it is one of these.
-fn is_among(count: usize, these: &[u32]) -> Vec<bool> {
-    let mut among = vec![false; count];
-    for &v in these {
-        among[v as usize] = true;
-    }
-    among
 }
 
 /// The vertices, in the order of the input because whoever wrote it kept neighbours together, and

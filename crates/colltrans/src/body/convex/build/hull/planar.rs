@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::quickhull::Flat;
-use super::violation::{Projection, to_polygon, to_segment, turn};
-use super::{BEYOND, Hull, is_among, rounding};
+use super::violation::{Projection, to_segment, turn};
+use super::{BEYOND, Hull, measured, rounding};
 use crate::body::topology::Topology;
 use crate::work;
 
@@ -36,7 +36,7 @@ fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32], tolerance: f6
 
 /// A polygon without corners that are within the tolerance of an edge, unless that leaves some far away.
 fn polygon(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> Hull {
-    let plane = Plane { points, normal, projection: Projection::along(normal) };
+    let plane = Plane { points, projection: Projection::along(normal) };
     let chain = plane.chain(kept);
     let hull = plane.hull(kept, &plane.drop_collinear(&chain, tolerance), tolerance);
     if hull.violation <= BEYOND * tolerance { hull } else { plane.hull(kept, &chain, tolerance) }
@@ -45,7 +45,6 @@ fn polygon(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> Hul
 /// Points in a plane, by their projections.
 struct Plane<'a> {
     points: &'a [DVec3],
-    normal: DVec3,
     projection: Projection,
 }
 
@@ -72,8 +71,8 @@ impl Plane<'_> {
         let count = corners.len() as u32;
         let topology = Topology::sphere(vertices.len(), vec![0, count, 2 * count], &face_vertices)
             .expect("the front and the back of a polygon are a closed surface");
-        let violation = self.violation(kept, corners, tolerance);
-        Hull { dimension: 2, vertices, topology, violation }
+        let hull = Hull { dimension: 2, vertices, topology, violation: 0.0 };
+        measured(self.points, hull, kept.iter().copied(), tolerance).0
     }
 
     /// The corners, counter-clockwise around the normal from the one with least `x`: a monotone
@@ -122,18 +121,6 @@ impl Plane<'_> {
             corners.remove(0);
         }
         corners
-    }
-
-    /// A bound on the distance of a point from the polygon, and of a corner from its plane.
-    fn violation(&self, kept: &[u32], corners: &[u32], tolerance: f64) -> f64 {
-        let corner = |k: usize| self.at(corners[k]);
-        let is_corner = is_among(self.points.len(), corners);
-        let dropped = kept.iter().filter(|&&i| !is_corner[i as usize]);
-        let away = |&i: &u32| {
-            to_polygon(self.at(i), corners.len(), &corner, self.normal, rounding(tolerance))
-        };
-        let uneven = corners.iter().map(|&i| self.normal.dot(self.at(i) - corner(0)).abs());
-        dropped.map(away).chain(uneven).fold(0.0, f64::max)
     }
 }
 

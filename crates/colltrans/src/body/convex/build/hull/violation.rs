@@ -131,8 +131,8 @@ pub(super) fn unevenness(locator: &Locator, vertices: &[DVec3], topology: &Topol
     worst
 }
 
-/// Looks at all faces, one by one, in multiples of the number of faces and points.
-const LOOKS: usize = 64;
+/// Triangles looked at one by one, in multiples of the number of edges and points.
+const LOOKS: usize = 128;
 
 /// How far points are from a body, bounded from above.
 pub(super) struct Gauge<'a> {
@@ -143,7 +143,7 @@ pub(super) struct Gauge<'a> {
     rounding: f64,
     /// How far the locator's centre is from the body: rounding can leave it outside of a thin one.
     center_off: Option<f64>,
-    /// Faces that may still be looked at for points of which the walk does not tell enough.
+    /// Triangles that may still be looked at for points of which the walk does not tell enough.
     looks: usize,
 }
 
@@ -161,7 +161,7 @@ impl<'a> Gauge<'a> {
             topology,
             rounding,
             center_off: None,
-            looks: LOOKS * (topology.face_count() + points),
+            looks: LOOKS * (topology.edge_count() + points),
         }
     }
 
@@ -169,13 +169,17 @@ impl<'a> Gauge<'a> {
     /// nearer than that, or too many points have taken a look at all faces.
     /// `near`: where the walk starts, and where it ended.
     pub(super) fn distance(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
-        self.locator.walk(p - self.locator.center, near);
-        let outside = self.to_face(p, *near);
+        // The front of a flat polygon is where its back is.
+        let is_solid = self.topology.face_count() > 2;
+        if is_solid {
+            self.locator.walk(p - self.locator.center, near);
+        }
+        let outside = self.to_face(p, *near, Search::Foot);
         if outside <= enough {
             return outside;
         }
-        let inside = self.by_ray(p, *near);
-        let count = self.topology.face_count();
+        let inside = if is_solid { self.by_ray(p, *near) } else { f64::INFINITY };
+        let count = 2 * self.topology.edge_count();
         if inside <= enough || self.looks < count {
             return outside.min(inside);
         }
@@ -197,17 +201,17 @@ impl<'a> Gauge<'a> {
         self.center_off = Some(center_off);
         let exit = self.locator.center + ray / share;
         // Scaling the ray is off by as little as a witness.
-        (1.0 - share) * center_off + self.to_face(exit, face) + self.rounding
+        (1.0 - share) * center_off + self.to_face(exit, face, Search::Foot) + self.rounding
     }
 
-    /// The bound from all faces: 0 inside, exactly.
+    /// The bound from all triangles: 0 inside, exactly.
     fn by_all_faces(&self, p: DVec3) -> f64 {
         if self.contains(p) {
             return 0.0;
         }
         let faces = 0..self.topology.face_count();
-        work::count(2 * faces.len());
-        faces.map(|face| self.to_face(p, face)).fold(f64::INFINITY, f64::min)
+        work::count(2 * self.topology.edge_count());
+        faces.map(|face| self.to_face(p, face, Search::All)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a point is above none of the triangles of the faces' fans, and below some; exact.
@@ -229,49 +233,62 @@ impl<'a> Gauge<'a> {
         is_below_some
     }
 
-    fn to_face(&self, p: DVec3, face: usize) -> f64 {
+    /// The bound from triangles of a face's fan. 0 only if the point lies in one of them, exactly.
+    fn to_face(&self, p: DVec3, face: usize, search: Search) -> f64 {
         let range = self.topology.face(face as u32);
         let corner = |k: usize| {
             self.vertices[self.topology.half_edge(range.start + k as u32).origin as usize]
         };
-        to_polygon(p, range.len(), &corner, self.locator.planes[face].0, self.rounding)
+        let normal = self.locator.planes[face].0;
+        let projection = Projection::along(normal);
+        let first = corner(0);
+        let foot = projection.of(p - normal * normal.dot(p - first));
+        let count = range.len();
+        let (from, to) = match search {
+            Search::All => (1, count - 1),
+            Search::Foot => {
+                let at =
+                    fan_triangle(projection.of(first), count, foot, |k| projection.of(corner(k)));
+                // Of a needle, the rounding of the foot can be as much as its width.
+                ((at - 1).max(1), (at + 2).min(count - 1))
+            }
+        };
+        let away = |k: usize| {
+            let triangle = [first, corner(k), corner(k + 1)];
+            let away = to_triangle(p, triangle, foot, projection) + self.rounding;
+            let is_on = away <= 2.0 * self.rounding && is_in_triangle(p, triangle, projection);
+            if is_on { 0.0 } else { away }
+        };
+        (from..to).map(away).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// A bound on the distance of a point from a polygon of `count` corners, counter-clockwise around
-/// the unit vector `normal` up to rounding, in `O(log count)`: from the triangle of its fan where the foot of
-/// the perpendicular falls. 0 only if the point lies in that triangle, exactly.
-pub(super) fn to_polygon(
-    p: DVec3,
-    count: usize,
-    corner: &dyn Fn(usize) -> DVec3,
-    normal: DVec3,
-    rounding: f64,
-) -> f64 {
-    let project = Projection::along(normal);
-    let first = corner(0);
-    let foot = project.of(p - normal * normal.dot(p - first));
-    // The last corner that the foot is not clockwise of, as seen from the first one.
+/// Which triangles of a face's fan are looked at.
+#[derive(Clone, Copy)]
+enum Search {
+    /// The one where the foot of the perpendicular falls, and its neighbours.
+    Foot,
+    All,
+}
+
+/// The last corner `k`, not the last of all, that the foot is not clockwise of, as seen from the first one.
+fn fan_triangle(first: DVec2, count: usize, foot: DVec2, corner: impl Fn(usize) -> DVec2) -> usize {
     let (mut low, mut high) = (1, count - 1);
     while low + 1 < high {
         work::count(1);
         let middle = low.midpoint(high);
-        if turn(project.of(first), project.of(corner(middle)), foot) >= 0.0 {
+        if turn(first, corner(middle), foot) >= 0.0 {
             low = middle;
         } else {
             high = middle;
         }
     }
-    let triangle = [first, corner(low), corner(low + 1)];
-    let away = to_triangle(p, triangle, triangle.map(|a| project.of(a)), foot) + rounding;
-    if away <= 2.0 * rounding && is_in_triangle(p, triangle, project) {
-        return 0.0;
-    }
-    away
+    low
 }
 
 /// The distance of a point from the point of a triangle above `foot`, or from one on its edges.
-fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3], [u, v, w]: [DVec2; 3], foot: DVec2) -> f64 {
+fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3], foot: DVec2, projection: Projection) -> f64 {
+    let [u, v, w] = [a, b, c].map(|corner| projection.of(corner));
     let whole = triangle_area(u, v, w);
     let (s, t) = (triangle_area(u, foot, w) / whole, triangle_area(u, v, foot) / whole);
     if s >= 0.0 && t >= 0.0 && s + t <= 1.0 {
@@ -290,8 +307,8 @@ pub(super) fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
 }
 
 /// Whether a point lies in a triangle, exactly; its projection must not be flat.
-fn is_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3], project: Projection) -> bool {
-    let [u, v, w, q] = [a, b, c, p].map(|point| project.of(point));
+fn is_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3], projection: Projection) -> bool {
+    let [u, v, w, q] = [a, b, c, p].map(|point| projection.of(point));
     let is_left = |from: DVec2, to: DVec2| turn(from, to, q) >= 0.0;
     turn(u, v, w) > 0.0
         && is_left(u, v)

@@ -6,7 +6,8 @@
 use std::collections::BTreeMap;
 
 use colltrans::{
-    Bounded, Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap, Workspace,
+    Bounded, Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap,
+    Workspace,
 };
 use glam::DVec3;
 use rayon::prelude::*;

@@ -194,8 +194,10 @@ impl<'a> Mapper<'a> {
             let mut highest = vec![0.0_f64; self.rooms.len()];
             for t in self.sphere.leaves() {
                 let corners = self.sphere.triangles[t].corners.map(|k| k as usize);
-                let best =
-                    corners.map(|k| self.rooms[k].displaced_distance()).into_iter().fold(0.0, f64::max);
+                let best = corners
+                    .map(|k| self.rooms[k].displaced_distance())
+                    .into_iter()
+                    .fold(0.0, f64::max);
                 for k in corners {
                     highest[k] = highest[k].max(best);
                 }

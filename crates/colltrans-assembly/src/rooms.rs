@@ -126,7 +126,8 @@ fn room_with(
                 break;
             }
             let overlapping = bodies.overlaps(part, by);
-            let at_once = start == StartOverlap::Ignore && best.displaced_distance() <= bodies.noise();
+            let at_once =
+                start == StartOverlap::Ignore && best.displaced_distance() <= bodies.noise();
             if !others[by] || group.contains(&by) || (overlapping && at_once) {
                 continue;
             }

@@ -118,7 +118,10 @@ fn rooms_of_boxes_are_intervals() {
                     (Some(t), PartRoom::Overlapping { .. }) if t < 1e-9 => overlapping += 1,
                     (Some(t), PartRoom::Blocked { stop, by, .. }) => {
                         blocked += 1;
-                        assert!(t > -1e-9 && (stop.displaced.value - t).abs() < 1e-9, "{t}, {stop:?}");
+                        assert!(
+                            t > -1e-9 && (stop.displaced.value - t).abs() < 1e-9,
+                            "{t}, {stop:?}"
+                        );
                         let own = room_of_boxes(boxes[a], boxes[by], d).unwrap();
                         assert!((own - t).abs() < 1e-9, "{by} is at {own}, not {t}");
                         // Faces that were moved by half of the tolerance each.
@@ -192,7 +195,10 @@ fn a_bolt_stops_where_its_head_sits() {
     };
     assert!(room(DVec3::Z).is_free());
     let PartRoom::Blocked { stop, .. } = room(DVec3::NEG_Z) else { panic!("it is stopped") };
-    assert!((stop.displaced.value - 1.02).abs() < 1e-9 && (stop.distance - 1.0).abs() < 1e-9, "{stop:?}");
+    assert!(
+        (stop.displaced.value - 1.02).abs() < 1e-9 && (stop.distance - 1.0).abs() < 1e-9,
+        "{stop:?}"
+    );
     assert_eq!(stop.normal, DVec3::NEG_Z);
     assert!((stop.point.z + 0.01).abs() < 1e-9);
     assert!((room(DVec3::X).displaced_distance() - 0.02).abs() < 1e-9);

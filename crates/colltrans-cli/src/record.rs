@@ -6,8 +6,8 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Bounded, Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing, OverlapAhead,
-    Separated, Solver, Steps, WhyFree,
+    Bounded, Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing,
+    OverlapAhead, Separated, Solver, Steps, WhyFree,
 };
 use serde::Serialize;
 

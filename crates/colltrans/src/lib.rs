@@ -127,9 +127,9 @@ mod tracker;
 mod work;
 
 pub use answer::{
-    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
-    Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver, StartedFrom, Steps,
-    WhyFree,
+    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth,
+    Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver,
+    StartedFrom, Steps, WhyFree,
 };
 pub use body::solid::{AsSolid, Shell, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{

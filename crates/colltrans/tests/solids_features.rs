@@ -217,9 +217,9 @@ fn numbers_are_those_of_the_input() {
 fn convex_bodies_are_named_by_their_input_too() {
     // Points inside come first, so that own numbers are not those of the input.
     let mut points = vec![DVec3::splat(0.5); 3];
-    points.extend((0..8).map(|i| {
-        DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))
-    }));
+    points.extend(
+        (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))),
+    );
     let cube = ConvexPolyhedron::from_points(&points).expect("a cube");
     let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))
         .expect("a table");

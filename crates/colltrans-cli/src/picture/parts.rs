@@ -68,15 +68,14 @@ fn story(question: &Question<'_>, answer: &Answer<'_>) -> Story {
             touching = Some(stop);
             let [moving, fixed] = [&stop.moving, &stop.fixed]
                 .map(|touch| format!("{} of {}", touch.feature.kind, name(touch.file)));
-            details.push(format!(
-                "{moving} touches {fixed}; normal n = {}",
-                components(stop.normal)
-            ));
+            details
+                .push(format!("{moving} touches {fixed}; normal n = {}", components(stop.normal)));
             format!("Blocked at {}", quantity(place(stop, answer), length))
         }
     };
-    let exit =
-        answer.exit.map_or(String::new(), |exit| format!("; exit at {}", quantity(exit.value, length)));
+    let exit = answer
+        .exit
+        .map_or(String::new(), |exit| format!("; exit at {}", quantity(exit.value, length)));
     details.push(format!("tolerance {}{exit}", short(answer.tolerance)));
     Story {
         origin: touching.map_or(question.fixed_pose.translation(), |stop| stop.point),

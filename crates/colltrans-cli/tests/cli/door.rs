@@ -288,11 +288,7 @@ fn clearance_tells_its_cases_apart() {
         ("-3,1,0", "slides", "free, the bodies slide along each other"),
         ("3,0.5,0", "behind", "last contact -1 times the direction, a length of -2"),
         ("-3,2,0", "separated", "never meet"),
-        (
-            "0.5,0.5,0",
-            "overlapping",
-            "best estimate 0.75 times the direction, a length of 1.5",
-        ),
+        ("0.5,0.5,0", "overlapping", "best estimate 0.75 times the direction, a length of 1.5"),
     ];
     for (pose, outcome, part) in cases {
         let text = clearance(pose, &[]);

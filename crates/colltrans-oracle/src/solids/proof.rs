@@ -56,7 +56,9 @@ pub fn approve(
     let near = |v: &Ratio| v.minus(&Ratio::from_f64(stop.shrunk_distance)).is_within(slack);
     match value {
         Some(value) if near(&value) => Ok(()),
-        other => Err(format!("facets {s} and {t} stop it at {other:?}, not {}", stop.shrunk_distance)),
+        other => {
+            Err(format!("facets {s} and {t} stop it at {other:?}, not {}", stop.shrunk_distance))
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::placed::{Body, sealed};
 use super::ConvexPolyhedron;
+use super::placed::{Body, sealed};
 
 /// A vertex, an edge or a face of a body, as an answer names it: **by the numbers of the input**, that
 /// is, of the points or mesh vertices that the body was made from, for bodies of either kind.

@@ -193,7 +193,8 @@ impl Solid {
             all.neighbours.extend(piece.neighbours.iter().map(|n| n.map(shift)));
             report.absorb(&piece.report);
             closed &= piece.closed;
-            let inputs = [0, 1].map(|k| all.input_counts[k] as usize + piece.input_counts[k] as usize);
+            let inputs =
+                [0, 1].map(|k| all.input_counts[k] as usize + piece.input_counts[k] as usize);
             let limit = u32::MAX as usize / 8;
             let count = all.triangles.len().max(inputs[0]).max(inputs[1]);
             if count > limit {

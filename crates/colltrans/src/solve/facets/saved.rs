@@ -65,7 +65,9 @@ impl SolidCertificate {
                 Start::FixedInside(t) => StartProof::Overlapping(Overlap::FixedInside(t)),
             },
             lower: file.lower.unwrap_or(f64::INFINITY),
-            stop: file.stop.map(|s| StopProof { shrunk_distance: s.distance, triangles: s.triangles }),
+            stop: file
+                .stop
+                .map(|s| StopProof { shrunk_distance: s.distance, triangles: s.triangles }),
             cover: Cover::from_letters(&file.cover)?,
         })
     }

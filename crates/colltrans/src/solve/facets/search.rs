@@ -342,8 +342,8 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
     /// A pair that is not the best: how much less than the best it might be is kept.
     fn set_aside(&mut self, pair: Found) {
         // Below 0 nothing is of interest, unless all is.
-        let matters = pair.gap - pair.error < self.limit
-            && (self.limit > 0.0 || self.aim == Aim::Least);
+        let matters =
+            pair.gap - pair.error < self.limit && (self.limit > 0.0 || self.aim == Aim::Least);
         let pair = if matters { pair.sharpened(self.scene, self.aim) } else { pair };
         self.others = self.others.min(pair.gap - pair.error);
     }

@@ -28,9 +28,8 @@ def said(contact: Contact) -> dict[str, Any]:
         "translation": contact.translation,
         "normal": contact.normal.tolist(),
         "point": contact.point.tolist(),
-        "lower": proof.lower,
-        "upper": proof.upper,
-        "tolerance": proof.tolerance,
+        "translation_bounds": bounds(proof.lower, proof.upper),
+        "rounding": proof.rounding,
         "features": {
             name: {"kind": feature.kind, "vertices": feature.vertices.tolist()}
             for name, feature in (("moving", features.moving), ("fixed", features.fixed))
@@ -42,9 +41,21 @@ def said(contact: Contact) -> dict[str, Any]:
             "pivots": steps.pivots,
         },
     }
-    if proof.upper == np.inf:
-        del fields["upper"]
     return fields
+
+
+def bounds(lower: float, upper: float) -> list[float | None]:
+    return [x if np.isfinite(x) else None for x in (lower, upper)]
+
+
+def exit_of(last: Contact) -> dict[str, Any]:
+    proof = last.certificate
+    exits = bounds(0.0 - proof.upper, 0.0 - proof.lower)
+    return {"exit": 0.0 - last.translation, "exit_bounds": exits}
+
+
+def last_of(answer: ContactRange) -> Contact:
+    return answer.last.contact if isinstance(answer.last, Grazing) else answer.last
 
 
 def said_of(answer: Any) -> dict[str, Any]:
@@ -63,21 +74,20 @@ def said_of(answer: Any) -> dict[str, Any]:
                 },
             }
         case ContactRange(first=Contact() as first):
-            return {"outcome": "contact", **said(first), "exit": answer.interval[1]}
+            return {"outcome": "contact", **said(first), **exit_of(last_of(answer))}
         case ContactRange(first=Grazing() as first):
             contact = said(first.contact)
-            exits = {"exit": answer.interval[1], "margin": 0.0 - first.overlap}
+            exits = {**exit_of(last_of(answer)), "overlap": first.overlap}
             return {"outcome": "grazing", **contact, **exits}
         case Blocked(distance=distance, contact=contact):
             return {"outcome": "blocked", "distance": distance, **said(contact)}
         case Slides(grazing=grazing):
-            margin = 0.0 - grazing.overlap
-            return {"outcome": "slides", **said(grazing.contact), "margin": margin}
+            return {"outcome": "slides", **said(grazing.contact), "overlap": grazing.overlap}
         case Behind(contact=last):
-            return {"outcome": "behind", "exit": 0.0 - last.translation, **said(last)}
+            return {"outcome": "behind", **exit_of(last), **said(last)}
         case Overlapping(first=first, last=last):
             back, on = -first.certificate.lower, -last.certificate.lower
-            exits = {"exit": 0.0 - last.translation, "back": back, "on": on}
+            exits = {**exit_of(last), "back": back, "on": on}
             return {"outcome": "overlapping", **said(first), **exits}
     raise AssertionError(answer)
 
@@ -123,7 +133,7 @@ def test_the_command_line_says_the_same(batch: Batch, query: str, one: Any, many
     columns = asked_at_once(SETTINGS, many, None)
     outcomes = set()
     # Behind, the command line leaves out what belongs to the way back.
-    left_out = {"behind": {"translation", "lower", "upper"}}
+    left_out = {"behind": {"translation", "translation_bounds"}}
     for i, (line, answer) in enumerate(zip(lines, answers, strict=True)):
         outcomes.add(line["outcome"])
         del line["id"]
@@ -134,11 +144,13 @@ def test_the_command_line_says_the_same(batch: Batch, query: str, one: Any, many
         assert mine == line
         assert columns.outcomes[columns.outcome[i]] == line["outcome"]
         for name, column in columns._numbers():
-            known = line.get(name, mine.get(name, np.nan))
+            known = line.get(name, np.nan)
+            for k, end in enumerate(("_lower", "_upper")):
+                if name.endswith(end) and f"{name.removesuffix(end)}_bounds" in line:
+                    known = line[f"{name.removesuffix(end)}_bounds"][k]
+                    known = (-np.inf, np.inf)[k] if known is None else known
             if name == "distance":
                 known = np.nan if answer.distance is None else answer.distance
-            if name == "upper" and line["outcome"] in ("grazing", "slides"):
-                known = line.get(name, np.inf)
             assert np.array_equal(column[i], np.broadcast_to(known, column[i].shape), True), name
     assert len(outcomes) == {"contact": 3, "clearance": 5}[query], "all outcomes occur"
 

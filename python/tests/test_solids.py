@@ -69,7 +69,14 @@ def test_the_command_line_says_the_same(batch: Batch, bolt: Solid, plate: Solid)
         match query.clearance():
             case SolidBlocked(distance, contact):
                 assert (line["outcome"], line["distance"]) == ("blocked", distance)
-                assert line["nominal"] == contact.nominal
+                assert line["translation"] == contact.translation
+                assert line["translation_bounds"] == list(contact.translation_bounds)
+                assert line["shrunk_distance"] == contact.shrunk_distance
+                assert line["shrunk_distance_bounds"] == list(contact.shrunk_distance_bounds)
+                for side in ("moving", "fixed"):
+                    feature = getattr(contact, f"{side}_feature")
+                    known = {"kind": feature.kind, "vertices": feature.vertices.tolist()}
+                    assert line["features"][side] == known
                 assert line["normal"] == contact.normal.tolist()
                 assert line["point"] == contact.point.tolist()
             case SolidFree():
@@ -82,7 +89,9 @@ def test_the_command_line_says_the_same(batch: Batch, bolt: Solid, plate: Solid)
 def test_proofs_are_checked_and_saved(bolt: Solid, plate: Solid) -> None:
     query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
     answer, proof = query.certified_clearance()
-    assert repr(answer) == repr(query.clearance()) == "SolidBlocked(distance=7.0)"
+    assert isinstance(answer, SolidBlocked) and repr(answer) == repr(query.clearance())
+    assert answer.contact.translation == 7 and 7 - 1e-11 < answer.distance <= 7
+    assert repr(answer) == f"SolidBlocked(distance={answer.distance!r})"
     again = SolidCertificate.from_json(proof.to_json())
     assert query.verify(again) == query.verify(proof) < 1e-11
     assert 7 - 1e-11 < proof.lower <= 7
@@ -93,6 +102,8 @@ def test_proofs_are_checked_and_saved(bolt: Solid, plate: Solid) -> None:
 
 def test_other_questions(bolt: Solid, plate: Solid) -> None:
     query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
+    lower, upper = query.exit_bounds() or (0, 0)
+    assert lower <= 12 <= upper < 12 + 1e-11
     assert query.exit() == 12 and query.depth() == 0 and not query.intersects()
     assert isinstance(query.reversed().clearance(), SolidFree)
     inside = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[3, 0, 0])

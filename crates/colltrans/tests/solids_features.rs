@@ -148,7 +148,7 @@ fn facets_of_a_fine_cylinder_stay_facets() {
     let ends = places(contact.moving_feature, &round);
     assert!((ends[0] - ends[1]).length() == 1.0, "from end to end, not around: {ends:?}");
     let mut sizes: Vec<usize> = (0..round.facet_indices().len() as u32)
-        .map(|f| Feature::Face(f))
+        .map(Feature::Face)
         .filter(|f| !f.own_vertices(&round).is_empty())
         .map(|f| f.vertices(&round).len())
         .collect();

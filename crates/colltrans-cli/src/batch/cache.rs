@@ -25,7 +25,6 @@ pub(crate) enum Key {
 
 /// What is built.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "both own far more than they are")]
 pub(crate) enum Shape {
     Convex(Part),
     Solid(solid::Body),

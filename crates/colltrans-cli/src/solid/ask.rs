@@ -49,7 +49,7 @@ pub(crate) struct Answer<'a> {
 /// How it ends.
 pub(crate) enum Kind<'a> {
     Free,
-    Blocked(Stop<'a>),
+    Blocked(Box<Stop<'a>>),
     Overlapping,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Question<'a> {
         let kind = match cast.clearance() {
             Clearance::Free(_) => Kind::Free,
             Clearance::Blocked { distance, contact } => {
-                Kind::Blocked(self.stop(distance, &contact))
+                Kind::Blocked(Box::new(self.stop(distance, &contact)))
             }
             Clearance::Overlapping(_) => Kind::Overlapping,
         };
@@ -208,7 +208,9 @@ impl Body {
             }
             (first, base) = (first - count, base + count);
         }
-        vertices.iter_mut().for_each(|v| *v -= base);
+        for vertex in &mut vertices {
+            *vertex -= base;
+        }
         let feature = FeatureRecord { kind: feature.kind(), vertices };
         Touch { file: &owner.file, feature }
     }

@@ -131,7 +131,7 @@ pub use answer::{
     Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver,
     StartedFrom, Steps, WhyFree,
 };
-pub use body::solid::{AsSolid, Shell, ShrinkReport, Solid, SolidError, SolidReport};
+pub use body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{
     Body, ConvexPolyhedron, ConvexityDefect, Feature, OffsetReport, Placed, Pose, convexity_defect,
 };

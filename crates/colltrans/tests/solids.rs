@@ -355,7 +355,7 @@ fn a_part_inside_solid_material() {
     // Its corners touch the walls from inside: still inside.
     let octahedron = turned(&[[0.0, -3.0], [3.0, 0.0], [0.0, 3.0]], 4);
     assert!(cast(&solid(&octahedron), &block, DVec3::X).overlaps());
-    // An open surface has no inside.
+    // An open surface has no inside: nothing that is within it overlaps it.
     let mesh = slab(DVec3::splat(-3.0), DVec3::splat(3.0), [1; 3]);
     let shell = Solid::from_open_mesh(&mesh.vertices, &mesh.faces[1..]).expect("a surface");
     assert!(!cast(&part, &shell, DVec3::X).overlaps());

@@ -14,7 +14,7 @@ use super::error::SolidError;
 use super::exact::{between, collinear};
 use super::faces::Faces;
 use super::polygon::triangulate;
-use super::report::SolidReport;
+use super::report::{ShellKind, SolidReport};
 use super::weld::first_equals;
 use crate::number::range::in_exact_range;
 
@@ -35,6 +35,39 @@ pub(crate) struct Surface {
     pub(crate) input_counts: [u32; 2],
     /// Where they are known: those of a body that was shrunk.
     pub(crate) faces: Option<Faces>,
+    /// What kind of shell each triangle belongs to; closed until the shells are known.
+    pub(crate) kinds: Vec<ShellKind>,
+}
+
+impl Surface {
+    /// Gives the sheets vertices of their own: they stay where others are moved.
+    pub(super) fn part_sheets(&mut self) {
+        const TAKEN: u32 = u32::MAX;
+        let sheet = |k: &ShellKind| *k == ShellKind::Sheet;
+        if self.kinds.iter().all(sheet) || !self.kinds.iter().any(sheet) {
+            return;
+        }
+        let mut copies = vec![0; self.vertices.len()];
+        for (t, kind) in self.triangles.iter().zip(&self.kinds) {
+            if !sheet(kind) {
+                t.iter().for_each(|&v| copies[v as usize] = TAKEN);
+            }
+        }
+        for (t, kind) in self.triangles.iter_mut().zip(&self.kinds) {
+            for v in t.iter_mut().filter(|_| sheet(kind)) {
+                let old = *v as usize;
+                if copies[old] == 0 {
+                    continue;
+                }
+                if copies[old] == TAKEN {
+                    copies[old] = self.vertices.len() as u32;
+                    self.vertices.push(self.vertices[old]);
+                    self.vertex_index.push(self.vertex_index[old]);
+                }
+                *v = copies[old];
+            }
+        }
+    }
 }
 
 /// Checks and joins; a surface that is `open` on purpose may have edges without a neighbour.
@@ -237,6 +270,7 @@ impl Soup {
             vertices: vertex_index.iter().map(|&v| vertices[v as usize] + 0.0).collect(),
             triangles: self.triangles.iter().map(|t| t.map(|v| position[v as usize])).collect(),
             vertex_index,
+            kinds: vec![ShellKind::Closed; self.facet_index.len()],
             facet_index: self.facet_index,
             neighbours,
             input_counts: [0; 2],

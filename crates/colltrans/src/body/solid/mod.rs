@@ -10,6 +10,7 @@ pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
 mod faces;
+mod openness;
 mod passed;
 mod polygon;
 mod report;
@@ -28,14 +29,14 @@ use crate::body::placed::sealed;
 pub(crate) use door::Surface;
 pub use error::SolidError;
 use faces::Faces;
-pub use report::{Shell, SolidReport};
+pub use report::{Shell, ShellKind, SolidReport};
 pub use shrink::ShrinkReport;
 pub(crate) use shrink::{Shrinking, displace};
 use tree::Node;
 
 /// A solid in its own frame, bounded by triangles; it may have holes, cavities and several parts.
 ///
-/// Closed and consistently oriented, or an open surface that has a front and a back but no inside
+/// Closed and consistently oriented, or a surface some shells of which are open
 /// ([`Self::from_open_mesh`]). Several closed surfaces may overlap: the solid is what any of them
 /// encloses. Immutable, `Send` and `Sync`. Vertices and facets keep the numbers of the input.
 ///
@@ -74,9 +75,9 @@ pub struct Solid {
     triangles: Vec<[u32; 3]>,
     facet_index: Vec<u32>,
     neighbours: Vec<[u32; 3]>,
+    kinds: Vec<ShellKind>,
     nodes: Vec<Node>,
     spans: Vec<Span>,
-    closed: bool,
     reach: f64,
     /// How many vertices and facets the input had.
     input_counts: [u32; 2],
@@ -145,11 +146,13 @@ impl Solid {
     ) -> Result<Self, SolidError> {
         let mut report = SolidReport::default();
         let surface = door::surface(vertices, facets, false, &mut report)?;
-        Ok(Self::assemble(surface, report, true))
+        Ok(Self::assemble(surface, report))
     }
 
-    /// A surface that is open on purpose, as a scan is: it blocks and is blocked, but nothing is ever
-    /// inside it, so it never overlaps.
+    /// A surface shells of which may be open, as a scan or a sheet is. Closed shells keep their inside.
+    /// Open ones ([`ShellKind::Sided`], [`ShellKind::Sheet`]) have no side: their facets block from
+    /// both, and so do their rims, edge on. Nothing is inside them, but they overlap what they pass
+    /// through. [`Self::report`] says of what kind each shell is.
     ///
     /// # Errors
     /// As [`Self::from_mesh`], except that edges may have a facet on one side only.
@@ -159,7 +162,7 @@ impl Solid {
     ) -> Result<Self, SolidError> {
         let mut report = SolidReport::default();
         let surface = door::surface(vertices, facets, true, &mut report)?;
-        Ok(Self::assemble(surface, report, false))
+        Ok(Self::assemble(surface, report))
     }
 
     /// The union of several solids or convex polyhedra, which may overlap. The inputs of the pieces are
@@ -178,9 +181,9 @@ impl Solid {
             neighbours: Vec::new(),
             input_counts: [0; 2],
             faces: None,
+            kinds: Vec::new(),
         };
         let mut report = SolidReport::default();
-        let mut closed = true;
         for piece in pieces {
             let piece = piece.as_solid()?;
             let (v, t) = (all.vertices.len() as u32, all.triangles.len() as u32);
@@ -191,8 +194,8 @@ impl Solid {
             all.facet_index.extend(piece.facet_index.iter().map(|f| f + facet_base));
             let shift = |n: u32| if n == edges::NONE { n } else { n + t };
             all.neighbours.extend(piece.neighbours.iter().map(|n| n.map(shift)));
+            all.kinds.extend_from_slice(&piece.kinds);
             report.absorb(&piece.report);
-            closed &= piece.closed;
             let inputs =
                 [0, 1].map(|k| all.input_counts[k] as usize + piece.input_counts[k] as usize);
             let limit = u32::MAX as usize / 8;
@@ -205,7 +208,7 @@ impl Solid {
         if all.triangles.is_empty() {
             return Err(SolidError::Empty);
         }
-        Ok(Self::from_surface(all, report, closed))
+        Ok(Self::from_surface(all, report))
     }
 
     /// A convex polyhedron, its faces cut into triangles. Vertices keep the numbers of its input, and
@@ -226,19 +229,22 @@ impl Solid {
         Ok(solid)
     }
 
-    fn assemble(mut surface: Surface, mut report: SolidReport, closed: bool) -> Self {
+    fn assemble(mut surface: Surface, mut report: SolidReport) -> Self {
         shells::orient(&mut surface, &mut report);
-        Self::from_surface(surface, report, closed)
+        surface.part_sheets();
+        Self::from_surface(surface, report)
     }
 
-    fn from_surface(surface: Surface, report: SolidReport, closed: bool) -> Self {
-        let (nodes, order) = tree::build(&surface.vertices, &surface.triangles);
+    fn from_surface(surface: Surface, report: SolidReport) -> Self {
+        let (mut nodes, order) = tree::build(&surface.vertices, &surface.triangles);
         let mut place = vec![0; order.len()];
         for (k, &t) in order.iter().enumerate() {
             place[t as usize] = k as u32;
         }
         let shift = |n: u32| if n == edges::NONE { n } else { place[n as usize] };
         let old = |k: &u32| *k as usize;
+        let kinds: Vec<ShellKind> = order.iter().map(|k| surface.kinds[old(k)]).collect();
+        tree::open_nodes(&mut nodes, |t| kinds[t] != ShellKind::Closed);
         let reach = surface.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
         let faces = surface.faces.map_or_else(OnceLock::new, |f| f.ordered(&order).into());
         let mut solid = Self {
@@ -247,9 +253,9 @@ impl Solid {
             neighbours: order.iter().map(|k| surface.neighbours[old(k)].map(shift)).collect(),
             vertices: surface.vertices,
             vertex_index: surface.vertex_index,
+            kinds,
             nodes,
             spans: Vec::new(),
-            closed,
             reach,
             input_counts: surface.input_counts,
             report,
@@ -304,9 +310,34 @@ impl Solid {
         &self.facet_index
     }
 
-    /// Whether the surface is closed, so that it has an inside.
+    /// Whether all shells are closed; if not, the body is a *surface*, at least in part.
     pub fn is_closed(&self) -> bool {
-        self.closed
+        !self.is_open_at(&self.nodes[0])
+    }
+
+    /// Whether a node has facets of open shells.
+    pub(crate) fn is_open_at(&self, node: &Node) -> bool {
+        node.spread == tree::OPEN
+    }
+
+    /// Whether a triangle belongs to an open shell: it has no side.
+    pub(crate) fn is_open(&self, triangle: usize) -> bool {
+        self.kinds[triangle] != ShellKind::Closed
+    }
+
+    /// The same of a shell, in the order of [`Self::spans`].
+    fn is_shell_closed(&self, shell: u32) -> bool {
+        !self.is_open(self.spans[shell as usize].triangle as usize)
+    }
+
+    /// Whether some shell is closed, so that there is an inside.
+    pub(crate) fn has_inside(&self) -> bool {
+        self.report.count(ShellKind::Closed) > 0
+    }
+
+    /// Whether a shell can be shrunk.
+    pub(crate) fn can_shrink(&self) -> bool {
+        self.report.shells.iter().any(|s| s.kind != ShellKind::Sheet)
     }
 
     /// What was noticed when it was built.
@@ -332,6 +363,7 @@ impl Solid {
             + self.triangles.capacity() * size_of::<[u32; 3]>()
             + self.facet_index.capacity() * size_of::<u32>()
             + self.neighbours.capacity() * size_of::<[u32; 3]>()
+            + self.kinds.capacity()
             + self.nodes.capacity() * size_of::<Node>()
             + self.spans.capacity() * size_of::<Span>()
             + self.report.shells.capacity() * size_of::<Shell>()

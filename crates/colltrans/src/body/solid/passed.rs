@@ -84,7 +84,7 @@ impl Shells<'_> {
     }
 
     fn is_cavity(&self, shell: u32) -> bool {
-        self.solid.closed && self.volumes[shell as usize] < 0.0
+        self.solid.is_shell_closed(shell) && self.volumes[shell as usize] < 0.0
     }
 
     fn may_pass(&self, pair: [usize; 2]) -> bool {

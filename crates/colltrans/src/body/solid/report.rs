@@ -1,5 +1,32 @@
 //! What the door noticed.
 
+/// What a shell is to others: an inside, a side, or neither.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ShellKind {
+    /// Every edge has a facet on either side: it has an inside.
+    Closed,
+    /// Open, but all but closed: just inside of 99 % of its area the generalised winding number is above
+    /// 0.9. It blocks from both sides, and with its rim, and is shrunk and grown as closed ones are.
+    Sided,
+    /// Open, and without an inside to speak of. It blocks from both sides, and with its rim, and is
+    /// neither shrunk nor grown: there is no side to go to.
+    Sheet,
+}
+
+impl ShellKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Closed, Self::Sided, Self::Sheet];
+
+    /// `closed`, `sided` or `sheet`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Closed => "closed",
+            Self::Sided => "sided",
+            Self::Sheet => "sheet",
+        }
+    }
+}
+
 /// A connected part of a surface: facets that are joined across edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shell {
@@ -13,8 +40,8 @@ pub struct Shell {
     pub holes_through: Option<u32>,
     /// Whether it was inside out, and turned.
     pub turned: bool,
-    /// Whether every edge has a facet on either side.
-    pub closed: bool,
+    /// Whether it has an inside, or a side to which it could be shrunk.
+    pub kind: ShellKind,
 }
 
 /// What was noticed, and mended, when a solid was built.
@@ -38,6 +65,11 @@ impl SolidReport {
     /// How many shells were inside out.
     pub fn turned(&self) -> usize {
         self.shells.iter().filter(|s| s.turned).count()
+    }
+
+    /// How many shells are of a kind.
+    pub fn count(&self, kind: ShellKind) -> usize {
+        self.shells.iter().filter(|s| s.kind == kind).count()
     }
 
     /// Holes through all shells together, where they are known.

@@ -11,17 +11,17 @@ use glam::DVec3;
 use super::door::Surface;
 use super::edges::NONE;
 use super::exact;
-use super::report::{Shell, SolidReport};
+use super::openness;
+use super::report::{Shell, ShellKind, SolidReport};
 
-/// Finds the shells, turns those that are inside out, and reports; returns the shell of each
-/// triangle.
-pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) -> Vec<u32> {
+/// Finds the shells, turns those that are inside out, tells the kinds of open ones apart, and reports.
+pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) {
     let shell_of = components(&surface.neighbours);
     let count = shell_of.iter().max().map_or(0, |&s| s as usize + 1);
     let mut shells = describe(surface, &shell_of, count);
-    if shells.iter().any(|s| s.closed && s.volume < 0.0) {
+    if shells.iter().any(|s| is_closed(s) && s.volume < 0.0) {
         let nesting = Nesting::new(surface, &shell_of, count);
-        let closed = |s: &usize| shells[*s].closed;
+        let closed = |s: &usize| is_closed(&shells[*s]);
         let outermost: Vec<usize> =
             (0..count).filter(closed).filter(|&s| nesting.is_outermost(s)).collect();
         let inverted = |s: usize| shells[s].volume < 0.0;
@@ -37,8 +37,12 @@ pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) -> Vec<u32
         }
         turn_over(surface, &shell_of, &shells);
     }
+    openness::classify(surface, &shell_of, &mut shells);
     report.shells.extend(shells);
-    shell_of
+}
+
+fn is_closed(shell: &Shell) -> bool {
+    shell.kind == ShellKind::Closed
 }
 
 /// Numbers the connected parts in the order of their first triangles.
@@ -66,8 +70,13 @@ pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
 }
 
 fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
-    let empty =
-        Shell { triangles: 0, volume: 0.0, holes_through: None, turned: false, closed: true };
+    let empty = Shell {
+        triangles: 0,
+        volume: 0.0,
+        holes_through: None,
+        turned: false,
+        kind: ShellKind::Closed,
+    };
     let mut shells = vec![empty; count];
     let mut origins = vec![None; count];
     // Vertices of shells that share a vertex are counted for each.
@@ -80,7 +89,9 @@ fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
         let origin = *origins[s].get_or_insert(a);
         shells[s].volume += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
         shells[s].triangles += 1;
-        shells[s].closed &= surface.neighbours[t].iter().all(|&n| n != NONE);
+        if surface.neighbours[t].contains(&NONE) {
+            shells[s].kind = ShellKind::Sheet;
+        }
         for &v in corners {
             let last = std::mem::replace(&mut seen[v as usize], s as u32);
             if last != s as u32 {
@@ -96,7 +107,7 @@ fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
         // V - E + F with three half-edges a facet; odd where the shell touches itself in vertices.
         let doubled = 2 * vertices[s] - shell.triangles as i64;
         let euler = doubled / 2;
-        if shell.closed && !shared[s] && doubled % 2 == 0 && euler % 2 == 0 && euler <= 2 {
+        if is_closed(shell) && !shared[s] && doubled % 2 == 0 && euler % 2 == 0 && euler <= 2 {
             shell.holes_through = Some((1 - euler / 2) as u32);
         }
     }

@@ -7,6 +7,8 @@
 //! all amounts, and growing is shrinking by a negative one. The sum `v + e x` is rounded once; the
 //! rounded vertices *are* the shrunk body.
 //!
+//! Sheets have no side to go to: their vertices, which are theirs alone, stay.
+//!
 //! Facets less high than a millionth of the body's size have no say if their vertex has others: in
 //! single precision their normals are noise.
 //!
@@ -24,7 +26,7 @@ use glam::DVec3;
 use super::edges::NONE;
 use super::error::SolidError;
 use super::tree::{self, Node};
-use super::{Solid, Surface};
+use super::{ShellKind, Solid, Surface};
 use super::{passed, shells};
 use crate::number::range::{in_exact_range, without_traces};
 
@@ -78,7 +80,7 @@ pub struct ShrinkReport {
 
 impl Solid {
     /// The solid with every facet plane moved inwards by `amount`, in the units of the body, and what
-    /// could not be moved so. The vertices keep their numbers.
+    /// could not be moved so. The vertices keep their numbers; those of [sheets](ShellKind::Sheet) stay.
     ///
     /// # Errors
     /// An amount that is negative, not finite, or so large that coordinates leave the exact range.
@@ -132,12 +134,13 @@ impl Solid {
             neighbours: self.neighbours.clone(),
             input_counts: self.input_counts,
             faces: Some(self.faces().clone()),
+            kinds: self.kinds.clone(),
         };
         let mut noticed = self.report.clone();
         for (shell, volume) in noticed.shells.iter_mut().zip(self.volumes_of(&surface.vertices)) {
             shell.volume = volume;
         }
-        Ok((Self::from_surface(surface, noticed, self.closed), report))
+        Ok((Self::from_surface(surface, noticed), report))
     }
 
     /// The volumes of the shells with other vertices, in the order of the report: that of the first
@@ -171,7 +174,7 @@ impl Solid {
         };
         let mirrored = |t: &usize| {
             let shell = shell_of[*t] as usize;
-            self.closed && (before[shell] < 0.0) != (after[shell] < 0.0)
+            self.is_shell_closed(shell_of[*t]) && (before[shell] < 0.0) != (after[shell] < 0.0)
         };
         let mut facets: Vec<u32> = (0..self.triangles.len())
             .filter(|t| mirrored(t) || inverted(t))
@@ -222,7 +225,9 @@ impl Shrinking {
                 }
             });
         }
-        let stuck = (0..field.len() as u32).filter(|&v| field[v as usize] == DVec3::ZERO).collect();
+        let stuck = (0..field.len() as u32)
+            .filter(|&v| field[v as usize] == DVec3::ZERO && planes.has_any(v as usize))
+            .collect();
         let most = MOST * solid.reach;
         let nodes = (0..solid.nodes.len()).map(|k| bound_node(solid, &field, most, k)).collect();
         let farthest = field.iter().map(|x| x.length()).fold(0.0, f64::max);
@@ -258,21 +263,27 @@ struct Planes<'a> {
 impl<'a> Planes<'a> {
     fn new(solid: &'a Solid) -> Self {
         let mut starts = vec![0_u32; solid.vertices.len() + 1];
-        for v in solid.triangles.iter().flatten() {
-            starts[*v as usize + 1] += 1;
+        let moved = |t: &usize| solid.kinds[*t] != ShellKind::Sheet;
+        for v in (0..solid.triangles.len()).filter(moved).flat_map(|t| solid.triangles[t]) {
+            starts[v as usize + 1] += 1;
         }
         for v in 0..solid.vertices.len() {
             starts[v + 1] += starts[v];
         }
         let mut next = starts.clone();
-        let mut facets = vec![NONE; 3 * solid.triangles.len()];
-        for (t, corners) in solid.triangles.iter().enumerate() {
-            for &v in corners {
+        let mut facets = vec![NONE; next[solid.vertices.len()] as usize];
+        for t in (0..solid.triangles.len()).filter(moved) {
+            for v in solid.triangles[t] {
                 facets[next[v as usize] as usize] = t as u32;
                 next[v as usize] += 1;
             }
         }
         Self { solid, starts, facets }
+    }
+
+    /// Whether a vertex has facets that move.
+    fn has_any(&self, v: usize) -> bool {
+        self.starts[v] < self.starts[v + 1]
     }
 
     /// Unit normals of the facets around a vertex, without those that are noise.

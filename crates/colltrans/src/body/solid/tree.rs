@@ -27,6 +27,8 @@ const SAMPLE: usize = 1 << 12;
 const FORK: usize = 1 << 14;
 /// A sine that stands for "any angle".
 pub(crate) const ANY: f64 = 2.0;
+/// A sine that stands for facets without a side.
+pub(crate) const OPEN: f32 = f32::INFINITY;
 
 /// What bounds consecutive facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +37,8 @@ pub(crate) struct Node {
     pub(crate) high: DVec3,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
-    /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on.
+    /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on, [`OPEN`] where one
+    /// has no side.
     pub(crate) spread: f32,
     /// The first child is so far behind; 0 for a leaf.
     pub(crate) skip: u32,
@@ -127,6 +130,22 @@ fn build_on(threads: usize, vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<
     builder.grow(&mut items, 0, 0, threads, &mut nodes);
     nodes.shrink_to_fit();
     (nodes, items.iter().map(|i| i.facet).collect())
+}
+
+/// Marks the nodes that have facets of open shells: where those look says nothing.
+pub(super) fn open_nodes(nodes: &mut [Node], is_open: impl Fn(usize) -> bool) {
+    for at in (0..nodes.len()).rev() {
+        let node = &nodes[at];
+        let open = if node.is_leaf() {
+            node.facets().any(&is_open)
+        } else {
+            let first = at + node.skip as usize;
+            nodes[first].spread == OPEN || nodes[first + 1].spread == OPEN
+        };
+        if open {
+            nodes[at].spread = OPEN;
+        }
+    }
 }
 
 struct Builder<'a> {

@@ -48,6 +48,11 @@ impl Wedge {
         sector(self.start, self.end, axis) == 0
     }
 
+    /// Whether a ray lies in the arc.
+    pub(crate) fn holds(&self, ray: Ray, axis: &impl Axis) -> bool {
+        sector(self.start, ray, axis) != 0 && self.contains(ray, axis)
+    }
+
     /// Whether a ray lies in the arc, its start included.
     pub(crate) fn contains(&self, ray: Ray, axis: &impl Axis) -> bool {
         match (sector(self.start, ray, axis), sector(self.start, self.end, axis)) {

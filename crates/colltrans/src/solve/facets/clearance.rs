@@ -58,7 +58,8 @@ pub struct SolidOverlap {
     /// One of the places where the bodies, shrunk by half the tolerance each, overlap: facets that
     /// cross, or a shell that is inside.
     pub place: Overlap,
-    /// The least tolerance with which they would not overlap, from above; `None` if there is none.
+    /// The least tolerance with which they would not overlap, from above; `None` if there is none, as
+    /// where what overlaps is an open shell: see [`Cast::depth`].
     pub depth: Option<f64>,
 }
 
@@ -205,7 +206,8 @@ impl<'a> Cast<'a, Solid> {
         }
     }
 
-    /// Whether the interiors of the bodies, shrunk by half the tolerance, have a point in common.
+    /// Whether the interiors of the bodies, shrunk by half the tolerance, have a point in common, or open
+    /// shells pass through what is there.
     pub fn overlaps(&self) -> bool {
         overlap::find(&self.asked()).is_some()
     }
@@ -240,11 +242,15 @@ impl<'a> Cast<'a, Solid> {
     }
 
     /// The least tolerance with which the bodies do not overlap, from above: 0 if they do not, `None`
-    /// if there is none up to their size.
+    /// if there is none up to their size. Nor is there one where they overlap and one of them has open
+    /// shells: less of a solid does not free a sheet that passes through it.
     pub fn depth(&self) -> Option<f64> {
         let bare = self.scene(0.0);
         if overlap::find(&bare).is_none() {
             return Some(0.0);
+        }
+        if !(self.moving().is_closed() && self.fixed().is_closed()) {
+            return None;
         }
         let free = |tolerance: f64| {
             let half = tolerance / 2.0;

@@ -25,13 +25,17 @@
 //! bodies as they are: that they may overlap on the way by less than the tolerance is what a tolerance
 //! is for. Without one, both bounds are those of the bodies as given.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
-use super::leaf::{self, Meeting};
+use super::leaf::{self, Meeting, listed};
+use super::rim;
 use super::scene::{Scene, Side};
-use super::search::Found;
+use super::search::{Aim, Found};
 use crate::answer::Bounded;
 use crate::body::Feature;
+use crate::body::solid::Solid;
 
 /// Where a solid is stopped.
 ///
@@ -106,21 +110,16 @@ impl Found {
 /// The contact of a search with the bodies as `scene` has them.
 pub(super) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidContact {
     let (moving, fixed) = (&scene.moving, &scene.fixed);
-    let f = moving.solid.triangles()[found.moving as usize];
-    let mut g = fixed.solid.triangles()[found.fixed as usize];
-    // The leaf lists the corners of back facets backwards.
-    g.swap(1, 2);
-    let at = |side: &Side, v: u32| side.corner(v).at;
-    let (p, q) = (f.map(|v| at(moving, v)), g.map(|v| at(fixed, v)));
+    let of_f = Listed::new(scene, moving, found.moving);
+    let of_g = Listed::new(scene, fixed, found.fixed);
+    let (p, q) = (of_f.places, of_g.places);
     let (on_f, on_g, normal) = match found.at {
         Meeting::Corner(k) => {
-            let vertex = f[k as usize];
-            let within = moving.solid.is_within_face(vertex, found.moving);
+            let within = of_f.is_within_face(moving.solid, k as usize);
             (corner(k), over(q, p[k as usize]), plane(if within { p } else { q }))
         }
         Meeting::Under(k) => {
-            let vertex = g[k as usize];
-            let within = fixed.solid.is_within_face(vertex, found.fixed);
+            let within = of_g.is_within_face(fixed.solid, k as usize);
             (over(p, q[k as usize]), corner(k), plane(if within { q } else { p }))
         }
         Meeting::Sides(k, j) => {
@@ -128,17 +127,25 @@ pub(super) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidConta
             let (a, b) = ([p[k], p[(k + 1) % 3]], [q[j], q[(j + 1) % 3]]);
             let (s, t) = meeting(a, b);
             // What is no edge, or no corner, but within a face touches with that.
-            let flat_f = !moving.solid.is_sharp(found.moving, k);
-            let flat_g = !fixed.solid.is_sharp(found.fixed, 2 - j);
-            let normal = match (flat_f, flat_g) {
+            let flats = (of_f.is_flat(moving.solid, k), of_g.is_flat(fixed.solid, j));
+            let normal = match flats {
                 (_, true) => plane(q),
                 (true, _) => plane(p),
                 _ => (a[1] - a[0]).cross(b[1] - b[0]),
             };
             (along(k, s), along(j, t), normal * normal.z.signum())
         }
+        Meeting::OnSide(k, j) => {
+            let side = [q[j as usize], q[(j as usize + 1) % 3]];
+            (corner(k), along(j as usize, share(side, p[k as usize])), upright(side))
+        }
+        Meeting::UnderSide(k, j) => {
+            let side = [p[k as usize], p[(k as usize + 1) % 3]];
+            (along(k as usize, share(side, q[j as usize])), corner(j), upright(side))
+        }
     };
-    let (on_f, on_g) = (Foot { vertices: f, weights: on_f }, Foot { vertices: g, weights: on_g });
+    let on_f = Foot { vertices: of_f.vertices, weights: on_f };
+    let on_g = Foot { vertices: of_g.vertices, weights: on_g };
     let normal = (scene.frame.transpose() * normal).normalize_or_zero();
     // Nothing stops a body before 0.
     let shrunk_distance = found.bounded(scene).clamped();
@@ -170,7 +177,9 @@ fn true_place(
     shift: DVec3,
 ) -> Bounded {
     let bare = scene.shrunk(0.0, 0.0);
-    let place = leaf::gap_of(&bare, [found.moving, found.fixed]).map_or_else(
+    let pair = [found.moving, found.fixed];
+    let exact = leaf::gap_of(&bare, pair).or_else(|| rim::least_gap_of(&bare, Aim::Stop, pair));
+    let place = exact.map_or_else(
         || {
             let slope = normal.dot(scene.direction);
             let back = if slope > 0.0 { normal.dot(shift) / slope } else { 0.0 };
@@ -187,6 +196,50 @@ fn true_place(
 /// A normal of the plane through three points.
 fn plane([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
+}
+
+/// A triangle as the leaf lists it.
+struct Listed {
+    triangle: u32,
+    vertices: [u32; 3],
+    places: [DVec3; 3],
+    /// Which way its shadow runs as the body has it.
+    turn: Ordering,
+}
+
+impl Listed {
+    fn new(scene: &Scene, side: &Side, triangle: u32) -> Self {
+        let (corners, turn) = listed(scene, side, triangle as usize);
+        let mut vertices = side.solid.triangles()[triangle as usize];
+        if turn == Ordering::Less {
+            vertices.swap(1, 2);
+        }
+        Self { triangle, vertices, places: corners.map(|c| c.at), turn }
+    }
+
+    /// Whether corner `k` lies within the face, and the face is not on edge.
+    fn is_within_face(&self, solid: &Solid, k: usize) -> bool {
+        self.turn != Ordering::Equal && solid.is_within_face(self.vertices[k], self.triangle)
+    }
+
+    /// Whether the side from corner `k` to the next is no edge but within the face, and the face is not on
+    /// edge.
+    fn is_flat(&self, solid: &Solid, k: usize) -> bool {
+        let own = if self.turn == Ordering::Less { 2 - k } else { k };
+        self.turn != Ordering::Equal && !solid.is_sharp(self.triangle, own)
+    }
+}
+
+/// Where on a side that is not upright the shadow of a point on its shadow is.
+fn share([a, b]: [DVec3; 2], p: DVec3) -> f64 {
+    let (u, v) = ((b - a).truncate(), (p - a).truncate());
+    (v.dot(u) / u.length_squared()).clamp(0.0, 1.0)
+}
+
+/// The normal of a side in the plane through it and the direction.
+fn upright([a, b]: [DVec3; 2]) -> DVec3 {
+    let u = (b - a).normalize_or_zero();
+    DVec3::Z - u * u.z
 }
 
 fn corner(k: u8) -> DVec3 {

@@ -1,4 +1,4 @@
-//! Whether a shell of one solid lies inside the other.
+//! Whether a shell of one solid, open or closed, lies inside the closed ones of the other.
 //!
 //! A general point of the shell decides: a corner or, where those lie on the other surface, a mean of
 //! corners with weights that are powers of two. From it a line along the direction is followed, moved
@@ -27,6 +27,9 @@ const WEIGHTS: [[f64; 3]; 4] =
 /// A triangle of a shell of one body that lies inside the other.
 pub(super) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
     let (own, other) = (scene.side(moving), scene.side(!moving));
+    if !other.solid.has_inside() {
+        return None;
+    }
     let room = Shade::new(scene, other, 0);
     for span in own.solid.spans() {
         let (middle, half) = ((span.low + span.high) * 0.5, (span.high - span.low) * 0.5);
@@ -115,7 +118,7 @@ impl Spot for Mean {
     }
 }
 
-/// How many pieces of a solid a point lies in; `None` if it lies on its surface.
+/// How many closed shells of a solid a point lies in; `None` if it lies on one.
 fn winding(scene: &Scene, side: &Side, spot: &impl Spot) -> Option<i32> {
     winding_below(scene, side, spot, 0)
 }
@@ -137,7 +140,8 @@ fn winding_below(scene: &Scene, side: &Side, spot: &impl Spot, at: u32) -> Optio
     }
     let axes = sideways(scene);
     let mut winding = 0;
-    for t in node.facets() {
+    // Sheets enclose nothing.
+    for t in node.facets().filter(|&t| !side.solid.is_open(t)) {
         if lies_on(scene, spot, &Plate::new(side, t)) {
             return None;
         }

@@ -4,7 +4,8 @@
 //! the fixed one, its corners listed backwards so that its shadow runs counter-clockwise too. The
 //! interiors of the shadows overlap unless a side of one separates them. Over the common shadow the
 //! gap `h_g - h_f` is linear; its corners are corners of `f` under `g`, corners of `g` over `f`, and
-//! crossings of sides. The pair *counts* if the largest gap is positive, or zero all over.
+//! crossings of sides. The pair *counts* if the largest gap is positive, or zero all over. A facet of an
+//! open shell has no side: it is both a front and a back facet, unless it is [on edge](super::rim).
 //!
 //! All that is decided is decided exactly: rounded values are used where their error bounds allow,
 //! and else the signs are those of
@@ -15,7 +16,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::scene::{Corner, Scene};
+use super::scene::{Corner, Scene, Side};
 use super::sign::rough_turn;
 use super::wide::{LARGE, SMALL, Wide, determinant, difference};
 
@@ -36,19 +37,18 @@ pub(super) struct Facet {
 }
 
 impl Facet {
-    /// The facet if it is a front (`Greater`) or back (`Less`) facet of its body.
+    /// The facet if it is a front (`Greater`) or back (`Less`) facet of its body; without a side, it is
+    /// both.
     pub(super) fn facing(
         scene: &Scene,
         moving: bool,
         triangle: usize,
         wanted: Ordering,
     ) -> Option<Self> {
-        let mut corners = scene.side(moving).corners(triangle);
-        if scene.turn(&corners[0], &corners[1], &corners[2]) != wanted {
+        let side = scene.side(moving);
+        let (corners, turn) = listed(scene, side, triangle);
+        if turn != wanted && (turn == Ordering::Equal || !side.solid.is_open(triangle)) {
             return None;
-        }
-        if wanted == Ordering::Less {
-            corners.swap(1, 2);
         }
         let places = corners.map(|c| c.at);
         let [a, b, c] = places;
@@ -69,12 +69,23 @@ impl Facet {
             .fold(f64::INFINITY, f64::min)
     }
 
-    fn side(&self, k: usize) -> [&Corner; 2] {
+    pub(super) fn side(&self, k: usize) -> [&Corner; 2] {
         [&self.corners[k], &self.corners[(k + 1) % 3]]
     }
 }
 
-/// What meets what at a corner of the common shadow; numbers are positions in [`Facet::corners`].
+/// The corners of a triangle, listed so that its shadow runs counter-clockwise if it has an area, and
+/// which way it runs as it is.
+pub(super) fn listed(scene: &Scene, side: &Side, triangle: usize) -> ([Corner; 3], Ordering) {
+    let mut corners = side.corners(triangle);
+    let turn = scene.turn(&corners[0], &corners[1], &corners[2]);
+    if turn == Ordering::Less {
+        corners.swap(1, 2);
+    }
+    (corners, turn)
+}
+
+/// What meets what at a corner of the common shadow; numbers are positions among the [`listed`] corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meeting {
     /// A corner of the moving facet and the fixed facet.
@@ -83,6 +94,10 @@ pub(super) enum Meeting {
     Under(u8),
     /// Two sides, each named by its first corner.
     Sides(u8, u8),
+    /// A corner of the moving facet and a side of the fixed one.
+    OnSide(u8, u8),
+    /// A side of the moving facet and a corner of the fixed one.
+    UnderSide(u8, u8),
 }
 
 /// The range of the gap over the common shadow.
@@ -450,7 +465,7 @@ fn exact(
 }
 
 /// Before any corner is looked at.
-const NO_GAP: Gap = Gap {
+pub(super) const NO_GAP: Gap = Gap {
     least: f64::INFINITY,
     largest: f64::NEG_INFINITY,
     signs: [Ordering::Greater, Ordering::Less],
@@ -499,14 +514,17 @@ fn exact_in<const N: usize>(
 
 /// A quotient of two numbers: its sign, and its value to within a few roundings.
 #[derive(Clone, Copy)]
-struct Above {
+pub(super) struct Above {
     sign: Ordering,
     value: f64,
 }
 
 impl Above {
+    /// For numbers that do not fit, of which there are none.
+    pub(super) const LEVEL: Self = Self { sign: Ordering::Equal, value: 0.0 };
+
     /// `None` if one of them did not fit.
-    fn new<const N: usize>(volume: &Wide<N>, plane: &Wide<N>) -> Option<Self> {
+    pub(super) fn new<const N: usize>(volume: &Wide<N>, plane: &Wide<N>) -> Option<Self> {
         let sign = match plane.sign()? {
             Ordering::Less => volume.sign()?.reverse(),
             _ => volume.sign()?,
@@ -514,14 +532,14 @@ impl Above {
         Some(Self { sign, value: volume.ratio(plane)? })
     }
 
-    fn reversed(self) -> Self {
+    pub(super) fn reversed(self) -> Self {
         Self { sign: self.sign.reverse(), value: -self.value }
     }
 }
 
 impl Gap {
     /// With one more corner of the common shadow, in multiples of the direction.
-    fn add(&mut self, scene: &Scene, above: Above, at: Meeting) {
+    pub(super) fn add(&mut self, scene: &Scene, above: Above, at: Meeting) {
         let Above { sign, value } = above;
         let value = if sign == Ordering::Equal { 0.0 } else { value * scene.length };
         if value < self.least {

@@ -2,7 +2,7 @@
 //!
 //! The data's way: [`scene`] (two placed solids and a direction) -> [`overlap`] (do they overlap where
 //! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
-//! [`leaf`] for pairs of facets) -> an answer, with a plane between the bodies ([`separate`]) where
+//! [`leaf`] for pairs of facets, [`rim`] for what is on edge in open shells) -> an answer, with a plane between the bodies ([`separate`]) where
 //! there is one, and on request with its [`proof`], which [`verify`] checks. [`sign`] and [`wide`] decide what rounding cannot.
 
 mod bound;
@@ -13,6 +13,7 @@ mod inside;
 mod leaf;
 mod overlap;
 mod proof;
+mod rim;
 #[cfg(feature = "json")]
 mod saved;
 mod scene;

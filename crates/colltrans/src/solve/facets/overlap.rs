@@ -14,6 +14,11 @@
 //! point of the curve lies in facets that cross (1) or on edges as in (3); if not, it is a whole shell
 //! but for isolated points (4). Vertices that touch need no test of their own.
 //!
+//! A facet of an open shell has no side, and no thickness. An open shell overlaps the inside of a closed
+//! one by 1, by 3, where a half-plane of it runs strictly inside a wedge of material, and by 4; and
+//! another open one by 1, and by 3, where two half-planes of one are on different sides of the other's.
+//! What lies flat on something (2) does not overlap it.
+//!
 //! Nodes whose boxes or slabs are apart are cut; what touches is looked at in exact arithmetic.
 
 use std::cmp::Ordering;
@@ -40,7 +45,7 @@ pub enum Overlap {
     FixedInside(u32),
 }
 
-/// Whether the interiors have a point in common, and where; never for an open surface.
+/// Whether the interiors have a point in common, or open shells pass through what is there, and where.
 pub(super) fn find(scene: &Scene) -> Option<Overlap> {
     find_with(scene, &mut |_| ())
 }
@@ -58,12 +63,10 @@ pub(super) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> 
     nested(scene)
 }
 
-/// Whether the interiors of two whole bodies are disjoint by their boxes and slabs alone, or because a
-/// surface is open.
+/// Whether the interiors of two whole bodies are disjoint by their boxes and slabs alone.
 pub(super) fn never_overlap(scene: &Scene, a: &Shade, b: &Shade) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
-    !(p.solid.is_closed() && q.solid.is_closed())
-        || beyond(scene, (p, a), (q, b))
+    beyond(scene, (p, a), (q, b))
         || beyond(scene, (q, b), (p, a))
         || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k])
 }
@@ -77,9 +80,6 @@ pub(super) fn nested(scene: &Scene) -> Option<Overlap> {
 /// Whether an overlap is one.
 pub(super) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
     let count = |side: &Side| side.solid.triangles().len() as u32;
-    if !scene.moving.solid.is_closed() || !scene.fixed.solid.is_closed() {
-        return false;
-    }
     match overlap {
         Overlap::Facets(f, g) => {
             f < count(&scene.moving) && g < count(&scene.fixed) && {
@@ -106,9 +106,7 @@ pub(super) fn touches(scene: &Scene) -> bool {
     if descend(scene, [0, 0], &a, &b, Judge::TOUCH, &mut |_| ()).is_some() {
         return true;
     }
-    let closed = |side: &Side| side.solid.is_closed();
-    closed(&scene.fixed) && inside::shell_inside(scene, true).is_some()
-        || closed(&scene.moving) && inside::shell_inside(scene, false).is_some()
+    nested(scene).is_some()
 }
 
 /// What is asked of two triangles, and whether nodes that lie face to face are of interest.
@@ -223,6 +221,10 @@ impl<'s, 'a> Plate<'s, 'a> {
         axes.into_iter().map(about).find(|x| x.1 != Ordering::Equal).unwrap_or((0, Ordering::Equal))
     }
 
+    fn is_open(&self) -> bool {
+        self.side.solid.is_open(self.triangle)
+    }
+
     /// The corner of the neighbour across edge `k` that is not on the edge.
     fn across(&self, k: usize) -> Option<Corner> {
         let solid = self.side.solid;
@@ -253,7 +255,7 @@ fn meet(scene: &Scene, f: &Plate, g: &Plate) -> bool {
     }
     let flat = |signs: [Ordering; 3]| signs.iter().all(|s| *s == Ordering::Equal);
     if flat(of_g) || flat(of_f) {
-        if share_a_side(scene, f, g) {
+        if !f.is_open() && !g.is_open() && share_a_side(scene, f, g) {
             return true;
         }
     } else if straddles(of_g) && straddles(of_f) && cross(scene, f, of_f, g, of_g) {
@@ -364,8 +366,11 @@ fn edge_meets(
         return false;
     }
     let (p, q) = (&f.corners[k], &f.corners[next]);
-    let Some(across) = f.across(k) else { return false };
-    let own = Wedge { start: Ray::to(0), end: Ray::to(1) };
+    // A rim has nothing across.
+    let beyond = f.across(k);
+    let own = Stuff::around(f.is_open(), beyond.is_some(), [Ray::to(0), Ray::to(1)]);
+    let Some(own) = own else { return false };
+    let (apex, beyond) = (&f.corners[(k + 2) % 3], &beyond.unwrap_or(f.corners[(k + 2) % 3]));
     if runs_through(scene, [p, q], g) {
         let (axis, facing) = g.open_axis(scene);
         let away = |c: &&Corner| scene.turn_about(axis, p, q, *c) != Ordering::Equal;
@@ -373,8 +378,9 @@ fn edge_meets(
         let outwards = scene.turn_about(axis, p, q, w) == facing;
         let back = Ray { point: 2, opposite: true };
         let (start, end) = if outwards { (back, Ray::to(2)) } else { (Ray::to(2), back) };
-        let around = Around { scene, p, q, points: [&across, &f.corners[(k + 2) % 3], w, w] };
-        return own.meets(&Wedge { start, end }, &around);
+        let around = Around { scene, p, q, points: [beyond, apex, w, w] };
+        let other = Stuff::around(g.is_open(), true, [start, end]);
+        return other.is_some_and(|other| own.overlaps(&other, &around));
     }
     (0..3).any(|j| {
         let on_plane = of_g[j] == Ordering::Equal && of_g[(j + 1) % 3] == Ordering::Equal;
@@ -382,12 +388,70 @@ fn edge_meets(
         let Some(along) = on_plane.then(|| runs_along(scene, [p, q], [r, s])).flatten() else {
             return false;
         };
-        let Some(beyond) = g.across(j) else { return false };
-        let (start, end) = if along { (2, 3) } else { (3, 2) };
-        let other = Wedge { start: Ray::to(start), end: Ray::to(end) };
-        let points = [&across, &f.corners[(k + 2) % 3], &beyond, &g.corners[(j + 2) % 3]];
-        own.meets(&other, &Around { scene, p, q, points })
+        let across = g.across(j);
+        let other = Stuff::around(g.is_open(), across.is_some(), [Ray::to(2), Ray::to(3)]);
+        let other = other.map(|other| if along { other } else { other.turned() });
+        let apex_of_g = &g.corners[(j + 2) % 3];
+        let points = [beyond, apex, &across.unwrap_or(*apex_of_g), apex_of_g];
+        let around = Around { scene, p, q, points };
+        other.is_some_and(|other| own.overlaps(&other, &around))
     })
+}
+
+/// What of a body is around an edge.
+enum Stuff {
+    /// Of a closed shell, a wedge of material.
+    Material(Wedge),
+    /// Of an open one, two half-planes.
+    Bend([Ray; 2]),
+    /// The rim of an open one.
+    Rim(Ray),
+}
+
+impl Stuff {
+    /// Around an edge whose facet lies along the second ray, and what is across it along the first.
+    fn around(open: bool, has_across: bool, [across, own]: [Ray; 2]) -> Option<Self> {
+        match (open, has_across) {
+            (false, true) => Some(Self::Material(Wedge { start: across, end: own })),
+            (false, false) => None,
+            (true, true) => Some(Self::Bend([across, own])),
+            (true, false) => Some(Self::Rim(own)),
+        }
+    }
+
+    /// The same seen with the edge running the other way.
+    fn turned(self) -> Self {
+        match self {
+            Self::Material(Wedge { start, end }) => {
+                Self::Material(Wedge { start: end, end: start })
+            }
+            other => other,
+        }
+    }
+
+    fn overlaps(&self, other: &Self, axis: &impl Axis) -> bool {
+        match (self, other) {
+            (Self::Material(a), Self::Material(b)) => a.meets(b, axis),
+            (Self::Material(a), rays) | (rays, Self::Material(a)) => {
+                rays.rays().any(|ray| a.holds(ray, axis))
+            }
+            (&Self::Bend([a, b]), &Self::Bend([c, e])) => {
+                let (one, rest) = (Wedge { start: a, end: b }, Wedge { start: b, end: a });
+                let divides = |c, e| one.holds(c, axis) && rest.holds(e, axis);
+                divides(c, e) || divides(e, c)
+            }
+            _ => false,
+        }
+    }
+
+    fn rays(&self) -> impl Iterator<Item = Ray> {
+        let rays = match *self {
+            Self::Material(_) => [None, None],
+            Self::Bend([a, b]) => [Some(a), Some(b)],
+            Self::Rim(a) => [Some(a), None],
+        };
+        rays.into_iter().flatten()
+    }
 }
 
 /// Whether a segment in the plane of a triangle has points inside it.

@@ -16,6 +16,7 @@ use super::clearance::{SolidOptions, StartOverlap};
 use super::fan::Fan;
 use super::leaf::{self, Facet, Gap};
 use super::overlap::{self, Overlap};
+use super::rim::{self, Blade};
 use super::scene::Scene;
 use super::search::{Aim, SLACK, Search, Workspace, children, splits_moving};
 use crate::answer::Clearance;
@@ -273,23 +274,31 @@ fn proven(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
 /// `limit` may be left out.
 pub(super) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
     use std::cmp::Ordering::{Greater, Less};
-    let of = |moving: bool, at: u32| scene.side(moving).solid.nodes()[at as usize].facets();
+    let of = |moving: bool, at: u32, wanted| -> Vec<Facet> {
+        let facets = scene.side(moving).solid.nodes()[at as usize].facets();
+        facets.filter_map(|t| Facet::facing(scene, moving, t, wanted)).collect()
+    };
+    let (front, back) = (of(true, nodes[0], Greater), of(false, nodes[1], Less));
     let mut least = f64::INFINITY;
-    for s in of(true, nodes[0]) {
-        let Some(f) = Facet::facing(scene, true, s, Greater) else { continue };
-        for t in of(false, nodes[1]) {
-            let Some(g) = Facet::facing(scene, false, t, Less) else { continue };
+    for f in &front {
+        for g in &back {
             // A gap is wanted whatever its size, so that its own error can be taken off.
             let end = limit + leaf::SHARP * scene.blur;
-            let gap = leaf::gap(scene, &f, &g, end, aim.wanted());
+            let gap = leaf::gap(scene, f, g, end, aim.wanted());
             let sharp = |gap: Gap| {
                 let blunt = gap.error > leaf::FINE * scene.blur;
-                if blunt { leaf::sharpened(scene, &f, &g) } else { gap }
+                if blunt { leaf::sharpened(scene, f, g) } else { gap }
             };
             let value = gap.map(sharp);
             let value = value.and_then(|gap| Some(aim.value(&gap)? - gap.error - scene.blur));
             least = least.min(value.unwrap_or(f64::INFINITY));
         }
+    }
+    if rim::matters(scene, nodes) {
+        let [f, g] = [true, false].map(|m| Blade::of_leaf(scene, m, nodes[usize::from(!m)]));
+        rim::each_gap(scene, (&f, &front), (&g, &back), &mut |_, gap| {
+            least = least.min(aim.value(&gap).map_or(f64::INFINITY, |value| value - scene.blur));
+        });
     }
     least
 }

@@ -103,6 +103,7 @@ impl<'a> Scene<'a> {
     /// The same with other amounts to shrink by.
     pub(super) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &Side<'a>, amount| {
+            let amount = if side.solid.can_shrink() { amount } else { 0.0 };
             let shrinking = (amount != 0.0).then(|| side.solid.shrinking());
             Side { amount, shrinking, ..*side }
         };
@@ -136,6 +137,8 @@ impl<'a> Side<'a> {
         let view = frame * matrix;
         let rows = view.transpose();
         let permuting = permutes(matrix);
+        // What is of sheets alone stays as it is, and exact.
+        let amount = if solid.can_shrink() { amount } else { 0.0 };
         let unit = |row: DVec3| permuting && is_axis(row);
         Self {
             solid,

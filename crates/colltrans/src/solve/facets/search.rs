@@ -14,6 +14,7 @@ use super::bound::{Profile, Reason, Shade, dismissed, least_gap};
 use super::fan::{Fan, Reach};
 use super::leaf::{self, Facet, Gap, Meeting, Wanted};
 use super::proof::node_rounding;
+use super::rim::{self, Blade};
 use super::scene::{Scene, Side};
 use crate::body::solid::tree::Node;
 
@@ -317,24 +318,36 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
         let scene = self.scene;
         let front = seen[0].leaf(scene, &scene.moving, views[0]);
         let back = seen[1].leaf(scene, &scene.fixed, views[1]);
-        for f in &seen[0].facets[front] {
+        for f in &seen[0].facets[front.clone()] {
             for g in &seen[1].facets[back.clone()] {
                 let wanted = self.aim.wanted();
                 let Some(gap) = leaf::gap(scene, f, g, self.limit, wanted) else { continue };
-                let Some(value) = self.aim.value(&gap) else { continue };
-                let (moving, fixed) = (f.triangle, g.triangle);
-                let (at, error) = (gap.at, gap.error);
-                let others = f64::INFINITY;
-                let pair = Found { gap: value, moving, fixed, at, error, others };
-                if value >= self.limit {
-                    self.set_aside(pair);
-                } else {
-                    // What could be better by less is not worth a look: rounding is as much.
-                    self.limit = value - SLACK * scene.blur;
-                    if let Some(before) = self.found.replace(pair) {
-                        self.set_aside(before);
-                    }
-                }
+                self.take([f.triangle, g.triangle], &gap);
+            }
+        }
+        let nodes = nodes(seen, views);
+        if rim::matters(scene, nodes) {
+            let [f, g] = [(front, true), (back, false)].map(|(facets, moving)| {
+                let k = usize::from(!moving);
+                (Blade::of_leaf(scene, moving, nodes[k]), facets, k)
+            });
+            let [f, g] = [f, g].map(|(blades, facets, k)| (blades, &seen[k].facets[facets]));
+            rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| self.take(pair, &gap));
+        }
+    }
+
+    /// A gap, if it is the least so far.
+    fn take(&mut self, [moving, fixed]: [u32; 2], gap: &Gap) {
+        let Some(value) = self.aim.value(gap) else { return };
+        let (at, error, others) = (gap.at, gap.error, f64::INFINITY);
+        let pair = Found { gap: value, moving, fixed, at, error, others };
+        if value >= self.limit {
+            self.set_aside(pair);
+        } else {
+            // What could be better by less is not worth a look: rounding is as much.
+            self.limit = value - SLACK * self.scene.blur;
+            if let Some(before) = self.found.replace(pair) {
+                self.set_aside(before);
             }
         }
     }

@@ -1,0 +1,150 @@
+//! What open shells are: all but closed, or sheets.
+//!
+//! The generalised winding number of a shell at a point (Jacobson, Kavan and Sorkine-Hornung, "Robust
+//! inside-outside segmentation using generalized winding numbers", ACM Transactions on Graphics 32(4),
+//! 2013) is the solid angle at which its facets are seen, in multiples of the whole sphere: 1 inside of
+//! a closed one and 0 outside. Across a facet it falls by 1 from the inside to the outside, and on it,
+//! the facet itself left out, it is the mean of the two. So a shell is *sided* where that is near a half:
+//! above 0.9 inside and below 0.1 outside. Facets are asked at their centroids, spread evenly over the
+//! area. No function of libm but the square root is called, so a shell is of one kind everywhere.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
+
+use super::door::Surface;
+use super::report::{Shell, ShellKind};
+use super::tree;
+
+/// How far from a half the winding number on a facet may be.
+const FARTHEST: f64 = 0.1;
+/// One facet in so many may be farther, by area.
+const EXCEPTIONS: usize = 100;
+/// Solid angles looked at for a shell, about, and facets asked, at least and at most.
+const WORK: usize = 1 << 22;
+const ASKED: [usize; 2] = [64, 512];
+
+/// Tells sided shells among the open ones, which are all said to be sheets so far, and says of every
+/// triangle of what kind it is.
+pub(super) fn classify(surface: &mut Surface, shell_of: &[u32], shells: &mut [Shell]) {
+    if shells.iter().all(|s| s.kind == ShellKind::Closed) {
+        return;
+    }
+    let mut members = vec![Vec::new(); shells.len()];
+    for (t, &shell) in shell_of.iter().enumerate() {
+        if shells[shell as usize].kind != ShellKind::Closed {
+            let corners = surface.triangles[t].map(|v| surface.vertices[v as usize]);
+            members[shell as usize].push(corners);
+        }
+    }
+    for (shell, facets) in shells.iter_mut().zip(&members) {
+        if shell.kind != ShellKind::Closed && is_sided(facets) {
+            shell.kind = ShellKind::Sided;
+        }
+    }
+    for (kind, &shell) in surface.kinds.iter_mut().zip(shell_of) {
+        *kind = shells[shell as usize].kind;
+    }
+}
+
+fn is_sided(facets: &[[DVec3; 3]]) -> bool {
+    let area = |f: &[DVec3; 3]| tree::normal(*f).0.length();
+    let whole: f64 = facets.iter().map(area).sum();
+    let count = (WORK / facets.len()).clamp(ASKED[0], ASKED[1]);
+    let (mut passed, mut next, mut wrong) = (0.0, 0, 0);
+    for (own, facet) in facets.iter().enumerate() {
+        passed += area(facet);
+        // So many of the evenly spread places fall upon this facet.
+        let mut places = 0;
+        while next < count && (next as f64 + 0.5) * whole < passed * count as f64 {
+            (next, places) = (next + 1, places + 1);
+        }
+        if places > 0 && (winding(facets, own) - 0.5).abs() >= FARTHEST {
+            wrong += places;
+            if wrong * EXCEPTIONS > count {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// The winding number at the centroid of a facet, which is left out.
+fn winding(facets: &[[DVec3; 3]], own: usize) -> f64 {
+    let [a, b, c] = facets[own];
+    let eye = (a + b + c) / 3.0;
+    let others = facets.iter().enumerate().filter(|(k, _)| *k != own);
+    others.map(|(_, f)| half_solid_angle(f.map(|v| v - eye))).sum::<f64>() / (2.0 * PI)
+}
+
+/// Half of the solid angle of a triangle seen from the origin, positive from behind (Van Oosterom and
+/// Strackee, IEEE Transactions on Biomedical Engineering 30(2), 1983).
+fn half_solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+    let [l, m, n] = [a, b, c].map(DVec3::length);
+    let volume = a.dot(b.cross(c));
+    arc(volume, l * m * n + a.dot(b) * n + b.dot(c) * l + c.dot(a) * m)
+}
+
+/// The angle of `(x, y)`, to within 1e-4 of itself (Abramowitz and Stegun, 4.4.49).
+fn arc(y: f64, x: f64) -> f64 {
+    let (low, high) = (y.abs().min(x.abs()), y.abs().max(x.abs()));
+    if high == 0.0 {
+        return 0.0;
+    }
+    let t = low / high;
+    let s = t * t;
+    let series = [0.020_835_1, -0.085_133_0, 0.180_141_0, -0.330_299_5, 0.999_866_0];
+    let first = t * series.into_iter().fold(0.0, |sum, c| sum * s + c);
+    let steep = if y.abs() > x.abs() { FRAC_PI_2 - first } else { first };
+    let angle = if x < 0.0 { PI - steep } else { steep };
+    if y < 0.0 { -angle } else { angle }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arcs_all_around() {
+        for k in -314..=314 {
+            let angle = f64::from(k) / 100.0;
+            assert!((arc(angle.sin(), angle.cos()) - angle).abs() < 1.2e-5, "{angle}");
+        }
+        assert!(arc(0.0, 0.0) == 0.0);
+    }
+
+    /// A cube of `n` by `n` squares a side, without the first `missing` triangles.
+    fn cube(n: u32, missing: usize) -> Vec<[DVec3; 3]> {
+        let mut facets = Vec::new();
+        for axis in 0..3 {
+            for side in [0.0, 1.0] {
+                let place = |i: u32, j: u32| {
+                    let (u, v) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(n));
+                    let mut p = [side; 3];
+                    (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (u, v);
+                    DVec3::from_array(p)
+                };
+                for (i, j) in (0..n * n).map(|k| (k / n, k % n)) {
+                    let mut square =
+                        [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+                    if side == 0.0 {
+                        square.reverse();
+                    }
+                    let [a, b, c, d] = square;
+                    facets.extend([[a, b, c], [a, c, d]]);
+                }
+            }
+        }
+        facets.split_off(missing)
+    }
+
+    #[test]
+    fn what_lacks_little_has_sides() {
+        assert!(is_sided(&cube(8, 0)));
+        assert!(is_sided(&cube(8, 2)), "a 384th of the area is missing");
+        assert!(!is_sided(&cube(8, 128)), "a whole side is missing");
+        assert!(!is_sided(&cube(8, 760)), "four squares");
+        let turned: Vec<_> = cube(8, 2).into_iter().map(|[a, b, c]| [a, c, b]).collect();
+        assert!(!is_sided(&turned), "inside out");
+    }
+}

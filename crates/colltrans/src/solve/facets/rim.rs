@@ -1,0 +1,499 @@
+//! What is on edge: facets of open shells that the direction runs along.
+//!
+//! Their shadows are segments, so no interiors of shadows overlap; but a sheet cannot pass, edge on,
+//! through a solid or through another sheet. Such a facet `F` is a *blade*. Moved by `t d` with `t > 0`,
+//!
+//! 1. it enters the open inside of a solid if and only if the plane strip ahead of its *leading* sides
+//!    (those that the rest of it is behind) does, and that is so over an open part of a leading side's
+//!    shadow: there it meets the interior of a facet of the solid, or an edge that runs along the strip.
+//!    At an edge the direction points into the material if the edge is not convex, or if both its facets
+//!    are entered;
+//! 2. it crosses a facet of an open shell that is not on edge where the shadow of a leading side meets
+//!    the interior of the facet's. It crosses two facets that meet at an edge along the strip if they are
+//!    on different sides of it; to brush a fold, or a rim, is not to cross it;
+//! 3. it meets a blade of the other body in its own plane where the interiors of the two do;
+//! 4. it crosses a blade of another plane over the one point that their shadows have in common, if it lies
+//!    inside both. At an end of a shadow an upright side may join the blade to the next one: then the two
+//!    are looked at as a bend, and bends cross if each has an arm on either side of the other.
+//!
+//! With bodies that do not overlap at the start, the gap of 1 and 2 counts as that of two facets does:
+//! if it is positive somewhere, or zero all over. All signs are exact, and gaps are but for their last
+//! roundings.
+
+use std::cmp::Ordering;
+use std::cmp::Ordering::{Equal, Greater, Less};
+
+use glam::DVec3;
+
+use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP};
+use super::scene::{Corner, Scene, Side};
+use super::search::Aim;
+use super::wide::{LARGE, SMALL, Wide, determinant, difference};
+use crate::body::solid::edges::NONE;
+
+/// A facet of an open shell, on edge.
+pub(super) struct Blade {
+    triangle: u32,
+    corners: [Corner; 3],
+    moving: bool,
+    /// How each side `k`, from corner `k` to the next, lies: `Greater` if the rest of the blade is
+    /// behind it, `Less` if ahead, `Equal` if it is upright.
+    leads: [Ordering; 3],
+    /// The corners at the ends of the shadow.
+    ends: [usize; 2],
+    low: DVec3,
+    high: DVec3,
+}
+
+/// Whether two nodes have facets without a side.
+pub(super) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
+    [true, false].into_iter().zip(nodes).any(|(moving, node)| {
+        let solid = scene.side(moving).solid;
+        solid.is_open_at(&solid.nodes()[node as usize])
+    })
+}
+
+/// The least gap of two triangles of which one is a blade, the moving body's first, where they block
+/// each other, and its error.
+pub(super) fn least_gap_of(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
+    let mut least: Option<(f64, f64)> = None;
+    each_gap_of(scene, pair, &mut |_, gap| {
+        if aim.value(&gap).is_some() && least.is_none_or(|(value, _)| gap.least < value) {
+            least = Some((gap.least, gap.error));
+        }
+    });
+    least
+}
+
+/// The gaps of two triangles of which one is a blade.
+fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut impl FnMut([u32; 2], Gap)) {
+    let blade = |moving, t: u32| {
+        let open = scene.side(moving).solid.is_open(t as usize);
+        open.then(|| Blade::new(scene, moving, t as usize)).flatten()
+    };
+    let (f, g) = (blade(true, s), blade(false, t));
+    let front = Facet::facing(scene, true, s as usize, Greater);
+    let back = Facet::facing(scene, false, t as usize, Less);
+    each_gap(scene, (f.as_slice(), front.as_slice()), (g.as_slice(), back.as_slice()), take);
+}
+
+/// Each gap that a blade of one leaf makes with what is in another leaf: the leaves' blades, and their
+/// facets that look the right way.
+pub(super) fn each_gap(
+    scene: &Scene,
+    (blades, front): (&[Blade], &[Facet]),
+    (others, back): (&[Blade], &[Facet]),
+    take: &mut impl FnMut([u32; 2], Gap),
+) {
+    for f in blades {
+        for g in back {
+            f.with_facet(scene, g, &mut |gap| take([f.triangle, g.triangle], gap));
+        }
+        for g in others {
+            if let Some(gap) = with_blade(scene, f, g) {
+                take([f.triangle, g.triangle], gap);
+            }
+        }
+    }
+    for g in others {
+        for f in front {
+            g.with_facet(scene, f, &mut |gap| take([f.triangle, g.triangle], gap));
+        }
+    }
+}
+
+impl Blade {
+    /// The blades of a leaf.
+    pub(super) fn of_leaf(scene: &Scene, moving: bool, node: u32) -> Vec<Self> {
+        let solid = scene.side(moving).solid;
+        let open = solid.nodes()[node as usize].facets().filter(|&t| solid.is_open(t));
+        open.filter_map(|t| Self::new(scene, moving, t)).collect()
+    }
+
+    /// The facet, if it is on edge.
+    pub(super) fn new(scene: &Scene, moving: bool, triangle: usize) -> Option<Self> {
+        let corners = scene.side(moving).corners(triangle);
+        let [a, b, c] = &corners;
+        if scene.turn(a, b, c) != Equal {
+            return None;
+        }
+        let [p, q, r] = corners.map(|c| c.at);
+        let (low, high) = (p.min(q).min(r), p.max(q).max(r));
+        let mut blade = Self {
+            triangle: triangle as u32,
+            corners,
+            moving,
+            leads: [Equal; 3],
+            ends: [0, 1],
+            low,
+            high,
+        };
+        blade.leads = [0, 1, 2].map(|k| blade.lead(scene, k));
+        // The two corners that are farthest apart along the shadow.
+        let axis = blade.axis(scene);
+        let order = |i: usize, j: usize| scene.drift(axis, &blade.corners[i], &blade.corners[j]);
+        let extreme = |way| (0..3).find(|&i| (0..3).all(|j| order(i, j) != way)).unwrap_or(0);
+        blade.ends = [extreme(Less), extreme(Greater)];
+        Some(blade)
+    }
+
+    fn side(&self, k: usize) -> [&Corner; 2] {
+        [&self.corners[k], &self.corners[(k + 1) % 3]]
+    }
+
+    fn end(&self, k: usize) -> &Corner {
+        &self.corners[self.ends[k]]
+    }
+
+    /// An axis of the world across which places along the shadow are told apart.
+    fn axis(&self, scene: &Scene) -> usize {
+        let apart = |axis: usize| {
+            (0..3).any(|k| {
+                let [a, b] = self.side(k);
+                scene.drift(axis, a, b) != Equal
+            })
+        };
+        (0..3).find(|&axis| apart(axis)).unwrap_or(0)
+    }
+
+    fn lead(&self, scene: &Scene, k: usize) -> Ordering {
+        let ([p, q], r) = (self.side(k), &self.corners[(k + 2) % 3]);
+        // Across an axis along which the facet has an area: where `r` is, and where the direction goes.
+        let rest = |axis: &usize| scene.turn_about(*axis, p, q, r) != Equal;
+        let Some(axis) = (0..3).find(rest) else { return Equal };
+        let rest = scene.turn_about(axis, p, q, r);
+        let ahead = scene.drift(axis, p, q).reverse();
+        match (ahead == Equal, (ahead == rest) == self.moving) {
+            (true, _) => Equal,
+            (_, true) => Less,
+            (_, false) => Greater,
+        }
+    }
+
+    fn leading(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..3).filter(|&k| self.leads[k] == Greater)
+    }
+
+    /// Whether boxes say that nothing is met.
+    fn is_beside(&self, scene: &Scene, low: DVec3, high: DVec3) -> bool {
+        let blur = 4.0 * scene.blur;
+        (0..2).any(|k| self.low[k] - high[k] > blur || low[k] - self.high[k] > blur)
+    }
+
+    /// The gaps of the leading sides and a facet of the other body.
+    fn with_facet(&self, scene: &Scene, facet: &Facet, take: &mut impl FnMut(Gap)) {
+        if self.is_beside(scene, facet.low, facet.high) {
+            return;
+        }
+        for k in self.leading() {
+            if let Some(gap) = self.side_and_facet(scene, k, facet) {
+                take(gap);
+            }
+        }
+    }
+
+    fn side_and_facet(&self, scene: &Scene, k: usize, facet: &Facet) -> Option<Gap> {
+        let [p, q] = self.side(k);
+        let of_side = facet.corners.each_ref().map(|c| scene.turn(p, q, c));
+        let turns: [[Ordering; 2]; 3] = std::array::from_fn(|j| {
+            let [a, b] = facet.side(j);
+            [scene.turn(a, b, p), scene.turn(a, b, q)]
+        });
+        let along = |j: usize| of_side[j] == Equal && of_side[(j + 1) % 3] == Equal;
+        if let Some(j) = (0..3).find(|&j| along(j)) {
+            let side = Named { corners: facet.side(j), number: j };
+            let own = Named { corners: [p, q], number: k };
+            return enters(scene, self, facet, j)
+                .then(|| self.oriented(scene, own, side))
+                .flatten();
+        }
+        let divided = of_side.contains(&Greater) && of_side.contains(&Less);
+        if !divided || turns.iter().any(|t| !t.contains(&Greater)) {
+            return None;
+        }
+        let mut gap = NO_GAP;
+        for (end, corner) in [p, q].into_iter().enumerate() {
+            if turns.iter().all(|t| t[end] != Less) {
+                let at = ((k + end) % 3) as u8;
+                let at = if self.moving { Meeting::Corner(at) } else { Meeting::Under(at) };
+                gap.add(scene, self.ahead(over_facet(scene, facet, corner)), at);
+            }
+        }
+        for j in 0..3 {
+            let next = (j + 1) % 3;
+            if are_opposite(turns[j]) && are_opposite([of_side[j], of_side[next]]) {
+                let (at, other) = (k as u8, j as u8);
+                let at = if self.moving { [at, other] } else { [other, at] };
+                let above = over_side(scene, facet.side(j), [p, q]);
+                gap.add(scene, self.ahead(above), Meeting::Sides(at[0], at[1]));
+            }
+            if of_side[j] == Equal && is_between(scene, &facet.corners[j], [p, q]) {
+                let above = over_line(scene, &facet.corners[j], [p, q]);
+                gap.add(scene, self.ahead(above), self.at_corner(k, j));
+            }
+        }
+        Some(gap)
+    }
+
+    /// The gap where the blade is so far above the other body.
+    fn ahead(&self, above: Above) -> Above {
+        if self.moving { above.reversed() } else { above }
+    }
+
+    /// The meeting of side `k` with a corner of the other body.
+    fn at_corner(&self, k: usize, corner: usize) -> Meeting {
+        if self.moving {
+            Meeting::UnderSide(k as u8, corner as u8)
+        } else {
+            Meeting::OnSide(corner as u8, k as u8)
+        }
+    }
+
+    /// The gap along the common shadow of a side of this blade and one of the other body.
+    fn oriented(&self, scene: &Scene, own: Named, other: Named) -> Option<Gap> {
+        let [moving, fixed] = if self.moving { [own, other] } else { [other, own] };
+        along(scene, moving, fixed)
+    }
+
+    /// What of the blade is over a point of its shadow: the two arms, as corners or, at an end with an
+    /// upright side, as the blade's other end and the one of the blade across the side. `None` if the
+    /// blade only ends there.
+    fn arms(&self, scene: &Scene, end: Option<usize>) -> Option<[Corner; 2]> {
+        let Some(end) = end else { return Some([*self.end(0), *self.end(1)]) };
+        let upright = (0..3).find(|&k| self.leads[k] == Equal)?;
+        let [a, b] = self.side(upright);
+        let here = |c: &Corner| c.local == self.end(end).local;
+        if !here(a) && !here(b) {
+            return None;
+        }
+        let apex = across(scene.side(self.moving), self.triangle as usize, upright)?;
+        Some([*self.end(1 - end), apex])
+    }
+
+    /// The leading side whose shadow reaches to or across the line of another blade's shadow.
+    fn leading_at(&self, scene: &Scene, other: &Self) -> Option<usize> {
+        self.leading().find(|&k| {
+            let turns = self.side(k).map(|c| scene.turn(other.end(0), other.end(1), c));
+            turns[0] != turns[1]
+        })
+    }
+}
+
+/// A side of a facet and its number.
+#[derive(Clone, Copy)]
+struct Named<'c> {
+    corners: [&'c Corner; 2],
+    number: usize,
+}
+
+/// The corner across side `k` of a triangle, listed as it is.
+fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
+    let n = side.solid.neighbours()[triangle][k];
+    let own = side.solid.triangles()[triangle];
+    let ends = [own[k], own[(k + 1) % 3]];
+    let apex = |n: u32| side.solid.triangles()[n as usize].into_iter().find(|v| !ends.contains(v));
+    (n != NONE).then(|| apex(n)).flatten().map(|v| side.corner(v))
+}
+
+/// Whether a blade enters the other body at side `j` of a facet, along which it runs.
+fn enters(scene: &Scene, blade: &Blade, facet: &Facet, j: usize) -> bool {
+    let side = scene.side(!blade.moving);
+    let t = facet.triangle as usize;
+    let (solid, listed) = (side.solid, facet.side(j).map(|c| c.local));
+    let own = side.corners(t);
+    let is_side = |k: &usize| {
+        let ends = [own[*k].local, own[(k + 1) % 3].local];
+        ends == listed || [ends[1], ends[0]] == listed
+    };
+    let Some(k) = (0..3).find(is_side) else { return false };
+    let Some(apex) = across(side, t, k) else { return false };
+    let [a, b] = facet.side(j);
+    if solid.is_open(t) {
+        return scene.turn(a, b, &apex) == Less;
+    }
+    let [x, y, z] = side.corners(solid.neighbours()[t][k] as usize);
+    let entered = if side.moving { Greater } else { Less };
+    scene.turn(&x, &y, &z) == entered || scene.outside(&own[0], &own[1], &own[2], &apex) == Greater
+}
+
+/// The gap of a moving and a fixed blade.
+fn with_blade(scene: &Scene, f: &Blade, g: &Blade) -> Option<Gap> {
+    if f.is_beside(scene, g.low, g.high) {
+        return None;
+    }
+    let of_f = [0, 1].map(|k| scene.turn(f.end(0), f.end(1), g.end(k)));
+    if of_f == [Equal; 2] { in_one_plane(scene, f, g) } else { crossing(scene, f, g, of_f) }
+}
+
+/// Case 3: the least gap of the leading sides, and the sign of the largest one of those behind.
+fn in_one_plane(scene: &Scene, f: &Blade, g: &Blade) -> Option<Gap> {
+    let sides = |blade: &Blade, k: usize| -> [Corner; 2] { blade.side(k).map(|c| *c) };
+    let mut gap: Option<Gap> = None;
+    let (mut least, mut largest) = (Greater, Less);
+    for wanted in [Greater, Less] {
+        for (k, j) in (0..9).map(|n| (n / 3, n % 3)) {
+            if f.leads[k] != wanted || g.leads[j] != wanted {
+                continue;
+            }
+            let ([a, b], [c, e]) = (sides(f, k), sides(g, j));
+            let own = Named { corners: [&a, &b], number: k };
+            let Some(found) = along(scene, own, Named { corners: [&c, &e], number: j }) else {
+                continue;
+            };
+            if wanted == Less {
+                largest = largest.max(found.signs[1]);
+            } else {
+                least = least.min(found.signs[0]);
+                if gap.is_none_or(|gap| found.least < gap.least) {
+                    gap = Some(found);
+                }
+            }
+        }
+    }
+    gap.map(|gap| Gap { signs: [least, largest], ..gap })
+}
+
+/// Case 4.
+fn crossing(scene: &Scene, f: &Blade, g: &Blade, of_f: [Ordering; 2]) -> Option<Gap> {
+    let of_g = [0, 1].map(|k| scene.turn(g.end(0), g.end(1), f.end(k)));
+    let apart = |t: [Ordering; 2]| t[0] == t[1];
+    if apart(of_f) || apart(of_g) {
+        return None;
+    }
+    let [end_of_g, end_of_f] = [of_f, of_g].map(|t| (0..2).find(|&k| t[k] == Equal));
+    let (arms_of_f, arms_of_g) = (f.arms(scene, end_of_f)?, g.arms(scene, end_of_g)?);
+    let crosses = match (end_of_f, end_of_g) {
+        (None, None) => true,
+        (_, None) => are_opposite(arms_of_f.map(|c| scene.turn(g.end(0), g.end(1), &c))),
+        (None, _) => are_opposite(arms_of_g.map(|c| scene.turn(f.end(0), f.end(1), &c))),
+        (Some(k), Some(_)) => alternate(scene, f.end(k), &arms_of_f, &arms_of_g),
+    };
+    if !crosses {
+        return None;
+    }
+    let (k, j) = (f.leading_at(scene, g)?, g.leading_at(scene, f)?);
+    let mut gap = NO_GAP;
+    let above = over_side(scene, g.side(j), f.side(k)).reversed();
+    gap.add(scene, above, Meeting::Sides(k as u8, j as u8));
+    Some(gap)
+}
+
+/// Whether the shadows of two pairs of arms cross at the shadow of a corner.
+fn alternate(scene: &Scene, at: &Corner, f: &[Corner; 2], g: &[Corner; 2]) -> bool {
+    // Counter-clockwise from the first arm of `f`: 0 if along it, a quarter for each half turn or less.
+    let same = |a: &Corner, b: &Corner| {
+        let axis = (0..3).find(|&axis| scene.drift(axis, at, a) != Equal).unwrap_or(0);
+        scene.drift(axis, at, a) == scene.drift(axis, at, b)
+    };
+    let sector = |c: &Corner| match scene.turn(at, &f[0], c) {
+        Greater => 1,
+        Less => 3,
+        Equal if same(&f[0], c) => 0,
+        Equal => 2,
+    };
+    let second = sector(&f[1]);
+    // Where the second arm of `f` divides: `Less` before it, `Greater` behind it, `Equal` along either.
+    let place = |c: &Corner| match (sector(c), second) {
+        (0, _) | (_, 0) => Equal,
+        (a, b) if a != b => a.cmp(&b),
+        (2, _) => Equal,
+        _ => scene.turn(at, &f[1], c),
+    };
+    are_opposite([place(&g[0]), place(&g[1])])
+}
+
+/// The gap of two sides whose shadows run along one line, where both are; `None` if that is a point at
+/// most.
+fn along(scene: &Scene, f: Named, g: Named) -> Option<Gap> {
+    let [p, q] = f.corners;
+    let axis = (0..3).find(|&axis| scene.drift(axis, p, q) != Equal)?;
+    let way = scene.drift(axis, p, q);
+    let ordered = |[a, b]: [&Corner; 2]| {
+        if scene.drift(axis, a, b) == way { [0, 1] } else { [1, 0] }
+    };
+    let ([first, last], [start, end]) = (ordered(f.corners), ordered(g.corners));
+    let before = |a: &Corner, b: &Corner| scene.drift(axis, a, b) == way;
+    let (f_at, g_at) = (|k: usize| f.corners[k], |k: usize| g.corners[k]);
+    if !before(f_at(first), g_at(end)) || !before(g_at(start), f_at(last)) {
+        return None;
+    }
+    let mut gap = NO_GAP;
+    let number = |named: Named, end: usize| ((named.number + end) % 3) as u8;
+    for ([k, j], inner) in [
+        ([first, start], before(f_at(first), g_at(start))),
+        ([last, end], before(g_at(end), f_at(last))),
+    ] {
+        if inner {
+            let above = over_line(scene, g_at(j), f.corners).reversed();
+            gap.add(scene, above, Meeting::UnderSide(f.number as u8, number(g, j)));
+        } else {
+            let above = over_line(scene, f_at(k), g.corners);
+            gap.add(scene, above, Meeting::OnSide(number(f, k), g.number as u8));
+        }
+    }
+    Some(gap)
+}
+
+fn are_opposite([a, b]: [Ordering; 2]) -> bool {
+    a != Equal && a == b.reverse()
+}
+
+/// Whether the shadow of a corner on the line of a side's lies strictly within it.
+fn is_between(scene: &Scene, corner: &Corner, [p, q]: [&Corner; 2]) -> bool {
+    let apart = |axis: &usize| scene.drift(*axis, p, q) != Equal;
+    let Some(axis) = (0..3).find(apart) else { return false };
+    let way = scene.drift(axis, p, q);
+    scene.drift(axis, p, corner) == way && scene.drift(axis, corner, q) == way
+}
+
+/// How far a corner is above a facet.
+fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above {
+    fn of<const N: usize>(scene: &Scene, facet: &Facet, corner: &Corner) -> Option<Above> {
+        let direction = scene.direction.to_array().map(Wide::number);
+        let [a, b, c] = facet.corners.each_ref();
+        let [x, y, z] = scene.spans_wide::<N>(a, [b, c, corner]);
+        Above::new(&determinant(&x, &y, &z), &determinant(&x, &y, &direction))
+    }
+    let small = of::<SMALL>(scene, facet, corner);
+    small.or_else(|| of::<LARGE>(scene, facet, corner)).unwrap_or(Above::LEVEL)
+}
+
+/// How far side `c e` is above side `a b` where their shadows cross.
+fn over_side(scene: &Scene, [a, b]: [&Corner; 2], [c, e]: [&Corner; 2]) -> Above {
+    fn of<const N: usize>(scene: &Scene, [a, b, c, e]: [&Corner; 4]) -> Option<Above> {
+        let direction = scene.direction.to_array().map(Wide::number);
+        let [x, y, z] = scene.spans_wide::<N>(a, [b, c, e]);
+        let plane = determinant(&x, &difference(&z, &y), &direction);
+        Some(Above::new(&determinant(&x, &y, &z), &plane)?.reversed())
+    }
+    let all = [a, b, c, e];
+    let small = of::<SMALL>(scene, all);
+    small.or_else(|| of::<LARGE>(scene, all)).unwrap_or(Above::LEVEL)
+}
+
+/// How far side `a b` is above a corner whose shadow is on the line of the side's.
+fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
+    let (axis, height) = {
+        let apart = |axis: &usize| scene.drift(*axis, a, b) != Equal;
+        ((0..3).find(apart).unwrap_or(0), scene.direction.abs().max_position())
+    };
+    fn of<const N: usize>(
+        scene: &Scene,
+        [a, b, c]: [&Corner; 3],
+        [axis, height]: [usize; 2],
+    ) -> Option<Above> {
+        let direction = scene.direction.to_array().map(Wide::<N>::number);
+        // Along the shadow: what is left of a vector across the axis and the direction.
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let place =
+            |v: &[Wide<N>; 3]| v[i].multiply(&direction[j]).subtract(&v[j].multiply(&direction[i]));
+        let [side, _, from] = scene.spans_wide::<N>(a, [b, b, c]);
+        let (whole, part) = (place(&side), place(&from));
+        // a + part / whole (b - a) - c, along the direction.
+        let rise = side[height].multiply(&part).subtract(&from[height].multiply(&whole));
+        Above::new(&rise, &whole.multiply(&direction[height]))
+    }
+    let all = [a, b, corner];
+    let small = of::<SMALL>(scene, all, [axis, height]);
+    small.or_else(|| of::<LARGE>(scene, all, [axis, height])).unwrap_or(Above::LEVEL)
+}

@@ -1,0 +1,216 @@
+//! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::{
+    Cast, Clearance, ConvexPolyhedron, Pose, ShellKind, Solid, SolidOptions, StartOverlap,
+};
+
+fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+/// A box; with one of its sides left out, an open one.
+fn mesh(low: [f64; 3], high: [f64; 3]) -> (Vec<DVec3>, Vec<[u32; 4]>) {
+    let end = |i: usize, k: usize| if i >> k & 1 == 0 { low[k] } else { high[k] };
+    let vertices = (0..8).map(|i| v(end(i, 0), end(i, 1), end(i, 2))).collect();
+    let facets =
+        vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    (vertices, facets)
+}
+
+fn block(low: [f64; 3], high: [f64; 3]) -> Solid {
+    let (vertices, facets) = mesh(low, high);
+    Solid::from_mesh(&vertices, &facets).expect("a box")
+}
+
+/// A grid of `n` by `n` squares between four corners, each cut into two triangles.
+fn sheet(corners: [[f64; 3]; 4], n: u32) -> Solid {
+    let [a, b, c, d] = corners.map(DVec3::from_array);
+    let share = |k: u32| f64::from(k) / f64::from(n);
+    let place = |s: f64, t: f64| {
+        a * ((1.0 - s) * (1.0 - t)) + b * (s * (1.0 - t)) + c * (s * t) + d * ((1.0 - s) * t)
+    };
+    let all = |k: u32| (k / (n + 1), k % (n + 1));
+    let vertices: Vec<DVec3> =
+        (0..(n + 1) * (n + 1)).map(all).map(|(i, j)| place(share(i), share(j))).collect();
+    let facets: Vec<[u32; 3]> = (0..n * n)
+        .map(|k| (k / n) * (n + 1) + k % n)
+        .flat_map(|p| [[p, p + n + 1, p + n + 2], [p, p + n + 2, p + 1]])
+        .collect();
+    Solid::from_open_mesh(&vertices, &facets).expect("a sheet")
+}
+
+/// What is to come out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Wanted {
+    Free,
+    At(f64),
+    Overlap,
+}
+use Wanted::{At, Free, Overlap};
+
+struct Scene {
+    name: String,
+    bodies: [Solid; 2],
+    direction: DVec3,
+    wanted: Wanted,
+}
+
+/// Scenes that a person can decide, with names.
+fn scenes() -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    let mut add = |name: String, moving: &Solid, fixed: &Solid, d: [i32; 3], wanted| {
+        let direction = DVec3::from_array(d.map(f64::from));
+        scenes.push(Scene { name, bodies: [moving.clone(), fixed.clone()], direction, wanted });
+    };
+    let (up, down) = ([0, 0, 1], [0, 0, -1]);
+    let cube = block([0.0; 3], [4.0; 3]);
+    for (x, wanted) in
+        [(2.0, At(2.0)), (1.3, At(2.0)), (0.0, Free), (4.0, Free), (-1e-9, Free), (1e-9, At(2.0))]
+    {
+        let blade = sheet([[x, 1.0, 6.0], [x, 3.0, 6.0], [x, 3.0, 8.0], [x, 1.0, 8.0]], 1);
+        add(format!("on edge at {x}"), &blade, &cube, down, wanted);
+        add(format!("the block against what is on edge at {x}"), &cube, &blade, up, wanted);
+        add(format!("on edge at {x}, away"), &blade, &cube, up, Free);
+    }
+    for [[a, b], [c, e]] in [
+        [[0.0, 0.0], [4.0, 4.0]],
+        [[4.0, 0.0], [0.0, 4.0]],
+        [[1.0, 1.0], [3.0, 3.0]],
+        [[3.0, 1.0], [1.0, 3.0]],
+        [[0.0, 0.0], [5.0, 5.0]],
+    ] {
+        let blade = sheet([[a, b, 6.0], [c, e, 6.0], [c, e, 7.0], [a, b, 7.0]], 1);
+        add(format!("on edge over a diagonal from {a} {b}"), &blade, &cube, down, At(2.0));
+        add(format!("a block under a diagonal from {a} {b}"), &cube, &blade, up, At(2.0));
+    }
+    for turned in [false, true] {
+        let flat = |z: f64| {
+            let mut at = [[1.0, 1.0, z], [3.0, 1.0, z], [3.0, 3.0, z], [1.0, 3.0, z]];
+            if turned {
+                at.reverse();
+            }
+            sheet(at, 1)
+        };
+        let (above, resting, low) = (flat(6.0), flat(4.0), flat(2.0));
+        let floor = sheet([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0]], 1);
+        let of = |what: &str| format!("{what}, turned over: {turned}");
+        add(of("flat"), &above, &cube, down, At(2.0));
+        add(of("a block against a flat sheet"), &cube, &above, up, At(2.0));
+        add(of("flat, away"), &above, &cube, up, Free);
+        add(of("lies on the block, into it"), &resting, &cube, down, At(0.0));
+        add(of("lies on the block, off it"), &resting, &cube, up, Free);
+        add(of("lies on the block, along it"), &resting, &cube, [1, 0, 0], Free);
+        add(of("a sheet on a sheet"), &low, &floor, down, At(2.0));
+        add(of("a sheet under a sheet"), &floor, &low, up, At(2.0));
+    }
+    let through = sheet([[2.0, -1.0, 2.0], [2.0, 5.0, 2.0], [2.0, 5.0, 6.0], [2.0, -1.0, 6.0]], 1);
+    add("half in, out".into(), &through, &cube, up, Overlap);
+    add("half in, deeper".into(), &through, &cube, down, Overlap);
+    let inside = sheet([[1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [3.0, 3.0, 1.0], [1.0, 3.0, 1.0]], 1);
+    add("wholly inside".into(), &inside, &cube, up, Overlap);
+    add("wholly inside what moves".into(), &cube, &inside, up, Overlap);
+    let wall = sheet([[2.0, 0.0, 0.0], [2.0, 4.0, 0.0], [2.0, 4.0, 4.0], [2.0, 0.0, 4.0]], 1);
+    add("a membrane that ends on the faces".into(), &wall, &cube, up, Overlap);
+    let floor = sheet([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0]], 1);
+    let blade = sheet([[2.0, 1.0, 2.0], [2.0, 3.0, 2.0], [2.0, 3.0, 4.0], [2.0, 1.0, 4.0]], 1);
+    add("on edge onto a sheet".into(), &blade, &floor, down, At(2.0));
+    add("on edge off a sheet".into(), &blade, &floor, up, Free);
+    let blade = sheet([[0.0, 0.0, 2.0], [4.0, 4.0, 2.0], [4.0, 4.0, 4.0], [0.0, 0.0, 4.0]], 1);
+    add("on edge onto a sheet along its inner edge".into(), &blade, &floor, down, At(2.0));
+    add("a sheet against a blade along its inner edge".into(), &floor, &blade, up, At(2.0));
+    let standing = sheet([[2.0, 1.0, 0.0], [2.0, 3.0, 0.0], [2.0, 3.0, 4.0], [2.0, 1.0, 4.0]], 1);
+    add("stands on a sheet, off it".into(), &standing, &floor, up, Free);
+    add("stands on a sheet, through it".into(), &standing, &floor, down, At(0.0));
+    add("stands on a sheet, along it".into(), &standing, &floor, [1, 0, 0], Free);
+    for n in [1, 2, 4] {
+        let knife = |axis: usize, [low, high]: [f64; 2]| {
+            let at = |s: f64, z: f64| if axis == 0 { [s, 2.0, z] } else { [2.0, s, z] };
+            sheet([at(0.0, low), at(4.0, low), at(4.0, high), at(0.0, high)], n)
+        };
+        let (upper, lower) = (knife(0, [4.0, 8.0]), knife(1, [0.0, 2.0]));
+        add(format!("two knives of {n} squares that cross"), &upper, &lower, down, At(2.0));
+        add(format!("two knives of {n} squares, from below"), &lower, &upper, up, At(2.0));
+        add(format!("two knives of {n} squares that part"), &upper, &lower, up, Free);
+        let plate = sheet([[1.0, 2.0, 0.0], [3.0, 2.0, 0.0], [3.0, 2.0, 2.0], [1.0, 2.0, 2.0]], 1);
+        add(format!("two plates of {n} squares in one plane"), &upper, &plate, down, At(2.0));
+        let (tall, low) = (knife(0, [0.0, 8.0]), knife(1, [1.0, 2.0]));
+        add(format!("two sheets of {n} squares that cross now"), &tall, &low, up, Overlap);
+        // The walls of a box meet in corners, and slide along each other.
+        let rim = sheet([[2.0, 2.0, 0.0], [6.0, 2.0, 0.0], [6.0, 2.0, 4.0], [2.0, 2.0, 4.0]], n);
+        add(format!("a rim of {n} squares along a wall"), &rim, &knife(1, [0.0, 4.0]), up, Free);
+    }
+    // A roof whose ridge touches a wall from one side; and one that is bent around a knife.
+    let bent = |z: f64, ends: [[f64; 2]; 2]| {
+        let [a, b] = ends;
+        let vertices = [v(2.0, 2.0, z), v(2.0, 2.0, z + 2.0)].into_iter();
+        let vertices: Vec<DVec3> = vertices
+            .chain([a, b].into_iter().flat_map(|[x, y]| [v(x, y, z), v(x, y, z + 2.0)]))
+            .collect();
+        Solid::from_open_mesh(&vertices, &[[2, 0, 1, 3], [0, 4, 5, 1]]).expect("a bend")
+    };
+    let wall = sheet([[2.0, 0.0, 0.0], [2.0, 4.0, 0.0], [2.0, 4.0, 2.0], [2.0, 0.0, 2.0]], 1);
+    let one_side = bent(4.0, [[3.0, 1.0], [3.0, 3.0]]);
+    add("a bend that touches a wall from one side".into(), &one_side, &wall, down, Free);
+    let both_sides = bent(4.0, [[1.0, 1.0], [3.0, 1.0]]);
+    add("a bend with an arm on either side of a wall".into(), &both_sides, &wall, down, At(2.0));
+    for (name, ends, wanted) in [
+        ("bends that cross", [[2.0, 0.0], [4.0, 3.0]], At(2.0)),
+        ("bends beside each other", [[4.0, 2.0], [4.0, 3.0]], Free),
+        ("bends in each other", [[2.0, 1.5], [2.5, 0.0]], Free),
+        ("bends with an arm in common", [[1.0, 1.0], [4.0, 3.0]], At(2.0)),
+    ] {
+        let other = bent(0.0, ends);
+        add(name.into(), &both_sides, &other, down, wanted);
+        add(format!("{name}, from below"), &other, &both_sides, up, wanted);
+    }
+    // The blade passes beside the fold of a roof, or cuts it.
+    let roof = |xs: [f64; 2]| {
+        let vertices = [v(2.0, 0.0, 2.0), v(2.0, 4.0, 2.0)].into_iter();
+        let sides = xs.into_iter().flat_map(|x| [v(x, 0.0, 0.0), v(x, 4.0, 0.0)]);
+        let vertices: Vec<DVec3> = vertices.chain(sides).collect();
+        Solid::from_open_mesh(&vertices, &[[0, 1, 3, 2], [1, 0, 4, 5]]).expect("a roof")
+    };
+    let blade = sheet([[2.0, 1.0, 4.0], [2.0, 3.0, 4.0], [2.0, 3.0, 6.0], [2.0, 1.0, 6.0]], 1);
+    add("a blade on a ridge".into(), &blade, &roof([0.0, 4.0]), down, At(2.0));
+    add("a blade beside a fold".into(), &blade, &roof([3.0, 4.0]), down, Free);
+    scenes
+}
+
+fn ask(scene: &Scene, pose: Pose, tolerance: Option<f64>) -> (Clearance<Solid>, [Solid; 2]) {
+    let [moving, fixed] = &scene.bodies;
+    let direction = pose.rotation() * scene.direction;
+    let options = SolidOptions { tolerance, ..SolidOptions::default() };
+    let cast = Cast::new(moving.at(pose), fixed.at(pose), direction)
+        .and_then(|cast| cast.with_options(options))
+        .expect("a cast");
+    let (proven, certificate) = cast.certified_clearance();
+    assert_eq!(proven, cast.clearance(), "{}", scene.name);
+    cast.verify(&certificate).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+    if let Clearance::Free(Some(plane)) = &proven {
+        cast.verify(plane).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+    }
+    (proven, scene.bodies.clone())
+}
+
+fn matches(found: &Clearance<Solid>, wanted: Wanted, accuracy: f64) -> bool {
+    match (found, wanted) {
+        (Clearance::Free(_), Free) | (Clearance::Overlapping(_), Overlap) => true,
+        (Clearance::Blocked { distance, .. }, At(right)) => (distance - right).abs() <= accuracy,
+        _ => false,
+    }
+}
+
+#[test]
+fn scenes_with_names() {
+    let scenes = scenes();
+    assert!(scenes.len() >= 80, "{}", scenes.len());
+    let mut wrong = Vec::new();
+    for scene in &scenes {
+        let (found, _) = ask(scene, Pose::IDENTITY, None);
+        if !matches(&found, scene.wanted, 0.0) {
+            wrong.push(format!("{}: {:?}, not {found:?}", scene.name, scene.wanted));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -278,30 +278,17 @@ impl<'a> Bodies<'a> {
         contact.map_or(Room::Free, |c| Room::Blocked(self.stop([a, b], d, c.triangles, &c)))
     }
 
-    /// Two triangles of the bodies of two parts, as bodies of their own.
-    pub(crate) fn facets(&self, parts: [usize; 2], triangles: [u32; 2]) -> Option<[Solid; 2]> {
-        let alone = |k: usize| {
-            let solid = &self.solids[parts[k]];
-            let corners = solid.triangles()[triangles[k] as usize];
-            let vertices = corners.map(|v| solid.vertices()[v as usize]);
-            Solid::from_open_mesh(&vertices, &[[0, 1, 2]]).ok()
-        };
-        Some([alone(0)?, alone(1)?])
-    }
-
-    /// The room of two parts, if these were all of their facets; parts that overlap are not refused.
-    /// Free of parts that pass with a tolerance of their own, which single facets do not have.
-    pub(crate) fn room_of_facets(
+    /// What stops a part, if these were all of the facets of two; parts that overlap are not refused.
+    /// Nothing does parts that pass with a tolerance of their own, which single facets do not have.
+    pub(crate) fn stop_by(
         &self,
         [a, b]: [usize; 2],
-        facets: &[Solid; 2],
         triangles: [u32; 2],
         d: DVec3,
         start: StartOverlap,
-        workspace: &mut Workspace,
-    ) -> Room {
+    ) -> Option<Stop> {
         if self.passing(a, b).is_some() {
-            return Room::Free;
+            return None;
         }
         let start = self.start_of(a, b, start);
         let options = SolidOptions {
@@ -310,8 +297,9 @@ impl<'a> Bodies<'a> {
             before: Some(f64::INFINITY),
             overlapping: Some(start == StartOverlap::Ignore && self.overlaps(a, b)),
         };
-        let contact = met([&facets[0], &facets[1]], d, options, workspace);
-        contact.map_or(Room::Free, |c| Room::Blocked(self.stop([a, b], d, triangles, &c)))
+        let cast = placed([&self.solids[a], &self.solids[b]], d, options)?;
+        let contact = cast.stop_by(triangles)?;
+        Some(self.stop([a, b], d, triangles, &contact))
     }
 
     fn stop(
@@ -413,17 +401,25 @@ fn volume(solid: &Solid) -> f64 {
 
 /// Where two bodies meet.
 fn met(
-    [moving, fixed]: [&Solid; 2],
+    bodies: [&Solid; 2],
     d: DVec3,
     options: SolidOptions,
     workspace: &mut Workspace,
 ) -> Option<SolidContact> {
-    let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY), d);
-    // Directions and tolerances are checked at the door, so nothing is refused here.
-    match cast.and_then(|c| c.with_options(options)).ok()?.clearance_in(workspace) {
+    match placed(bodies, d, options)?.clearance_in(workspace) {
         Clearance::Blocked { contact, .. } => Some(contact),
         _ => None,
     }
+}
+
+fn placed<'s>(
+    [moving, fixed]: [&'s Solid; 2],
+    d: DVec3,
+    options: SolidOptions,
+) -> Option<Cast<'s, Solid>> {
+    let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY), d);
+    // Directions and tolerances are checked at the door, so nothing is refused here.
+    cast.and_then(|c| c.with_options(options)).ok()
 }
 
 /// The weights of a triangle's corners at a point of it.

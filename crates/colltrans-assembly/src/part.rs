@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
-use colltrans::{Solid, SolidError};
+use colltrans::{ShellKind, Solid, SolidError, SolidReport};
 use glam::{DAffine3, DVec3};
 
 use crate::boxes::Aabb;
@@ -116,7 +116,7 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
     let solid = match built {
         Err(open @ SolidError::Open { .. }) => {
             let solid = Solid::from_open_mesh(&vertices, &faces)?;
-            defects.push(format!("{open}; taken as a surface without an inside"));
+            defects.push(format!("{open}; {}", openness(solid.report())));
             solid
         }
         other => other?,
@@ -129,6 +129,22 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
         defects.push(format!("edges at which more than two facets meet: {}", report.crowded_edges));
     }
     Ok(solid)
+}
+
+/// What open shells are taken for.
+fn openness(report: &SolidReport) -> String {
+    let [closed, sided, sheets] = ShellKind::ALL.map(|kind| report.count(kind));
+    let mut said = vec!["open shells block from both sides and with their rims".to_owned()];
+    if sheets > 0 {
+        said.push(format!("sheets, which are not shrunk or grown: {sheets}"));
+    }
+    if sided > 0 {
+        said.push(format!("all but closed: {sided}"));
+    }
+    if closed > 0 {
+        said.push(format!("closed, with their inside: {closed}"));
+    }
+    said.join("; ")
 }
 
 /// What of two parts is let pass.

@@ -116,7 +116,7 @@ fn room_with(
             let mut near = near.filter(|&by| others[by] && !group.contains(&by));
             let noise = bodies.noise();
             let known = near.find_map(|by| {
-                let stop = witnesses.stop(bodies, [part, by], d, noise, start, workspace)?;
+                let stop = witnesses.stop(bodies, [part, by], d, noise, start)?;
                 Some(PartRoom::Blocked { part, by, stop })
             });
             best = known.unwrap_or(best);
@@ -144,7 +144,7 @@ fn room_with(
                 Room::Overlapping => return PartRoom::Overlapping { part, by },
                 Room::Blocked(stop) => {
                     if overlapping && stop.displaced.value <= bodies.noise() {
-                        witnesses.keep(bodies, [part, by], &stop);
+                        witnesses.keep([part, by], &stop);
                     }
                     let nearer = match best {
                         PartRoom::Blocked { part: p, by: b, stop: s } => {

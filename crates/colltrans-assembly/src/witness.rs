@@ -7,21 +7,19 @@
 
 use std::collections::HashMap;
 
-use colltrans::{Solid, StartOverlap, Workspace};
+use colltrans::StartOverlap;
 use glam::DVec3;
 
-use crate::bodies::{Bodies, Room, Stop};
+use crate::bodies::{Bodies, Stop};
 
-/// Facets of two parts that met along some direction, as bodies of their own.
+/// Facets of two parts that met along some direction.
 struct Witness {
-    facets: [Solid; 2],
-    /// Their numbers.
     triangles: [u32; 2],
     /// The contact normal.
     normal: DVec3,
 }
 
-/// Kept for an ordered pair of parts, at most: some 50 kB.
+/// Kept for an ordered pair of parts, at most.
 const MOST: usize = 24;
 /// Cosine below which a contact is not asked again: along it, it hardly blocks.
 const ASKEW: f64 = 0.02;
@@ -32,14 +30,12 @@ pub(crate) struct Witnesses(HashMap<[usize; 2], Vec<Witness>>);
 
 impl Witnesses {
     /// Keeps the facets of a stop.
-    pub(crate) fn keep(&mut self, bodies: &Bodies, pair: [usize; 2], stop: &Stop) {
+    pub(crate) fn keep(&mut self, pair: [usize; 2], stop: &Stop) {
         let kept = self.0.entry(pair).or_default();
         if kept.len() >= MOST || kept.iter().any(|w| w.triangles == stop.triangles) {
             return;
         }
-        if let Some(facets) = bodies.facets(pair, stop.triangles) {
-            kept.push(Witness { facets, triangles: stop.triangles, normal: stop.normal });
-        }
+        kept.push(Witness { triangles: stop.triangles, normal: stop.normal });
     }
 
     /// A stop along `d` not beyond a distance, if known facets show one.
@@ -50,15 +46,9 @@ impl Witnesses {
         d: DVec3,
         within: f64,
         start: StartOverlap,
-        workspace: &mut Workspace,
     ) -> Option<Stop> {
         let kept = self.0.get(&pair)?.iter().filter(|w| w.normal.dot(d) > ASKEW);
-        kept.filter_map(|w| {
-            match bodies.room_of_facets(pair, &w.facets, w.triangles, d, start, workspace) {
-                Room::Blocked(stop) => Some(stop),
-                _ => None,
-            }
-        })
-        .find(|stop| stop.displaced.value <= within)
+        kept.filter_map(|w| bodies.stop_by(pair, w.triangles, d, start))
+            .find(|stop| stop.displaced.value <= within)
     }
 }

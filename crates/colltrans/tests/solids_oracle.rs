@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use colltrans_oracle::solids::settings::{FAMILIES, Seen, Setting};
+use colltrans_oracle::solids::sheets;
 
 /// Settings of all families together.
 const SETTINGS: u64 = 10_000;
@@ -16,6 +17,25 @@ fn bodies_of_cubes_agree_with_exact_arithmetic() {
         for seed in 0..if slow { SETTINGS / 20 } else { SETTINGS * 9 / 40 } {
             let setting = Setting::draw(family, seed).expect("a family");
             match setting.examine(seed.is_multiple_of(64)) {
+                Ok(outcome) => *seen.entry(outcome).or_default() += 1,
+                Err(error) => panic!("{family}:{seed}: {error}"),
+            }
+        }
+    }
+    let least = [Seen::Overlapping, Seen::Free, Seen::BlockedNow, Seen::Blocked];
+    for outcome in least {
+        let count = seen.get(&outcome).copied().unwrap_or(0);
+        assert!(count as u64 > SETTINGS / 40, "{outcome:?} only {count} times");
+    }
+}
+
+#[test]
+fn open_surfaces_agree_with_exact_arithmetic() {
+    let mut seen: HashMap<Seen, usize> = HashMap::new();
+    for family in sheets::FAMILIES {
+        for seed in 0..if family == "sheets-rotated" { SETTINGS / 20 } else { SETTINGS / 5 } {
+            let setting = sheets::Setting::draw(family, seed).expect("a setting");
+            match setting.examine() {
                 Ok(outcome) => *seen.entry(outcome).or_default() += 1,
                 Err(error) => panic!("{family}:{seed}: {error}"),
             }

@@ -93,13 +93,13 @@ impl Mapper<'_> {
         }
         let within = far.next_down();
         let mut known = pairs.iter();
-        if known.any(|&p| witnesses.stop(self.bodies, p, d, within, start, workspace).is_some()) {
+        if known.any(|&p| witnesses.stop(self.bodies, p, d, within, start).is_some()) {
             return true;
         }
         pairs.into_iter().any(|pair| {
             let room = self.bodies.room(pair, d, Some(far), start, workspace);
             if let Room::Blocked(stop) = &room {
-                witnesses.keep(self.bodies, pair, stop);
+                witnesses.keep(pair, stop);
             }
             room != Room::Free
         })

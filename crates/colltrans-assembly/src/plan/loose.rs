@@ -116,11 +116,11 @@ impl Asked<'_> {
         }
         let Self { bodies, d, start, .. } = *self;
         let Memory { workspace, witnesses } = &mut *self.memory;
-        let seen = witnesses.stop(bodies, pair, d, f64::INFINITY, start, workspace);
+        let seen = witnesses.stop(bodies, pair, d, f64::INFINITY, start);
         let meets = seen.is_some() || {
             let room = bodies.room(pair, d, None, start, workspace);
             if let Room::Blocked(stop) = &room {
-                witnesses.keep(bodies, pair, stop);
+                witnesses.keep(pair, stop);
             }
             room != Room::Free
         };

@@ -122,7 +122,7 @@ fn square(cell: [i32; 3], axis: usize, up: i32) -> [[i32; 3]; 4] {
     corners
 }
 
-fn cut(
+pub(super) fn cut(
     vertices: &mut Vec<DVec3>,
     facets: &mut Vec<Vec<u32>>,
     [a, b, c, d]: [u32; 4],
@@ -142,6 +142,37 @@ fn cut(
     }
 }
 
+/// A motion in the grid's coordinates, all counted in multiples of the determinant of the map.
+pub(super) struct InGrid {
+    /// The offset of the fixed body.
+    pub(super) shift: [Dyadic; 3],
+    /// The direction.
+    pub(super) way: [Dyadic; 3],
+    /// The determinant.
+    pub(super) unit: Dyadic,
+}
+
+impl InGrid {
+    pub(super) fn new([rotation, shear]: [DMat3; 2], offset: &Vector, direction: DVec3) -> Self {
+        let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(Vector::new);
+        let (r, s) = (columns(rotation), columns(shear));
+        let map = s.map(|c| {
+            let [x, y, z] = [0, 1, 2].map(|k| r[k].times(&c.0[k]));
+            x.plus(&y).plus(&z)
+        });
+        let [a, b, c] = &map;
+        // Rows of the adjugate, and the determinant, made positive.
+        let mut rows = [b.cross(c), c.cross(a), a.cross(b)];
+        let mut unit = rows[0].dot(a);
+        if unit.is_negative() {
+            rows = rows.map(|row| row.times(&Dyadic::new(-1.0)));
+            unit = -unit;
+        }
+        let grid = |v: &Vector| [0, 1, 2].map(|k| rows[k].dot(v));
+        Self { shift: grid(offset), way: grid(&Vector::new(direction)), unit }
+    }
+}
+
 /// What `moving` meets when it goes along `direction`, with `fixed` displaced by `offset`; both in the
 /// world, the cubes under the linear map `rotation shear`.
 pub fn motion(
@@ -150,22 +181,7 @@ pub fn motion(
     offset: &Vector,
     direction: DVec3,
 ) -> Motion {
-    let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(Vector::new);
-    let (r, s) = (columns(rotation), columns(shear));
-    let map = s.map(|c| {
-        let [x, y, z] = [0, 1, 2].map(|k| r[k].times(&c.0[k]));
-        x.plus(&y).plus(&z)
-    });
-    let [a, b, c] = &map;
-    // Rows of the adjugate, and the determinant, made positive.
-    let mut rows = [b.cross(c), c.cross(a), a.cross(b)];
-    let mut unit = rows[0].dot(a);
-    if unit.is_negative() {
-        rows = rows.map(|row| row.times(&Dyadic::new(-1.0)));
-        unit = -unit;
-    }
-    let grid = |v: &Vector| [0, 1, 2].map(|k| rows[k].dot(v));
-    let (shift, way) = (grid(offset), grid(&Vector::new(direction)));
+    let InGrid { shift, way, unit } = InGrid::new([rotation, shear], offset, direction);
     let mut result = Motion { overlaps: false, stop: None, exit: None };
     let zero = Ratio::from_f64(0.0);
     for p in &moving.0 {

@@ -13,7 +13,7 @@ use crate::settings::Rng;
 pub const FAMILIES: [&str; 6] = ["grid", "sheared", "quarter", "rotated", "mould", "halves"];
 
 /// Distances agree when they differ by no more than this many times the noise of the setting.
-const AGREEMENT: f64 = 512.0;
+pub(super) const AGREEMENT: f64 = 512.0;
 
 /// What came out, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -188,12 +188,12 @@ impl Setting {
     }
 }
 
-fn whole(most: i64, rng: &mut Rng) -> DVec3 {
+pub(super) fn whole(most: i64, rng: &mut Rng) -> DVec3 {
     DVec3::new(rng.whole(-most, most), rng.whole(-most, most), rng.whole(-most, most))
 }
 
 /// A direction along an axis or a diagonal, or of small whole numbers.
-fn way(rng: &mut Rng) -> DVec3 {
+pub(super) fn way(rng: &mut Rng) -> DVec3 {
     loop {
         let most = [1, 1, 3][rng.int(0, 2) as usize];
         let mut d = whole(most, rng);
@@ -206,7 +206,7 @@ fn way(rng: &mut Rng) -> DVec3 {
     }
 }
 
-fn sheared(rng: &mut Rng) -> DMat3 {
+pub(super) fn sheared(rng: &mut Rng) -> DMat3 {
     loop {
         let m = DMat3::from_cols(whole(2, rng), whole(2, rng), whole(2, rng));
         if m.determinant() != 0.0 {
@@ -228,7 +228,7 @@ fn quarter(rng: &mut Rng) -> DMat3 {
     }
 }
 
-fn any_rotation(rng: &mut Rng) -> DQuat {
+pub(super) fn any_rotation(rng: &mut Rng) -> DQuat {
     loop {
         let q = [0; 4].map(|_| rng.range(-1.0, 1.0));
         let q = DQuat::from_array(q);

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use colltrans_oracle::settings;
 use colltrans_oracle::solids::settings::{FAMILIES, Setting};
-use colltrans_oracle::solids::{Seen, as_solids};
+use colltrans_oracle::solids::{Seen, as_solids, sheets};
 use rayon::prelude::*;
 
 use super::SHOWN;
@@ -29,6 +29,11 @@ pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {
             let in_fractions = seed.is_multiple_of(FRACTIONS_EVERY);
             Setting::draw(name, seed).ok_or("no such family")?.examine(in_fractions).map(Some)
         });
+    }
+    for &name in sheets::FAMILIES.iter().filter(|name| wanted(name)) {
+        let each = count.div_ceil(FAMILIES.len() as u64);
+        clean &=
+            family(name, seed, each, |seed| sheets::Setting::draw(name, seed)?.examine().map(Some));
     }
     let convex: Vec<&str> = settings::FAMILIES.iter().map(|f| f.0).collect();
     for &name in

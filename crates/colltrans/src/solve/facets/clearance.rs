@@ -189,6 +189,24 @@ impl<'a> Cast<'a, Solid> {
         self.answer(&scene, found.as_ref())
     }
 
+    /// Where the moving body would be stopped if these two triangles, by their positions in
+    /// [`Solid::triangles`], were all that there is of the bodies; `None` if they do not stop it. What
+    /// blocks along one direction often does so along others too: then [`Self::clearance`] is no
+    /// larger. Bodies count as overlapping only where [`SolidOptions::overlapping`] says so.
+    pub fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact> {
+        let counts = [self.moving(), self.fixed()].map(|solid| solid.triangles().len());
+        if triangles.into_iter().zip(counts).any(|(t, count)| t as usize >= count) {
+            return None;
+        }
+        let scene = self.asked();
+        let later = self.options.overlapping == Some(true)
+            && self.options.start_overlap == StartOverlap::Ignore;
+        let aim = if later { Aim::LaterStop } else { Aim::Stop };
+        let search = Search::new(&scene, aim, self.limit(&scene), |_, _| ());
+        let found = search.of_pair(triangles)?;
+        Some(contact(&scene, &found, self.moving_pose().translation()))
+    }
+
     /// Gaps from here on are of no interest, a length.
     pub(super) fn limit(&self, scene: &Scene) -> f64 {
         self.options.before.map_or(f64::INFINITY, |t| t * scene.length)
@@ -290,15 +308,7 @@ impl<'a> Cast<'a, Solid> {
     /// Pairs of nodes and of leaves that a search for the clearance looks at.
     pub fn steps(&self) -> [u32; 2] {
         let scene = self.asked();
-        let mut search = Search {
-            scene: &scene,
-            aim: Aim::Stop,
-            limit: f64::INFINITY,
-            found: None,
-            others: f64::INFINITY,
-            cut: |_, _| (),
-            steps: [0; 2],
-        };
+        let mut search = Search::new(&scene, Aim::Stop, f64::INFINITY, |_, _| ());
         search.run(&mut Workspace::default());
         search.steps
     }
@@ -306,6 +316,5 @@ impl<'a> Cast<'a, Solid> {
 
 /// The least gap below a limit.
 fn first(scene: &Scene, aim: Aim, limit: f64, workspace: &mut Workspace) -> Option<Found> {
-    let others = f64::INFINITY;
-    Search { scene, aim, limit, found: None, others, cut: |_, _| (), steps: [0; 2] }.run(workspace)
+    Search::new(scene, aim, limit, |_, _| ()).run(workspace)
 }

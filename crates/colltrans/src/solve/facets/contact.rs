@@ -113,14 +113,15 @@ pub(super) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidConta
     let of_f = Listed::new(scene, moving, found.moving);
     let of_g = Listed::new(scene, fixed, found.fixed);
     let (p, q) = (of_f.places, of_g.places);
+    let gap = DVec3::Z * found.gap;
     let (on_f, on_g, normal) = match found.at {
         Meeting::Corner(k) => {
             let within = of_f.is_within_face(moving.solid, k as usize);
-            (corner(k), over(q, p[k as usize]), plane(if within { p } else { q }))
+            (corner(k), over(q, p[k as usize] + gap), plane(if within { p } else { q }))
         }
         Meeting::Under(k) => {
             let within = of_g.is_within_face(fixed.solid, k as usize);
-            (over(p, q[k as usize]), corner(k), plane(if within { q } else { p }))
+            (over(p, q[k as usize] - gap), corner(k), plane(if within { q } else { p }))
         }
         Meeting::Sides(k, j) => {
             let (k, j) = (k as usize, j as usize);
@@ -252,9 +253,13 @@ fn along(k: usize, s: f64) -> DVec3 {
     DVec3::from_array(weights)
 }
 
-/// The weights of the point of a triangle over a shadow.
+/// The weights of the point of a triangle over the shadow of a point that is on it, to within rounding.
 fn over([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
-    let area = |u: DVec3, v: DVec3| u.truncate().perp_dot(v.truncate());
+    let flat = |u: DVec3, v: DVec3| u.truncate().perp_dot(v.truncate());
+    let normal = (b - a).cross(c - a);
+    let steep = flat(b - a, c - a) == 0.0;
+    // Rounding has left nothing of the shadow of what is all but on edge.
+    let area = |u: DVec3, v: DVec3| if steep { u.cross(v).dot(normal) } else { flat(u, v) };
     let whole = area(b - a, c - a);
     let (v, w) = (area(p - a, c - a) / whole, area(b - a, p - a) / whole);
     // A point on the rim may have come out beyond it, by rounding.

@@ -195,9 +195,7 @@ impl Cast<'_, Solid> {
         let cut = |nodes, reason| {
             cuts.insert(nodes, reason);
         };
-        let others = f64::INFINITY;
-        let mut search =
-            Search { scene: &scene, aim, limit, found: None, others, cut, steps: [0; 2] };
+        let mut search = Search::new(&scene, aim, limit, cut);
         let found = search.run(&mut Workspace::default());
         let end = search.limit;
         certificate.cover = Cover::new(bodies, &cuts);

@@ -233,7 +233,24 @@ pub(super) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
     pub(super) steps: [u32; 2],
 }
 
-impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
+impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
+    pub(super) fn new(scene: &'s Scene<'a>, aim: Aim, limit: f64, cut: F) -> Self {
+        Self { scene, aim, limit, found: None, others: f64::INFINITY, cut, steps: [0; 2] }
+    }
+
+    /// What two triangles make.
+    pub(super) fn of_pair(mut self, [s, t]: [u32; 2]) -> Option<Found> {
+        let scene = self.scene;
+        let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
+        let g = Facet::facing(scene, false, t as usize, Ordering::Less);
+        if let (Some(f), Some(g)) = (&f, &g) {
+            self.facets(f, g);
+        } else {
+            rim::each_gap_of(scene, [s, t], &mut |pair, gap| self.take(pair, &gap));
+        }
+        self.found.map(|found| found.sharpened(scene, self.aim))
+    }
+
     pub(super) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
@@ -320,9 +337,7 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
         let back = seen[1].leaf(scene, &scene.fixed, views[1]);
         for f in &seen[0].facets[front.clone()] {
             for g in &seen[1].facets[back.clone()] {
-                let wanted = self.aim.wanted();
-                let Some(gap) = leaf::gap(scene, f, g, self.limit, wanted) else { continue };
-                self.take([f.triangle, g.triangle], &gap);
+                self.facets(f, g);
             }
         }
         let nodes = nodes(seen, views);
@@ -333,6 +348,13 @@ impl<F: FnMut([u32; 2], Reason)> Search<'_, '_, F> {
             });
             let [f, g] = [f, g].map(|(blades, facets, k)| (blades, &seen[k].facets[facets]));
             rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| self.take(pair, &gap));
+        }
+    }
+
+    #[inline]
+    fn facets(&mut self, f: &Facet, g: &Facet) {
+        if let Some(gap) = leaf::gap(self.scene, f, g, self.limit, self.aim.wanted()) {
+            self.take([f.triangle, g.triangle], &gap);
         }
     }
 

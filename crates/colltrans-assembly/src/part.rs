@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
-use colltrans::{ShellKind, Solid, SolidError, SolidReport};
+use colltrans::{Solid, SolidError};
 use glam::{DAffine3, DVec3};
 
 use crate::boxes::Aabb;
@@ -32,7 +32,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// A part of pieces; a surface that is open becomes one without an inside, which is noted.
+    /// A part of pieces; open shells become surfaces that block from both sides, which is noted.
     ///
     /// # Errors
     /// A surface that is not one of a solid; no pieces; a name without letters.
@@ -91,6 +91,11 @@ impl Part {
         &self.defects
     }
 
+    /// Whether it is a surface, at least in part: some shell of it is open.
+    pub fn is_surface(&self) -> bool {
+        !self.solid.is_closed()
+    }
+
     pub(crate) fn bounds(&self) -> Aabb {
         Aabb::of(self.solid.bounds())
     }
@@ -114,9 +119,13 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
         built = Solid::from_mesh(&vertices, &faces);
     }
     let solid = match built {
-        Err(open @ SolidError::Open { .. }) => {
+        Err(SolidError::Open { count, from, to, facet }) => {
             let solid = Solid::from_open_mesh(&vertices, &faces)?;
-            defects.push(format!("{open}; {}", openness(solid.report())));
+            let surface = solid.report().surface().unwrap_or_default();
+            defects.push(format!(
+                "not closed: {count} edges have a facet on one side only, the first from vertex {from} \
+                 to vertex {to} of facet {facet}; taken as a surface of {surface}"
+            ));
             solid
         }
         other => other?,
@@ -129,22 +138,6 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
         defects.push(format!("edges at which more than two facets meet: {}", report.crowded_edges));
     }
     Ok(solid)
-}
-
-/// What open shells are taken for.
-fn openness(report: &SolidReport) -> String {
-    let [closed, sided, sheets] = ShellKind::ALL.map(|kind| report.count(kind));
-    let mut said = vec!["open shells block from both sides and with their rims".to_owned()];
-    if sheets > 0 {
-        said.push(format!("sheets, which are not shrunk or grown: {sheets}"));
-    }
-    if sided > 0 {
-        said.push(format!("all but closed: {sided}"));
-    }
-    if closed > 0 {
-        said.push(format!("closed, with their inside: {closed}"));
-    }
-    said.join("; ")
 }
 
 /// What of two parts is let pass.

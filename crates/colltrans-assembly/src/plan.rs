@@ -46,6 +46,9 @@ pub struct Step {
     /// What the step does not speak of: of each pair the first part moves and the second stays, and
     /// their overlap at the start, or all that they do, is ignored on request.
     pub ignored: Vec<[usize; 2]>,
+    /// The open surfaces that it rests on, in increasing order: of the group, and of what is left and in
+    /// its way or beside it. What they block is known; what is inside of them is not.
+    pub surfaces: Vec<usize>,
 }
 
 impl Step {
@@ -220,7 +223,9 @@ impl Planner<'_> {
         let start = self.options.start;
         let pairs = parts.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
         let ignored = pairs.filter(|&[a, b]| self.bodies.lets_pass(a, b, start)).collect();
-        self.plan.steps.push(Step { parts: parts.clone(), direction, travel, within, ignored });
+        let surfaces = self.surfaces(&parts, left, direction);
+        let moved = parts.clone();
+        self.plan.steps.push(Step { parts: moved, direction, travel, within, ignored, surfaces });
         for _ in &parts {
             self.tally.step()?;
         }
@@ -236,10 +241,22 @@ impl Planner<'_> {
     fn finish(&mut self, left: &[usize], matrix: &Matrix, within: Option<usize>) {
         if within.is_none() {
             let direction = matrix.directions().first().copied().unwrap_or(DVec3::Z);
-            let parts = left.to_vec();
-            let ignored = Vec::new();
-            self.plan.steps.push(Step { parts, direction, travel: 0.0, within, ignored });
+            let (parts, ignored, surfaces) = (left.to_vec(), Vec::new(), Vec::new());
+            let step = Step { parts, direction, travel: 0.0, within, ignored, surfaces };
+            self.plan.steps.push(step);
         }
+    }
+
+    /// The surfaces of a group, and of what is left where the boxes of the group pass.
+    fn surfaces(&self, group: &[usize], left: &[usize], direction: DVec3) -> Vec<usize> {
+        let passed = |&part: &usize| self.bodies.ahead(part, direction).into_iter().map(|x| x.1);
+        let mut found: Vec<usize> = group.iter().flat_map(passed).collect();
+        found.retain(|part| left.contains(part));
+        found.extend(group);
+        found.retain(|&part| self.bodies.assembly().parts()[part].is_surface());
+        found.sort_unstable();
+        found.dedup();
+        found
     }
 
     /// The smallest group that can be taken out, the of equal ones not the base; then that of the

@@ -136,7 +136,8 @@ pub(crate) struct ClearArguments {
     pub(crate) picture: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,
-    /// Take surfaces that are not closed, as scans are: they block from their front, without an inside
+    /// Take surfaces that are not closed, as sheets and scans are: they block from both sides and with
+    /// their rims, without an inside
     #[arg(long, help_heading = OPEN_OR_UNCLEAN)]
     pub(crate) open: bool,
     /// How far apart vertices on open edges may be to be merged, in the unit of the file [default:

@@ -38,6 +38,8 @@ pub(crate) struct Record {
     pub(crate) tolerance: Option<f64>,
     /// Of solids.
     pub(crate) start_overlaps: Vec<StartOverlap>,
+    /// Of solids, those that are open surfaces, at least in part.
+    pub(crate) surfaces: Vec<&'static str>,
     pub(crate) features: Option<Features>,
     pub(crate) margin: Option<f64>,
     pub(crate) overlap: Option<f64>,
@@ -214,7 +216,8 @@ impl Record {
                 ..Self::default()
             },
         };
-        Self { exit: answer.exit, tolerance: Some(answer.tolerance), start_overlaps, ..record }
+        let (tolerance, surfaces) = (Some(answer.tolerance), answer.surface_names());
+        Self { exit: answer.exit, tolerance, start_overlaps, surfaces, ..record }
     }
 
     /// Without the names of files, where a body is one.

@@ -18,7 +18,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::plan::{PlanOptions, Step, disassemble};
 use colltrans_assembly::read::{Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
@@ -32,8 +32,9 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// A vector, and the distance and the part (-1 for none) of rooms along it.
 type RoomRow = (Vec<f64>, Vec<i64>);
-/// Parts, direction, travel, and the step that took the group out.
-type StepRow = (Vec<usize>, [f64; 3], f64, Option<usize>, Vec<[usize; 2]>);
+/// Parts, direction, travel, the step that took the group out, the pairs that are ignored, and the
+/// surfaces it rests on.
+type StepRow = (Vec<usize>, [f64; 3], f64, Option<usize>, Vec<[usize; 2]>, Vec<usize>);
 /// Parts, and for each of some parts the sets that hold it.
 type StuckRow = (Vec<usize>, usize, Vec<(usize, Vec<Vec<usize>>)>);
 
@@ -232,12 +233,16 @@ impl Assembly {
             disassemble(bodies, &matrix, &found.finer, options, watch)
         })?;
         let steps = plan.steps.into_iter();
-        let steps = steps
-            .map(|s| (s.parts, s.direction.to_array(), s.travel, s.within, s.ignored))
-            .collect();
+        let row =
+            |s: Step| (s.parts, s.direction.to_array(), s.travel, s.within, s.ignored, s.surfaces);
+        let steps = steps.map(row).collect();
         let stuck = plan.stuck.into_iter().map(|stuck| {
             let sets = |by: Vec<(Vec<usize>, DVec3)>| by.into_iter().map(|(set, _)| set).collect();
-            (stuck.parts, stuck.directions, stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect())
+            (
+                stuck.parts,
+                stuck.directions,
+                stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect(),
+            )
         });
         Ok((steps, plan.left, stuck.collect()))
     }

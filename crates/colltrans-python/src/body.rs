@@ -109,7 +109,11 @@ impl ConvexPolyhedron {
     /// ConvexPolyhedron
     #[staticmethod]
     #[pyo3(signature = (mesh, convex_tolerance=0.0))]
-    fn from_trimesh(py: Python<'_>, mesh: &Bound<'_, PyAny>, convex_tolerance: f64) -> PyResult<Self> {
+    fn from_trimesh(
+        py: Python<'_>,
+        mesh: &Bound<'_, PyAny>,
+        convex_tolerance: f64,
+    ) -> PyResult<Self> {
         let [vertices, faces] = arrays::mesh(mesh)?;
         Self::from_mesh(py, &vertices, &faces, convex_tolerance)
     }

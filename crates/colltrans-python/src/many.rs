@@ -97,14 +97,30 @@ impl Question {
         match self {
             Self::Contact => &[TRANSLATION, LOWER, UPPER, ROUNDING, MARGIN, OVERLAP],
             Self::Range => &[
-                TRANSLATION, EXIT, LOWER, UPPER, ROUNDING, MARGIN, EXIT_LOWER, EXIT_UPPER, OVERLAP,
+                TRANSLATION,
+                EXIT,
+                LOWER,
+                UPPER,
+                ROUNDING,
+                MARGIN,
+                EXIT_LOWER,
+                EXIT_UPPER,
+                OVERLAP,
             ],
-            Self::Clearance => {
-                &[
-                    DISTANCE, TRANSLATION, EXIT, BACK, ON, LOWER, UPPER, ROUNDING, MARGIN, EXIT_LOWER,
-                    EXIT_UPPER, OVERLAP,
-                ]
-            }
+            Self::Clearance => &[
+                DISTANCE,
+                TRANSLATION,
+                EXIT,
+                BACK,
+                ON,
+                LOWER,
+                UPPER,
+                ROUNDING,
+                MARGIN,
+                EXIT_LOWER,
+                EXIT_UPPER,
+                OVERLAP,
+            ],
         }
     }
 
@@ -128,9 +144,7 @@ impl Question {
                 Outcome::Separated(separated) => Row::separated(2, &separated),
             },
             Self::Range => match cast.contact_range()? {
-                ContactRange::Contact { first, last } => {
-                    Row::of(0, &first, cast).with_exit(&last)
-                }
+                ContactRange::Contact { first, last } => Row::of(0, &first, cast).with_exit(&last),
                 ContactRange::Grazing { first, last } => Row::of(1, &first.contact, cast)
                     .with_exit(&last.contact)
                     .with(OVERLAP, first.overlap),

@@ -3,11 +3,12 @@
 //! A solid keeps what it was made of, so that it can be pickled: made of the same again, it is the
 //! same.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use colltrans::AsSolid;
 use colltrans::glam::DVec3;
+use colltrans::{AsSolid, ShellKind};
 use colltrans_mesh::ReadOptions;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
@@ -308,10 +309,19 @@ impl Solid {
         PyArray1::from_slice(py, self.solid.facet_indices())
     }
 
-    /// bool: Whether the surface encloses a volume.
+    /// bool: Whether all shells are closed; if not, the body is a surface, at least in part.
     #[getter]
     fn is_closed(&self) -> bool {
         self.solid.is_closed()
+    }
+
+    /// dict of str to int: How many shells are ``closed`` (with an inside), ``sided`` (open, but all but
+    /// closed) and ``sheet``. Open ones block from both sides, rims included; sheets are neither shrunk
+    /// nor grown.
+    #[getter]
+    fn shells(&self) -> HashMap<&'static str, usize> {
+        let report = self.solid.report();
+        ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.count(kind))).collect()
     }
 
     /// float: The volume, in the cube of the unit of length.

@@ -23,7 +23,8 @@ pub(crate) struct SolidContact {
 impl SolidContact {
     #[classattr]
     #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str, &'static str) = ("translation", "normal", "point");
+    const MATCH_ARGS: (&'static str, &'static str, &'static str) =
+        ("translation", "normal", "point");
 
     /// float: Where the faces that stop the body meet in their true place, not shrunk, in multiples of
     /// the direction; the best estimate.
@@ -101,8 +102,7 @@ impl SolidContact {
         let vectors = [c.normal, c.point_on_moving, c.point_on_fixed].map(|v| v.to_array());
         let features = [c.moving_feature, c.fixed_feature].map(parts);
         let query = self.query.clone_ref(py);
-        let numbers =
-            [c.translation, c.shrunk_distance].map(|n| [n.value, n.lower, n.upper]);
+        let numbers = [c.translation, c.shrunk_distance].map(|n| [n.value, n.lower, n.upper]);
         saved(py, "SolidContact", (query, numbers, vectors, features, c.triangles))
     }
 
@@ -153,6 +153,13 @@ impl SolidBlocked {
         self.contact.clone_ref(py)
     }
 
+    /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
+    /// of them is not known.
+    #[getter]
+    fn surfaces(&self) -> PyResult<Vec<&'static str>> {
+        surfaces(&self.contact.get().query)
+    }
+
     /// SolidCast: The query.
     #[getter]
     fn query(&self, py: Python<'_>) -> Py<SolidCast> {
@@ -200,6 +207,13 @@ impl SolidFree {
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.separation.map(|s| PyArray1::from_slice(py, &s[..3]))
+    }
+
+    /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
+    /// of them is not known.
+    #[getter]
+    fn surfaces(&self) -> PyResult<Vec<&'static str>> {
+        surfaces(&self.query)
     }
 
     /// SolidCast: The query.
@@ -259,7 +273,8 @@ impl SolidOverlapping {
         None
     }
 
-    /// float or None: The least tolerance with which they would not overlap, a length.
+    /// float or None: The least tolerance with which they would not overlap, a length; None if there is
+    /// none, as for open surfaces.
     #[getter]
     fn depth(&self) -> Option<f64> {
         self.depth
@@ -272,6 +287,13 @@ impl SolidOverlapping {
     #[getter]
     fn place(&self) -> (Option<u32>, Option<u32>) {
         self.place.into()
+    }
+
+    /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
+    /// of them is not known.
+    #[getter]
+    fn surfaces(&self) -> PyResult<Vec<&'static str>> {
+        surfaces(&self.query)
     }
 
     /// SolidCast: The query.
@@ -296,6 +318,16 @@ impl SolidOverlapping {
             self.depth.map_or("None".into(), |d| format!("{d:?}"))
         )
     }
+}
+
+fn surfaces(query: &Py<SolidCast>) -> PyResult<Vec<&'static str>> {
+    let mut found = Vec::new();
+    for (name, body) in ["moving", "fixed"].into_iter().zip(&query.get().bodies) {
+        if !body.solid().or_raise()?.is_closed() {
+            found.push(name);
+        }
+    }
+    Ok(found)
 }
 
 /// The proof of a clearance between solids.

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use colltrans::{BuildError, ConvexPolyhedron, Feature, Solid, SolidError};
+use colltrans::{BuildError, ConvexPolyhedron, Feature, ShellKind, Solid, SolidError};
 use colltrans_mesh::{Format, Mesh};
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -68,6 +68,8 @@ struct Facts {
     edges: usize,
     dimension: u8,
     closed: bool,
+    /// Of a surface, how many shells there are of each kind.
+    shells: Option<[usize; 3]>,
     volume: f64,
     bounds: [[f64; 3]; 2],
     /// What was merged, mended or filled.
@@ -114,6 +116,8 @@ pub(crate) fn build(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, Answer
             };
             let body = body.map_err(|error| refused_solid(name, &error))?;
             notes.extend(mended(&body));
+            let surface = body.report().surface();
+            notes.extend(surface.map(|surface| format!("an open surface: {surface}")));
             let answer = answer(&solid_facts(&body, notes), body.vertices(), &of_solid(&body));
             let precision = mesh.merged.tolerance;
             Ok((Part::Solid(Facets { body, precision }), answer))
@@ -194,6 +198,7 @@ fn convex_facts(body: &ConvexPolyhedron, notes: Vec<String>) -> Facts {
         edges: body.edge_count(),
         dimension: body.dimension(),
         closed: true,
+        shells: None,
         volume: body.volume(),
         bounds: bounds(body.vertices()),
         notes,
@@ -208,6 +213,7 @@ fn solid_facts(body: &Solid, notes: Vec<String>) -> Facts {
         edges: 0,
         dimension: 3,
         closed: body.is_closed(),
+        shells: (!body.is_closed()).then(|| ShellKind::ALL.map(|kind| body.report().count(kind))),
         volume: body.volume(),
         bounds: bounds(body.vertices()),
         notes,
@@ -266,6 +272,9 @@ fn answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
             "edges": facts.edges,
             "dimension": facts.dimension,
             "closed": facts.closed,
+            "shells": facts.shells.map(|[closed, sided, sheets]| {
+                json!({ "closed": closed, "sided": sided, "sheet": sheets })
+            }),
             "volume": facts.volume,
             "low": facts.bounds[0],
             "high": facts.bounds[1],

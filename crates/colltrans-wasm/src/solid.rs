@@ -17,12 +17,17 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
     let cast = query([moving, fixed], pair)?;
     let clearance = cast.clearance();
     let exit = cast.exit();
+    // Which bodies are open, at least in part.
+    let named = [("moving", moving), ("fixed", fixed)].into_iter();
+    let surfaces: Vec<&str> =
+        named.filter_map(|(name, f)| (!f.body.is_closed()).then_some(name)).collect();
     let mut told = json!({
         "kind": "solid",
         "exit": exit.map(|exit| exit.value),
         "exit_bounds": exit.map(|exit| exit.bounds()),
         "tolerance": cast.options().tolerance,
         "precision": moving.precision + fixed.precision,
+        "surfaces": surfaces,
     });
     let more: Value = match clearance {
         Clearance::Free(plane) => json!({

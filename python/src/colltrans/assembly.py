@@ -77,6 +77,8 @@ class Step:
     ignored : list of tuple of (str, str)
         What the step does not speak of: the first part moves, the second stays, and their overlap at
         the start, or all that they do, is ignored on request.
+    surfaces : list of str
+        The open surfaces that the step rests on: parts of the group or in its way that are not closed.
     """
 
     parts: list[str]
@@ -84,6 +86,7 @@ class Step:
     travel: float
     within: int | None
     ignored: list[tuple[str, str]]
+    surfaces: list[str]
 
 
 @dataclass(frozen=True)
@@ -345,8 +348,9 @@ class Assembly:
                     travel,
                     within,
                     [(names[a], names[b]) for a, b in ignored],
+                    self._names(surfaces),
                 )
-                for parts, d, travel, within, ignored in steps
+                for parts, d, travel, within, ignored, surfaces in steps
             ],
             self._names(left),
             [

@@ -1,5 +1,6 @@
 //! The findings as JSON.
 
+use colltrans::ShellKind;
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -18,6 +19,11 @@ pub fn json(f: &Findings) -> Value {
         .map(|(k, p)| {
             let mut part =
                 json!({ "name": p.name(), "facets": p.facets(), "volume": p.solid().volume() });
+            if p.is_surface() {
+                let count =
+                    |kind: ShellKind| (kind.name().to_owned(), p.solid().report().count(kind));
+                part["shells"] = ShellKind::ALL.into_iter().map(count).collect();
+            }
             if !p.defects().is_empty() {
                 part["defects"] = json!(p.defects());
             }
@@ -109,6 +115,9 @@ fn steps(f: &Findings) -> Vec<Value> {
         }
         if let Some(within) = s.within {
             step["within"] = json!(within);
+        }
+        if !s.surfaces.is_empty() {
+            step["surfaces"] = json!(f.bodies.assembly().names(&s.surfaces));
         }
         step
     };

@@ -8,6 +8,7 @@ use super::scene::{self, Arrow, Shown};
 use super::{Findings, arrow, escaped, graph, short, viewer};
 use crate::blocking::Blocking;
 use crate::map;
+use crate::plan::Step;
 use crate::rooms::PartRoom;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:70em;\
@@ -147,10 +148,11 @@ fn steps(text: &mut String, f: &Findings) {
             f.bodies.assembly().names(&step.parts).into_iter().map(escaped).collect();
         let _ = writeln!(
             text,
-            "<figure>{picture}<figcaption><b>{}.</b> {}{within}: {}{travel}{ignored}</figcaption></figure>",
+            "<figure>{picture}<figcaption><b>{}.</b> {}{within}: {}{travel}{ignored}{}</figcaption></figure>",
             k + 1,
             names.join(", "),
-            arrow(step.direction)
+            arrow(step.direction),
+            resting(f, step)
         );
         if step.within.is_none() {
             step.parts.iter().for_each(|&p| gone[p] = true);
@@ -164,6 +166,16 @@ fn steps(text: &mut String, f: &Findings) {
             f.plan.steps.len() - MOST_STEPS
         );
     }
+}
+
+/// The open surfaces that a step rests on.
+fn resting(f: &Findings, step: &Step) -> String {
+    if step.surfaces.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> =
+        f.bodies.assembly().names(&step.surfaces).into_iter().map(escaped).collect();
+    format!("; rests on an open surface: {}", names.join(", "))
 }
 
 /// What is left, pale, and what moves, on its way out.

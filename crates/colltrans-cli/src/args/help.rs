@@ -75,7 +75,7 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
    "tolerance": L, "ignore_start_overlaps": true|false (of solids)}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
        or {"mesh": "path", "hull": true|false, "scale": FACTOR}
-       or {"solid": "path", "scale": FACTOR} (need not be convex)
+       or {"solid": "path", "scale": FACTOR, "open": BOOL} (need not be convex; open: nor closed)
   (hull and scale may be missing: as --hull says, and 1)
   query is "contact", as of `colltrans cast`, or "clearance": as of `colltrans clear` where a body
   is a solid, else as of `colltrans clearance`. Solids are asked for their clearance only, which is

@@ -104,6 +104,9 @@ fn summary(f: &Findings) -> String {
         if let Some(ignored) = step.ignores(assembly) {
             let _ = writeln!(text, "     {ignored}");
         }
+        if !step.surfaces.is_empty() {
+            let _ = writeln!(text, "     rests on an open surface: {}", names(&step.surfaces));
+        }
     }
     if !f.plan.left.is_empty() {
         let _ = writeln!(text, "left\n  {}", names(&f.plan.left));

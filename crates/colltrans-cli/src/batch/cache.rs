@@ -18,7 +18,7 @@ pub(crate) enum Key {
     /// A mesh file, whether its hull is taken, and the bits of its scale.
     Mesh { path: PathBuf, hull: bool, scale: u64 },
     /// A mesh file that need not be convex, and the bits of its scale.
-    Solid { path: PathBuf, scale: u64 },
+    Solid { path: PathBuf, scale: u64, open: bool },
     /// Points, by the exact bits of their coordinates.
     Points(Vec<[u64; 3]>),
 }

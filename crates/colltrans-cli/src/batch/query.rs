@@ -67,6 +67,7 @@ pub(super) struct BodySource {
     points: Option<Vec<[f64; 3]>>,
     mesh: Option<PathBuf>,
     solid: Option<PathBuf>,
+    open: Option<bool>,
     hull: Option<bool>,
     scale: Option<f64>,
 }
@@ -164,7 +165,10 @@ impl Desk {
     }
 
     fn body(&self, source: &BodySource) -> Built {
-        let &BodySource { ref points, ref mesh, ref solid, hull, scale } = source;
+        let &BodySource { ref points, ref mesh, ref solid, open, hull, scale } = source;
+        if open.is_some() && solid.is_none() {
+            return Err("`open` is for a `solid`".into());
+        }
         match (points, mesh, solid) {
             (Some(points), None, None) if hull.is_none() && scale.is_none() => {
                 let bits = points.iter().map(|p| p.map(f64::to_bits)).collect();
@@ -174,19 +178,21 @@ impl Desk {
             (None, Some(path), None) => {
                 self.mesh(path, hull.unwrap_or(self.hull), positive(scale)?)
             }
-            (None, None, Some(path)) if hull.is_none() => self.solid(path, positive(scale)?),
+            (None, None, Some(path)) if hull.is_none() => {
+                self.solid(path, positive(scale)?, open.unwrap_or_default())
+            }
             (None, None, Some(_)) => Err("`hull` is for a `mesh`".into()),
             _ => Err("a body has either `points` or `mesh` or `solid`".into()),
         }
     }
 
-    fn solid(&self, path: &Path, scale: f64) -> Built {
+    fn solid(&self, path: &Path, scale: f64, open: bool) -> Built {
         let path = self.folder.join(path);
-        let key = Key::Solid { path: path.clone(), scale: scale.to_bits() };
+        let key = Key::Solid { path: path.clone(), scale: scale.to_bits(), open };
         self.cache.get(key, |_| {
             self.read.note(&path);
             let merge_tolerance = self.body.merge_tolerance();
-            let recipe = solid::Recipe { scale, merge_tolerance, open: false };
+            let recipe = solid::Recipe { scale, merge_tolerance, open };
             let body = solid::Body::load(&[path], recipe, || ())?;
             Ok(Arc::new(Shape::Solid(body)))
         })

@@ -32,6 +32,11 @@ pub(super) fn answer(answer: &Answer<'_>, direction: DVec3, is_default: bool) ->
         line(&mut text, "exit", &format!("{exit}; after it they never meet"));
     }
     overlaps(&mut text, answer);
+    let surfaces = answer.surface_names();
+    if !surfaces.is_empty() {
+        let what = "open, blocking from both sides, rims included; what is inside is not known";
+        line(&mut text, "surface", &format!("{}, {what}", surfaces.join(" and ")));
+    }
     let source = match (is_default, answer.tolerance == 0.0) {
         (true, _) => "from the files' precision and the poses; --tolerance sets another",
         (false, true) => "as asked: the bodies are taken as they are",

@@ -53,6 +53,7 @@ impl Record {
             rounding,
             tolerance,
             start_overlaps,
+            surfaces,
             features,
             margin,
             overlap,
@@ -76,6 +77,7 @@ impl Record {
         field(text, r#","rounding":"#, *rounding, number);
         field(text, r#","tolerance":"#, *tolerance, number);
         field(text, r#","start_overlaps":"#, some(start_overlaps), any);
+        field(text, r#","surfaces":"#, some(surfaces), any);
         field(text, r#","features":"#, features.as_ref(), touching);
         field(text, r#","margin":"#, *margin, number);
         field(text, r#","overlap":"#, *overlap, number);
@@ -230,6 +232,7 @@ mod tests {
             rounding: Some(4.3e-13),
             tolerance: Some(0.1),
             start_overlaps: vec![overlap],
+            surfaces: vec!["moving", "fixed"],
             features: Some(Features { moving: feature(vec![7, 12]), fixed: feature(vec![]) }),
             margin: Some(5.0),
             overlap: Some(-0.25),
@@ -263,6 +266,7 @@ mod tests {
             "rounding": 4.3e-13,
             "tolerance": 0.1,
             "start_overlaps": [{"moving": "a\"b", "depth": 0.5}],
+            "surfaces": ["moving", "fixed"],
             "features": {
                 "moving": {"kind": "edge", "vertices": [7, 12]},
                 "fixed": {"kind": "edge", "vertices": []},

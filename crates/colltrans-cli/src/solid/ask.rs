@@ -40,10 +40,20 @@ pub(crate) struct Answer<'a> {
     pub(crate) exit: Option<Bounded>,
     /// What overlaps at the start, the deepest first; looked at where it matters.
     pub(crate) overlaps: Vec<Overlap<'a>>,
+    /// Which of the moving and the fixed body are surfaces, at least in part.
+    pub(crate) surfaces: [bool; 2],
     /// What could not be shrunk as the tolerance asks for.
     pub(crate) notes: Vec<String>,
     /// How far lengths may be off by the precision of the files and by rounding.
     pub(crate) error: f64,
+}
+
+impl Answer<'_> {
+    /// `moving` and `fixed`, those that are surfaces.
+    pub(crate) fn surface_names(&self) -> Vec<&'static str> {
+        let names = ["moving", "fixed"].into_iter().zip(self.surfaces);
+        names.filter_map(|(name, is_surface)| is_surface.then_some(name)).collect()
+    }
 }
 
 /// How it ends.
@@ -109,6 +119,7 @@ impl<'a> Question<'a> {
             tolerance,
             exit: cast.exit(),
             overlaps,
+            surfaces: [self.moving.is_surface(), self.fixed.is_surface()],
             notes: self.unshrunk(tolerance),
             error: self.moving.precision() + self.fixed.precision() + ROUNDING * self.size(),
         })

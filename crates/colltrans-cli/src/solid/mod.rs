@@ -98,6 +98,11 @@ impl Body {
         self.union.as_ref().unwrap_or_else(|| &self.pieces[0].solid)
     }
 
+    /// Whether some shell of it is open.
+    fn is_surface(&self) -> bool {
+        !self.solid().is_closed()
+    }
+
     /// The coarsest of its files.
     fn precision(&self) -> f64 {
         self.pieces.iter().map(|piece| piece.precision).fold(0.0, f64::max)
@@ -144,7 +149,7 @@ fn refusal(error: &SolidError) -> String {
         SolidError::Open { count, from, to, facet } => format!(
             "the surface is not closed: {} have a face on one side only, the first runs from \
              vertex {from} to vertex {to} of face {facet}; --merge-tolerance closes gaps, `clear \
-             --open` takes it as a scan without an inside",
+             --open` takes it as a surface without an inside",
             counted(*count, "edge", "edges")
         ),
         SolidError::Empty => "holds no faces with an area".into(),
@@ -166,15 +171,10 @@ fn mended(report: &SolidReport) -> Option<String> {
     (!text.is_empty()).then(|| text.join("; "))
 }
 
-/// What an open surface lacks.
+/// What an open surface is taken for.
 fn gaps(report: &SolidReport) -> Option<String> {
-    let edges = report.open_edges;
-    (edges > 0).then(|| {
-        let edges = counted(edges, "open edge", "open edges");
-        format!(
-            "an open surface ({edges}): it blocks from its front, and nothing counts as inside it"
-        )
-    })
+    let edges = counted(report.open_edges, "open edge", "open edges");
+    report.surface().map(|surface| format!("an open surface ({edges}): {surface}"))
 }
 
 /// What `info` says of a mesh as a solid: a line for each heading.
@@ -184,7 +184,13 @@ pub(crate) fn describe(mesh: &Mesh) -> Vec<(&'static str, String)> {
     }
     let solid = match Solid::from_mesh(&mesh.vertices, &mesh.faces) {
         Ok(solid) => solid,
-        Err(error) => return vec![("solid", format!("no: {}", refusal(&error)))],
+        Err(error) => {
+            let mut lines = vec![("solid", format!("no: {}", refusal(&error)))];
+            let open = Solid::from_open_mesh(&mesh.vertices, &mesh.faces);
+            let surface = open.ok().and_then(|open| open.report().surface());
+            lines.extend(surface.map(|surface| ("with --open", surface)));
+            return lines;
+        }
     };
     let report = solid.report();
     let mut lines = vec![("solid", format!("yes: {}", shells(report)))];
@@ -247,7 +253,11 @@ mod tests {
         assert_eq!(lines.len(), 2);
         let mut open = cubes();
         open.faces.pop();
-        let [("solid", what)] = &describe(&open)[..] else { panic!("one line") };
+        let [("solid", what), ("with --open", surface)] = &describe(&open)[..] else {
+            panic!("two lines")
+        };
         assert!(what.starts_with("no: ") && what.contains("--open"), "{what}");
+        assert!(surface.starts_with("1 sheet, "), "{surface}");
+        assert!(surface.ends_with("2 closed shells keep their inside"), "{surface}");
     }
 }

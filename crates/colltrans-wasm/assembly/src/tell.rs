@@ -130,6 +130,7 @@ pub(crate) fn plan(plan: &Plan, directions: usize) -> Answer {
             "direction": step.direction.to_array(),
             "travel": step.travel,
             "within": step.within,
+            "surfaces": step.surfaces,
         })
     });
     let stuck = plan.stuck.iter().map(|stuck| {

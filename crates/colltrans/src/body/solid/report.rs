@@ -72,6 +72,29 @@ impl SolidReport {
         self.shells.iter().filter(|s| s.kind == kind).count()
     }
 
+    /// What a body with open shells is taken for, in words; `None` if all are closed.
+    pub fn surface(&self) -> Option<String> {
+        let [closed, sided, sheets] = ShellKind::ALL.map(|kind| self.count(kind));
+        let of = |count: usize, one: &str, many: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            _ => Some(format!("{count} {many}")),
+        };
+        let open = [
+            of(sheets, "sheet", "sheets"),
+            of(sided, "shell that is all but closed", "shells that are all but closed"),
+        ];
+        let open: Vec<String> = open.into_iter().flatten().collect();
+        let inside = match closed {
+            0 => "without an inside".to_owned(),
+            1 => "1 closed shell keeps its inside".to_owned(),
+            _ => format!("{closed} closed shells keep their inside"),
+        };
+        (!open.is_empty()).then(|| {
+            format!("{}, blocking from both sides, rims included; {inside}", open.join(" and "))
+        })
+    }
+
     /// Holes through all shells together, where they are known.
     pub fn holes_through(&self) -> u32 {
         self.shells.iter().filter_map(|s| s.holes_through).sum()

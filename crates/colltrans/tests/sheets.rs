@@ -1,7 +1,7 @@
 //! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, Clearance, Pose, ShellKind, Solid, SolidOptions, StartOverlap};
+use colltrans::{Bounded, Cast, Clearance, Pose, ShellKind, Solid, SolidOptions, StartOverlap};
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -194,7 +194,12 @@ fn ask(scene: &Scene, pose: Pose, tolerance: Option<f64>) -> (Clearance<Solid>, 
 fn matches(found: &Clearance<Solid>, wanted: Wanted, accuracy: f64) -> bool {
     match (found, wanted) {
         (Clearance::Free(_), Free) | (Clearance::Overlapping(_), Overlap) => true,
-        (Clearance::Blocked { distance, .. }, At(right)) => (distance - right).abs() <= accuracy,
+        (Clearance::Blocked { distance, contact }, At(right)) => {
+            let Bounded { value, lower, upper } = contact.translation;
+            let near =
+                (value - right).abs() <= accuracy && (distance - right).abs() <= accuracy + 1e-11;
+            near && lower <= right + accuracy && right <= upper + accuracy
+        }
         _ => false,
     }
 }
@@ -310,15 +315,18 @@ fn sheets_are_neither_shrunk_nor_grown() {
     let at = |solid: &Solid| {
         let moving = sheet(blade, 1);
         let cast = Cast::new(moving.at(Pose::IDENTITY), solid.at(Pose::IDENTITY), DVec3::Y);
-        cast.expect("a cast").clearance().distance()
+        match cast.expect("a cast").clearance() {
+            Clearance::Blocked { contact, .. } => contact.translation.value,
+            other => panic!("{other:?}"),
+        }
     };
-    assert_eq!([at(&both), at(&smaller)], [Some(1.0), Some(1.25)]);
+    assert_eq!([at(&both), at(&smaller)], [1.0, 1.25]);
     // With a tolerance the partner alone is smaller.
     let lid = sheet([[0.0, 0.0, 6.0], [4.0, 0.0, 6.0], [4.0, 4.0, 6.0], [0.0, 4.0, 6.0]], 1);
     let down = Cast::new(lid.at(Pose::IDENTITY), cube.at(Pose::IDENTITY), DVec3::NEG_Z);
     let down = down.and_then(|cast| cast.with_tolerance(0.5)).expect("a cast");
-    let Clearance::Blocked { distance, contact } = down.clearance() else { panic!("blocked") };
-    assert_eq!((distance, contact.nominal), (2.25, 2.0));
+    let Clearance::Blocked { contact, .. } = down.clearance() else { panic!("blocked") };
+    assert_eq!((contact.shrunk_distance.value, contact.translation.value), (2.25, 2.0));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::Cells;
+use super::encloses;
 use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way, whole};
 use super::squares::{Crossing, Mixed, Squares};
 use crate::exact::{Ratio, Vector};
@@ -104,7 +105,7 @@ impl Setting {
         let expected = self.expected();
         let tolerance = self.tolerance();
         if let Some(last) = &expected.last {
-            let late = cast.exit().is_some_and(|t| *last <= Ratio::from_f64(t + tolerance));
+            let late = cast.exit().is_some_and(|exit| *last <= Ratio::from_f64(exit.upper));
             if !late && last.to_f64() > tolerance {
                 return Err(format!("exit {:?}, not {}", cast.exit(), last.to_f64()));
             }
@@ -125,6 +126,7 @@ impl Setting {
             (Clearance::Free(_), false, None) => Ok(Seen::Free),
             (Clearance::Blocked { distance, contact }, false, Some(stop))
                 if stop.minus(&Ratio::from_f64(*distance)).is_within(tolerance)
+                    && encloses(&contact.translation, stop)
                     && not_before(stop)
                     && contact.normal.dot(self.direction) > -1e-12
                     && contact.point_on_moving.is_finite()

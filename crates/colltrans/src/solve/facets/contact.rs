@@ -168,6 +168,9 @@ pub(super) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidConta
     }
 }
 
+/// Slope, of a contact plane against the direction, up to which it is not moved back.
+const STEEPEST: f64 = 1e-3;
+
 /// Where the facets of a contact of shrunk bodies meet as they are; `shift` is what shrinking has moved
 /// the one contact point against the other.
 fn true_place(
@@ -183,7 +186,9 @@ fn true_place(
     let place = exact.map_or_else(
         || {
             let slope = normal.dot(scene.direction);
-            let back = if slope > 0.0 { normal.dot(shift) / slope } else { 0.0 };
+            // Along planes that are all but on edge their meeting says nothing of the bodies.
+            let steep = slope <= STEEPEST * scene.length;
+            let back = if steep { 0.0 } else { normal.dot(shift) / slope };
             let value = shrunk.value + back;
             Bounded { value, lower: value - scene.blur / scene.length, upper: f64::INFINITY }
         },

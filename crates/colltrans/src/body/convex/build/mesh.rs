@@ -74,6 +74,9 @@ pub(super) fn from_mesh<F: AsRef<[u32]>>(
 #[cfg(feature = "json")]
 pub(super) fn own_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Topology, BuildError> {
     let surface = Surface::new(vertices, faces)?;
+    if surface.points.len() < vertices.len() {
+        return Err(BuildError::NotABody { vertices: vertices.len(), faces: faces.len() });
+    }
     let ConvexityDefect { face, depth } = surface.defect(&surface.hull());
     // Its polygons were merged within the tolerance of a hull of other points.
     let tolerance = 4.0 * hull::tolerance(vertices);

@@ -12,7 +12,7 @@ use super::ConvexPolyhedron;
 use super::sections::SectionIndex;
 use super::support::SupportIndex;
 use crate::body::Inertia;
-#[cfg(test)]
+#[cfg(any(test, feature = "json"))]
 use crate::body::topology::Topology;
 use crate::error::BuildError;
 use hull::Hull;
@@ -121,19 +121,27 @@ impl ConvexPolyhedron {
         hull::check_points(vertices)?;
         let sound_error = (0.0..=crate::MAX_MAGNITUDE).contains(&hull_error);
         let vertex_count = vertices.len();
-        let mut like = hull::convex_hull(vertices);
-        if like.vertices.len() < vertex_count {
-            // A body hardly thicker than the tolerance has all corners of the exact hull.
-            like = hull::exact_hull(vertices);
-        }
-        let same = like.vertices.len() == vertex_count && input_indices.len() == vertex_count;
-        let flat = if faces.is_empty() { vertex_count <= 2 } else { like.dimension >= 2 };
-        if !same || !flat || !sound_error {
+        let dimension = match faces.len() {
+            0 => vertex_count.min(2) as u8 - 1,
+            2 => 2,
+            _ => 3,
+        };
+        let is_own = |hull: &Hull| hull.vertices.len() == vertex_count;
+        let like = hull::convex_hull(vertices);
+        // A body hardly thicker than the tolerance may be flat without the points that it left out, or
+        // have all corners of the exact hull.
+        let same = is_own(&like)
+            || like.dimension < dimension && hull::are_distinct(vertices)
+            || is_own(&hull::exact_hull(vertices));
+        let flat = if faces.is_empty() { vertex_count <= 2 } else { vertex_count >= 3 };
+        if !(same && flat && sound_error && input_indices.len() == vertex_count) {
             return Err(BuildError::NotABody { vertices: vertex_count, faces: faces.len() });
         }
-        let dimension = like.dimension;
-        let topology =
-            if faces.is_empty() { like.topology } else { mesh::own_faces(vertices, faces)? };
+        let topology = if faces.is_empty() {
+            Topology::without_faces(vertex_count)
+        } else {
+            mesh::own_faces(vertices, faces)?
+        };
         let in_order = (0..vertex_count as u32).collect();
         let hull = Hull { dimension, vertices: in_order, topology, violation: hull_error };
         let mut body = Self::from_hull(vertices, hull);

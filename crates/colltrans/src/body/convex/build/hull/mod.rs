@@ -156,6 +156,14 @@ pub(super) fn exact_hull(points: &[DVec3]) -> Hull {
     }
 }
 
+/// Whether no two points are the same.
+#[cfg(feature = "json")]
+pub(super) fn are_distinct(points: &[DVec3]) -> bool {
+    let mut all: Vec<_> = points.iter().map(|p| (*p + 0.0).to_array().map(f64::to_bits)).collect();
+    all.sort_unstable();
+    all.windows(2).all(|pair| pair[0] != pair[1])
+}
+
 /// Polygons, vertex numbers and the measured violation; and which points are too far away, ascending.
 fn finish(
     points: &[DVec3],

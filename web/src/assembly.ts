@@ -45,7 +45,7 @@ interface Along {
 }
 interface Plan {
   directions: number;
-  steps: { parts: number[]; direction: Vec; travel: number; within: number | null }[];
+  steps: { parts: number[]; direction: Vec; travel: number; within: number | null; surfaces: number[] }[];
   left: number[];
   stuck: { parts: number[]; directions: number; overlapping: [number, number][]; holds: { part: number; by: number[][] }[] }[];
 }
@@ -515,9 +515,10 @@ export class AssemblyTab {
       refill(this.planCard, h("div", { class: "row" }, h("button", { class: "small main", disabled: !!this.busy || !this.fit, onclick: () => void this.askPlan() }, "Plan the disassembly")));
       return;
     }
-    const rows = plan.steps.map(({ parts, direction, travel, within }, k) =>
+    const rows = plan.steps.map(({ parts, direction, travel, within, surfaces }, k) =>
       h("li", {}, h("button", { class: "link", onclick: () => this.player.go(k + 1) },
-        `${within === null ? "" : `of step ${within + 1}: `}${this.names(parts)} ${travel ? `along ${arrow(direction)}` : "stays"}`)));
+        `${within === null ? "" : `of step ${within + 1}: `}${this.names(parts)} ${travel ? `along ${arrow(direction)}` : "stays"}`),
+        ...(surfaces.length ? [h("small", {}, ` rests on an open surface: ${this.names(surfaces)}`)] : [])));
     const stuck = plan.stuck.map(({ parts, directions, overlapping, holds }) => h("p", { class: "proof" },
       `No single straight motion along the ${directions} directions asked takes these apart: ${this.names(parts)}. `,
       overlapping.length ? `They overlap: ${overlapping.slice(0, 4).map((pair) => this.names(pair)).join("; ")}.`

@@ -94,6 +94,8 @@ export interface SolidAnswer {
   shrunk_distance?: number;
   shrunk_distance_bounds?: [number, number];
   depth?: number | null;
+  /** The bodies that are open, at least in part: what is inside of them is not known. */
+  surfaces: ("moving" | "fixed")[];
   tolerance: number;
   precision: number;
   /** Of a plane between bodies that never meet, where there is one. */

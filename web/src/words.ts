@@ -103,6 +103,7 @@ const kind = (of: Feature) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
 function solid(answer: SolidAnswer, state: State): Said {
   const tolerance: [string, string] = ["tolerance", short(answer.tolerance, 3)];
   const exit: [string, string][] = !answer.exit_bounds || answer.exit_bounds[1] <= 0 ? [] : [["parted for good after t", String(answer.exit_bounds[1])]];
+  const open: [string, string][] = answer.surfaces.length ? [["open surface", `${answer.surfaces.join(" and ")}: blocks from both sides, rims included`]] : [];
   const { first } = answer;
   if (answer.outcome === "free") {
     return {
@@ -111,7 +112,7 @@ function solid(answer: SolidAnswer, state: State): Said {
       sentence: answer.margin
         ? `The moving body can go as far as it likes: a plane along d lies between the bodies, with a gap of at least ${short(answer.margin)}.`
         : "The moving body can go as far as it likes.",
-      rows: [...(answer.margin ? [["margin", short(answer.margin, 9)] as [string, string]] : []), ...exit, tolerance],
+      rows: [...(answer.margin ? [["margin", short(answer.margin, 9)] as [string, string]] : []), ...exit, tolerance, ...open],
     };
   }
   if (!first) {
@@ -121,11 +122,13 @@ function solid(answer: SolidAnswer, state: State): Said {
       headline: "They overlap where they are",
       sentence:
         depth === null
-          ? "One body lies in the other, deeper than any tolerance reaches."
+          ? answer.surfaces.length
+            ? "A surface passes through what is there: less of the other body would not free it."
+            : "One body lies in the other, deeper than any tolerance reaches."
           : depth < answer.tolerance
           ? `With a tolerance of ${short(depth)} they would not: one of ${short(answer.tolerance)} is more than the bodies are thick, and turns them inside out.`
           : `With a tolerance of ${short(depth)} they would not: that is how deep they are in each other.`,
-      rows: [...(depth === null ? [] : [["depth", short(depth, 9)] as [string, string]]), ...exit, tolerance],
+      rows: [...(depth === null ? [] : [["depth", short(depth, 9)] as [string, string]]), ...exit, tolerance, ...open],
     };
   }
   const [shrunk] = answer.shrunk_distance_bounds!;
@@ -145,6 +148,7 @@ function solid(answer: SolidAnswer, state: State): Said {
       ["moving", feature(first.moving)],
       ["fixed", feature(first.fixed)],
       tolerance,
+      ...open,
     ],
   };
 }

@@ -16,6 +16,9 @@ use crate::boxes::{Aabb, BoxTree};
 use crate::error::AssemblyError;
 use crate::part::{Assembly, Ignored, Part};
 
+/// Pairs of parts whose boxes meet: more are refused, for memory goes with their number.
+pub(crate) const MOST_NEIGHBOURS: usize = 1 << 22;
+
 /// How tight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fit {
@@ -125,7 +128,7 @@ impl<'a> Bodies<'a> {
         let (overlapping, passing) = (Vec::new(), BTreeMap::new());
         let mut bodies =
             Self { assembly, fit, solids, displaced, boxes, tree, overlapping, passing, noise };
-        let pairs = bodies.neighbours(0.0);
+        let pairs = bodies.neighbours(0.0)?;
         let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
         bodies.overlapping = overlapping.collect();
         let ignored = |pair: &&[usize; 2]| assembly.ignored(pair[0], pair[1]).is_some();
@@ -218,14 +221,21 @@ impl<'a> Bodies<'a> {
     }
 
     /// Pairs whose boxes, grown by a length, meet; the smaller index first, in order.
-    pub(crate) fn neighbours(&self, by: f64) -> Vec<[usize; 2]> {
+    ///
+    /// # Errors
+    /// There are more than [`MOST_NEIGHBOURS`].
+    pub(crate) fn neighbours(&self, by: f64) -> Result<Vec<[usize; 2]>, AssemblyError> {
         let mut pairs = Vec::new();
         for a in 0..self.len() {
-            let met = self.tree.meeting(&self.boxes[a].grown(by));
-            pairs.extend(met.into_iter().filter(|&b| b > a).map(|b| [a, b]));
+            let met = self.tree.meeting(&self.boxes[a].grown(by)).into_iter().filter(|&b| b > a);
+            pairs.extend(met.filter(|&b| !self.always_ignored(a, b)).map(|b| [a, b]));
+            if pairs.len() > MOST_NEIGHBOURS {
+                let (what, most) =
+                    ("pairs of parts lie within each other's boxes", MOST_NEIGHBOURS);
+                return Err(AssemblyError::TooMany { what, most });
+            }
         }
-        pairs.retain(|&[a, b]| !self.always_ignored(a, b));
-        pairs
+        Ok(pairs)
     }
 
     fn always_ignored(&self, a: usize, b: usize) -> bool {

@@ -37,6 +37,26 @@ pub enum ReadError {
         /// What is wrong.
         reason: String,
     },
+    /// It names a file that it must not.
+    #[error(
+        "{}: {name} is named by an absolute path or lies outside of the folder that names it, and is \
+         not read",
+        path.display()
+    )]
+    Outside {
+        /// The source.
+        path: PathBuf,
+        /// The file, as it is named, or where it is.
+        name: String,
+    },
+    /// Nothing in it is a part.
+    #[error("{}: holds no parts: {holds}", path.display())]
+    NoParts {
+        /// The source.
+        path: PathBuf,
+        /// What it holds instead.
+        holds: String,
+    },
     /// Files that are named and do not exist.
     #[error(
         "{}: {} of the meshes it names cannot be found, the first is {}; give the roots of \
@@ -110,6 +130,14 @@ pub enum AssemblyError {
     Direction {
         /// As given.
         direction: [f64; 3],
+    },
+    /// More than is looked at: memory goes with the number.
+    #[error("more than {most} {what}: that is too many; take fewer parts at a time")]
+    TooMany {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many there may be.
+        most: usize,
     },
     /// The caller asked to stop.
     #[error("cancelled")]

@@ -63,10 +63,10 @@ pub fn reach(bodies: &Bodies) -> f64 {
 /// All pairs that touch, as the files have them.
 ///
 /// # Errors
-/// Cancelled.
+/// Cancelled; too many parts lie within each other's boxes.
 pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyError> {
     let reach = reach(bodies);
-    let pairs = bodies.neighbours(reach);
+    let pairs = bodies.neighbours(reach)?;
     let tally = watch.stage(Stage::Liaisons, pairs.len());
     let parts = bodies.assembly().parts();
     let look = |&[a, b]: &[usize; 2]| {

@@ -17,6 +17,7 @@
 
 mod bodies;
 mod boxes;
+mod csv;
 mod error;
 mod orient;
 mod part;

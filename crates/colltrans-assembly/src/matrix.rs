@@ -4,16 +4,20 @@
 //! directions one is asked, and the other is its mirror image. Pairs that never meet are not stored.
 
 use std::collections::HashMap;
-use std::fmt::Write;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use colltrans::{StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::bodies::{Bodies, Room, Stop};
+use crate::csv::{Cell, Table};
 use crate::error::AssemblyError;
 use crate::rooms::PartRoom;
 use crate::watch::{Stage, Watch};
+
+/// Meetings that are kept, 100 bytes each.
+const MOST_MEETINGS: usize = 1 << 24;
 
 /// The bits of a direction, to find it again by; both zeros are one.
 pub(crate) fn bits(d: DVec3) -> [u64; 3] {
@@ -65,7 +69,7 @@ impl Matrix {
     /// Asks every ordered pair of the parts that are `true` in `among`, along unit directions.
     ///
     /// # Errors
-    /// Cancelled.
+    /// Cancelled; more pairs meet than are kept.
     pub fn new(
         bodies: &Bodies,
         directions: &[DVec3],
@@ -82,8 +86,15 @@ impl Matrix {
         let tally = watch.stage(Stage::Rooms, asked.len() * moving.len());
         let jobs: Vec<(usize, usize)> =
             asked.iter().flat_map(|&k| moving.iter().map(move |&part| (k, part))).collect();
+        let count = AtomicUsize::new(0);
         let row = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
             let met = meetings(bodies, part, directions[k], among, start, workspace);
+            let stored = if opposite(k).is_some() { 2 * met.len() } else { met.len() };
+            if count.fetch_add(stored, Relaxed) + stored > MOST_MEETINGS {
+                let (what, most) =
+                    ("pairs of parts meet along the directions asked", MOST_MEETINGS);
+                return Err(AssemblyError::TooMany { what, most });
+            }
             tally.step().map(|()| (k, met))
         };
         let rows: Result<Vec<(usize, Vec<Meeting>)>, AssemblyError> =
@@ -140,24 +151,24 @@ impl Matrix {
     /// The matrix as CSV: a line for each ordered pair and direction that is not free.
     pub fn to_csv(&self, bodies: &Bodies) -> String {
         let parts = bodies.assembly().parts();
-        let mut text =
-            "direction_x,direction_y,direction_z,moving,fixed,outcome,distance\n".to_owned();
-        let quoted = |name: &str| {
-            if name.contains([',', '"', '\n']) {
-                format!("\"{}\"", name.replace('"', "\"\""))
-            } else {
-                name.to_owned()
-            }
-        };
+        let heads =
+            ["direction_x", "direction_y", "direction_z", "moving", "fixed", "outcome", "distance"];
+        let mut table = Table::new(&heads);
         for (d, met) in self.directions.iter().zip(&self.meetings) {
             for m in met {
-                let (a, b) = (quoted(parts[m.moving].name()), quoted(parts[m.fixed].name()));
                 let outcome = if m.stop.is_some() { "blocked" } else { "overlapping" };
-                let distance = m.distance();
-                let _ = writeln!(text, "{},{},{},{a},{b},{outcome},{distance}", d.x, d.y, d.z);
+                table.row(&[
+                    Cell::Number(d.x),
+                    Cell::Number(d.y),
+                    Cell::Number(d.z),
+                    Cell::Text(parts[m.moving].name()),
+                    Cell::Text(parts[m.fixed].name()),
+                    Cell::Text(outcome),
+                    Cell::Number(m.distance()),
+                ]);
             }
         }
-        text
+        table.finish()
     }
 
     /// The matrix as JSON: for each direction the ordered pairs that are not free.

@@ -13,6 +13,7 @@
 mod hold;
 mod loose;
 mod replay;
+mod single;
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -31,6 +32,7 @@ use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
 pub use hold::Hold;
+use single::Single;
 
 /// A group that is taken out.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,6 +172,12 @@ struct Way {
     direction: DVec3,
 }
 
+#[cfg(test)]
+thread_local! {
+    /// Blocking graphs that were made.
+    static GRAPHS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
 impl Planner<'_> {
     /// Takes a group apart; what of it is left, nothing if it comes apart wholly.
     fn take_apart(
@@ -180,6 +188,8 @@ impl Planner<'_> {
     ) -> Result<Vec<usize>, AssemblyError> {
         let mut alive = self.mask(group);
         let mut left = group.to_vec();
+        let movable = |k: usize| !self.fixed(k) && !self.base[k];
+        let mut single = Single::new(matrix, &alive, movable);
         while !left.is_empty() {
             self.watch.check()?;
             if left.len() == 1 && !self.fixed(left[0]) {
@@ -188,7 +198,10 @@ impl Planner<'_> {
             }
             let mut asked: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(bits).collect();
-            let mut way = self.smallest(matrix, &alive, left.len());
+            let alone = single
+                .first()
+                .map(|(k, part)| Way { parts: vec![part], direction: matrix.directions()[k] });
+            let mut way = alone.or_else(|| self.smallest(matrix, &alive, left.len()));
             if way.is_none() {
                 way = self.search_finer(&left, &alive, matrix, &mut asked)?;
             }
@@ -203,7 +216,10 @@ impl Planner<'_> {
                 return Ok(left);
             };
             left.retain(|k| !way.parts.contains(k));
-            way.parts.iter().for_each(|&k| alive[k] = false);
+            for &part in &way.parts {
+                alive[part] = false;
+                single.remove(part);
+            }
             self.take_out(way, &left, matrix, within)?;
         }
         Ok(left)
@@ -262,6 +278,8 @@ impl Planner<'_> {
     /// The smallest group that can be taken out, the of equal ones not the base; then that of the
     /// first direction and the first part.
     fn smallest(&self, matrix: &Matrix, alive: &[bool], count: usize) -> Option<Way> {
+        #[cfg(test)]
+        GRAPHS.with(|graphs| graphs.set(graphs.get() + matrix.directions().len()));
         let mut best: Option<((usize, bool, usize), Way)> = None;
         for (k, &direction) in matrix.directions().iter().enumerate() {
             for parts in Blocking::new(matrix, k, alive).removable() {
@@ -400,5 +418,41 @@ impl Planner<'_> {
             mask[k] = true;
         }
         mask
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine3;
+
+    use super::*;
+    use crate::bodies::Fit;
+    use crate::part::{Assembly, Part, Piece};
+
+    fn cube(name: usize, at: DVec3) -> Part {
+        let vertices =
+            (0..8).map(|k| DVec3::new((k & 1).into(), (k >> 1 & 1).into(), (k >> 2).into()));
+        let faces =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let piece = Piece {
+            vertices: vertices.collect(),
+            faces: faces.iter().map(|f| f.to_vec()).collect(),
+            world_from_piece: DAffine3::from_translation(at),
+        };
+        Part::new(name.to_string(), &[piece]).unwrap()
+    }
+
+    #[test]
+    fn parts_that_come_out_alone_need_no_graph() {
+        let parts = (0..40).map(|k| cube(k, DVec3::X * 2.0 * k as f64)).collect();
+        let assembly = Assembly::new(parts).unwrap();
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let (all, start, watch) = (vec![true; 40], StartOverlap::Refuse, Watch::default());
+        let matrix = Matrix::new(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start, watch).unwrap();
+        GRAPHS.with(|graphs| graphs.set(0));
+        let plan = disassemble(&bodies, &matrix, &[], PlanOptions::default(), watch).unwrap();
+        assert_eq!(plan.steps.len(), 40);
+        assert!(plan.steps.iter().all(|step| step.parts.len() == 1));
+        assert_eq!(GRAPHS.with(std::cell::Cell::get), 0, "of 40 steps along 2 directions");
     }
 }

@@ -5,10 +5,12 @@ pub mod facts;
 pub mod glb;
 pub mod graph;
 pub mod html;
+mod markup;
 pub mod scene;
 mod viewer;
 
 use glam::DVec3;
+pub use markup::escaped;
 
 use crate::bodies::Bodies;
 use crate::candidates::Candidate;
@@ -37,11 +39,6 @@ pub struct Findings<'a> {
     pub plan: &'a Plan,
     /// Removal maps, with the names they were asked by.
     pub maps: &'a [(String, RemovalMap)],
-}
-
-/// Text for XML and HTML.
-pub(crate) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// Up to four significant digits, for people.

@@ -35,9 +35,9 @@ impl Start {
     /// Looks at all pairs.
     ///
     /// # Errors
-    /// Cancelled.
+    /// Cancelled; too many parts lie within each other's boxes.
     pub fn new(bodies: &Bodies, watch: Watch) -> Result<Self, AssemblyError> {
-        let mut pairs = bodies.neighbours(0.0);
+        let mut pairs = bodies.neighbours(0.0)?;
         pairs.retain(|&[a, b]| bodies.assembly().ignored(a, b).is_none());
         let tally = watch.stage(Stage::Start, pairs.len());
         let look = |&[a, b]: &[usize; 2]| {

@@ -19,6 +19,11 @@ fn collection() -> Option<PathBuf> {
     folder.is_dir().then(|| folder.canonicalize().unwrap())
 }
 
+/// For manifests that name files by absolute paths.
+fn elsewhere() -> ReadOptions {
+    ReadOptions { allow_outside: true, ..ReadOptions::default() }
+}
+
 fn planned(bodies: &Bodies) -> Plan {
     let watch = Watch::default();
     let touching = liaisons(bodies, watch).unwrap();
@@ -78,7 +83,7 @@ fn rooms_of_overlapping_pieces_are_those_of_all_pairs() {
     let place = tempfile::tempdir().unwrap();
     let file = place.path().join("car.json");
     std::fs::write(&file, serde_json::json!({ "parts": list }).to_string()).unwrap();
-    let assembly = read(&file, &ReadOptions::default()).unwrap();
+    let assembly = read(&file, &elsewhere()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     assert!(bodies.overlapping().len() > 50);
     let start = StartOverlap::Ignore;
@@ -115,7 +120,7 @@ fn seat_in_car(folder: &Path) -> Assembly {
     let place = tempfile::tempdir().unwrap();
     let file = place.path().join("seat.json");
     std::fs::write(&file, manifest.to_string()).unwrap();
-    read(&file, &ReadOptions::default()).unwrap()
+    read(&file, &elsewhere()).unwrap()
 }
 
 #[test]
@@ -136,4 +141,22 @@ fn the_seat_leaves_the_car_along_a_thin_band_of_directions() {
     let reach = region.border.iter().map(far).fold(0.0, f64::max);
     let disc = (region.solid_angle / std::f64::consts::PI).sqrt();
     assert!(reach > 2.0 * disc, "{reach} against {disc}");
+}
+
+#[test]
+fn the_arm_is_read_with_its_package_in_its_own_folder() {
+    let Some(folder) = collection() else { return };
+    let panda = folder.join("panda");
+    let options = ReadOptions { packages: vec![panda.clone()], ..ReadOptions::default() };
+    assert_eq!(read(panda.join("panda.urdf"), &options).unwrap().parts().len(), 11);
+}
+
+#[test]
+fn a_3mf_package_and_a_glb_file_of_others_are_read() {
+    let Some(folder) = collection() else { return };
+    let open = |name: &str| read(folder.join("assemblies").join(name), &ReadOptions::default());
+    assert_eq!(open("heartgears.3mf").unwrap().parts().len(), 1);
+    assert!(open("ReciprocatingSaw.glb").unwrap().parts().len() > 10);
+    let message = open("pillow_block.step").unwrap_err().to_string();
+    assert!(message.contains("neither a folder of meshes nor a known file"), "{message}");
 }

@@ -11,6 +11,7 @@
 //! be NaN, a face may pass twice through a vertex, the surface may be open ([`Mesh::open_edges`]).
 
 mod error;
+pub mod file;
 mod merge;
 mod mesh;
 mod obj;
@@ -117,7 +118,7 @@ pub fn read_with(path: impl AsRef<Path>, options: ReadOptions) -> Result<Mesh, E
     let path = path.as_ref();
     let format = Format::of_path(path)?;
     let bytes =
-        std::fs::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
+        file::bytes(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
     parse_with(format, bytes, path, options)
 }
 

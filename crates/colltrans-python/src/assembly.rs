@@ -145,9 +145,10 @@ impl Assembly {
         skip_missing: bool,
         visual: bool,
         joints: BTreeMap<String, f64>,
+        allow_outside: bool,
     ) -> PyResult<Self> {
         let geometry = if visual { Geometry::Visual } else { Geometry::Collision };
-        let options = ReadOptions { packages, skip_missing, geometry, joints };
+        let options = ReadOptions { packages, skip_missing, geometry, joints, allow_outside };
         let assembly = py.detach(|| colltrans_assembly::read::read(&path, &options)).or_raise()?;
         Ok(Self(Arc::new(assembly)))
     }

@@ -292,8 +292,9 @@ pub enum QueryError {
         /// The half-side as given.
         half_side: f64,
     },
-    /// The search ended without an answer. No such case is known: please report one (it can be saved
-    /// as a file).
+    /// The search ended without an answer. Known only where one body is thinner than the rounding
+    /// error at the size of the configuration (ratios beyond 1e11): please report another case (it can
+    /// be saved as a file).
     #[error("the search ended without an answer: {reason}; please report this case")]
     NotConverged {
         /// What went wrong.

@@ -200,6 +200,7 @@ class Assembly:
         skip_missing: bool = False,
         visual: bool = False,
         joints: Mapping[str, float] | None = None,
+        allow_outside: bool = False,
     ) -> "Assembly":
         """Reads a folder of meshes, a manifest, URDF, glTF, GLB or 3MF.
 
@@ -214,6 +215,9 @@ class Assembly:
             Of URDF the visual geometry, not that for collisions.
         joints : mapping of str to float
             Positions of joints, in radians or metres.
+        allow_outside : bool
+            Read files that the source names and that lie neither in its folder nor in one of
+            ``packages``. Only for a source that you trust.
 
         Returns
         -------
@@ -221,7 +225,9 @@ class Assembly:
         """
         folders = [Path(package) for package in packages]
         read = _colltrans.Assembly.read
-        return cls._of(read(Path(path), folders, skip_missing, visual, dict(joints or {})))
+        return cls._of(
+            read(Path(path), folders, skip_missing, visual, dict(joints or {}), allow_outside)
+        )
 
     @property
     def parts(self) -> list[str]:

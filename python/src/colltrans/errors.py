@@ -22,7 +22,10 @@ class QueryError(ColltransError, ValueError):
 
 
 class NotConvergedError(QueryError):
-    """A search that ended without an answer. No such case is known: please report one.
+    """A search that ended without an answer.
+
+    Known only where one body is thinner than the rounding error at the size of the configuration
+    (ratios beyond 1e11): please report another case.
 
     Attributes
     ----------

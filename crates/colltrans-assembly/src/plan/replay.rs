@@ -23,11 +23,15 @@ pub(super) fn checked(
     let d = way.direction;
     let mut workspace = Workspace::default();
     let mut travel = 0.0_f64;
+    let mut there = vec![false; bodies.len()];
+    for &part in others {
+        there[part] = true;
+    }
     let ahead: Vec<[usize; 2]> = way
         .parts
         .iter()
         .flat_map(|&a| bodies.ahead(a, d).into_iter().map(move |(_, b)| [a, b]))
-        .filter(|[_, b]| others.contains(b))
+        .filter(|[_, b]| there[*b])
         .collect();
     for &pair in &ahead {
         if bodies.room(pair, d, None, start, &mut workspace) != Room::Free {

@@ -1,166 +1,612 @@
 //! glTF and GLB: every node with a mesh is a part, in metres, its transform and those above applied.
 //!
-//! Vertices of one place that differ in normal or texture are welded: glTF stores them apart.
+//! Vertices of one place that differ in normal or texture are welded: glTF stores them apart. Nothing
+//! is read of materials, pictures and animations. Every offset, stride and count is held against the
+//! bytes that are there before anything is made of them.
 
-use std::path::{Path, PathBuf};
+use std::collections::HashMap;
+use std::path::Path;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use colltrans_mesh::Mesh;
-use glam::{DAffine3, DMat4, DVec3, Vec3};
-use gltf::buffer::Source;
-use gltf::mesh::Mode;
-use gltf::{Document, Gltf, Node};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use serde::Deserialize;
+use serde_json::Value;
 
-use super::{Names, assembled, contents, in_file, io, or_noted, placed_one_more};
+use super::files::Source;
+use super::{Budget, Names, assembled, contents, in_file, plain};
 use crate::error::ReadError;
 use crate::part::{Assembly, Part, Piece};
 
-#[cfg(feature = "files")]
-pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
-    parse(path, &std::fs::read(path).map_err(io(path))?)
-}
+/// Nodes nested deeper than this are a ring.
+const DEEPEST: usize = 256;
+/// Extensions that say nothing of shapes, by how their names begin; the last one lets positions be
+/// whole numbers.
+const HARMLESS: [&str; 7] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "KHR_animation_",
+    "KHR_mesh_quantization",
+];
 
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Assembly, ReadError> {
-    let Gltf { document, blob } = Gltf::from_slice(bytes).map_err(|e| contents(path, "glTF", e))?;
-    let buffers = buffers(path, &document, blob)?;
-    let files = document.buffers().filter_map(|b| file_of(path, &b)).collect();
-    let scene = document.default_scene().or_else(|| document.scenes().next());
-    let Some(scene) = scene else { return Err(contents(path, "scenes", "there is no scene")) };
-    let mut reader =
-        Reader { path, buffers, parts: Vec::new(), names: Names::default(), placed: 0 };
-    for node in scene.nodes() {
-        reader.node(&node, DAffine3::IDENTITY, 0)?;
+pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> {
+    let path = source.path;
+    let refused = |reason: String| contents(path, "glTF", reason);
+    let (json, binary) = chunks(bytes).map_err(refused)?;
+    let document: Document = serde_json::from_slice(json).map_err(|e| refused(plain(&e)))?;
+    document.check().map_err(refused)?;
+    let buffers = buffers(&source, &document, binary)?;
+    let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
+    let scene = document.scenes.get(document.scene.unwrap_or(0));
+    let scene = scene.ok_or_else(|| contents(path, "scenes", "there is no scene"))?;
+    let budget = Budget::of(size);
+    let mut reader = Reader { path, document: &document, buffers, budget, placed: Vec::new() };
+    for &node in &scene.nodes {
+        reader.node(node, DAffine3::IDENTITY, 0)?;
     }
-    Ok(or_noted(assembled(path, reader.parts, files)?.with_unit("m")))
+    let parts = reader.parts()?;
+    let holds = format!(
+        "none of its {} nodes places a mesh of triangles; it has {} meshes",
+        document.nodes.len(),
+        document.meshes.len()
+    );
+    Ok(assembled(source, parts, &holds)?.with_unit("m"))
 }
 
-/// The file of a buffer that has one of its own.
-fn file_of(path: &Path, buffer: &gltf::Buffer) -> Option<PathBuf> {
-    let Source::Uri(uri) = buffer.source() else { return None };
-    let folder = path.parent().unwrap_or(Path::new("."));
-    (!uri.starts_with("data:")).then(|| folder.join(uri))
+/// The JSON text, and the binary chunk of a GLB file.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok((bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None));
+    }
+    let word = |at: usize| {
+        let word = bytes.get(at..)?.first_chunk::<4>()?;
+        Some(u32::from_le_bytes(*word) as usize)
+    };
+    let short = || "the file is cut short".to_owned();
+    let (version, length) = (word(4).ok_or_else(short)?, word(8).ok_or_else(short)?);
+    if version != 2 {
+        return Err(format!("a GLB file of version {version}, not 2"));
+    }
+    if length > bytes.len() {
+        return Err(format!("the file is cut short: {} bytes of {length}", bytes.len()));
+    }
+    let chunk = |at: usize| {
+        let size = word(at)?;
+        let data = bytes.get(at + 8..length)?.get(..size)?;
+        Some((bytes.get(at + 4..at + 8)?, data))
+    };
+    let Some((b"JSON", json)) = chunk(12) else { return Err("its first chunk is not JSON".into()) };
+    let next = 12 + 8 + json.len().next_multiple_of(4);
+    let binary = match chunk(next) {
+        Some((b"BIN\0", data)) => Some(data),
+        _ if next + 8 <= length && bytes.get(next + 4..next + 8) == Some(b"BIN\0") => {
+            return Err("its binary chunk is cut short".into());
+        }
+        _ => None,
+    };
+    Ok((json, binary))
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", expecting = "an object that holds a glTF file")]
+struct Document {
+    asset: Asset,
+    scene: Option<usize>,
+    #[serde(default)]
+    scenes: Vec<Scene>,
+    #[serde(default)]
+    nodes: Vec<Node>,
+    #[serde(default)]
+    meshes: Vec<Shape>,
+    #[serde(default)]
+    accessors: Vec<Accessor>,
+    #[serde(default)]
+    buffer_views: Vec<View>,
+    #[serde(default)]
+    buffers: Vec<Buffer>,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an object with a version")]
+struct Asset {
+    version: String,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an object that holds a scene")]
+struct Scene {
+    #[serde(default)]
+    nodes: Vec<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an object that holds a node")]
+struct Node {
+    name: Option<String>,
+    mesh: Option<usize>,
+    #[serde(default)]
+    children: Vec<usize>,
+    matrix: Option<[f64; 16]>,
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+    #[serde(default)]
+    extensions: serde_json::Map<String, Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an object that holds a mesh")]
+struct Shape {
+    name: Option<String>,
+    primitives: Vec<Primitive>,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an object that holds a primitive")]
+struct Primitive {
+    attributes: Attributes,
+    indices: Option<usize>,
+    mode: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an object of attributes")]
+struct Attributes {
+    #[serde(rename = "POSITION")]
+    position: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", expecting = "an object that holds an accessor")]
+struct Accessor {
+    buffer_view: Option<usize>,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: u32,
+    count: usize,
+    #[serde(rename = "type")]
+    shape: String,
+    #[serde(default)]
+    normalized: bool,
+    sparse: Option<Sparse>,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an object that holds what differs")]
+struct Sparse {
+    count: usize,
+    indices: Few,
+    values: Few,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", expecting = "an object that names a buffer view")]
+struct Few {
+    buffer_view: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", expecting = "an object that holds a buffer view")]
+struct View {
+    buffer: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    byte_length: usize,
+    byte_stride: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", expecting = "an object that holds a buffer")]
+struct Buffer {
+    byte_length: usize,
+    uri: Option<String>,
+}
+
+impl Document {
+    fn check(&self) -> Result<(), String> {
+        if !self.asset.version.starts_with("2.") {
+            return Err(format!("a file of version {}, not 2", self.asset.version));
+        }
+        let known = |name: &String| HARMLESS.iter().any(|start| name.starts_with(start));
+        match self.extensions_required.iter().find(|name| !known(name)) {
+            Some(name) => Err(format!(
+                "whoever reads it must know the extension {name}, which is not known here; save it \
+                 without, as plain meshes"
+            )),
+            None => Ok(()),
+        }
+    }
 }
 
 fn buffers(
-    path: &Path,
+    source: &Source,
     document: &Document,
-    mut blob: Option<Vec<u8>>,
+    binary: Option<&[u8]>,
 ) -> Result<Vec<Vec<u8>>, ReadError> {
-    let read = |buffer: gltf::Buffer| {
-        let place = format!("buffer {}", buffer.index());
-        let bytes = match buffer.source() {
-            Source::Bin => {
-                blob.take().ok_or_else(|| contents(path, &place, "the binary chunk is missing"))?
-            }
-            Source::Uri(uri) => {
+    let read = |(k, buffer): (usize, &Buffer)| {
+        let refused = |reason: String| contents(source.path, format!("buffer {k}"), reason);
+        let bytes = match &buffer.uri {
+            None if k == 0 => binary.map(<[u8]>::to_vec),
+            None => None,
+            Some(uri) => {
                 if let Some(data) = uri.strip_prefix("data:") {
-                    let text = data.split_once(";base64,").map_or(data, |(_, text)| text);
-                    STANDARD.decode(text).map_err(|e| contents(path, &place, e))?
+                    Some(embedded(data).map_err(refused)?)
                 } else {
-                    let file = file_of(path, &buffer).unwrap_or_default();
-                    std::fs::read(&file).map_err(io(&file))?
+                    let name = unescaped(uri).map_err(refused)?;
+                    let file = source.named(&name)?;
+                    Some(file.ok_or_else(|| refused(format!("{name} cannot be found")))?.1)
                 }
             }
         };
-        if bytes.len() < buffer.length() {
-            let reason = format!("has {} bytes of {}", bytes.len(), buffer.length());
-            return Err(contents(path, &place, reason));
+        let bytes = bytes.ok_or_else(|| refused("the binary chunk is missing".into()))?;
+        if bytes.len() < buffer.byte_length {
+            return Err(refused(format!("has {} bytes of {}", bytes.len(), buffer.byte_length)));
         }
         Ok(bytes)
     };
-    document.buffers().map(read).collect()
+    document.buffers.iter().enumerate().map(read).collect()
 }
 
-/// Nodes nested deeper than this are a ring.
-const DEEPEST: usize = 256;
+/// The bytes of a `data:` URI, of which that was taken off.
+fn embedded(data: &str) -> Result<Vec<u8>, String> {
+    let (kind, text) = data.split_once(',').ok_or("its data have no comma before them")?;
+    if kind.ends_with(";base64") {
+        return STANDARD.decode(text).map_err(|_| "its data are not base64".into());
+    }
+    percent_decoded(text)
+}
+
+/// A name as a URI writes it: `%20` is a blank.
+fn unescaped(uri: &str) -> Result<String, String> {
+    let name = String::from_utf8(percent_decoded(uri)?);
+    name.map_err(|_| format!("{uri} is not text in UTF-8"))
+}
+
+fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
+    let mut rest = text.as_bytes();
+    let mut bytes = Vec::with_capacity(rest.len());
+    while let [first, tail @ ..] = rest {
+        rest = tail;
+        if *first != b'%' {
+            bytes.push(*first);
+            continue;
+        }
+        let digit = |b: &u8| char::from(*b).to_digit(16);
+        let [high, low, tail @ ..] = rest else { return Err(format!("{text} ends in a %")) };
+        let (Some(high), Some(low)) = (digit(high), digit(low)) else {
+            return Err(format!("{text} has a % without two digits"));
+        };
+        bytes.push((high * 16 + low) as u8);
+        rest = tail;
+    }
+    Ok(bytes)
+}
 
 struct Reader<'a> {
     path: &'a Path,
+    document: &'a Document,
     buffers: Vec<Vec<u8>>,
-    parts: Vec<Part>,
-    names: Names,
-    placed: usize,
+    budget: Budget,
+    placed: Vec<Placed<'a>>,
+}
+
+/// A mesh that a node places.
+struct Placed<'a> {
+    node: usize,
+    name: Option<&'a str>,
+    mesh: usize,
+    world: DAffine3,
 }
 
 impl Reader<'_> {
-    fn node(&mut self, node: &Node, above: DAffine3, depth: usize) -> Result<(), ReadError> {
-        let place = format!("node {}", node.index());
+    fn node(&mut self, index: usize, above: DAffine3, depth: usize) -> Result<(), ReadError> {
+        let refused = |reason: String| contents(self.path, format!("node {index}"), reason);
+        let document = self.document;
+        let node = document.nodes.get(index);
+        let node = node.ok_or_else(|| refused("there is no such node".into()))?;
         if depth > DEEPEST {
-            return Err(contents(self.path, place, "nodes are nested too deep, or in a ring"));
+            return Err(refused("nodes are nested too deep, or in a ring".into()));
         }
-        placed_one_more(&mut self.placed).map_err(|e| contents(self.path, &place, e))?;
-        let columns = node.transform().matrix().map(|c| c.map(f64::from));
-        let world = above * DAffine3::from_mat4(DMat4::from_cols_array_2d(&columns));
-        if let Some(mesh) = node.mesh() {
-            let name = node.name().or(mesh.name()).map_or(place.clone(), str::to_owned);
-            let merged = self.mesh(&mesh, &place)?.weld();
-            if !merged.faces.is_empty() {
-                let name = self.names.unique(&name);
-                let Mesh { vertices, faces, .. } = merged;
-                let piece = Piece { vertices, faces, world_from_piece: world };
-                self.parts.push(Part::new(name, &[piece]).map_err(in_file(self.path))?);
+        self.budget.place().map_err(refused)?;
+        let world = above * node.transform().map_err(refused)?;
+        if let Some(mesh) = node.mesh {
+            let shape = document.meshes.get(mesh);
+            let shape = shape.ok_or_else(|| refused(format!("there is no mesh {mesh}")))?;
+            if let Some(name) = node.extensions.keys().find(|name| name.contains("instancing")) {
+                return Err(refused(format!("its copies by {name} are not read")));
             }
+            let name = node.name.as_deref().or(shape.name.as_deref());
+            let name = name.filter(|name| !name.trim().is_empty());
+            self.placed.push(Placed { node: index, name, mesh, world });
         }
-        for child in node.children() {
-            self.node(&child, world, depth + 1)?;
+        for &child in &node.children {
+            self.node(child, world, depth + 1)?;
         }
         Ok(())
     }
 
-    /// The triangles of all primitives of a mesh.
-    fn mesh(&self, mesh: &gltf::Mesh, place: &str) -> Result<Mesh, ReadError> {
-        let refused =
-            |reason: String| contents(self.path, format!("{place}, mesh {}", mesh.index()), reason);
-        let mut merged = Mesh::default();
-        for primitive in mesh.primitives() {
-            let reader =
-                primitive.reader(|buffer| self.buffers.get(buffer.index()).map(Vec::as_slice));
-            let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else { continue };
-            let short = |what: &str| refused(format!("its {what} lie beyond their buffer"));
-            let positions = reader.read_positions().ok_or_else(|| short("positions"))?;
-            let base = merged.vertices.len() as u32;
-            merged.vertices.extend(positions.map(|p| DVec3::from(Vec3::from(p))));
-            let count = merged.vertices.len() as u32 - base;
-            if count as usize != accessor.count() {
-                return Err(short("positions"));
-            }
-            let indices: Vec<u32> = if primitive.indices().is_some() {
-                let indices = reader.read_indices().ok_or_else(|| short("indices"))?;
-                indices.into_u32().collect()
+    /// A part for each mesh that is placed; every mesh is read once, and all are counted before the
+    /// first part is built.
+    fn parts(mut self) -> Result<Vec<Part>, ReadError> {
+        let mut budget = std::mem::take(&mut self.budget);
+        let mut meshes: HashMap<usize, Mesh> = HashMap::new();
+        for &Placed { node, mesh, .. } in &self.placed {
+            let place = || format!("node {node}, mesh {mesh}");
+            let refused = |reason| contents(self.path, place(), reason);
+            if let Some(known) = meshes.get(&mesh) {
+                budget.facets(known.faces.len()).map_err(refused)?;
             } else {
-                (0..count).collect()
+                let shape = &self.document.meshes[mesh];
+                let read = self.mesh(shape, &mut budget).map_err(refused)?;
+                meshes.insert(mesh, read.weld());
+            }
+        }
+        let (mut parts, mut names) = (Vec::new(), Names::default());
+        for Placed { node, name, mesh, world } in self.placed {
+            let Mesh { vertices, faces, .. } = &meshes[&mesh];
+            if faces.is_empty() {
+                continue;
+            }
+            let name = names.unique(&name.map_or(format!("node {node}"), str::to_owned));
+            let (vertices, faces) = (vertices.clone(), faces.clone());
+            let piece = Piece { vertices, faces, world_from_piece: world };
+            parts.push(Part::new(name, &[piece]).map_err(in_file(self.path))?);
+        }
+        Ok(parts)
+    }
+
+    /// The triangles of all primitives of a mesh.
+    fn mesh(&self, shape: &Shape, budget: &mut Budget) -> Result<Mesh, String> {
+        let mut merged = Mesh::default();
+        for primitive in &shape.primitives {
+            let Some(position) = primitive.attributes.position else { continue };
+            let positions = self.values(position, "positions", "VEC3")?;
+            let count = positions.count as u32;
+            let indices: Vec<u32> = match primitive.indices {
+                None => (0..count).collect(),
+                Some(index) => self.values(index, "indices", "SCALAR")?.whole_numbers()?,
             };
             if let Some(beyond) = indices.iter().find(|&&k| k >= count) {
-                return Err(refused(format!("index {beyond} of only {count} vertices")));
+                return Err(format!("index {beyond} of only {count} vertices"));
             }
-            if primitive.mode() == Mode::Triangles && !indices.len().is_multiple_of(3) {
-                return Err(refused(format!("{} corners do not make triangles", indices.len())));
-            }
-            merged.faces.extend(
-                triangles(primitive.mode(), &indices)
-                    .into_iter()
-                    .map(|t| t.map(|k| k + base).to_vec()),
-            );
+            let faces = triangles(primitive.mode.unwrap_or(4), &indices)?;
+            budget.facets(faces.len())?;
+            // Primitives may share their vertices: only those in use are taken, in their order.
+            let mut used = indices;
+            used.sort_unstable();
+            used.dedup();
+            let base = merged.vertices.len() as u32;
+            let name = |k: u32| base + used.partition_point(|&u| u < k) as u32;
+            merged.faces.extend(faces.into_iter().map(|t| t.map(name).to_vec()));
+            merged.vertices.extend(used.iter().map(|&k| positions.vector(k as usize)));
         }
         Ok(merged)
+    }
+
+    /// The numbers of an accessor.
+    fn values(&self, index: usize, what: &'static str, shape: &str) -> Result<Values<'_>, String> {
+        let missing = || format!("there is no accessor {index} of {what}");
+        let accessor = self.document.accessors.get(index).ok_or_else(missing)?;
+        if accessor.shape != shape {
+            return Err(format!("its {what} are {}, not {shape}", accessor.shape));
+        }
+        let kind = Kind::of(accessor.component_type, what)?;
+        let width = if shape == "VEC3" { 3 } else { 1 };
+        let size = width * kind.size();
+        let count = accessor.count;
+        u32::try_from(count).map_err(|_| format!("{count} {what} are too many"))?;
+        let Some(view) = accessor.buffer_view else {
+            return Err(format!("its {what} have no data of their own"));
+        };
+        let (bytes, stride) = self.span(view, accessor.byte_offset, count, size, what)?;
+        let replaced = match &accessor.sparse {
+            Some(sparse) => self.sparse(sparse, count, size, what)?,
+            None => Vec::new(),
+        };
+        let normalized = accessor.normalized;
+        Ok(Values { bytes, stride, count, kind, normalized, replaced, what })
+    }
+
+    /// The bytes of so many elements of a view, and how far it is from one to the next.
+    fn span(
+        &self,
+        view: usize,
+        offset: usize,
+        count: usize,
+        size: usize,
+        what: &str,
+    ) -> Result<(&[u8], usize), String> {
+        let missing = || format!("there is no buffer view {view} of its {what}");
+        let view = self.document.buffer_views.get(view).ok_or_else(missing)?;
+        let stride = view.byte_stride.unwrap_or(size);
+        if stride < size {
+            return Err(format!("its {what} of {size} bytes lie {stride} bytes apart"));
+        }
+        let beyond = || format!("its {what} lie beyond their buffer");
+        let buffer = self.buffers.get(view.buffer).ok_or_else(beyond)?;
+        let of_view = buffer.get(view.byte_offset..).and_then(|rest| rest.get(..view.byte_length));
+        let bytes = of_view.and_then(|bytes| bytes.get(offset..)).ok_or_else(beyond)?;
+        let needed = match count.checked_sub(1) {
+            None => Some(0),
+            Some(last) => last.checked_mul(stride).and_then(|bytes| bytes.checked_add(size)),
+        };
+        needed.filter(|needed| *needed <= bytes.len()).ok_or_else(beyond)?;
+        Ok((bytes, stride))
+    }
+
+    /// Elements that take the place of others, in the order of their numbers.
+    fn sparse(
+        &self,
+        sparse: &Sparse,
+        count: usize,
+        size: usize,
+        what: &'static str,
+    ) -> Result<Vec<(u32, &[u8])>, String> {
+        let n = sparse.count;
+        if n > count {
+            return Err(format!("{n} of {count} {what} are replaced"));
+        }
+        let Few { buffer_view, byte_offset, component_type } = sparse.indices;
+        let kind = Kind::of(component_type.unwrap_or(0), what)?;
+        let (bytes, stride) = self.span(buffer_view, byte_offset, n, kind.size(), what)?;
+        let (normalized, replaced) = (false, Vec::new());
+        let numbers = Values { bytes, stride, count: n, kind, normalized, replaced, what };
+        let numbers = numbers.whole_numbers()?;
+        if !numbers.is_sorted_by(|a, b| a < b)
+            || numbers.last().is_some_and(|&k| k as usize >= count)
+        {
+            return Err(format!("the {what} that are replaced are not in order, or not there"));
+        }
+        let Few { buffer_view, byte_offset, .. } = sparse.values;
+        let (bytes, stride) = self.span(buffer_view, byte_offset, n, size, what)?;
+        let value = |(k, number): (usize, u32)| (number, &bytes[k * stride..k * stride + size]);
+        Ok(numbers.into_iter().enumerate().map(value).collect())
+    }
+}
+
+impl Node {
+    fn transform(&self) -> Result<DAffine3, String> {
+        let transform = if let Some(columns) = &self.matrix {
+            DAffine3::from_mat4(DMat4::from_cols_array(columns))
+        } else {
+            let turn = DQuat::from_array(self.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+            let turn = DMat3::from_quat(turn.normalize());
+            let scale = DVec3::from_array(self.scale.unwrap_or([1.0; 3]));
+            let at = DVec3::from_array(self.translation.unwrap_or_default());
+            DAffine3::from_mat3_translation(turn * DMat3::from_diagonal(scale), at)
+        };
+        if transform.is_finite() {
+            Ok(transform)
+        } else {
+            Err("its transform is not finite, or turns about nothing".into())
+        }
+    }
+}
+
+/// A kind of number.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Kind {
+    fn of(code: u32, what: &str) -> Result<Self, String> {
+        Ok(match code {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return Err(format!("its {what} are of the unknown kind {code}")),
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// The largest whole number, which stands for 1 where numbers are normalised.
+    fn largest(self) -> f64 {
+        match self {
+            Self::I8 => f64::from(i8::MAX),
+            Self::U8 => f64::from(u8::MAX),
+            Self::I16 => f64::from(i16::MAX),
+            Self::U16 => f64::from(u16::MAX),
+            Self::U32 => f64::from(u32::MAX),
+            Self::F32 => 1.0,
+        }
+    }
+
+    /// The number that bytes begin with.
+    fn number(self, bytes: &[u8]) -> f64 {
+        match (self, bytes) {
+            (Self::I8, [a, ..]) => f64::from(*a as i8),
+            (Self::U8, [a, ..]) => f64::from(*a),
+            (Self::I16, [a, b, ..]) => f64::from(i16::from_le_bytes([*a, *b])),
+            (Self::U16, [a, b, ..]) => f64::from(u16::from_le_bytes([*a, *b])),
+            (Self::U32, [a, b, c, d, ..]) => f64::from(u32::from_le_bytes([*a, *b, *c, *d])),
+            (Self::F32, [a, b, c, d, ..]) => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
+            // Not met: `span` has seen that the bytes are there.
+            _ => f64::NAN,
+        }
+    }
+}
+
+/// Numbers in bytes, all of which are there.
+struct Values<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    count: usize,
+    kind: Kind,
+    normalized: bool,
+    /// Elements that others take the place of.
+    replaced: Vec<(u32, &'a [u8])>,
+    what: &'static str,
+}
+
+impl Values<'_> {
+    fn element(&self, k: usize) -> &[u8] {
+        match self.replaced.binary_search_by_key(&(k as u32), |r| r.0) {
+            Ok(found) => self.replaced[found].1,
+            Err(_) => &self.bytes[k * self.stride..],
+        }
+    }
+
+    fn vector(&self, k: usize) -> DVec3 {
+        let element = self.element(k);
+        let scale = if self.normalized { self.kind.largest() } else { 1.0 };
+        let number = |j: usize| {
+            let number = self.kind.number(&element[j * self.kind.size()..]) / scale;
+            if self.normalized { number.max(-1.0) } else { number }
+        };
+        DVec3::new(number(0), number(1), number(2))
+    }
+
+    fn whole_numbers(&self) -> Result<Vec<u32>, String> {
+        if !matches!(self.kind, Kind::U8 | Kind::U16 | Kind::U32) {
+            return Err(format!("its {} are no whole numbers", self.what));
+        }
+        Ok((0..self.count).map(|k| self.kind.number(self.element(k)) as u32).collect())
     }
 }
 
 /// Triangles, strips and fans; points and lines have no surface.
-fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
-    match mode {
-        Mode::Triangles => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-        Mode::TriangleStrip => {
+fn triangles(mode: u32, indices: &[u32]) -> Result<Vec<[u32; 3]>, String> {
+    Ok(match mode {
+        0..=3 => Vec::new(),
+        4 if !indices.len().is_multiple_of(3) => {
+            return Err(format!("{} corners do not make triangles", indices.len()));
+        }
+        4 => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+        5 => {
             let turned = |(k, t): (usize, &[u32])| {
                 if k % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
             };
             indices.windows(3).enumerate().map(turned).collect()
         }
-        Mode::TriangleFan => match indices {
+        6 => match indices {
             [center, rim @ ..] => rim.windows(2).map(|e| [*center, e[0], e[1]]).collect(),
             [] => Vec::new(),
         },
-        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
-    }
+        _ => return Err(format!("{mode} is no mode of a primitive")),
+    })
 }

@@ -7,12 +7,13 @@ use std::path::Path;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::Deserialize;
 
-use super::{ReadOptions, assembled, contents, in_file, io, piece, stem};
+use super::files::Source;
+use super::{Budget, assembled, contents, in_file, piece, plain, plain_words, stem};
 use crate::error::ReadError;
 use crate::part::{Assembly, Ignored, Part};
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object that holds a manifest")]
 struct Manifest {
     unit: Option<String>,
     #[serde(default, alias = "part")]
@@ -24,7 +25,7 @@ struct Manifest {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object that holds a part")]
 struct Entry {
     file: OneOrMany,
     name: Option<String>,
@@ -74,35 +75,30 @@ enum NamedRotation {
 /// How far a rotation's numbers may be from one.
 const ROUNDED: f64 = 1e-3;
 
-pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadError> {
-    let text = std::fs::read_to_string(path).map_err(io(path))?;
+pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
+    let path = source.path;
+    let text = source.text()?;
     let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let manifest: Manifest = if toml {
-        toml::from_str(&text).map_err(|e| contents(path, toml_place(&text, &e), e.message()))?
+        toml::from_str(&text)
+            .map_err(|e| contents(path, toml_place(&text, &e), plain_words(e.message())))?
     } else {
-        serde_json::from_str(&text)
-            .map_err(|e| contents(path, format!("line {}, column {}", e.line(), e.column()), e))?
+        let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
+        serde_json::from_str(&text).map_err(|e| contents(path, place(&e), plain(&e)))?
     };
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let (mut parts, mut missing, mut read) = (Vec::new(), Vec::new(), Vec::new());
+    let mut gathered = Gathered { budget: Budget::of(text.len()), ..Gathered::default() };
     for (k, entry) in manifest.parts.iter().enumerate() {
-        let files: Vec<&String> = match &entry.file {
-            OneOrMany::One(file) => vec![file],
-            OneOrMany::Many(files) => files.iter().collect(),
-        };
-        let gone: Vec<String> =
-            files.iter().filter(|f| !folder.join(f).is_file()).map(|f| (*f).clone()).collect();
-        if !gone.is_empty() {
-            missing.extend(gone);
-            continue;
-        }
-        parts.push(part(path, folder, k, entry, &files)?);
-        read.extend(files.iter().map(|f| folder.join(f)));
+        gathered.part(&source, k, entry)?;
     }
-    if !missing.is_empty() && !options.skip_missing {
+    let Gathered { parts, missing, .. } = gathered;
+    if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: path.into(), missing });
     }
-    let mut assembly = assembled(path, parts, read)?;
+    let holds = match missing.len() {
+        0 => "it lists no part".to_owned(),
+        missing => format!("none of its parts has all of its files; {missing} cannot be found"),
+    };
+    let mut assembly = assembled(source, parts, &holds)?;
     let known = |n: &String| missing.is_empty() || assembly.index(n).is_ok();
     let found = |pairs: &[[String; 2]]| -> Vec<[String; 2]> {
         pairs.iter().filter(|pair| pair.iter().all(known)).cloned().collect()
@@ -116,21 +112,44 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadE
     Ok(if let Some(unit) = manifest.unit { assembly.with_unit(unit) } else { assembly })
 }
 
-fn part(
-    path: &Path,
-    folder: &Path,
-    k: usize,
-    entry: &Entry,
-    files: &[&String],
-) -> Result<Part, ReadError> {
-    let first = files.first().ok_or_else(|| contents(path, place(k), "no file is given"))?;
-    let name = entry.name.clone().unwrap_or_else(|| stem(Path::new(first)));
-    let world = entry
-        .world_from_mesh()
-        .map_err(|reason| contents(path, format!("{} ({name})", place(k)), reason))?;
-    let pieces: Result<Vec<_>, ReadError> =
-        files.iter().map(|file| piece(&folder.join(file), world)).collect();
-    Ok(Part::new(name, &pieces?).map_err(in_file(path))?.with_fixed(entry.fixed))
+/// Parts in the making.
+#[derive(Default)]
+struct Gathered {
+    budget: Budget,
+    parts: Vec<Part>,
+    missing: Vec<String>,
+}
+
+impl Gathered {
+    fn part(&mut self, source: &Source, k: usize, entry: &Entry) -> Result<(), ReadError> {
+        let files = match &entry.file {
+            OneOrMany::One(file) => std::slice::from_ref(file),
+            OneOrMany::Many(files) => files,
+        };
+        let refused = |reason: String| contents(source.path, place(k), reason);
+        let first = files.first().ok_or_else(|| refused("no file is given".into()))?;
+        let name = entry.name.clone().unwrap_or_else(|| stem(Path::new(first)));
+        let world = entry
+            .world_from_mesh()
+            .map_err(|reason| contents(source.path, format!("{} ({name})", place(k)), reason))?;
+        let (mut pieces, missing) = (Vec::new(), self.missing.len());
+        for file in files {
+            let Some((path, bytes)) = source.named(file)? else {
+                self.missing.push(file.clone());
+                continue;
+            };
+            self.budget.read(&path, bytes.len());
+            let piece = piece(&path, bytes, world)?;
+            self.budget.facets(piece.faces.len().max(piece.vertices.len())).map_err(refused)?;
+            pieces.push(piece);
+        }
+        if self.missing.len() == missing {
+            self.budget.place().map_err(refused)?;
+            let part = Part::new(name, &pieces).map_err(in_file(source.path))?;
+            self.parts.push(part.with_fixed(entry.fixed));
+        }
+        Ok(())
+    }
 }
 
 fn place(k: usize) -> String {

@@ -4,6 +4,7 @@
 //! and glTF, what a 3MF file or a manifest names); a folder of meshes does not say, and its lengths
 //! are taken as they are.
 
+mod files;
 #[cfg(feature = "files")]
 mod folder;
 mod gltf;
@@ -15,10 +16,10 @@ mod shapes;
 mod threemf;
 #[cfg(feature = "files")]
 mod urdf;
-
 #[cfg(feature = "files")]
-use std::collections::BTreeMap;
-use std::collections::{HashMap, HashSet};
+mod xml;
+
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 #[cfg(feature = "files")]
@@ -28,9 +29,10 @@ use crate::error::{AssemblyError, ReadError};
 #[cfg(feature = "files")]
 use crate::part::Piece;
 use crate::part::{Assembly, Part};
+pub use files::{FileFault, Files};
+use files::{Nothing, Source};
 
 /// Which geometry of a URDF link is read.
-#[cfg(feature = "files")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Geometry {
     /// What collision checkers use.
@@ -41,7 +43,6 @@ pub enum Geometry {
 }
 
 /// What readers need to know beside the file.
-#[cfg(feature = "files")]
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
     /// Folders in which `package://name/rest` is looked for: as `name/rest`, then as `rest`, then
@@ -53,41 +54,78 @@ pub struct ReadOptions {
     pub geometry: Geometry,
     /// Positions of joints by name, in radians or metres; 0 for those not named.
     pub joints: BTreeMap<String, f64>,
+    /// Whether a source may name files that lie neither in its own folder nor in one of `packages`,
+    /// by absolute paths, `..` or links.
+    pub allow_outside: bool,
 }
 
 /// Reads an assembly: a folder, a manifest (`.toml`, `.json`), `.urdf`, `.glb`, `.gltf`, `.3mf`, or a
-/// single mesh.
+/// single mesh. Only ordinary files are read, never a device, a pipe or an address.
 ///
 /// # Errors
-/// What cannot be read, with the file and the place.
+/// What cannot be read, with the file and the place; a source that has no parts.
 #[cfg(feature = "files")]
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, ReadError> {
     let path = path.as_ref();
+    let folders = files::Folders::of(path, options);
     if path.is_dir() {
-        return folder::read(path);
+        return folder::read(Source::new(path, options, &folders));
     }
+    let known = is_known(path);
+    match path.metadata() {
+        Err(e) => Err(io(path)(e)),
+        Ok(_) if !known => Err(ReadError::UnknownSource { path: path.into() }),
+        // Whoever gives a link to the source means it.
+        Ok(_) => {
+            let files = files::Given { path, files: &folders };
+            read_from(path, &files, options)
+        }
+    }
+}
+
+#[cfg(feature = "files")]
+fn is_known(path: &Path) -> bool {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let extension = extension.to_ascii_lowercase();
+    let sources = ["toml", "json", "urdf", "glb", "gltf", "3mf"];
+    sources.contains(&extension.as_str()) || colltrans_mesh::Format::of_path(path).is_ok()
+}
+
+/// [`read`], from files that lie wherever `files` has them; `path` is the source, and tells what it is.
+///
+/// # Errors
+/// As [`read`].
+#[cfg(feature = "files")]
+pub fn read_from(
+    path: impl AsRef<Path>,
+    files: &dyn Files,
+    options: &ReadOptions,
+) -> Result<Assembly, ReadError> {
+    let path = path.as_ref();
+    let source = Source::new(path, options, files);
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     match extension.to_ascii_lowercase().as_str() {
-        "toml" | "json" => manifest::read(path, options),
-        "urdf" => urdf::read(path, options),
-        "glb" | "gltf" => gltf::read(path),
-        "3mf" => threemf::read(path),
-        _ if colltrans_mesh::Format::of_path(path).is_ok() => {
-            folder::read_files(path, &[path.into()])
+        "toml" | "json" => manifest::read(source),
+        "urdf" => urdf::read(source),
+        "glb" | "gltf" => {
+            let bytes = source.own()?;
+            gltf::read(source, &bytes)
         }
-        _ if path.exists() => Err(ReadError::UnknownSource { path: path.into() }),
-        _ => Err(io(path)(std::io::Error::from(std::io::ErrorKind::NotFound))),
+        "3mf" => threemf::read(source),
+        _ if is_known(path) => folder::read_file(source),
+        _ => Err(ReadError::UnknownSource { path: path.into() }),
     }
 }
 
 /// Reads a GLB file that is in memory, of which nothing lies elsewhere.
 ///
 /// # Errors
-/// What cannot be read, with the place.
+/// What cannot be read, with the place; a file without parts.
 pub fn glb(name: impl AsRef<Path>, bytes: &[u8]) -> Result<Assembly, ReadError> {
-    gltf::parse(name.as_ref(), bytes)
+    gltf::read(Source::new(name.as_ref(), &ReadOptions::default(), &Nothing), bytes)
 }
 
+#[cfg(feature = "files")]
 fn io(path: &Path) -> impl Fn(std::io::Error) -> ReadError + '_ {
     move |source| ReadError::Io { path: path.into(), source }
 }
@@ -100,31 +138,91 @@ fn contents(path: &Path, place: impl Into<String>, reason: impl std::fmt::Displa
     ReadError::Contents { path: path.into(), place: place.into(), reason: reason.to_string() }
 }
 
-/// A mesh file as a piece.
+/// What is wrong with JSON, without the place.
+fn plain(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    plain_words(message.strip_suffix(&place).unwrap_or(&message))
+}
+
+/// A parser's message in words of the file, not of the parser.
+fn plain_words(message: &str) -> String {
+    const WORDS: [(&str, &str); 16] = [
+        ("expected ident", "it is no JSON"),
+        ("expected value", "it is no JSON"),
+        ("floating point", "number"),
+        ("invalid type: ", "found "),
+        ("invalid value: ", "found "),
+        ("invalid length ", "found a length of "),
+        ("expected f64", "expected a number"),
+        ("expected f32", "expected a number"),
+        ("expected usize", "expected a whole number"),
+        ("expected u32", "expected a whole number"),
+        ("expected a sequence", "expected a list"),
+        ("found sequence", "found a list"),
+        ("found map", "found an object"),
+        ("EOF while parsing", "the file ends inside"),
+        ("recursion limit exceeded", "it is nested too deep"),
+        (", expected literal string", ""),
+    ];
+    WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))
+}
+
+/// The bytes of a mesh file as a piece.
 #[cfg(feature = "files")]
-fn piece(path: &Path, world_from_piece: DAffine3) -> Result<Piece, ReadError> {
-    let mesh = colltrans_mesh::read(path)?;
+fn piece(path: &Path, bytes: Vec<u8>, world_from_piece: DAffine3) -> Result<Piece, ReadError> {
+    let format = colltrans_mesh::Format::of_path(path)?;
+    let mesh = colltrans_mesh::parse(format, bytes, path)?;
     Ok(Piece { vertices: mesh.vertices, faces: mesh.faces, world_from_piece })
 }
 
-/// Nodes or components of a file, each as often as it is placed, at most.
-const MOST_PLACED: usize = 1 << 16;
+/// Nodes, components, links or parts of a source, each as often as it is placed, at most.
+pub const MOST_PLACED: usize = 1 << 16;
+/// Facets that are placed beyond one for each byte of the files, at most: shapes that are placed
+/// again and again.
+pub const MOST_REPEATED: usize = 1 << 23;
 
-/// Counts what a file places.
-fn placed_one_more(count: &mut usize) -> Result<(), String> {
-    *count += 1;
-    if *count > MOST_PLACED {
-        return Err(format!("more than {MOST_PLACED} things are placed, one in another"));
-    }
-    Ok(())
+/// What a source places, counted before it is built: a few lines can place a shape as often as they
+/// like.
+#[derive(Default)]
+struct Budget {
+    bytes: usize,
+    files: HashSet<PathBuf>,
+    placed: usize,
+    facets: usize,
 }
 
-/// An assembly that says so if it has no parts.
-fn or_noted(assembly: Assembly) -> Assembly {
-    if assembly.parts().is_empty() {
-        assembly.with_note("no mesh is in this file")
-    } else {
-        assembly
+impl Budget {
+    fn of(bytes: usize) -> Self {
+        Self { bytes, ..Self::default() }
+    }
+
+    /// A file that was read, whose bytes count once.
+    #[cfg(feature = "files")]
+    fn read(&mut self, file: &Path, bytes: usize) {
+        if self.files.insert(file.into()) {
+            self.bytes += bytes;
+        }
+    }
+
+    fn place(&mut self) -> Result<(), String> {
+        self.placed += 1;
+        if self.placed > MOST_PLACED {
+            return Err(format!("more than {MOST_PLACED} things are placed, one in another"));
+        }
+        Ok(())
+    }
+
+    fn facets(&mut self, count: usize) -> Result<(), String> {
+        self.facets += count;
+        if self.facets > self.bytes + MOST_REPEATED {
+            return Err(format!(
+                "{} facets are placed, of files of {} bytes: no more than {MOST_REPEATED} may be \
+                 repeated",
+                self.facets, self.bytes
+            ));
+        }
+        Ok(())
     }
 }
 
@@ -154,14 +252,12 @@ impl Names {
     }
 }
 
-/// An assembly of parts that came from one source, and from the files that it names.
-fn assembled(
-    path: &Path,
-    parts: Vec<Part>,
-    mut files: Vec<PathBuf>,
-) -> Result<Assembly, ReadError> {
-    if path.is_file() {
-        files.push(path.into());
+/// An assembly of parts that came from one source; what the source `holds` instead is said where
+/// there are none.
+fn assembled(source: Source, parts: Vec<Part>, holds: &str) -> Result<Assembly, ReadError> {
+    let path = source.path;
+    if parts.is_empty() {
+        return Err(ReadError::NoParts { path: path.into(), holds: holds.into() });
     }
-    Ok(Assembly::new(parts).map_err(in_file(path))?.with_files(files))
+    Ok(Assembly::new(parts).map_err(in_file(path))?.with_files(source.into_files()))
 }

@@ -2,71 +2,167 @@
 //!
 //! An object of components becomes one part for each mesh below it. A transform is twelve numbers,
 //! the rows of a matrix by which a row vector is multiplied from the right (3MF core specification,
-//! 3.3).
+//! 3.3). Objects may lie in other model files of the package (`p:path` of the production extension), as
+//! slicers write them: an object is known by its file and its number there. What a file says a reader
+//! must know (`requiredextensions`) and this one does not is refused, for the shapes may be in it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::io::{Cursor, Read};
-use std::path::Path;
+use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DVec3};
+use quick_xml::NsReader;
 use quick_xml::events::{BytesStart, Event};
+use quick_xml::name::NamespaceResolver;
 use zip::ZipArchive;
 
-use super::{Names, assembled, contents, in_file, io, or_noted, placed_one_more};
+use super::files::Source;
+use super::xml::{self, Element, Lines};
+use super::{Budget, Names, assembled, contents};
 use crate::error::ReadError;
 use crate::part::{Assembly, Part, Piece};
 
-/// Larger models are refused before they are unpacked.
-const LARGEST: u64 = 1 << 32;
-/// The units of the core specification, 3.4.
-const UNITS: [&str; 6] = ["micron", "millimeter", "centimeter", "inch", "foot", "meter"];
+/// All models of a package may unpack to so many bytes, and to so many for each byte of it.
+const LARGEST: u64 = 1 << 30;
+const LARGEST_RATIO: u64 = 256;
+/// Beneath this many bytes the ratio does not matter.
+const SMALL: u64 = 1 << 24;
 /// Components nested deeper than this are a ring.
 const DEEPEST: usize = 64;
+/// Elements nested deeper are refused.
+const DEEPEST_ELEMENT: usize = 64;
+/// The units of the core specification, 3.4.
+const UNITS: [&str; 6] = ["micron", "millimeter", "centimeter", "inch", "foot", "meter"];
 
-pub(super) fn read(path: &Path) -> Result<Assembly, ReadError> {
-    let text = model(path)?;
-    let mut model = Model { unit: "millimeter".into(), ..Model::default() };
-    model.parse(path, &text)?;
-    let mut parts = Vec::new();
-    let mut names = Names::default();
-    let mut placed = 0;
-    for (k, (object, transform)) in model.items.iter().enumerate() {
+const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+const PRODUCTION: &str = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
+/// Extensions that say nothing of shapes: colours, and names for sets of triangles.
+const WITHOUT_SHAPES: [&str; 3] = [
+    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
+    "http://schemas.microsoft.com/3dmanufacturing/2013/01",
+];
+/// The relationship by which a package names its model.
+const START: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+
+pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
+    let bytes = source.own()?;
+    let mut budget = Budget::of(bytes.len());
+    let mut package = Package::open(&source, bytes)?;
+    let root = package.root()?;
+    let models = models(&source, &mut package, &root)?;
+    // All are counted before the first part is built.
+    let mut placed = Vec::new();
+    for (k, item) in models.root.items.iter().enumerate() {
         let place = format!("build item {}", k + 1);
-        model.collect(path, &place, object, *transform, 0, &mut |name, piece| {
-            placed_one_more(&mut placed).map_err(|e| contents(path, &place, e))?;
-            let Some(piece) = piece else { return Ok(()) };
-            let part = Part::new(names.unique(name), &[piece]).map_err(in_file(path))?;
-            parts.push(part);
+        let mut call = |name: &str, object: &Rc<Object>, at| {
+            budget.place()?;
+            budget.facets(object.faces.len().max(object.vertices.len()))?;
+            if !object.faces.is_empty() {
+                placed.push((k, name.to_owned(), Rc::clone(object), at));
+            }
             Ok(())
-        })?;
+        };
+        let refused = |reason: String| contents(source.path, &place, reason);
+        models.collect(&root, item, DAffine3::IDENTITY, 0, &mut call).map_err(refused)?;
     }
-    Ok(or_noted(assembled(path, parts, Vec::new())?.with_unit(model.unit)))
+    let (mut parts, mut names) = (Vec::with_capacity(placed.len()), Names::default());
+    for (k, name, object, world_from_piece) in placed {
+        let (vertices, faces) = (object.vertices.clone(), object.faces.clone());
+        let part = Part::new(names.unique(&name), &[Piece { vertices, faces, world_from_piece }]);
+        let place = format!("build item {}", k + 1);
+        parts.push(part.map_err(|e| contents(source.path, place, e))?);
+    }
+    let (unit, holds) = (models.root.unit.clone(), package.holds());
+    drop(package);
+    Ok(assembled(source, parts, &holds)?.with_unit(unit))
 }
 
-/// The text of the package's model.
-fn model(path: &Path) -> Result<String, ReadError> {
-    let bytes = std::fs::read(path).map_err(io(path))?;
-    let mut archive =
-        ZipArchive::new(Cursor::new(bytes)).map_err(|e| contents(path, "package", e))?;
-    let is_model = |n: &str| n.trim_start_matches('/').to_ascii_lowercase().ends_with(".model");
-    let mut names: Vec<String> = archive
-        .file_names()
-        .flatten()
-        .map(std::borrow::Cow::into_owned)
-        .filter(|n| is_model(n))
-        .collect();
-    // The root model is 3D/3dmodel.model by custom; parts of the production extension lie deeper.
-    names.sort_by_key(|n| (n.matches('/').count(), n.clone()));
-    let Some(name) = names.first() else {
-        return Err(contents(path, "package", "there is no model in it"));
-    };
-    let file = archive.by_name(name).map_err(|e| contents(path, name.clone(), e))?;
-    if file.size() > LARGEST {
-        return Err(contents(path, name.clone(), format!("{} bytes are too many", file.size())));
+/// The zip archive around the models.
+struct Package<'a> {
+    source: &'a Source<'a>,
+    archive: ZipArchive<Cursor<Vec<u8>>>,
+    /// Bytes that may still be unpacked.
+    left: u64,
+}
+
+impl<'a> Package<'a> {
+    fn open(source: &'a Source<'a>, bytes: Vec<u8>) -> Result<Self, ReadError> {
+        let left = LARGEST.min((bytes.len() as u64).saturating_mul(LARGEST_RATIO).max(SMALL));
+        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
+            let reason =
+                "it is no 3MF file: those are zip archives, and this is none, or is cut short";
+            contents(source.path, "package", reason)
+        })?;
+        Ok(Self { source, archive, left })
     }
-    let mut text = String::new();
-    file.take(LARGEST).read_to_string(&mut text).map_err(|e| contents(path, name.clone(), e))?;
-    Ok(text)
+
+    /// The files in it.
+    fn names(&self) -> Vec<String> {
+        self.archive.file_names().flatten().map(std::borrow::Cow::into_owned).collect()
+    }
+
+    /// What it holds, in words.
+    fn holds(&self) -> String {
+        format!("its build places no mesh; the package holds {} files", self.archive.len())
+    }
+
+    /// The name of the file of a path in the package, whose letters may be of either case.
+    fn find(&self, path: &str) -> Option<String> {
+        let plain = |name: &str| name.trim_start_matches('/').to_ascii_lowercase();
+        let wanted = plain(path);
+        self.names().into_iter().find(|name| plain(name) == wanted)
+    }
+
+    /// The path of the model that the package begins with.
+    fn root(&mut self) -> Result<String, ReadError> {
+        if let Some(name) = self.find("_rels/.rels") {
+            let text = self.text(&name)?;
+            let refused =
+                |(place, reason)| contents(self.source.path, format!("{name}: {place}"), reason);
+            let relations = Element::parse(&text).map_err(refused)?;
+            let model = relations.children.iter().find(|r| r.get("Type") == Some(START));
+            if let Some(target) = model.and_then(|r| r.get("Target")) {
+                return Ok(target.to_owned());
+            }
+        }
+        if let Some(name) = self.find("3D/3dmodel.model") {
+            return Ok(name);
+        }
+        // Those of the production extension lie deeper.
+        let is_model = |n: &String| n.to_ascii_lowercase().ends_with(".model");
+        let mut models: Vec<String> = self.names().into_iter().filter(is_model).collect();
+        models.sort_by_key(|n| (n.matches('/').count(), n.clone()));
+        models.into_iter().next().ok_or_else(|| {
+            let reason = format!(
+                "it is no 3MF file: none of the {} files in this archive is a model (3D/3dmodel.model)",
+                self.archive.len()
+            );
+            contents(self.source.path, "package", reason)
+        })
+    }
+
+    /// The text of a file of the package.
+    fn text(&mut self, path: &str) -> Result<String, ReadError> {
+        let refused = |reason: String| contents(self.source.path, path, reason);
+        let name =
+            self.find(path).ok_or_else(|| refused("this file is not in the package".into()))?;
+        let file =
+            self.archive.by_name(&name).map_err(|e| refused(format!("cannot be unpacked: {e}")))?;
+        let mut bytes = Vec::new();
+        // What a header promises counts for nothing.
+        let limit = self.left;
+        file.take(limit + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|e| refused(format!("cannot be unpacked: {e}")))?;
+        if bytes.len() as u64 > limit {
+            return Err(refused(format!(
+                "the package unpacks to more than {LARGEST_RATIO} times its size, or {LARGEST} bytes"
+            )));
+        }
+        self.left -= bytes.len() as u64;
+        colltrans_mesh::file::decoded(bytes).map_err(|e| refused(e.to_string()))
+    }
 }
 
 #[derive(Default)]
@@ -74,124 +170,283 @@ struct Object {
     name: Option<String>,
     vertices: Vec<DVec3>,
     faces: Vec<Vec<u32>>,
-    components: Vec<(String, DAffine3)>,
+    components: Vec<Placed>,
+    has_mesh: bool,
 }
 
-#[derive(Default)]
+/// An object at a place.
+#[derive(Clone)]
+struct Placed {
+    /// The model file, if it is another one.
+    path: Option<String>,
+    id: String,
+    transform: DAffine3,
+}
+
+/// One model file.
 struct Model {
     unit: String,
-    objects: HashMap<String, Object>,
-    items: Vec<(String, DAffine3)>,
+    objects: HashMap<String, Rc<Object>>,
+    items: Vec<Placed>,
 }
 
-/// Told of an object, by its name, and its mesh.
-type Call<'a> = dyn FnMut(&str, Option<Piece>) -> Result<(), ReadError> + 'a;
+/// All model files that the first one leads to.
+struct Models {
+    root: Rc<Model>,
+    /// By their paths, in small letters.
+    by_path: HashMap<String, Rc<Model>>,
+}
 
-impl Model {
-    fn parse(&mut self, path: &Path, text: &str) -> Result<(), ReadError> {
-        let mut reader = quick_xml::Reader::from_str(text);
-        let mut current: Option<String> = None;
+fn key(path: &str) -> String {
+    path.trim_start_matches('/').to_ascii_lowercase()
+}
+
+fn models(source: &Source, package: &mut Package, root: &str) -> Result<Models, ReadError> {
+    let mut by_path = HashMap::new();
+    let mut open = VecDeque::from([root.to_owned()]);
+    while let Some(path) = open.pop_front() {
+        if by_path.contains_key(&key(&path)) {
+            continue;
+        }
+        let text = package.text(&path)?;
+        let model = Parser::model(&text).map_err(|(place, reason)| {
+            contents(source.path, format!("{}: {place}", path.trim_start_matches('/')), reason)
+        })?;
+        let components = model.objects.values().flat_map(|object| &object.components);
+        let mut others: Vec<String> =
+            components.chain(&model.items).filter_map(|placed| placed.path.clone()).collect();
+        others.sort();
+        open.extend(others);
+        by_path.insert(key(&path), Rc::new(model));
+    }
+    let Some(model) = by_path.get(&key(root)).cloned() else {
+        return Err(contents(source.path, root, "this file is not in the package"));
+    };
+    for (path, other) in &by_path {
+        if other.unit != model.unit {
+            let reason = format!("its unit is {}, that of the package {}", other.unit, model.unit);
+            return Err(contents(source.path, path, reason));
+        }
+    }
+    Ok(Models { root: model, by_path })
+}
+
+/// Told of an object, by its name, and where it is.
+type Call<'a> = dyn FnMut(&str, &Rc<Object>, DAffine3) -> Result<(), String> + 'a;
+
+impl Models {
+    /// Calls with every object below one that the model `from` places.
+    fn collect(
+        &self,
+        from: &str,
+        placed: &Placed,
+        above: DAffine3,
+        depth: usize,
+        call: &mut Call,
+    ) -> Result<(), String> {
+        let path = placed.path.as_deref().unwrap_or(from);
+        let model = self.by_path.get(&key(path)).ok_or_else(|| format!("there is no {path}"))?;
+        let id = &placed.id;
+        let object = model.objects.get(id).ok_or_else(|| {
+            let place = placed.path.as_ref().map_or(String::new(), |path| format!(" in {path}"));
+            format!("there is no object {id}{place}")
+        })?;
+        if depth > DEEPEST {
+            return Err("components are nested too deep, or in a ring".into());
+        }
+        if !object.has_mesh && object.components.is_empty() {
+            return Err(format!("object {id} has neither a mesh nor components"));
+        }
+        let name = object.name.clone().unwrap_or_else(|| format!("object_{id}"));
+        let at = above * placed.transform;
+        call(&name, object, at)?;
+        for child in &object.components {
+            self.collect(path, child, at, depth + 1, call)?;
+        }
+        Ok(())
+    }
+}
+
+/// A model in the making.
+struct Parser {
+    unit: Option<String>,
+    objects: HashMap<String, Rc<Object>>,
+    items: Vec<Placed>,
+    current: Option<(String, Object)>,
+}
+
+impl Parser {
+    fn model(text: &str) -> Result<Model, xml::Fault> {
+        let mut reader = NsReader::from_str(text);
+        let mut lines = Lines::new(text);
+        let mut parser =
+            Self { unit: None, objects: HashMap::new(), items: Vec::new(), current: None };
+        let mut depth = 0_usize;
         loop {
-            let at = reader.buffer_position() as usize;
-            let line = || format!("line {}", text[..at.min(text.len())].matches('\n').count() + 1);
-            let event = reader.read_event().map_err(|e| contents(path, line(), e))?;
+            let line = lines.at(reader.buffer_position());
+            let place = || format!("line {line}");
+            let event = reader.read_event().map_err(|e| (place(), xml::told(&e)))?;
             match event {
-                Event::Start(tag) | Event::Empty(tag) => {
-                    self.open(&tag, &mut current).map_err(|e| contents(path, line(), e))?;
+                Event::Start(tag) => {
+                    depth += 1;
+                    if depth > DEEPEST_ELEMENT {
+                        let reason = format!("elements are nested deeper than {DEEPEST_ELEMENT}");
+                        return Err((place(), reason));
+                    }
+                    parser.open(&tag, reader.resolver()).map_err(|e| (place(), e))?;
                 }
-                Event::End(tag) if tag.local_name().as_ref() == "object" => current = None,
-                Event::Eof => return Ok(()),
+                Event::Empty(tag) => {
+                    parser.open(&tag, reader.resolver()).map_err(|e| (place(), e))?;
+                    parser.close(tag.local_name().as_ref()).map_err(|e| (place(), e))?;
+                }
+                Event::End(tag) => {
+                    depth = depth.saturating_sub(1);
+                    parser.close(tag.local_name().as_ref()).map_err(|e| (place(), e))?;
+                }
+                Event::Eof if depth > 0 => {
+                    return Err(("end of file".into(), "the last element is not ended".into()));
+                }
+                Event::Eof => break,
                 _ => (),
             }
         }
+        let Some(unit) = parser.unit else {
+            return Err(("start of file".into(), "it holds no XML element".into()));
+        };
+        Ok(Model { unit, objects: parser.objects, items: parser.items })
     }
 
-    fn open(&mut self, tag: &BytesStart, current: &mut Option<String>) -> Result<(), String> {
-        let attributes = attributes(tag)?;
-        let get = |key: &str| attributes.get(key).map(String::as_str);
-        let need = |key: &str| get(key).ok_or_else(|| format!("attribute {key} is missing"));
-        let number = |key: &str| parsed::<f64>(key, need(key)?);
-        let index = |key: &str| parsed::<u32>(key, need(key)?);
-        match tag.local_name().as_ref() {
-            "model" => {
-                let unit = get("unit").unwrap_or("millimeter");
-                if !UNITS.contains(&unit) {
-                    return Err(format!("the unit {unit} is none of {}", UNITS.join(", ")));
-                }
-                unit.clone_into(&mut self.unit);
-            }
+    fn open(&mut self, tag: &BytesStart, resolver: &NamespaceResolver) -> Result<(), String> {
+        let (space, name) = resolver.resolve_element(tag.name());
+        // Elements of extensions; careless writers name no namespace at all.
+        if xml::namespace(&space).is_some_and(|space| space != CORE) {
+            return if self.unit.is_none() { Err(not_a_model(tag)) } else { Ok(()) };
+        }
+        let name = name.as_ref();
+        if self.unit.is_none() {
+            return if name == "model" { self.begin(tag) } else { Err(not_a_model(tag)) };
+        }
+        if !matches!(name, "object" | "item" | "mesh" | "vertex" | "triangle" | "component") {
+            return Ok(());
+        }
+        let attributes = Attributes::of(tag, resolver)?;
+        match name {
+            "object" if self.current.is_some() => return Err("an object in an object".into()),
             "object" => {
-                let id = need("id")?.to_owned();
-                let object = Object { name: get("name").map(str::to_owned), ..Object::default() };
-                if self.objects.insert(id.clone(), object).is_some() {
-                    return Err(format!("a second object has the id {id}"));
-                }
-                *current = Some(id);
+                let id = attributes.need("id")?.to_owned();
+                let name = attributes.get("name").map(str::to_owned);
+                self.current = Some((id, Object { name, ..Object::default() }));
             }
-            "item" => {
-                self.items.push((need("objectid")?.to_owned(), transform(get("transform"))?));
-            }
-            name => {
-                let id = current.as_deref().unwrap_or_default();
-                let Some(object) = self.objects.get_mut(id) else { return Ok(()) };
+            "item" => self.items.push(attributes.placed()?),
+            _ => {
+                let Some((_, object)) = &mut self.current else { return Ok(()) };
                 match name {
+                    "mesh" => object.has_mesh = true,
                     "vertex" => {
-                        object.vertices.push(DVec3::new(number("x")?, number("y")?, number("z")?));
+                        let [x, y, z] = ["x", "y", "z"].map(|key| attributes.parsed(key));
+                        object.vertices.push(DVec3::new(x?, y?, z?));
                     }
                     "triangle" => {
-                        object.faces.push(vec![index("v1")?, index("v2")?, index("v3")?]);
+                        let [a, b, c] = ["v1", "v2", "v3"].map(|key| attributes.parsed(key));
+                        object.faces.push(vec![a?, b?, c?]);
                     }
-                    "component" => {
-                        let child = need("objectid")?.to_owned();
-                        object.components.push((child, transform(get("transform"))?));
-                    }
-                    _ => (),
+                    _ => object.components.push(attributes.placed()?),
                 }
             }
         }
         Ok(())
     }
 
-    /// Calls with every object below an object, its name, and its mesh if it has one.
-    fn collect(
-        &self,
-        path: &Path,
-        place: &str,
-        id: &str,
-        at: DAffine3,
-        depth: usize,
-        call: &mut Call,
-    ) -> Result<(), ReadError> {
-        let object = self
-            .objects
-            .get(id)
-            .ok_or_else(|| contents(path, place, format!("there is no object {id}")))?;
-        if depth > DEEPEST {
-            return Err(contents(path, place, "components are nested too deep, or in a ring"));
+    fn close(&mut self, name: &str) -> Result<(), String> {
+        if name != "object" {
+            return Ok(());
         }
-        let name = object.name.clone().unwrap_or_else(|| format!("object_{id}"));
-        let mesh = || {
-            let (vertices, faces) = (object.vertices.clone(), object.faces.clone());
-            Piece { vertices, faces, world_from_piece: at }
-        };
-        call(&name, (!object.faces.is_empty()).then(mesh))?;
-        for (child, transform) in &object.components {
-            self.collect(path, place, child, at * *transform, depth + 1, call)?;
+        let Some((id, object)) = self.current.take() else { return Ok(()) };
+        if self.objects.insert(id.clone(), Rc::new(object)).is_some() {
+            return Err(format!("a second object has the id {id}"));
         }
+        Ok(())
+    }
+
+    /// The element that holds all others.
+    fn begin(&mut self, tag: &BytesStart) -> Result<(), String> {
+        let (mut unit, mut required) = ("millimeter".to_owned(), String::new());
+        let mut spaces = HashMap::new();
+        for attribute in tag.attributes() {
+            let attribute = attribute.map_err(|e| e.to_string())?;
+            let value = xml::value(&attribute)?;
+            match attribute.key.as_ref() {
+                "unit" => unit = value,
+                "requiredextensions" => required = value,
+                key => {
+                    if let Some(prefix) = key.strip_prefix("xmlns:") {
+                        spaces.insert(prefix.to_owned(), value);
+                    }
+                }
+            }
+        }
+        if !UNITS.contains(&unit.as_str()) {
+            return Err(format!("the unit {unit} is none of {}", UNITS.join(", ")));
+        }
+        for prefix in required.split_whitespace() {
+            let space = spaces.get(prefix).map_or(prefix, String::as_str);
+            if space != CORE && space != PRODUCTION && !WITHOUT_SHAPES.contains(&space) {
+                return Err(format!(
+                    "whoever reads it must know the extension {prefix} ({space}), which is not known \
+                     here; save it without"
+                ));
+            }
+        }
+        self.unit = Some(unit);
         Ok(())
     }
 }
 
-fn attributes(tag: &BytesStart) -> Result<HashMap<String, String>, String> {
-    let mut all = HashMap::new();
-    for attribute in tag.attributes() {
-        let attribute = attribute.map_err(|e| e.to_string())?;
-        let key = attribute.key.local_name().as_ref().to_owned();
-        let value =
-            quick_xml::escape::unescape(&attribute.value).map_err(|e| e.to_string())?.into_owned();
-        all.insert(key, value);
+fn not_a_model(tag: &BytesStart) -> String {
+    format!("it is no model of a 3MF file: its first element is {}", tag.name().as_ref())
+}
+
+/// The attributes of an element that are of the core, and the path of the production extension.
+struct Attributes {
+    core: HashMap<String, String>,
+    path: Option<String>,
+}
+
+impl Attributes {
+    fn of(tag: &BytesStart, resolver: &NamespaceResolver) -> Result<Self, String> {
+        let mut found = Self { core: HashMap::new(), path: None };
+        for attribute in tag.attributes() {
+            let attribute = attribute.map_err(|e| e.to_string())?;
+            let (space, name) = resolver.resolve_attribute(attribute.key);
+            match xml::namespace(&space) {
+                None if attribute.key.prefix().is_none() => {
+                    found.core.insert(name.as_ref().to_owned(), xml::value(&attribute)?);
+                }
+                Some(space) if space == PRODUCTION && name.as_ref() == "path" => {
+                    found.path = Some(xml::value(&attribute)?);
+                }
+                _ => (),
+            }
+        }
+        Ok(found)
     }
-    Ok(all)
+
+    fn get(&self, key: &str) -> Option<&str> {
+        self.core.get(key).map(String::as_str)
+    }
+
+    fn need(&self, key: &str) -> Result<&str, String> {
+        self.get(key).ok_or_else(|| format!("attribute {key} is missing"))
+    }
+
+    fn parsed<T: std::str::FromStr>(&self, key: &str) -> Result<T, String> {
+        parsed(key, self.need(key)?)
+    }
+
+    fn placed(&self) -> Result<Placed, String> {
+        let id = self.need("objectid")?.to_owned();
+        Ok(Placed { path: self.path.clone(), id, transform: transform(self.get("transform"))? })
+    }
 }
 
 fn parsed<T: std::str::FromStr>(key: &str, text: &str) -> Result<T, String> {

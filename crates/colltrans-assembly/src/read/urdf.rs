@@ -2,181 +2,325 @@
 //! of joints from the root in one configuration.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use glam::{DAffine3, DQuat, DVec3};
-use urdf_rs::{Geometry as Shape, Joint, JointType, Link, Robot};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use super::files::Source;
 use super::manifest::rpy_matrix;
-use super::{Geometry, ReadOptions, assembled, contents, in_file, io, piece, shapes};
+use super::xml::Element;
+use super::{Budget, Geometry, assembled, contents, in_file, piece, shapes};
 use crate::error::ReadError;
-use crate::part::{Assembly, Part};
+use crate::part::{Assembly, Part, Piece};
 
-pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Assembly, ReadError> {
-    let text = std::fs::read_to_string(path).map_err(io(path))?;
-    let robot = urdf_rs::read_from_string(&text).map_err(|e| contents(path, "URDF", e))?;
-    for (name, value) in &options.joints {
-        if !value.is_finite() {
-            let reason = format!("the position {value} of joint {name} is not finite");
-            return Err(contents(path, "joints", reason));
-        }
-        if robot.joints.iter().all(|j| j.name != *name) {
-            return Err(contents(path, "joints", format!("there is no joint {name}")));
-        }
+pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
+    let text = source.text()?;
+    let refused = |(place, reason)| contents(source.path, format!("URDF: {place}"), reason);
+    let robot = Element::parse(&text).map_err(refused)?;
+    if robot.name != "robot" {
+        let reason = format!("it is no robot: its first element is {}, not robot", robot.name);
+        return Err(contents(source.path, format!("URDF: line {}", robot.line), reason));
     }
-    let places = places(path, &robot, options)?;
-    let finder = Finder { folder: path.parent().unwrap_or(Path::new(".")), options };
-    let (mut parts, mut missing, mut notes) = (Vec::new(), Vec::new(), Vec::new());
-    let mut read = Vec::new();
-    for link in &robot.links {
-        let world = places[link.name.as_str()];
-        let mut pieces = Vec::new();
-        for (origin, shape) in geometries(link, options.geometry) {
-            if let Some(reason) = refused(origin, shape) {
-                return Err(contents(path, format!("link {}", link.name), reason));
-            }
-            let at = world * pose(origin);
-            match shape {
-                Shape::Mesh { filename, scale } => match finder.find(filename) {
-                    Some(file) => {
-                        let scale = scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.0));
-                        pieces.push(piece(&file, at * DAffine3::from_scale(scale))?);
-                        read.push(file);
-                    }
-                    None => missing.push(filename.clone()),
-                },
-                Shape::Box { size } => pieces.push(shapes::cuboid(DVec3::from_array(size.0), at)),
-                Shape::Cylinder { radius, length } => {
-                    pieces.push(shapes::cylinder(*radius, *length, at));
-                }
-                Shape::Sphere { radius } => pieces.push(shapes::sphere(*radius, at)),
-                Shape::Capsule { .. } => {
-                    notes.push(format!("link {}: a capsule is left out", link.name));
-                }
-            }
-        }
-        if !pieces.is_empty() {
-            parts.push(Part::new(&link.name, &pieces).map_err(in_file(path))?);
-        }
+    let macros = |e: &&Element| e.name.starts_with("xacro:");
+    if let Some(found) = robot.children.iter().find(macros) {
+        let reason = format!("{} is a macro; run xacro first", found.name);
+        return Err(contents(source.path, format!("URDF: line {}", found.line), reason));
     }
-    if !missing.is_empty() && !options.skip_missing {
-        return Err(ReadError::Missing { path: path.into(), missing });
+    let joints = joints(&source, &robot)?;
+    let places = places(&source, &robot, &joints)?;
+    let mut gathered = Gathered::new(&source, text.len());
+    for link in robot.all("link") {
+        let name = named(&source, link)?;
+        gathered.link(link, name, places[name])?;
+    }
+    let Gathered { parts, missing, mut notes, .. } = gathered;
+    if !missing.is_empty() && !source.options.skip_missing {
+        return Err(ReadError::Missing { path: source.path.into(), missing });
     }
     notes.extend(missing.iter().map(|file| format!("{file} cannot be found and is left out")));
-    let assembly = assembled(path, parts, read)?.with_unit("m");
+    let which = match source.options.geometry {
+        Geometry::Collision => "collides with",
+        Geometry::Visual => "shows",
+    };
+    let links = robot.all("link").count();
+    let holds = match missing.len() {
+        0 => format!("none of its {links} links {which} anything"),
+        missing => format!("none of the {missing} meshes it names can be found"),
+    };
+    let assembly = assembled(source, parts, &holds)?.with_unit("m");
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
-/// What is wrong with the numbers of a geometry.
-fn refused(origin: &urdf_rs::Pose, shape: &Shape) -> Option<String> {
-    let finite = origin.xyz.0.iter().chain(&origin.rpy.0).all(|x| x.is_finite());
-    if !finite {
-        return Some(format!("its origin {:?}, {:?} is not finite", origin.xyz.0, origin.rpy.0));
+/// Parts in the making.
+struct Gathered<'a> {
+    source: &'a Source<'a>,
+    budget: Budget,
+    parts: Vec<Part>,
+    missing: Vec<String>,
+    notes: Vec<String>,
+}
+
+impl<'a> Gathered<'a> {
+    fn new(source: &'a Source<'a>, bytes: usize) -> Self {
+        let (parts, missing, notes) = (Vec::new(), Vec::new(), Vec::new());
+        Self { source, budget: Budget::of(bytes), parts, missing, notes }
     }
-    let (what, sizes) = match shape {
-        Shape::Box { size } => ("box", size.0.to_vec()),
-        Shape::Cylinder { radius, length } => ("cylinder", vec![*radius, *length]),
-        Shape::Sphere { radius } => ("sphere", vec![*radius]),
-        Shape::Mesh { .. } | Shape::Capsule { .. } => return None,
+
+    fn link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
+        let which = match self.source.options.geometry {
+            Geometry::Collision => "collision",
+            Geometry::Visual => "visual",
+        };
+        let mut pieces = Vec::new();
+        for shown in link.all(which) {
+            let refused =
+                |reason: String| contents(self.source.path, format!("link {name}"), reason);
+            let at = world * origin(shown).map_err(refused)?;
+            let shape = shown.first("geometry").and_then(|g| g.children.first());
+            let shape = shape.ok_or_else(|| refused(format!("a {which} without a geometry")))?;
+            match shape.name.as_str() {
+                "mesh" => pieces.extend(self.mesh(shape, name, at)?),
+                "capsule" => self.notes.push(format!("link {name}: a capsule is left out")),
+                _ => pieces.push(solid(shape, at).map_err(refused)?),
+            }
+        }
+        if !pieces.is_empty() {
+            let refused =
+                |reason: String| contents(self.source.path, format!("link {name}"), reason);
+            self.budget.place().map_err(refused)?;
+            let part = Part::new(name, &pieces).map_err(in_file(self.source.path))?;
+            self.parts.push(part);
+        }
+        Ok(())
+    }
+
+    fn mesh(
+        &mut self,
+        mesh: &Element,
+        link: &str,
+        at: DAffine3,
+    ) -> Result<Option<Piece>, ReadError> {
+        let refused = |reason: String| contents(self.source.path, format!("link {link}"), reason);
+        let filename = mesh.need("filename").map_err(refused)?;
+        let scale = mesh.numbers::<3>("scale").map_err(refused)?.unwrap_or([1.0; 3]);
+        let Some((file, bytes)) = find(self.source, filename)? else {
+            self.missing.push(filename.to_owned());
+            return Ok(None);
+        };
+        self.budget.read(&file, bytes.len());
+        let piece = piece(&file, bytes, at * DAffine3::from_scale(DVec3::from_array(scale)))?;
+        self.budget.facets(piece.faces.len().max(piece.vertices.len())).map_err(refused)?;
+        Ok(Some(piece))
+    }
+}
+
+/// A shape that is no mesh.
+fn solid(shape: &Element, at: DAffine3) -> Result<Piece, String> {
+    let number = |name: &str| -> Result<f64, String> {
+        shape.need(name)?;
+        Ok(shape.numbers::<1>(name)?.map_or(0.0, |[x]| x))
     };
-    let sound = sizes.iter().all(|x| x.is_finite() && *x > 0.0);
-    (!sound).then(|| format!("a {what} of {sizes:?}: sizes must be finite and positive"))
-}
-
-fn geometries(link: &Link, which: Geometry) -> Vec<(&urdf_rs::Pose, &Shape)> {
-    match which {
-        Geometry::Collision => link.collision.iter().map(|c| (&c.origin, &c.geometry)).collect(),
-        Geometry::Visual => link.visual.iter().map(|v| (&v.origin, &v.geometry)).collect(),
+    let sound = |sizes: &[f64]| {
+        let sound = sizes.iter().all(|x| x.is_finite() && *x > 0.0);
+        let what = &shape.name;
+        sound
+            .then_some(())
+            .ok_or_else(|| format!("a {what} of {sizes:?}: sizes must be finite and positive"))
+    };
+    match shape.name.as_str() {
+        "box" => {
+            shape.need("size")?;
+            let size = shape.numbers::<3>("size")?.unwrap_or_default();
+            sound(&size).map(|()| shapes::cuboid(DVec3::from_array(size), at))
+        }
+        "cylinder" => {
+            let (radius, length) = (number("radius")?, number("length")?);
+            sound(&[radius, length]).map(|()| shapes::cylinder(radius, length, at))
+        }
+        "sphere" => {
+            let radius = number("radius")?;
+            sound(&[radius]).map(|()| shapes::sphere(radius, at))
+        }
+        other => Err(format!("the geometry {other} is not known")),
     }
 }
 
-fn pose(pose: &urdf_rs::Pose) -> DAffine3 {
-    DAffine3::from_mat3_translation(rpy_matrix(pose.rpy.0), DVec3::from_array(pose.xyz.0))
+fn named<'a>(source: &Source, element: &'a Element) -> Result<&'a str, ReadError> {
+    let refused = |e| contents(source.path, format!("URDF: line {}", element.line), e);
+    element.need("name").map_err(refused)
+}
+
+/// The pose of an element that may have an origin.
+fn origin(element: &Element) -> Result<DAffine3, String> {
+    let Some(origin) = element.first("origin") else { return Ok(DAffine3::IDENTITY) };
+    let xyz = origin.numbers::<3>("xyz")?.unwrap_or_default();
+    let rpy = origin.numbers::<3>("rpy")?.unwrap_or_default();
+    let matrix = match origin.numbers::<4>("quat_xyzw")? {
+        Some(quaternion) => DMat3::from_quat(DQuat::from_array(quaternion).normalize()),
+        None => rpy_matrix(rpy),
+    };
+    let pose = DAffine3::from_mat3_translation(matrix, DVec3::from_array(xyz));
+    if pose.is_finite() {
+        Ok(pose)
+    } else {
+        Err(format!("its origin {xyz:?}, {rpy:?} is not finite"))
+    }
+}
+
+/// A joint.
+struct Joint<'a> {
+    element: &'a Element,
+    parent: &'a str,
+    child: &'a str,
+    origin: DAffine3,
+}
+
+/// Joints by their names.
+type Joints<'a> = HashMap<&'a str, Joint<'a>>;
+
+fn joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadError> {
+    let mut joints = HashMap::new();
+    for element in robot.all("joint") {
+        let name = named(source, element)?;
+        let refused = |reason: String| contents(source.path, format!("joint {name}"), reason);
+        let link = |what: &'static str| {
+            let of = element.first(what).ok_or_else(|| refused(format!("it has no {what}")))?;
+            of.need("link").map_err(refused)
+        };
+        let origin = origin(element).map_err(refused)?;
+        let joint = Joint { element, parent: link("parent")?, child: link("child")?, origin };
+        if joints.insert(name, joint).is_some() {
+            return Err(refused("a second joint has this name".into()));
+        }
+    }
+    for (name, value) in &source.options.joints {
+        let refused = |reason: String| contents(source.path, "joints", reason);
+        if !value.is_finite() {
+            return Err(refused(format!("the position {value} of joint {name} is not finite")));
+        }
+        if !joints.contains_key(name.as_str()) {
+            return Err(refused(format!("there is no joint {name}")));
+        }
+    }
+    Ok(joints)
 }
 
 /// Where each link is: root links at the world's origin.
 fn places<'a>(
-    path: &Path,
-    robot: &'a Robot,
-    options: &ReadOptions,
+    source: &Source,
+    robot: &'a Element,
+    joints: &Joints<'a>,
 ) -> Result<HashMap<&'a str, DAffine3>, ReadError> {
-    let mut joint_to: HashMap<&str, &Joint> = HashMap::new();
-    for joint in &robot.joints {
-        for link in [&joint.parent.link, &joint.child.link] {
-            if robot.links.iter().all(|l| l.name != *link) {
-                let reason = format!("there is no link {link}");
-                return Err(contents(path, format!("joint {}", joint.name), reason));
-            }
-        }
-        if joint_to.insert(&joint.child.link, joint).is_some() {
-            let reason = format!("link {} is the child of a second joint", joint.child.link);
-            return Err(contents(path, format!("joint {}", joint.name), reason));
+    let mut links: HashMap<&str, Option<(&str, &Joint)>> = HashMap::new();
+    for link in robot.all("link") {
+        let name = named(source, link)?;
+        if links.insert(name, None).is_some() {
+            return Err(contents(
+                source.path,
+                format!("link {name}"),
+                "a second link has this name",
+            ));
         }
     }
-    let mut places = HashMap::new();
-    for link in &robot.links {
-        let (mut at, mut name) = (DAffine3::IDENTITY, link.name.as_str());
-        for _ in 0..=robot.joints.len() {
-            let Some(joint) = joint_to.get(name) else { break };
-            at = pose(&joint.origin) * motion(robot, joint, options) * at;
-            name = &joint.parent.link;
+    for joint in robot.all("joint").filter_map(|joint| joint.get("name")) {
+        let refused = |reason| contents(source.path, format!("joint {joint}"), reason);
+        let Joint { parent, child, .. } = joints[joint];
+        for link in [parent, child] {
+            if !links.contains_key(link) {
+                return Err(refused(format!("there is no link {link}")));
+            }
         }
-        if joint_to.contains_key(name) {
-            return Err(contents(path, format!("link {}", link.name), "its joints form a ring"));
+        if links.insert(child, Some((joint, &joints[joint]))).flatten().is_some() {
+            return Err(refused(format!("link {child} is the child of a second joint")));
         }
-        places.insert(link.name.as_str(), at);
+    }
+    let mut places: HashMap<&str, DAffine3> = HashMap::new();
+    for link in robot.all("link").filter_map(|link| link.get("name")) {
+        // Up to a link that is placed or is a root, and down again.
+        let (mut above, mut name) = (Vec::new(), link);
+        let mut at = loop {
+            if let Some(place) = places.get(name) {
+                break *place;
+            }
+            let Some((joint, found)) = links[name] else {
+                places.insert(name, DAffine3::IDENTITY);
+                break DAffine3::IDENTITY;
+            };
+            if above.len() > joints.len() {
+                return Err(contents(
+                    source.path,
+                    format!("link {link}"),
+                    "its joints form a ring",
+                ));
+            }
+            above.push((joint, found));
+            name = found.parent;
+        };
+        for (name, joint) in above.into_iter().rev() {
+            let refused = |reason| contents(source.path, format!("joint {name}"), reason);
+            at = at * joint.origin * motion(source, joints, name, joint).map_err(refused)?;
+            places.insert(joint.child, at);
+        }
     }
     Ok(places)
 }
 
-fn motion(robot: &Robot, joint: &Joint, options: &ReadOptions) -> DAffine3 {
-    let position = position(robot, joint, options, 8);
-    let axis = DVec3::from_array(joint.axis.xyz.0).normalize_or_zero();
-    match joint.joint_type {
-        JointType::Revolute | JointType::Continuous if position != 0.0 && axis != DVec3::ZERO => {
-            DAffine3::from_quat(DQuat::from_axis_angle(axis, position))
+fn motion(source: &Source, joints: &Joints, name: &str, joint: &Joint) -> Result<DAffine3, String> {
+    let kind = joint.element.need("type")?;
+    let position = position(source, joints, name, 8)?;
+    let axis = match joint.element.first("axis") {
+        Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
+        None => [1.0, 0.0, 0.0],
+    };
+    let axis = DVec3::from_array(axis).normalize_or_zero();
+    match kind {
+        "revolute" | "continuous" if position != 0.0 && axis != DVec3::ZERO => {
+            Ok(DAffine3::from_quat(DQuat::from_axis_angle(axis, position)))
         }
-        JointType::Prismatic => DAffine3::from_translation(axis * position),
-        _ => DAffine3::IDENTITY,
+        "prismatic" => Ok(DAffine3::from_translation(axis * position)),
+        "revolute" | "continuous" | "fixed" | "floating" | "planar" | "spherical" => {
+            Ok(DAffine3::IDENTITY)
+        }
+        other => Err(format!("the type {other} is not known")),
     }
 }
 
 /// The position of a joint: as given, or that of the joint it mimics.
-fn position(robot: &Robot, joint: &Joint, options: &ReadOptions, depth: usize) -> f64 {
-    if let Some(given) = options.joints.get(&joint.name) {
-        return *given;
+fn position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Result<f64, String> {
+    if let Some(given) = source.options.joints.get(name) {
+        return Ok(*given);
     }
-    let Some(mimic) = joint.mimic.as_ref().filter(|_| depth > 0) else { return 0.0 };
-    let Some(other) = robot.joints.iter().find(|j| j.name == mimic.joint) else { return 0.0 };
-    let value = position(robot, other, options, depth - 1);
-    value * mimic.multiplier.unwrap_or(1.0) + mimic.offset.unwrap_or(0.0)
+    let mimic = joints.get(name).and_then(|joint| joint.element.first("mimic"));
+    let Some(mimic) = mimic.filter(|_| depth > 0) else { return Ok(0.0) };
+    let value = position(source, joints, mimic.need("joint")?, depth - 1)?;
+    let number = |name: &str, default: f64| {
+        mimic.numbers::<1>(name).map(|found| found.map_or(default, |[x]| x))
+    };
+    Ok(value * number("multiplier", 1.0)? + number("offset", 0.0)?)
 }
 
-struct Finder<'a> {
-    folder: &'a Path,
-    options: &'a ReadOptions,
+/// A mesh by the name that the robot gives it.
+fn find(source: &Source, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+    if let Some(rest) = name.strip_prefix("package://") {
+        return in_packages(source, rest);
+    }
+    let name = name.strip_prefix("file://").unwrap_or(name);
+    match source.named(name)? {
+        Some(found) => Ok(Some(found)),
+        None => in_packages(source, name),
+    }
 }
 
-impl Finder<'_> {
-    fn find(&self, name: &str) -> Option<PathBuf> {
-        if let Some(rest) = name.strip_prefix("package://") {
-            return self.in_packages(rest);
-        }
-        let name = name.strip_prefix("file://").unwrap_or(name);
-        let file = self.folder.join(name);
-        if file.is_file() { Some(file) } else { self.in_packages(name) }
-    }
-
-    /// In the given roots: with the package's name, without it, then with fewer leading folders.
-    fn in_packages(&self, rest: &str) -> Option<PathBuf> {
-        let mut rest = Some(rest);
-        while let Some(tail) = rest.filter(|tail| !tail.is_empty()) {
-            let found = self.options.packages.iter().map(|root| root.join(tail));
-            if let Some(file) = found.into_iter().find(|file| file.is_file()) {
-                return Some(file);
+/// In the given roots: with the package's name, without it, then with fewer leading folders.
+fn in_packages(source: &Source, rest: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+    let mut rest = Some(rest);
+    while let Some(tail) = rest.filter(|tail| !tail.is_empty()) {
+        for root in &source.options.packages {
+            if let Some(found) = source.beside(root, tail)? {
+                return Ok(Some(found));
             }
-            rest = tail.split_once('/').map(|(_, tail)| tail);
         }
-        None
+        rest = tail.split_once('/').map(|(_, tail)| tail);
     }
+    Ok(None)
 }

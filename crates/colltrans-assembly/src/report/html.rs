@@ -1,14 +1,16 @@
 //! One HTML file: offline, its pictures drawn into it; without scripts only the viewer is missing.
-
-use std::fmt::Write;
+//!
+//! Written with `maud`, which escapes every text that is put in. Let through as they are, and marked
+//! [`PreEscaped`], are only what this crate holds (style, script) or draws (pictures, see `markup`).
 
 use glam::DVec3;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::scene::{self, Arrow, Shown};
-use super::{Findings, arrow, escaped, graph, short, viewer};
+use super::{Findings, arrow, graph, short, viewer};
 use crate::blocking::Blocking;
 use crate::map;
-use crate::plan::Step;
+use crate::part::Part;
 use crate::rooms::PartRoom;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:70em;\
@@ -27,31 +29,34 @@ const MOST_GRAPHS: usize = 6;
 
 /// The report.
 pub fn page(f: &Findings, title: &str) -> String {
-    let mut text = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
-         content=\"width=device-width\"><title>{0}</title><style>{STYLE}</style></head><body>\n\
-         <h1>{0}</h1>\n",
-        escaped(title)
-    );
-    overview(&mut text, f);
-    text.push_str(&viewer::section(f));
-    overlaps(&mut text, f);
-    steps(&mut text, f);
-    stuck(&mut text, f);
-    for (name, map) in f.maps {
-        let title = format!("Room of {name} in all directions");
-        let _ = writeln!(text, "<h2>{}</h2>", escaped(&title));
-        map_section(&mut text, map, &title);
-    }
-    rooms(&mut text, f);
-    graphs(&mut text, f);
-    contacts(&mut text, f);
-    parts(&mut text, f);
-    text.push_str("</body></html>\n");
-    text
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { (title) }
+                (overview(f))
+                (viewer::section(f))
+                (overlaps(f))
+                (steps(f))
+                (stuck(f))
+                @for (name, map) in f.maps { (map_section(map, name)) }
+                (rooms(f))
+                (graphs(f))
+                (contacts(f))
+                (parts(f))
+            }
+        }
+    };
+    page.into_string()
 }
 
-fn overview(text: &mut String, f: &Findings) {
+fn overview(f: &Findings) -> Markup {
     let assembly = f.bodies.assembly();
     let [low, high] = assembly.bounds();
     let size = high - low;
@@ -60,10 +65,9 @@ fn overview(text: &mut String, f: &Findings) {
         crate::Fit::Tolerance(length) => (length, "tolerance"),
         crate::Fit::Apart(length) => (length, "length to keep"),
     };
-    let _ = writeln!(
-        text,
-        "<p>{} parts, {} × {} × {}{unit}; {word} {}{unit}; {} directions asked of all parts. Plan: \
-         {} steps, {} parts left, {} groups that none of the directions asked takes apart.</p>",
+    let summary = format!(
+        "{} parts, {} × {} × {}{unit}; {word} {}{unit}; {} directions asked of all parts. Plan: {} \
+         steps, {} parts left, {} groups that none of the directions asked takes apart.",
         assembly.parts().len(),
         short(size.x),
         short(size.y),
@@ -74,16 +78,18 @@ fn overview(text: &mut String, f: &Findings) {
         f.plan.left.len(),
         f.plan.stuck.len()
     );
-    for note in assembly.notes() {
-        let _ = writeln!(text, "<p class=\"warn\">{}</p>", escaped(note));
+    html! {
+        p { (summary) }
+        @for note in assembly.notes() { p.warn { (note) } }
+        @if !assembly.parts().is_empty() {
+            figure style="max-width:45em" { (picture(scene::svg(&whole(f, &[]), &[]))) }
+        }
     }
-    if !assembly.parts().is_empty() {
-        let _ = writeln!(
-            text,
-            "<figure style=\"max-width:45em\">{}</figure>",
-            scene::svg(&whole(f, &[]), &[])
-        );
-    }
+}
+
+/// A picture that was drawn here, whose texts are escaped.
+fn picture(svg: String) -> PreEscaped<String> {
+    PreEscaped(svg)
 }
 
 /// All parts, those that are listed moved away.
@@ -93,89 +99,81 @@ fn whole<'a>(f: &Findings<'a>, moved: &[(usize, DVec3)]) -> Vec<Shown<'a>> {
     parts.map(|(k, part)| Shown { part, color: k, by: by(k), pale: false }).collect()
 }
 
-fn overlaps(text: &mut String, f: &Findings) {
-    text.push_str("<h2>Overlaps at the start</h2>\n");
-    if f.start.overlaps.is_empty() {
-        text.push_str("<p>None.</p>\n");
-        return;
-    }
+fn overlaps(f: &Findings) -> Markup {
+    let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let remaining = f.start.remaining().count();
-    if remaining > 0 {
-        let advice = f.start.suggested.map_or(String::new(), |t| {
-            format!(
-                " Try a tolerance of {} or, for curved fits, the chord errors of both parts \
-                     together.",
-                short(t)
-            )
-        });
-        let _ = writeln!(
-            text,
-            "<p class=\"warn\">{remaining} pairs overlap with this tolerance, and count as one body \
-             where they meet.{advice}</p>"
-        );
+    html! {
+        h2 { "Overlaps at the start" }
+        @if f.start.overlaps.is_empty() {
+            p { "None." }
+        } @else {
+            @if remaining > 0 {
+                p.warn {
+                    (remaining) " pairs overlap with this tolerance, and count as one body where they \
+                     meet."
+                    @if let Some(tolerance) = f.start.suggested {
+                        " Try a tolerance of " (short(tolerance)) " or, for curved fits, the chord \
+                         errors of both parts together."
+                    }
+                }
+            }
+            table {
+                tr { th { "parts" } th { "depth" } th { "with this tolerance" } }
+                @for o in f.start.overlaps.iter().take(MOST_ROWS) {
+                    tr {
+                        td { (name(o.parts[0])) ", " (name(o.parts[1])) }
+                        td.n { (o.depth.map_or("more than their size".into(), short)) }
+                        td { (if o.remains { "overlap" } else { "do not" }) }
+                    }
+                }
+            }
+        }
     }
-    text.push_str("<table><tr><th>parts</th><th>depth</th><th>with this tolerance</th></tr>\n");
-    for o in f.start.overlaps.iter().take(MOST_ROWS) {
-        let [a, b] = o.parts.map(|k| escaped(f.bodies.assembly().parts()[k].name()));
-        let depth = o.depth.map_or("more than their size".into(), short);
-        let remains = if o.remains { "overlap" } else { "do not" };
-        let _ = writeln!(
-            text,
-            "<tr><td>{a}, {b}</td><td class=\"n\">{depth}</td><td>{remains}</td></tr>"
-        );
-    }
-    text.push_str("</table>\n");
 }
 
-fn steps(text: &mut String, f: &Findings) {
-    text.push_str("<h2>Plan</h2>\n");
-    if f.plan.steps.is_empty() {
-        text.push_str("<p>Nothing can be taken out.</p>\n");
-        return;
-    }
-    text.push_str("<div class=\"steps\">\n");
+fn steps(f: &Findings) -> Markup {
+    let steps = &f.plan.steps;
     let mut gone = vec![false; f.bodies.len()];
-    for (k, step) in f.plan.steps.iter().enumerate().take(MOST_STEPS) {
-        let picture = step_picture(f, k, &gone);
-        let within =
-            step.within.map_or(String::new(), |w| format!(" (of the group of step {})", w + 1));
-        let ignored = step.ignores(f.bodies.assembly()).map_or(String::new(), |text| {
-            format!("<br><span class=\"warn\">{}</span>", escaped(&text))
-        });
-        let travel =
-            if step.travel > 0.0 { format!(", {}", short(step.travel)) } else { String::new() };
-        let names: Vec<String> =
-            f.bodies.assembly().names(&step.parts).into_iter().map(escaped).collect();
-        let _ = writeln!(
-            text,
-            "<figure>{picture}<figcaption><b>{}.</b> {}{within}: {}{travel}{ignored}{}</figcaption></figure>",
-            k + 1,
-            names.join(", "),
-            arrow(step.direction),
-            resting(f, step)
-        );
+    let mut figures = Vec::new();
+    for (k, step) in steps.iter().enumerate().take(MOST_STEPS) {
+        figures.push(step_figure(f, k, &gone));
         if step.within.is_none() {
             step.parts.iter().for_each(|&p| gone[p] = true);
         }
     }
-    text.push_str("</div>\n");
-    if f.plan.steps.len() > MOST_STEPS {
-        let _ = writeln!(
-            text,
-            "<p>{} more steps are in the JSON.</p>",
-            f.plan.steps.len() - MOST_STEPS
-        );
+    html! {
+        h2 { "Plan" }
+        @if steps.is_empty() {
+            p { "Nothing can be taken out." }
+        } @else {
+            div.steps { @for figure in figures { (figure) } }
+            @if steps.len() > MOST_STEPS {
+                p { (steps.len() - MOST_STEPS) " more steps are in the JSON." }
+            }
+        }
     }
 }
 
-/// The open surfaces that a step rests on.
-fn resting(f: &Findings, step: &Step) -> String {
-    if step.surfaces.is_empty() {
-        return String::new();
+fn step_figure(f: &Findings, k: usize, gone: &[bool]) -> Markup {
+    let step = &f.plan.steps[k];
+    html! {
+        figure {
+            (picture(step_picture(f, k, gone)))
+            figcaption {
+                b { (k + 1) "." } " " (f.bodies.assembly().names(&step.parts).join(", "))
+                @if let Some(w) = step.within { " (of the group of step " (w + 1) ")" }
+                ": " (arrow(step.direction))
+                @if step.travel > 0.0 { ", " (short(step.travel)) }
+                @if !step.surfaces.is_empty() {
+                    "; rests on an open surface: "
+                    (f.bodies.assembly().names(&step.surfaces).join(", "))
+                }
+                @if let Some(ignored) = step.ignores(f.bodies.assembly()) {
+                    br; span.warn { (ignored) }
+                }
+            }
+        }
     }
-    let names: Vec<String> =
-        f.bodies.assembly().names(&step.surfaces).into_iter().map(escaped).collect();
-    format!("; rests on an open surface: {}", names.join(", "))
 }
 
 /// What is left, pale, and what moves, on its way out.
@@ -221,33 +219,35 @@ fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     scene::svg(&shown, &arrows)
 }
 
-fn stuck(text: &mut String, f: &Findings) {
-    if f.plan.stuck.is_empty() {
-        return;
+fn stuck(f: &Findings) -> Markup {
+    html! {
+        @if !f.plan.stuck.is_empty() {
+            h2 { "What none of the directions asked takes apart" }
+            ul {
+                @for s in &f.plan.stuck {
+                    li {
+                        b { (f.bodies.assembly().names(&s.parts).join(", ")) }
+                        ": " (s.because(f.bodies)) "."
+                    }
+                }
+            }
+        }
     }
-    text.push_str("<h2>What none of the directions asked takes apart</h2>\n<ul>\n");
-    for s in &f.plan.stuck {
-        let names: Vec<String> =
-            f.bodies.assembly().names(&s.parts).into_iter().map(escaped).collect();
-        let because = escaped(&s.because(f.bodies));
-        let _ = writeln!(text, "<li><b>{}</b>: {because}.</li>", names.join(", "));
-    }
-    text.push_str("</ul>\n");
 }
 
-fn map_section(text: &mut String, map: &map::RemovalMap, title: &str) {
-    let _ = writeln!(text, "<figure style=\"max-width:52em\">{}</figure>", map::svg(map, title));
-    let _ = writeln!(text, "<p>{:.2} % of all directions are free.</p>", 100.0 * map.free_share());
-    for region in map.regions.iter().take(8) {
-        let _ = writeln!(
-            text,
-            "<p>A free region of {} steradians around {}.</p>",
-            short(region.solid_angle),
-            arrow(region.center)
-        );
-    }
-    for d in &map.isolated {
-        let _ = writeln!(text, "<p>An isolated free direction: {}.</p>", arrow(*d));
+fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
+    let title = format!("Room of {name} in all directions");
+    html! {
+        h2 { (title) }
+        figure style="max-width:52em" { (picture(map::svg(map, &title))) }
+        p { (format!("{:.2}", 100.0 * map.free_share())) " % of all directions are free." }
+        @for region in map.regions.iter().take(8) {
+            p {
+                "A free region of " (short(region.solid_angle)) " steradians around "
+                (arrow(region.center)) "."
+            }
+        }
+        @for d in &map.isolated { p { "An isolated free direction: " (arrow(*d)) "." } }
     }
 }
 
@@ -256,96 +256,102 @@ fn tidy(x: f64, size: f64) -> f64 {
     if x.abs() < 1e-9 * size { 0.0 } else { x }
 }
 
-fn rooms(text: &mut String, f: &Findings) {
-    text.push_str(
-        "<h2>Rooms</h2>\n<p>How far each part can move before another stops it, with all \
-                   parts in place.</p>\n<div class=\"wide\"><table><tr><th>part</th>",
-    );
-    for d in f.matrix.directions() {
-        let _ = write!(text, "<th>{}</th>", arrow(*d));
-    }
-    text.push_str("</tr>\n");
+fn rooms(f: &Findings) -> Markup {
     let size = f.bodies.assembly().size();
-    for part in 0..f.bodies.len().min(MOST_ROWS) {
-        let name = |k: usize| escaped(f.bodies.assembly().parts()[k].name());
-        let _ = write!(text, "<tr><th>{}</th>", name(part));
-        for k in 0..f.matrix.directions().len() {
-            let room = f.matrix.room(k, part);
-            let cell = match room {
-                PartRoom::Free => "free".into(),
-                PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(by)),
-                PartRoom::Blocked { by, stop, .. } => {
-                    format!("{} {}", short(tidy(stop.distance, size)), name(by))
-                }
-            };
-            let _ = write!(text, "<td class=\"{}\">{cell}</td>", room.outcome());
+    let name = |k: usize| f.bodies.assembly().parts()[k].name();
+    let directions = f.matrix.directions();
+    let cell = |room: &PartRoom| match room {
+        PartRoom::Free => "free".into(),
+        PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(*by)),
+        PartRoom::Blocked { by, stop, .. } => {
+            format!("{} {}", short(tidy(stop.distance, size)), name(*by))
         }
-        text.push_str("</tr>\n");
+    };
+    html! {
+        h2 { "Rooms" }
+        p { "How far each part can move before another stops it, with all parts in place." }
+        div.wide {
+            table {
+                tr { th { "part" } @for d in directions { th { (arrow(*d)) } } }
+                @for part in 0..f.bodies.len().min(MOST_ROWS) {
+                    tr {
+                        th { (name(part)) }
+                        @for room in (0..directions.len()).map(|k| f.matrix.room(k, part)) {
+                            td class=(room.outcome()) { (cell(&room)) }
+                        }
+                    }
+                }
+            }
+        }
     }
-    text.push_str("</table></div>\n");
 }
 
-fn graphs(text: &mut String, f: &Findings) {
+fn graphs(f: &Findings) -> Markup {
     let most = 60;
     if f.bodies.is_empty() || f.bodies.len() > most {
-        return;
+        return Markup::default();
     }
-    text.push_str("<h2>Blocking graphs</h2>\n<p>An arrow from a part to each one that it meets. \
-                   Orange: comes out as it is, alone or with its group; red rings and arrows: moves \
-                   as one.</p>\n<div class=\"steps graphs\">\n");
     let all = vec![true; f.bodies.len()];
-    for (k, d) in f.matrix.directions().iter().enumerate().take(MOST_GRAPHS) {
-        let picture = graph::svg(f.bodies, &Blocking::new(f.matrix, k, &all));
-        let origin = f.candidates.get(k).map_or("", |c| c.origin.name());
-        let _ = writeln!(
-            text,
-            "<figure>{picture}<figcaption>{} ({origin})</figcaption></figure>",
-            arrow(*d)
-        );
-    }
-    text.push_str("</div>\n");
-}
-
-fn contacts(text: &mut String, f: &Findings) {
-    text.push_str("<h2>Contacts</h2>\n");
-    if f.liaisons.is_empty() {
-        text.push_str("<p>None.</p>\n");
-        return;
-    }
-    text.push_str("<table><tr><th>parts</th><th>area</th><th>around</th></tr>\n");
-    for l in f.liaisons.iter().take(MOST_ROWS) {
-        let [a, b] = l.parts.map(|k| escaped(f.bodies.assembly().parts()[k].name()));
-        let c = l.center().to_array().map(|x| short(tidy(x, f.bodies.assembly().size())));
-        let _ = writeln!(
-            text,
-            "<tr><td>{a}, {b}</td><td class=\"n\">{}</td><td>{}</td></tr>",
-            short(l.area()),
-            c.join(", ")
-        );
-    }
-    text.push_str("</table>\n");
-}
-
-fn parts(text: &mut String, f: &Findings) {
-    text.push_str(
-        "<h2>Parts</h2>\n<table><tr><th>part</th><th>facets</th><th>volume</th>\
-                   <th>remarks</th></tr>\n",
-    );
-    for (k, p) in f.bodies.assembly().parts().iter().enumerate().take(MOST_ROWS) {
-        let remark = f.bodies.remark(k);
-        let mut remarks: Vec<String> =
-            p.defects().iter().chain(&remark).map(|d| escaped(d)).collect();
-        if p.fixed() {
-            remarks.push("fixed".into());
+    let graph = |k: usize| graph::svg(f.bodies, &Blocking::new(f.matrix, k, &all));
+    let origin = |k: usize| f.candidates.get(k).map_or("", |c| c.origin.name());
+    html! {
+        h2 { "Blocking graphs" }
+        p {
+            "An arrow from a part to each one that it meets. Orange: comes out as it is, alone or with \
+             its group; red rings and arrows: moves as one."
         }
-        let _ = writeln!(
-            text,
-            "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td></tr>",
-            escaped(p.name()),
-            p.facets(),
-            short(p.solid().volume()),
-            remarks.join("; ")
-        );
+        div.steps.graphs {
+            @for (k, d) in f.matrix.directions().iter().enumerate().take(MOST_GRAPHS) {
+                figure {
+                    (picture(graph(k)))
+                    figcaption { (arrow(*d)) " (" (origin(k)) ")" }
+                }
+            }
+        }
     }
-    text.push_str("</table>\n");
+}
+
+fn contacts(f: &Findings) -> Markup {
+    let name = |k: usize| f.bodies.assembly().parts()[k].name();
+    let size = f.bodies.assembly().size();
+    html! {
+        h2 { "Contacts" }
+        @if f.liaisons.is_empty() {
+            p { "None." }
+        } @else {
+            table {
+                tr { th { "parts" } th { "area" } th { "around" } }
+                @for l in f.liaisons.iter().take(MOST_ROWS) {
+                    tr {
+                        td { (name(l.parts[0])) ", " (name(l.parts[1])) }
+                        td.n { (short(l.area())) }
+                        td { (l.center().to_array().map(|x| short(tidy(x, size))).join(", ")) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn parts(f: &Findings) -> Markup {
+    let remarks = |k: usize, p: &Part| {
+        let fixed = p.fixed().then(|| "fixed".to_owned());
+        let all: Vec<String> =
+            p.defects().iter().cloned().chain(f.bodies.remark(k)).chain(fixed).collect();
+        all.join("; ")
+    };
+    html! {
+        h2 { "Parts" }
+        table {
+            tr { th { "part" } th { "facets" } th { "volume" } th { "remarks" } }
+            @for (k, p) in f.bodies.assembly().parts().iter().enumerate().take(MOST_ROWS) {
+                tr {
+                    td { (p.name()) }
+                    td.n { (p.facets()) }
+                    td.n { (short(p.solid().volume())) }
+                    td { (remarks(k, p)) }
+                }
+            }
+        }
+    }
 }

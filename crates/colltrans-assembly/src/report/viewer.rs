@@ -6,6 +6,7 @@
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
+use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
 use super::{Findings, arrow, tint};
@@ -16,24 +17,31 @@ const SCRIPT: &str = include_str!("../../assets/viewer.js");
 const MOST_TRIANGLES: usize = 400_000;
 
 /// A section of the report; empty without parts.
-pub(super) fn section(f: &Findings) -> String {
+pub(super) fn section(f: &Findings) -> Markup {
     let parts = f.bodies.assembly().parts();
     if parts.is_empty() {
-        return String::new();
+        return Markup::default();
     }
     let triangles: usize = parts.iter().map(Part::facets).sum();
     if triangles > MOST_TRIANGLES {
-        return format!(
-            "<p>With {triangles} triangles the assembly is too large to be turned in this page: \
-             disassembly.glb shows the plan.</p>\n"
-        );
+        return html! {
+            p {
+                "With " (triangles) " triangles the assembly is too large to be turned in this page: \
+                 disassembly.glb shows the plan."
+            }
+        };
     }
-    // Nothing in it can end the element that holds it.
-    let data = data(f).to_string().replace('<', "\\u003c");
-    format!(
-        "<div id=\"viewer\"></div>\n<script type=\"application/json\" id=\"viewer-data\">{data}\
-         </script>\n<script>{SCRIPT}</script>\n"
-    )
+    html! {
+        div id="viewer" {}
+        script type="application/json" id="viewer-data" { (script_data(&data(f))) }
+        script { (PreEscaped(SCRIPT)) }
+    }
+}
+
+/// JSON in which nothing can end the element that holds it, nor begin a comment there.
+fn script_data(data: &Value) -> PreEscaped<String> {
+    let text = data.to_string();
+    PreEscaped(text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026"))
 }
 
 fn data(f: &Findings) -> Value {

@@ -1,5 +1,5 @@
 //! The report of an assembly as the command writes it with `-o`, for the test of its viewer: parts in a
-//! tolerance, and where to write.
+//! tolerance, and where to write. One file may be a manifest, whose first part is mapped too.
 //!
 //! In `crates/colltrans-wasm/assembly`: `cargo run --release --features report --example report -- 0.1
 //! report.html *.off`
@@ -10,8 +10,10 @@ use std::path::Path;
 use colltrans::StartOverlap;
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::report::{Findings, html};
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
@@ -23,7 +25,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("give a tolerance, where to write, and files".into());
     };
     let (watch, overlap) = (Watch::default(), StartOverlap::Refuse);
-    let assembly = assembly(files)?;
+    let (assembly, is_manifest) = match files {
+        [one] if one.ends_with(".json") => (read(one, &ReadOptions::default())?, true),
+        _ => (assembly(files)?, false),
+    };
     let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance.parse()?))?;
     let start = Start::new(&bodies, watch)?;
     let liaisons = liaisons(&bodies, watch)?;
@@ -32,6 +37,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
     let options = PlanOptions { start: overlap, ..PlanOptions::default() };
     let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
+    let mut maps = Vec::new();
+    let name = assembly.parts()[0].name().to_owned();
+    if is_manifest {
+        let options = MapOptions { samples: 42, border: 0.1, start: overlap };
+        maps.push((name.clone(), RemovalMap::new(&bodies, &[0], &[], options, watch)?));
+    }
     let findings = Findings {
         bodies: &bodies,
         start: &start,
@@ -40,9 +51,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         matrix: &matrix,
         more: &[],
         plan: &plan,
-        maps: &[],
+        maps: &maps,
     };
-    Ok(std::fs::write(target, html::page(&findings, "parts"))?)
+    Ok(std::fs::write(target, html::page(&findings, if is_manifest { &name } else { "parts" }))?)
 }
 
 fn assembly(files: &[String]) -> Result<Assembly, Box<dyn Error>> {

@@ -194,7 +194,7 @@ impl Cast<'_> {
     /// nothing.
     ///
     /// # Errors
-    /// Only a search that ends without an answer, of which no case is known.
+    /// Only a search that ends without an answer: see [`QueryError::NotConverged`].
     pub fn first_contact(&self) -> Result<Outcome, QueryError> {
         self.first_contact_observed(&mut Nobody)
     }

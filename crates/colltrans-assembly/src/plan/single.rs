@@ -1,0 +1,63 @@
+//! Parts that can be taken out alone: most of every plan, without a graph for each step.
+//!
+//! Invariant: of every part that is there it is known, by direction, how many of the parts that are
+//! there it meets; those that meet none are `free`. All steps together look at each meeting once.
+
+use std::collections::BTreeSet;
+
+use crate::matrix::Matrix;
+
+/// Which parts of a group meet nothing else of it.
+pub(super) struct Single {
+    /// By direction and part.
+    met: Vec<Vec<u32>>,
+    /// By direction: who is met by whom, sorted.
+    met_by: Vec<Vec<[u32; 2]>>,
+    /// Directions and parts.
+    free: BTreeSet<(usize, usize)>,
+    wanted: Vec<bool>,
+}
+
+impl Single {
+    /// Of the parts that are `alive`; of those, `movable` ones are looked for.
+    pub(super) fn new(matrix: &Matrix, alive: &[bool], movable: impl Fn(usize) -> bool) -> Self {
+        let wanted: Vec<bool> = (0..alive.len()).map(|k| alive[k] && movable(k)).collect();
+        let (mut met, mut met_by, mut free) = (Vec::new(), Vec::new(), BTreeSet::new());
+        for k in 0..matrix.directions().len() {
+            let mut counts = vec![0; alive.len()];
+            let mut by = Vec::new();
+            for m in matrix.meetings(k).iter().filter(|m| alive[m.moving] && alive[m.fixed]) {
+                counts[m.moving] += 1;
+                by.push([m.fixed as u32, m.moving as u32]);
+            }
+            by.sort_unstable();
+            let alone = |part: &usize| wanted[*part] && counts[*part] == 0;
+            free.extend((0..alive.len()).filter(alone).map(|part| (k, part)));
+            met.push(counts);
+            met_by.push(by);
+        }
+        Self { met, met_by, free, wanted }
+    }
+
+    /// The first direction along which a part is free, and the first such part.
+    pub(super) fn first(&self) -> Option<(usize, usize)> {
+        self.free.first().copied()
+    }
+
+    /// A part is there no longer.
+    pub(super) fn remove(&mut self, part: usize) {
+        self.wanted[part] = false;
+        for (k, by) in self.met_by.iter().enumerate() {
+            self.free.remove(&(k, part));
+            let from = by.partition_point(|m| (m[0] as usize) < part);
+            for &[_, moving] in by[from..].iter().take_while(|m| m[0] as usize == part) {
+                let moving = moving as usize;
+                let count = &mut self.met[k][moving];
+                *count -= 1;
+                if *count == 0 && self.wanted[moving] {
+                    self.free.insert((k, moving));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! The files that a source names: inside the folders it may read, and nowhere else.
+//!
+//! A source comes from whoever sent it. What it names is looked for in its own folder and in those
+//! that the caller gives, where links may not lead out of them either: neither `/etc/passwd` nor a
+//! device nor an address on the net, unless the caller says otherwise. Invariant: a file is opened
+//! after its canonical path was found to be inside.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+use super::ReadOptions;
+use crate::error::ReadError;
+
+/// Why a file gives no bytes.
+#[derive(Debug)]
+pub enum FileFault {
+    /// It lies outside of the folders that may be read.
+    Outside,
+    /// It cannot be read.
+    Io(std::io::Error),
+}
+
+/// Where the files of a source come from.
+pub trait Files {
+    /// The bytes of a file; `None` if there is none.
+    ///
+    /// # Errors
+    /// It cannot be read, or must not be.
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault>;
+}
+
+/// Files in memory, by their paths.
+impl Files for BTreeMap<PathBuf, Vec<u8>> {
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+        Ok(self.get(path).cloned())
+    }
+}
+
+/// No files at all.
+pub(super) struct Nothing;
+
+impl Files for Nothing {
+    fn bytes(&self, _: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+        Ok(None)
+    }
+}
+
+/// The files of some folders.
+#[cfg(feature = "files")]
+pub(super) struct Folders {
+    /// Canonical; `None` where all files may be read.
+    inside: Option<Vec<PathBuf>>,
+}
+
+#[cfg(feature = "files")]
+impl Folders {
+    /// The folder of a source, or the source itself if it is one, and those of packages.
+    pub(super) fn of(source: &Path, options: &ReadOptions) -> Self {
+        let own = if source.is_dir() { source } else { folder_of(source) };
+        let own = if own.as_os_str().is_empty() { Path::new(".") } else { own };
+        let all = std::iter::once(own).chain(options.packages.iter().map(PathBuf::as_path));
+        // A folder that is not there holds nothing.
+        let inside = all.filter_map(|folder| folder.canonicalize().ok()).collect();
+        Self { inside: (!options.allow_outside).then_some(inside) }
+    }
+}
+
+#[cfg(feature = "files")]
+impl Files for Folders {
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+        use std::io::ErrorKind::{NotADirectory, NotFound};
+        let real = match path.canonicalize() {
+            Ok(real) => real,
+            Err(e) if matches!(e.kind(), NotFound | NotADirectory) => return Ok(None),
+            Err(e) => return Err(FileFault::Io(e)),
+        };
+        if self.inside.as_ref().is_some_and(|all| !all.iter().any(|root| real.starts_with(root))) {
+            return Err(FileFault::Outside);
+        }
+        colltrans_mesh::file::bytes(&real).map(Some).map_err(FileFault::Io)
+    }
+}
+
+/// The source itself, which is read wherever it lies, and what it may name.
+#[cfg(feature = "files")]
+pub(super) struct Given<'a> {
+    pub(super) path: &'a Path,
+    pub(super) files: &'a dyn Files,
+}
+
+#[cfg(feature = "files")]
+impl Files for Given<'_> {
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+        if path == self.path {
+            return colltrans_mesh::file::bytes(path).map(Some).map_err(FileFault::Io);
+        }
+        self.files.bytes(path)
+    }
+}
+
+/// The folder that a file lies in.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// A source, its choices, and the files it has read.
+pub(super) struct Source<'a> {
+    pub(super) path: &'a Path,
+    pub(super) options: &'a ReadOptions,
+    pub(super) files: &'a dyn Files,
+    read: RefCell<Vec<PathBuf>>,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(path: &'a Path, options: &'a ReadOptions, files: &'a dyn Files) -> Self {
+        Self { path, options, files, read: RefCell::default() }
+    }
+
+    /// The bytes of the source itself.
+    #[cfg(feature = "files")]
+    pub(super) fn own(&self) -> Result<Vec<u8>, ReadError> {
+        self.at(self.path)
+    }
+
+    /// The bytes of a file that must be there.
+    #[cfg(feature = "files")]
+    pub(super) fn at(&self, path: &Path) -> Result<Vec<u8>, ReadError> {
+        let none = || super::io(path)(std::io::Error::from(std::io::ErrorKind::NotFound));
+        self.open(path)?.ok_or_else(none)
+    }
+
+    /// The text of the source itself.
+    #[cfg(feature = "files")]
+    pub(super) fn text(&self) -> Result<String, ReadError> {
+        colltrans_mesh::file::decoded(self.own()?).map_err(super::io(self.path))
+    }
+
+    /// A file that the source names, relative to its folder: where it is, and its bytes.
+    pub(super) fn named(&self, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+        self.beside(folder_of(self.path), name)
+    }
+
+    /// A file by its name, relative to a folder.
+    pub(super) fn beside(
+        &self,
+        folder: &Path,
+        name: &str,
+    ) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
+        if let Some((scheme, _)) = name.split_once("://") {
+            let reason = format!("{name} is an address ({scheme}); only files are read");
+            return Err(super::contents(self.path, "names of files", reason));
+        }
+        let outside = || ReadError::Outside { path: self.path.into(), name: name.into() };
+        if Path::new(name).has_root() && !self.options.allow_outside {
+            return Err(outside());
+        }
+        let path = folder.join(name);
+        match self.open(&path)? {
+            Some(bytes) => Ok(Some((path, bytes))),
+            None if leaves(name) && !self.options.allow_outside => Err(outside()),
+            None => Ok(None),
+        }
+    }
+
+    fn open(&self, path: &Path) -> Result<Option<Vec<u8>>, ReadError> {
+        let refused = |fault| match fault {
+            FileFault::Outside => {
+                ReadError::Outside { path: self.path.into(), name: path.display().to_string() }
+            }
+            FileFault::Io(source) => ReadError::Io { path: path.into(), source },
+        };
+        let bytes = self.files.bytes(path).map_err(refused)?;
+        if bytes.is_some() {
+            self.read.borrow_mut().push(path.into());
+        }
+        Ok(bytes)
+    }
+
+    /// The files that were read.
+    pub(super) fn into_files(self) -> Vec<PathBuf> {
+        self.read.into_inner()
+    }
+}
+
+/// Whether a name leads out of the folder that it is relative to, as it is written.
+fn leaves(name: &str) -> bool {
+    let mut depth = 0_usize;
+    for part in Path::new(name).components() {
+        match part {
+            Component::Normal(_) => depth += 1,
+            Component::CurDir => (),
+            Component::ParentDir if depth > 0 => depth -= 1,
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return true,
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::leaves;
+
+    #[test]
+    fn names_that_lead_out_are_told_by_their_words() {
+        let inside = ["a.stl", "a/b.stl", "./a", "a/../b", "a/b/../../c", "..a", "a..b", ""];
+        let outside = ["/a", "..", "../a", "a/../../b", "./../a"];
+        assert!(inside.iter().all(|name| !leaves(name)));
+        assert!(outside.iter().all(|name| leaves(name)));
+    }
+}

@@ -17,7 +17,7 @@ use crate::solid;
 pub(crate) use assembly::AssemblyArguments;
 use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEAR_ANSWERS, CLEARANCE_ANSWERS, EXIT_CODES,
-    FORMATS,
+    FORMATS, fitted,
 };
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, threads};
@@ -28,7 +28,7 @@ use values::{angles, bytes, factor, length, picture, place, threads};
 /// --direction -z`, with proven bounds. Parts that have holes and hollows: `colltrans clear MOVING
 /// --from FIXED --direction -z`.
 #[derive(Debug, Parser)]
-#[command(version, after_help = EXIT_CODES, after_long_help = format!("{CAST_EXAMPLES}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
+#[command(name = "colltrans", version, max_term_width = help::WIDEST, after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, FORMATS, EXIT_CODES]))]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -40,37 +40,37 @@ pub(crate) enum Command {
     ///
     /// The answer is the translation at which they first meet, wherever the moving mesh is now:
     /// negative if they overlap, or if the contact lies behind.
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{CAST_EXAMPLES}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, FORMATS, EXIT_CODES]))]
     Cast(Box<PairArguments>),
     /// Say how far one mesh can move from where it is before another blocks it
     ///
     /// Takes what `cast` takes. Contacts behind do not block, and neither does a mesh along which
     /// the moving one slides.
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{CLEARANCE_ANSWERS}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEARANCE_ANSWERS, FORMATS, EXIT_CODES]))]
     Clearance(Box<PairArguments>),
     /// Say how far a part that need not be convex can move before other parts block it
     ///
     /// Several files on one side are one body, in place. Parts are closed surfaces, and are taken as
     /// they are, with their holes.
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{CLEAR_ANSWERS}\n\n{FORMATS}\n\n{EXIT_CODES}"))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEAR_ANSWERS, FORMATS, EXIT_CODES]))]
     Clear(Box<ClearArguments>),
     /// Answer every query of a file with one JSON object a line
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{BATCH_FORMAT}\n\n{EXIT_CODES}"))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[BATCH_FORMAT, EXIT_CODES]))]
     Batch(BatchArguments),
     /// Say which parts of an assembly come out, along which directions, in which order, and what
     /// holds the rest
     ///
     /// Parts are solids of any shape, not only convex ones. Without --direction, directions are
     /// found: contact normals and what is orthogonal to them, cylinder axes, the world's axes.
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{ASSEMBLY_FORMAT}\n\n{EXIT_CODES}"))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[ASSEMBLY_FORMAT, EXIT_CODES]))]
     Assembly(Box<AssemblyArguments>),
     /// Say what a mesh file holds, and whether it is convex
-    #[command(after_help = EXIT_CODES, after_long_help = format!("{FORMATS}\n\n{EXIT_CODES}"))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[FORMATS, EXIT_CODES]))]
     Info(InfoArguments),
     /// Answer a saved query once more
     ///
     /// A query that ends without an answer is saved as colltrans-case-1.json, exact in bits.
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = fitted(&[EXIT_CODES]))]
     Replay(ReplayArguments),
 }
 
@@ -305,8 +305,9 @@ pub(crate) struct BatchArguments {
     /// How much memory bodies may take that are kept for when they occur again
     ///
     /// Those used last are kept, and never fewer than two. A body of n vertices takes about 250 n
-    /// bytes. Units: kB, MB, GB, KiB, MiB, GiB; 0 keeps the last two.
-    #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "2GiB")]
+    /// bytes. Units: kB, MB, GB, KiB, MiB, GiB; 0 keeps the last two. Lines and results that wait for
+    /// each other take up to 64 MiB more.
+    #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "256MiB")]
     pub(crate) cache_bytes: usize,
     /// Take the convex hull of all vertices of every mesh, whatever its faces are
     #[arg(long)]
@@ -369,5 +370,12 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         <Arguments as clap::CommandFactory>::command().debug_assert();
+    }
+
+    #[test]
+    fn bodies_that_are_kept_have_a_bound() {
+        let asked = Arguments::parse_from(["colltrans", "batch", "-"]).command;
+        let Command::Batch(batch) = asked else { panic!("batch") };
+        assert_eq!(batch.cache_bytes, 256 << 20);
     }
 }

@@ -19,7 +19,7 @@ use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Stage, Watch};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, ReadError, Stage, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::{AssemblyArguments, direction};
@@ -93,6 +93,7 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     let mut options = ReadOptions {
         packages: arguments.package.clone(),
         skip_missing: arguments.skip_missing,
+        allow_outside: arguments.allow_outside,
         ..ReadOptions::default()
     };
     if arguments.visual {
@@ -106,7 +107,7 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
         options.joints.insert(name.trim().to_owned(), value);
     }
     let assembly = read::read(&arguments.source, &options)
-        .map_err(|e| Failure::new(Code::Input, e.to_string()))?;
+        .map_err(|e| Failure::new(Code::Input, format!("{e}{}", advice(&e))))?;
     let ignore = pairs("--ignore", &arguments.ignore)?;
     let always = pairs("--ignore-always", &arguments.ignore_always)?;
     let assembly = assembly.with_ignored(&ignore, Ignored::Overlap)?;
@@ -126,6 +127,17 @@ fn pairs<'a>(flag: &str, given: &'a [String]) -> Result<Vec<[&'a str; 2]>, Failu
     given.iter().map(names).collect()
 }
 
+/// Which flag helps.
+fn advice(error: &ReadError) -> &'static str {
+    match error {
+        ReadError::Outside { .. } => " (--allow-outside reads it)",
+        ReadError::Missing { .. } => {
+            " (--package DIR says where packages are, --skip-missing leaves out what is not there)"
+        }
+        _ => "",
+    }
+}
+
 /// The directions of the file and the samples, of length 1.
 fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure> {
     let mut all = Vec::new();
@@ -133,10 +145,11 @@ fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure
         let text = if path == Path::new("-") {
             std::io::read_to_string(std::io::stdin())
         } else {
-            std::fs::read_to_string(path)
+            colltrans_mesh::file::text(path)
         };
-        let text =
-            text.map_err(|e| Failure::new(Code::Input, format!("{}: {e}", path.display())))?;
+        let text = text.map_err(|e| {
+            Failure::new(Code::Input, format!("{}: cannot be read: {e}", path.display()))
+        })?;
         for (k, line) in text.lines().enumerate() {
             let line = line.split('#').next().unwrap_or_default().trim();
             if line.is_empty() {

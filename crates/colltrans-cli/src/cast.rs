@@ -1,6 +1,5 @@
 //! `colltrans cast` and `colltrans clearance`: queries on two mesh files.
 
-use std::fs;
 use std::io::{self, Read as _};
 use std::path::Path;
 
@@ -11,6 +10,7 @@ use crate::args::{self, DirectionArguments, PairArguments};
 use crate::body::{self, Part};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
+use crate::outputs;
 use crate::picture::{Scene, draw};
 use crate::record::{Hulls, Name, Record};
 use crate::replay;
@@ -81,7 +81,7 @@ fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
     let read = if file == Path::new("-") {
         io::stdin().read_to_string(&mut text).map(|_| ())
     } else {
-        fs::read_to_string(file).map(|read| text = read)
+        colltrans_mesh::file::text(file).map(|read| text = read)
     };
     read.map_err(|error| input(format!("cannot be read: {error}")))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).replace("\r\n", "\n");
@@ -150,8 +150,7 @@ fn answer_one(
         Answer::Contact(range) => range,
         Answer::Clearance(_) => cast.contact_range()?,
     };
-    fs::write(path, draw(&Scene { cast, answer: &range }))
-        .map_err(|error| Failure::output(path.display(), &error))
+    outputs::write(path, draw(&Scene { cast, answer: &range }).as_bytes())
 }
 
 /// One line for each direction, also for those without an answer.

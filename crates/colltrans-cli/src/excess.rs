@@ -24,6 +24,8 @@ pub(crate) struct Excess {
     pub(crate) hull_volume: f64,
     /// Volume of the part; `None` if its surface is open or oriented inwards.
     pub(crate) part_volume: Option<f64>,
+    /// Whether the part's surface is closed.
+    pub(crate) is_closed: bool,
     /// How deep the part's surface lies below the hull's; `None` without a surface, or if there is
     /// more of it than can be looked at.
     pub(crate) depth: Option<f64>,
@@ -36,6 +38,7 @@ impl Excess {
         Self {
             hull_volume: hull.volume(),
             part_volume: (is_closed && volume >= 0.0).then_some(volume),
+            is_closed,
             depth: (!mesh.faces.is_empty()).then(|| depth(mesh, hull)).flatten(),
         }
     }

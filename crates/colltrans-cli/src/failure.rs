@@ -1,8 +1,10 @@
 //! How a command ends when it does not succeed: one message, one exit code.
 
 use std::fmt::Display;
-use std::io;
+use std::io::{self, Write};
 use std::process::ExitCode;
+
+use crate::terminal::{plain, plain_json, shown};
 
 /// The exit codes that are not 0, as `--help` documents them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,44 +24,65 @@ pub(crate) enum Code {
 /// Says something on standard error that does not end the command.
 pub(crate) fn note(text: &str) {
     // Not `eprintln!`, which panics when standard error is closed.
-    let _ = io::Write::write_all(&mut io::stderr(), format!("note: {text}\n").as_bytes());
+    let line = format!("note: {}\n", shown(text));
+    let _ = io::stderr().write_all(line.as_bytes());
 }
 
-/// Says an answer on standard output.
+/// Says an answer in words on standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    io::Write::write_all(&mut io::stdout(), text.as_bytes())
-        .map_err(|error| Failure::output("standard output", &error))
+    put(&plain(text))
+}
+
+/// Says an answer in JSON on standard output.
+pub(crate) fn print_json(text: &str) -> Result<(), Failure> {
+    put(&plain_json(text))
+}
+
+fn put(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout();
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    written.map_err(|error| Failure::output("standard output", &error))
 }
 
 /// Why a command did not succeed.
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: Code,
-    /// `None` where nobody listens any more: the reader of a pipe has gone.
-    message: Option<String>,
+    /// None where nobody listens any more: the reader of a pipe has gone.
+    messages: Vec<String>,
 }
 
 impl Failure {
     pub(crate) fn new(code: Code, message: impl Into<String>) -> Self {
-        Self { code, message: Some(message.into()) }
+        Self { code, messages: vec![message.into()] }
+    }
+
+    /// Several things that are wrong, each with a message of its own.
+    pub(crate) fn several(code: Code, messages: Vec<String>) -> Self {
+        Self { code, messages }
     }
 
     /// The answer could not be written to `place`.
     pub(crate) fn output(place: impl Display, error: &io::Error) -> Self {
-        let message = (error.kind() != io::ErrorKind::BrokenPipe)
-            .then(|| format!("{place}: cannot be written: {error}"));
-        Self { code: Code::Output, message }
+        let is_heard = error.kind() != io::ErrorKind::BrokenPipe;
+        let message = is_heard.then(|| format!("{place}: cannot be written: {error}"));
+        Self { code: Code::Output, messages: message.into_iter().collect() }
     }
 
     /// What is said, for a line among others.
     pub(crate) fn into_message(self) -> String {
-        self.message.unwrap_or_default()
+        self.messages.join("; ")
     }
 
     pub(crate) fn report(self) -> ExitCode {
-        let Some(message) = self.message else { return ExitCode::SUCCESS };
+        if self.messages.is_empty() {
+            return ExitCode::SUCCESS;
+        }
         // Not `eprintln!`, which panics when standard error is closed.
-        let _ = io::Write::write_all(&mut io::stderr(), format!("error: {message}\n").as_bytes());
+        for message in &self.messages {
+            let line = format!("error: {}\n", shown(message));
+            let _ = io::stderr().write_all(line.as_bytes());
+        }
         ExitCode::from(self.code as u8)
     }
 }

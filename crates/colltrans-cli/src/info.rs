@@ -12,6 +12,7 @@ use crate::failure::{Code, Failure, print};
 use crate::numbers::{about, known, six_digits, vector};
 use crate::report::{exceeds, line};
 use crate::solid;
+use crate::terminal::shown;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut unreadable = Vec::new();
@@ -28,15 +29,11 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
             Err(error) => unreadable.push(error.to_string()),
         }
     }
-    if unreadable.is_empty() {
-        Ok(())
-    } else {
-        Err(Failure::new(Code::Input, unreadable.join("\nerror: ")))
-    }
+    if unreadable.is_empty() { Ok(()) } else { Err(Failure::several(Code::Input, unreadable)) }
 }
 
 fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
-    let mut text = format!("{}\n", path.display());
+    let mut text = format!("{}\n", shown(path.display()));
     line(&mut text, "vertices", &mesh.vertices.len().to_string());
     line(&mut text, "faces", &faces(mesh));
     let not_finite = mesh.vertices.iter().position(|v| !v.is_finite());

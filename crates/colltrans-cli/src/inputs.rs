@@ -1,10 +1,9 @@
 //! No output overwrites an input: files by what they are, not by what they are called.
 
-use std::collections::HashSet;
 use std::fs::Metadata;
 use std::io;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use crate::failure::{Code, Failure};
 
@@ -72,19 +71,26 @@ pub(crate) fn refuse_overwriting(
     }
 }
 
-/// The files that have been read, by any thread.
-#[derive(Debug, Default)]
-pub(crate) struct FilesRead(Mutex<HashSet<Identity>>);
+/// A file that must not be read, because something else will take its place; by any thread.
+#[derive(Debug)]
+pub(crate) struct Watched {
+    identity: Option<Identity>,
+    was_read: AtomicBool,
+}
 
-impl FilesRead {
+impl Watched {
+    pub(crate) const fn new(identity: Option<Identity>) -> Self {
+        Self { identity, was_read: AtomicBool::new(false) }
+    }
+
     /// To be called before a file is read.
     pub(crate) fn note(&self, path: &Path) {
-        if let Some(identity) = Identity::of(path) {
-            self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(identity);
+        if self.identity.is_some() && Identity::of(path) == self.identity {
+            self.was_read.store(true, Relaxed);
         }
     }
 
-    pub(crate) fn contains(&self, identity: &Identity) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).contains(identity)
+    pub(crate) fn was_read(&self) -> bool {
+        self.was_read.load(Relaxed)
     }
 }

@@ -3,7 +3,8 @@
 //! The data's way: [`args`] -> [`body`] (mesh file to polyhedron; [`excess`]: what a hull has more)
 //! -> the library's `Cast` -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
-//! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read.
+//! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read, [`outputs`]
+//! writes files whole or not at all, [`terminal`] keeps names from steering it.
 //! [`info`] looks at one mesh, [`assembly`] at many parts. Parts that need not be convex go from [`solid`] (mesh files to
 //! solids, and the library's part) by way of [`clear`]; [`progress`] shows how far work is.
 
@@ -18,12 +19,14 @@ mod failure;
 mod info;
 mod inputs;
 mod numbers;
+mod outputs;
 mod picture;
 mod progress;
 mod record;
 mod replay;
 mod report;
 mod solid;
+mod terminal;
 
 use std::io::{self, Write};
 use std::process::ExitCode;

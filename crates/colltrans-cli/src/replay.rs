@@ -14,7 +14,7 @@ use crate::report;
 pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
     let place = arguments.case.display();
     let input = |what: String| Failure::new(Code::Input, format!("{place}: {what}"));
-    let text = fs::read_to_string(&arguments.case)
+    let text = colltrans_mesh::file::text(&arguments.case)
         .map_err(|error| input(format!("cannot be read: {error}")))?;
     let case = Case::from_json(&text).map_err(|error| input(error.to_string()))?;
     let cast = case.cast()?;
@@ -44,7 +44,12 @@ fn save(cast: &Cast<'_>) -> Option<PathBuf> {
     for number in 1..1000 {
         let path = PathBuf::from(format!("colltrans-case-{number}.json"));
         if let Ok(mut file) = File::create_new(&path) {
-            return file.write_all(cast.to_json().as_bytes()).ok().map(|()| path);
+            let written = file.write_all(cast.to_json().as_bytes()).and_then(|()| file.sync_all());
+            if written.is_err() {
+                // Half a case is none.
+                let _ = fs::remove_file(&path);
+            }
+            return written.ok().map(|()| path);
         }
     }
     None

@@ -262,8 +262,13 @@ pub(crate) fn exceeds(excess: &Excess) -> String {
         }
         None => {
             format!(
-                "volume {}, the part's is unknown (it is not closed)",
-                six_digits(excess.hull_volume)
+                "volume {}, the part's is unknown ({})",
+                six_digits(excess.hull_volume),
+                if excess.is_closed {
+                    "its faces are oriented inwards"
+                } else {
+                    "it is not closed"
+                }
             )
         }
     };

@@ -53,6 +53,11 @@ pub(crate) struct AssemblyArguments {
     /// Where `package://` of a URDF file is looked for
     #[arg(long, value_name = "DIR")]
     pub(crate) package: Vec<PathBuf>,
+    /// Read files that SOURCE names and that lie outside of its folder and of every --package
+    ///
+    /// By an absolute path, by `..`, or behind a link. Only for a source that you trust.
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
     /// Leave out meshes that cannot be found, with a note
     #[arg(long)]
     pub(crate) skip_missing: bool,

@@ -1,4 +1,93 @@
-//! What `--help` says at length.
+//! What `--help` says at length, in lines that fit the terminal.
+
+/// Lines are no longer than this, however wide the terminal is.
+pub(super) const WIDEST: usize = 100;
+
+/// Columns of the terminal, as clap finds them too.
+fn columns() -> usize {
+    let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    let columns = || std::env::var("COLUMNS").ok()?.parse().ok();
+    terminal.or_else(columns).filter(|c| *c > 0).unwrap_or(WIDEST).min(WIDEST)
+}
+
+/// Texts one below the other, filled into the terminal's columns.
+pub(super) fn fitted(texts: &[&str]) -> String {
+    let width = columns();
+    texts.iter().map(|text| filled(text, width)).collect::<Vec<_>>().join("\n\n")
+}
+
+/// A text whose paragraphs are filled anew where lines are longer than `width`.
+fn filled(text: &str, width: usize) -> String {
+    let mut out: Vec<String> = Vec::new();
+    let mut lines = text.lines().peekable();
+    while let Some(first) = lines.next() {
+        let hang = hang(first);
+        let mut words = vec![first.to_owned()];
+        let mut last = first;
+        while let Some(next) = lines.next_if(|next| continues(last, next, hang)) {
+            words.push(next.trim_start().to_owned());
+            last = next;
+        }
+        let fits = |line: &String| line.chars().count() <= width;
+        if words.len() == 1 && fits(&words[0]) {
+            out.push(first.to_owned());
+        } else {
+            fill(&words.join(" "), hang, is_command(first), width, &mut out);
+        }
+    }
+    out.join("\n")
+}
+
+fn is_command(line: &str) -> bool {
+    line.starts_with("    ") && line.contains("colltrans ")
+}
+
+fn indent(line: &str) -> usize {
+    line.len() - line.trim_start().len()
+}
+
+/// Where the lines of a paragraph begin after the first: behind the word that is explained, if the
+/// line explains one.
+fn hang(line: &str) -> usize {
+    let at = indent(line);
+    let body = &line[at..];
+    if is_command(line) {
+        return at + 2;
+    }
+    let explained = body.find("  ").filter(|_| at > 0).map(|end| {
+        let gap = body[end..].len() - body[end..].trim_start().len();
+        at + end + gap
+    });
+    match explained {
+        Some(column) => column,
+        None if body.starts_with('{') => at + 1,
+        None => at,
+    }
+}
+
+/// Whether a line goes on with the paragraph of the one before, which was full.
+fn continues(last: &str, next: &str, hang: usize) -> bool {
+    const FULL: usize = 84;
+    let is_full = last.chars().count() >= FULL;
+    is_full && !next.trim().is_empty() && indent(next) == hang && !is_command(last)
+}
+
+fn fill(text: &str, hang: usize, is_command: bool, width: usize, out: &mut Vec<String>) {
+    let mark = if is_command { " \\" } else { "" };
+    let mut line = " ".repeat(indent(text));
+    let mut is_empty = true;
+    // Blanks between words stay: they make columns.
+    for word in text.trim_start().split_inclusive(' ') {
+        let more = word.trim_end().chars().count() + mark.len();
+        if !is_empty && line.chars().count() + more > width {
+            out.push(format!("{}{mark}", line.trim_end()));
+            line = " ".repeat(hang);
+        }
+        line.push_str(word);
+        is_empty = false;
+    }
+    out.push(line.trim_end().to_owned());
+}
 
 pub(super) const EXIT_CODES: &str = "\
 Exit codes:
@@ -157,3 +246,37 @@ With --json:
 
 With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each
 map a .svg, .png and .json."#;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_fits_every_terminal() {
+        let texts = [
+            EXIT_CODES,
+            FORMATS,
+            CAST_EXAMPLES,
+            CLEARANCE_ANSWERS,
+            CLEAR_ANSWERS,
+            BATCH_FORMAT,
+            ASSEMBLY_FORMAT,
+        ];
+        let words = |text: &str| {
+            let all = text.split_whitespace().filter(|word| *word != "\\");
+            all.map(str::to_owned).collect::<Vec<_>>()
+        };
+        for text in texts {
+            for width in [60, 80, 100] {
+                let filled = filled(text, width);
+                let longest = filled.lines().max_by_key(|line| line.chars().count()).unwrap();
+                assert!(longest.chars().count() <= width, "{longest}");
+                assert_eq!(words(&filled), words(text));
+            }
+        }
+        let explained = "  back on   how far to go back, or on,\n            to be free";
+        assert_eq!(filled(explained, 80), explained);
+        let command = filled("    colltrans cast peg.stl plate.stl --direction -z", 40);
+        assert_eq!(command, "    colltrans cast peg.stl plate.stl \\\n      --direction -z");
+    }
+}

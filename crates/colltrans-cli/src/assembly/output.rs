@@ -1,7 +1,6 @@
 //! What is printed, and the files of `-o`.
 
 use std::fmt::Write as _;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use colltrans_assembly::map;
@@ -9,8 +8,10 @@ use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::{Assembly, Fit};
 
 use crate::args::AssemblyArguments;
-use crate::failure::{Failure, note};
+use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::refuse_overwriting;
+use crate::outputs::{FileNames, Outputs};
+use crate::terminal::shown;
 
 pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), Failure> {
     for text in f.bodies.assembly().notes() {
@@ -23,8 +24,7 @@ pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), F
     if let Some(folder) = &arguments.output {
         files(f, arguments, folder, &json)?;
     }
-    let text = if arguments.json { format!("{json}\n") } else { summary(f) };
-    io::stdout().write_all(text.as_bytes()).map_err(|e| Failure::output("standard output", &e))
+    if arguments.json { print_json(&format!("{json}\n")) } else { print(&summary(f)) }
 }
 
 fn files(
@@ -33,26 +33,23 @@ fn files(
     folder: &Path,
     json: &serde_json::Value,
 ) -> Result<(), Failure> {
-    let failed = |path: &Path, e: &io::Error| Failure::output(path.display(), e);
-    std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
-    let put = |name: &str, bytes: &[u8]| {
-        let path = folder.join(name);
-        std::fs::write(&path, bytes).map_err(|e| failed(&path, &e))
-    };
+    std::fs::create_dir_all(folder).map_err(|e| Failure::output(folder.display(), &e))?;
+    let mut outputs = Outputs::default();
+    let mut put = |name: &str, bytes: &[u8]| outputs.write(folder.join(name), bytes);
     let source = arguments.source.canonicalize().unwrap_or_else(|_| arguments.source.clone());
     let title = source.file_stem().map_or("assembly".into(), |s| s.to_string_lossy().into_owned());
     put("report.html", html::page(f, &title).as_bytes())?;
     put("disassembly.glb", &glb::animation(f.bodies.assembly(), f.plan))?;
     put("assembly.json", json.to_string().as_bytes())?;
     put("matrix.csv", f.matrix.to_csv(f.bodies).as_bytes())?;
-    for (name, map) in f.maps {
+    let names = map_names(f.maps.iter().map(|(name, _)| name));
+    for ((name, map), [svg, png, json]) in f.maps.iter().zip(names) {
         let title = format!("Room of {name} in all directions");
-        let [svg, png, json] = map_names(name);
         put(&svg, map::svg(map, &title).as_bytes())?;
         put(&png, &map::png(map, 1_200))?;
         put(&json, map.to_json(f.bodies).to_string().as_bytes())?;
     }
-    Ok(())
+    outputs.finish()
 }
 
 /// None of the files that will be written must take the place of one that is read.
@@ -64,23 +61,27 @@ pub(super) fn refuse_inputs(
     let files = assembly.files().iter().chain(&arguments.directions);
     let inputs: Vec<&Path> = files.map(PathBuf::as_path).collect();
     let fixed = ["report.html", "disassembly.glb", "assembly.json", "matrix.csv"];
-    let maps = arguments.map.iter().flat_map(|name| map_names(name));
+    let maps = map_names(&arguments.map).into_iter().flatten();
     for name in fixed.into_iter().map(str::to_owned).chain(maps) {
         refuse_overwriting(&folder.join(name), &inputs, "give another folder")?;
     }
     Ok(())
 }
 
-fn map_names(name: &str) -> [String; 3] {
-    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    let file: String = name.chars().map(safe).collect();
-    ["svg", "png", "json"].map(|extension| format!("map-{file}.{extension}"))
+/// The files of each map.
+fn map_names<'a>(maps: impl IntoIterator<Item = &'a String>) -> Vec<[String; 3]> {
+    let mut names = FileNames::default();
+    let files = |name: &String| {
+        let name = names.of(name);
+        ["svg", "png", "json"].map(|extension| format!("map-{name}.{extension}"))
+    };
+    maps.into_iter().map(files).collect()
 }
 
 /// A few lines for people.
 fn summary(f: &Findings) -> String {
     let assembly = f.bodies.assembly();
-    let names = |parts: &[usize]| assembly.names(parts).join(", ");
+    let names = |parts: &[usize]| shown(assembly.names(parts).join(", "));
     let fit = match f.bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {length}"),
         Fit::Apart(length) => format!("{length} to keep apart"),
@@ -88,7 +89,7 @@ fn summary(f: &Findings) -> String {
     let mut text = format!("{} parts, {fit}\n", assembly.parts().len());
     for (k, p) in assembly.parts().iter().enumerate() {
         for defect in p.defects().iter().chain(&f.bodies.remark(k)) {
-            let _ = writeln!(text, "  {}: {defect}", p.name());
+            let _ = writeln!(text, "  {}: {}", shown(p.name()), shown(defect));
         }
     }
     overlaps(&mut text, f);
@@ -102,7 +103,7 @@ fn summary(f: &Findings) -> String {
         let way = format!("{} along {x},{y},{z}", step.travel);
         let _ = writeln!(text, "  {}. {}{within}: {way}", k + 1, names(&step.parts));
         if let Some(ignored) = step.ignores(assembly) {
-            let _ = writeln!(text, "     {ignored}");
+            let _ = writeln!(text, "     {}", shown(ignored));
         }
         if !step.surfaces.is_empty() {
             let _ = writeln!(text, "     rests on an open surface: {}", names(&step.surfaces));
@@ -112,19 +113,20 @@ fn summary(f: &Findings) -> String {
         let _ = writeln!(text, "left\n  {}", names(&f.plan.left));
     }
     for stuck in &f.plan.stuck {
+        let because = shown(stuck.because(f.bodies));
         let _ = writeln!(
             text,
-            "stuck along the directions asked\n  {}: {}",
-            names(&stuck.parts),
-            stuck.because(f.bodies)
+            "stuck along the directions asked\n  {}: {because}",
+            names(&stuck.parts)
         );
     }
     for (name, map) in f.maps {
         let share = 100.0 * map.free_share();
         let _ = writeln!(
             text,
-            "map of {name}\n  {share:.3} % of all directions are free, in {} regions; {} isolated \
+            "map of {}\n  {share:.3} % of all directions are free, in {} regions; {} isolated \
              free directions",
+            shown(name),
             map.regions.len(),
             map.isolated.len()
         );
@@ -139,7 +141,7 @@ fn overlaps(text: &mut String, f: &Findings) {
     }
     text.push_str("overlapping with this tolerance\n");
     for o in remaining {
-        let [a, b] = o.parts.map(|k| f.bodies.assembly().parts()[k].name());
+        let [a, b] = o.parts.map(|k| shown(f.bodies.assembly().parts()[k].name()));
         let depth = o.depth.map_or("by more than their size".into(), |d| format!("by {d}"));
         let _ = writeln!(text, "  {a}, {b} {depth}");
     }

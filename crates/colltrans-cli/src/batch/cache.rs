@@ -178,6 +178,26 @@ mod tests {
     }
 
     #[test]
+    fn bodies_that_never_come_again_take_no_more_than_the_capacity() {
+        let (capacity, mut most) = (64 << 10, 0);
+        let cache = Cache::new(capacity);
+        for k in 0..2_000 {
+            let point = DVec3::splat(f64::from(k));
+            let built = cache.get(key(point.x), |_| {
+                let body = ConvexPolyhedron::from_points(&[point]).unwrap();
+                Ok(Arc::new(Shape::Convex(Part { body, excess: None, note: None })))
+            });
+            drop(built.unwrap());
+            let state = cache.lock();
+            let kept: usize =
+                state.entries.iter().map(|(key, e)| weight(key, e.body.get().unwrap())).sum();
+            assert_eq!(kept, state.total);
+            most = most.max(kept);
+        }
+        assert!(most <= capacity && most > capacity / 2, "{most} of {capacity} bytes");
+    }
+
+    #[test]
     fn the_two_bodies_of_a_query_are_kept_however_large() {
         assert_eq!(builds(0, &[1.0, 2.0, 1.0, 2.0, 1.0]), [1, 2, 2, 2, 2]);
         assert_eq!(builds(0, &[1.0, 2.0, 3.0, 2.0, 1.0]), [1, 2, 3, 3, 4]);

@@ -22,7 +22,7 @@ use indicatif::ProgressBar;
 
 use crate::args::BatchArguments;
 use crate::failure::{Code, Failure};
-use crate::inputs::{FilesRead, overwritten};
+use crate::inputs::overwritten;
 use crate::progress;
 use cache::Cache;
 use pipeline::{Line, Pipeline};
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         hull: arguments.hull,
         body: arguments.body,
         cache: Cache::new(arguments.cache_bytes),
-        read: FilesRead::default(),
+        watched: results.watched(),
     };
     let bar = progress_bar(size);
     let pipeline = Pipeline::new(queries, writer, threads);
@@ -62,15 +62,13 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     let end = pipeline.finish();
     if let Some(error) = end.write_error {
-        let failure = Failure::output(&results.name, &error);
-        results.discard();
-        return Err(failure);
+        return Err(Failure::output(&results.name, &error));
     }
-    results.finish(&desk.read)?;
     if let Some(error) = end.read_error {
         let name = arguments.queries.display();
-        return Err(Failure::new(Code::Input, format!("{name}: cannot be read: {error}")));
+        return Err(results.leave(&format!("not whole: {name} cannot be read: {error}")));
     }
+    results.finish(&desk.watched)?;
     if end.failed > 0 {
         let message = format!("{} of {} queries have no answer", end.failed, end.answered);
         return Err(Failure::new(Code::Lines, message));

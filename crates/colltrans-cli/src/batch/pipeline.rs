@@ -1,7 +1,8 @@
 //! Lines to threads and results back in order, in bounded memory.
 //!
 //! Invariant: chunks are numbered as they are read; at most `window` chunks are read but not yet
-//! written, so a slow chunk stops the reading, not the memory. A thread that reads holds
+//! written, and no more is read while those hold [`MOST_BYTES`], so a slow chunk stops the reading, not
+//! the memory. A thread that reads holds
 //! the input's lock while it waits for room; whoever makes room needs only the output's lock.
 
 use std::collections::BTreeMap;
@@ -21,6 +22,9 @@ const CHUNK_LINES: usize = 256;
 const CHUNK_BYTES: usize = 1 << 20;
 /// Chunks under way per thread.
 const CHUNKS_PER_THREAD: u64 = 4;
+/// Bytes of lines that are being answered and of results that wait for those before them. One more line
+/// may be read, and its result written.
+const MOST_BYTES: usize = 64 << 20;
 
 /// A line of the input.
 #[derive(Clone, Copy)]
@@ -61,6 +65,8 @@ struct Output {
     /// Number of the chunk that is to be written next.
     next: u64,
     waiting: BTreeMap<u64, Answers>,
+    /// Bytes of chunks and results under way.
+    held: usize,
     answered: u64,
     failed: u64,
     error: Option<io::Error>,
@@ -103,6 +109,7 @@ impl Pipeline {
                 results,
                 next: 0,
                 waiting: BTreeMap::new(),
+                held: 0,
                 answered: 0,
                 failed: 0,
                 error: None,
@@ -129,8 +136,11 @@ impl Pipeline {
                 answers.answered += 1;
                 answers.failed += u64::from(!good);
             }
+            let answered = self.deliver(chunk.number, chunk.text.len(), answers);
             spent = chunk.text;
-            let answered = self.deliver(chunk.number, answers);
+            // Not for ever as much as the longest line took.
+            spent.clear();
+            spent.shrink_to(2 * CHUNK_BYTES);
             bar.set_position(chunk.bytes_read);
             bar.set_message(answered.to_string());
         }
@@ -152,19 +162,23 @@ impl Pipeline {
     fn next_chunk(&self, spent: Vec<u8>) -> Option<Chunk> {
         let mut input = lock(&self.input);
         let mut output = lock(&self.output);
-        while output.error.is_none() && input.chunk_number >= output.next + self.window {
+        while output.error.is_none() && output.is_full(input.chunk_number, self.window) {
             output = self.written.wait(output).unwrap_or_else(PoisonError::into_inner);
         }
         if output.error.is_some() {
             return None;
         }
         drop(output);
-        input.next_chunk(spent)
+        let chunk = input.next_chunk(spent)?;
+        lock(&self.output).held += chunk.text.len();
+        Some(chunk)
     }
 
     /// Writes what can be written in order; returns how many queries are answered.
-    fn deliver(&self, number: u64, answers: Answers) -> u64 {
+    fn deliver(&self, number: u64, read: usize, mut answers: Answers) -> u64 {
+        answers.text.shrink_to_fit();
         let mut output = lock(&self.output);
+        output.held = output.held - read + answers.text.len();
         output.waiting.insert(number, answers);
         output.write_in_order();
         self.written.notify_all();
@@ -232,8 +246,14 @@ impl Input {
 }
 
 impl Output {
+    /// Whether the chunk of a number must wait. The one that is to be written next never does.
+    fn is_full(&self, chunk: u64, window: u64) -> bool {
+        chunk >= self.next + window || chunk > self.next && self.held > MOST_BYTES
+    }
+
     fn write_in_order(&mut self) {
         while let Some(answers) = self.waiting.remove(&self.next) {
+            self.held -= answers.text.len();
             self.next += 1;
             self.answered += answers.answered;
             self.failed += answers.failed;

@@ -15,7 +15,7 @@ use super::recent::Recent;
 use super::usual;
 use crate::args::{BodyArguments, SolverName};
 use crate::body::{self, Part};
-use crate::inputs::FilesRead;
+use crate::inputs::Watched;
 use crate::record::{Hulls, Name, Record};
 use crate::replay;
 use crate::solid::{self, Question};
@@ -28,8 +28,8 @@ pub(crate) struct Desk {
     pub(crate) hull: bool,
     pub(crate) body: BodyArguments,
     pub(crate) cache: Cache,
-    /// The mesh files.
-    pub(crate) read: FilesRead,
+    /// The file that the results will replace.
+    pub(crate) watched: Watched,
 }
 
 /// A line. Its bodies are read, or what is written of them.
@@ -190,7 +190,7 @@ impl Desk {
         let path = self.folder.join(path);
         let key = Key::Solid { path: path.clone(), scale: scale.to_bits(), open };
         self.cache.get(key, |_| {
-            self.read.note(&path);
+            self.watched.note(&path);
             let merge_tolerance = self.body.merge_tolerance();
             let recipe = solid::Recipe { scale, merge_tolerance, open };
             let body = solid::Body::load(&[path], recipe, || ())?;
@@ -202,7 +202,7 @@ impl Desk {
         let path = self.folder.join(path);
         let key = Key::Mesh { path: path.clone(), hull, scale: scale.to_bits() };
         self.cache.get(key, |_| {
-            self.read.note(&path);
+            self.watched.note(&path);
             let part = body::load(&path, self.body.recipe(hull, scale))?;
             Ok(Arc::new(Shape::Convex(part)))
         })
@@ -340,6 +340,9 @@ fn syntax_message(number: u64, error: &serde_json::Error) -> String {
         .replace("floating point", "number")
         .replace("expected f64", "expected a number")
         .replace("expected path string", "expected a path")
+        .replace("expected ident", "it is no JSON")
+        .replace("expected value", "it is no JSON")
+        .replace("EOF while parsing", "the line ends inside")
         .replace("expected an array of length", "expected numbers in an array of length");
     format!("line {number}, column {}: {what}", error.column())
 }

@@ -2,13 +2,13 @@
 
 mod words;
 
-use std::fs;
 use std::path::Path;
 
 use crate::args::ClearArguments;
 use crate::cast::{Directions, all_answered, directions};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
+use crate::outputs;
 use crate::picture::draw_solids;
 use crate::progress;
 use crate::record::{Name, Record};
@@ -54,8 +54,7 @@ fn answer_one(arguments: &ClearArguments, question: &Question<'_>) -> Result<(),
     };
     print(&text)?;
     match &arguments.picture {
-        Some(path) => fs::write(path, draw_solids(question, &answer))
-            .map_err(|error| Failure::output(path.display(), &error)),
+        Some(path) => outputs::write(path, draw_solids(question, &answer).as_bytes()),
         None => Ok(()),
     }
 }

@@ -7,6 +7,7 @@ use crate::numbers::{decade, known_vector, number, unit_vector};
 use crate::record::Record;
 use crate::report::{feature, line, safely, times};
 use crate::solid::{Answer, Kind, Overlap, Stop, Touch};
+use crate::terminal::shown;
 
 /// Below this many tolerances a body hardly moves: perhaps a fit is tighter than the tolerance.
 const HARDLY: f64 = 4.0;
@@ -91,13 +92,13 @@ fn blocked(text: &mut String, answer: &Answer<'_>, stop: &Stop<'_>, direction: D
 }
 
 fn touched(touch: &Touch<'_>) -> String {
-    format!("{} of {}", feature(&touch.feature), touch.file.display())
+    format!("{} of {}", feature(&touch.feature), shown(touch.file.display()))
 }
 
 fn overlaps(text: &mut String, answer: &Answer<'_>) {
     let ignored = !matches!(answer.kind, Kind::Overlapping);
     for Overlap { moving, fixed, depth } in &answer.overlaps {
-        let (moving, fixed) = (moving.display(), fixed.display());
+        let (moving, fixed) = (shown(moving.display()), shown(fixed.display()));
         let depth = match depth {
             Some(depth) => format!("a tolerance of {} would part them", above(*depth)),
             None => "no tolerance would part them".into(),

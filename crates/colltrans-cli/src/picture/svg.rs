@@ -6,6 +6,7 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec2;
+use colltrans_assembly::report::escaped;
 
 /// Line width, colour, dashes.
 #[derive(Debug, Clone, Copy)]
@@ -184,7 +185,7 @@ impl Page {
     /// Text on a base line; `anchor` is `start`, `middle` or `end`.
     pub(super) fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
         let (x, y) = (number(at.x), number(at.y));
-        let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let text = escaped(text);
         let _ = writeln!(
             self.body,
             r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {look}>{text}</text>"#
@@ -211,7 +212,7 @@ impl Page {
             text,
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" stroke-linecap="round" stroke-linejoin="round">"#
         );
-        let _ = writeln!(text, "<title>{title}</title>");
+        let _ = writeln!(text, "<title>{}</title>", escaped(title));
         let mut clip = Self::new(window);
         clip.rectangle("", window);
         let _ = writeln!(text, "<defs><clipPath id=\"window\">{}</clipPath></defs>", clip.body);

@@ -123,8 +123,9 @@ fn bounded(text: &mut Vec<u8>, name: &str, value: Option<Bounded>) {
 /// Whatever serde can write.
 fn any<T: Serialize>(text: &mut Vec<u8>, value: &T) {
     // Nothing in a record can fail to be written; if it does, the line is still one.
-    let written = serde_json::to_vec(value);
-    text.extend_from_slice(written.as_deref().unwrap_or(b"null"));
+    let written = serde_json::to_string(value);
+    let written = written.as_deref().unwrap_or("null");
+    text.extend_from_slice(crate::terminal::plain_json(written).as_bytes());
 }
 
 /// A word of the program's own.
@@ -181,7 +182,7 @@ fn hulls(text: &mut Vec<u8>, Hulls { moving, fixed }: Hulls) {
     let hulls = [(r#""moving":"#, moving), (r#""fixed":"#, fixed)];
     let mut before = b'{';
     for (name, excess) in hulls {
-        if let Some(Excess { hull_volume, part_volume, depth }) = excess {
+        if let Some(Excess { hull_volume, part_volume, is_closed: _, depth }) = excess {
             text.push(before);
             text.extend_from_slice(name.as_bytes());
             field(text, r#"{"hull_volume":"#, Some(hull_volume), number);
@@ -212,7 +213,8 @@ mod tests {
     use super::*;
 
     fn full() -> Record {
-        let excess = Excess { hull_volume: 0.1, part_volume: None, depth: Some(2.0) };
+        let excess =
+            Excess { hull_volume: 0.1, part_volume: None, is_closed: false, depth: Some(2.0) };
         let overlap = StartOverlap { moving: Some("a\"b".into()), fixed: None, depth: Some(0.5) };
         let bounded = |value| Bounded { value, lower: 2.0, upper: f64::INFINITY };
         let feature = |vertices| FeatureRecord { kind: "edge", vertices };

@@ -240,10 +240,14 @@ fn sources_that_are_wrong_are_named() {
         refused(place, &["bad.urdf"], 3, &["bad.urdf: link arm", "finite and positive"]);
     }
     std::fs::create_dir(place.join("empty")).unwrap();
-    let output = run(place, &["empty"]);
-    assert_eq!(output.status.code(), Some(0));
-    assert!(stderr(&output).contains("no STL, OBJ, PLY or OFF file is in this folder"));
-    assert!(stdout(&output).starts_with("0 parts"));
+    refused(place, &["empty"], 3, &["no STL, OBJ, PLY or OFF file is in this folder; it is empty"]);
+    std::fs::create_dir(place.join("steps")).unwrap();
+    write("steps/a.step", "ISO-10303-21;");
+    write("steps/b.STP", "ISO-10303-21;");
+    let words = ["but 1 .step file, 1 .stp file;", "tessellate each part"];
+    refused(place, &["steps"], 3, &words);
+    std::fs::create_dir_all(place.join("outer/inner")).unwrap();
+    refused(place, &["outer"], 3, &["but 1 folder; give the folder that holds the meshes"]);
 }
 
 #[test]
@@ -317,4 +321,154 @@ fn parts_thinner_than_the_tolerance_are_told_of() {
     let found = facts(folder.path(), &["two.toml", "--tolerance", "3"]);
     assert!(found["parts"][0]["remark"].as_str().unwrap().contains("nothing of it is left"));
     assert!(facts(folder.path(), &["two.toml"])["parts"][0]["remark"].is_null());
+}
+
+#[test]
+fn files_outside_of_the_source_need_a_flag_that_is_named() {
+    let folder = stacked();
+    let place = folder.path();
+    std::fs::create_dir(place.join("in")).unwrap();
+    let manifest = "[[part]]\nfile = '../cube.off'\n";
+    std::fs::write(place.join("in/m.toml"), manifest).unwrap();
+    refused(place, &["in/m.toml"], 3, &["../cube.off", "outside", "--allow-outside"]);
+    answered(place, &["in/m.toml", "--allow-outside"]);
+    answered(place, &["in/m.toml", "--package", "."]);
+    refused(place, &["lost.urdf"], 3, &["--package DIR", "--skip-missing"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_never_opened() {
+    let folder = stacked();
+    let place = folder.path();
+    let made = std::process::Command::new("mkfifo").arg(place.join("p.stl")).status().unwrap();
+    assert!(made.success());
+    for arguments in [
+        &["assembly", "p.stl"][..],
+        &["info", "p.stl"],
+        &["cast", "p.stl", "cube.off", "--direction", "x"],
+        &["clear", "cube.off", "--from", "p.stl", "--direction", "x"],
+        &["cast", "cube.off", "cube.off", "--directions", "/dev/zero"],
+        &["assembly", "two.toml", "--directions", "/dev/zero"],
+        &["replay", "/dev/zero"],
+    ] {
+        let output = colltrans(place).args(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(3), "{arguments:?}");
+        assert!(stderr(&output).contains("not an ordinary file"), "{}", stderr(&output));
+    }
+}
+
+/// Codes in names reach neither the terminal nor, as formulas or markup, the files.
+#[test]
+fn names_that_steer_a_terminal_are_written_out() {
+    let folder = stacked();
+    let place = folder.path();
+    let name = "=low\u{1b}[2J\u{9b}31m\nstep\u{202e}<script>";
+    let manifest = serde_json::json!({"unit": "<script>alert(1)</script>", "parts": [
+        {"file": "cube.off", "name": name},
+        {"file": "cube.off", "name": "high", "translation": [0, 0, 0.5]},
+    ]});
+    std::fs::write(place.join("m.json"), manifest.to_string()).unwrap();
+    let clean = |text: &str| {
+        assert!(
+            !text.contains(|c: char| c.is_control() && c != '\n' || c == '\u{202e}'),
+            "{text:?}"
+        );
+    };
+    for arguments in [&["m.json", "--map", name, "-o", "out"][..], &["m.json", "--json"]] {
+        let output = run(place, arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        clean(&stdout(&output));
+        clean(&stderr(&output));
+    }
+    let told = answered(place, &["m.json"]);
+    assert!(told.contains(r"=low\u{1b}[2J\u{9b}31m\nstep\u{202e}<script>"), "{told}");
+    assert_eq!(facts(place, &["m.json"])["parts"][0]["name"], name);
+    let page = std::fs::read_to_string(place.join("out/report.html")).unwrap();
+    assert!(!page.contains("<script>alert"));
+    let table = std::fs::read_to_string(place.join("out/matrix.csv")).unwrap();
+    assert!(table.contains("\"'=low") && !table.contains(",=low"), "{table}");
+    let output = run(place, &["m.json", "--map", "\u{1b}[31m"]);
+    assert_eq!(output.status.code(), Some(2));
+    clean(&stderr(&output));
+    // As the name of a file, too.
+    let file = "c\u{1b}[31m\n.off";
+    std::fs::copy(place.join("cube.off"), place.join(file)).unwrap();
+    std::fs::copy(place.join("broken.off"), place.join("b\u{7}.off")).unwrap();
+    for arguments in [
+        &["info", file][..],
+        &["info", "b\u{7}.off"],
+        &["assembly", "b\u{7}.off"],
+        &["clear", file, "--from", "cube.off", "--direction", "x", "--moving-pose=-3,0,0"],
+        &["clear", file, "--from", "cube.off", "--direction", "x", "--json"],
+    ] {
+        let output = colltrans(place).args(arguments).output().unwrap();
+        clean(&stdout(&output));
+        clean(&stderr(&output));
+        assert!((stdout(&output) + &stderr(&output)).contains("\\u"), "{arguments:?}");
+    }
+}
+
+#[test]
+fn two_maps_whose_names_are_one_file_get_two() {
+    let folder = stacked();
+    let text = "[[part]]\nfile = 'cube.off'\nname = 'a/b'\n[[part]]\nfile = 'cube.off'\n\
+                name = 'A_B'\ntranslation = [0, 0, 3]\n";
+    std::fs::write(folder.path().join("m.toml"), text).unwrap();
+    let arguments = ["m.toml", "--map", "a/b", "--map", "A_B", "-o", "out", "--samples", "12"];
+    answered(folder.path(), &arguments);
+    let names = std::fs::read_dir(folder.path().join("out")).unwrap();
+    let mut names: Vec<String> =
+        names.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.retain(|name| name.starts_with("map-"));
+    names.sort();
+    let wanted = ["map-A_B_2.json", "map-A_B_2.png", "map-A_B_2.svg"];
+    assert_eq!(names, [wanted, ["map-a_b.json", "map-a_b.png", "map-a_b.svg"]].concat());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_nothing_and_is_said() {
+    let folder = stacked();
+    let place = folder.path();
+    let full = || std::process::Stdio::from(std::fs::File::create("/dev/full").unwrap());
+    let program = assert_cmd::cargo::cargo_bin("colltrans");
+    for arguments in [
+        &["assembly", "two.toml"][..],
+        &["assembly", "two.toml", "--json"],
+        &["info", "cube.off"],
+        &["cast", "cube.off", "cube.off", "--direction", "x", "--json"],
+    ] {
+        let mut command = std::process::Command::new(&program);
+        let output = command.current_dir(place).args(arguments).stdout(full()).output().unwrap();
+        assert_eq!(output.status.code(), Some(5), "{arguments:?}");
+        assert!(
+            String::from_utf8_lossy(&output.stderr).contains("standard output: cannot be written")
+        );
+    }
+    // A picture that cannot be written whole: the limit on the size of files is that of a full disk.
+    std::fs::write(place.join("old.svg"), "old").unwrap();
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 1; {0} cast cube.off cube.off --direction x --picture new.svg; echo $?; \
+         {0} cast cube.off cube.off --direction x --picture old.svg; echo $?; \
+         {0} assembly two.toml -o out; echo $?",
+        program.display()
+    );
+    let output = std::process::Command::new("bash")
+        .current_dir(place)
+        .args(["-c", &script])
+        .output()
+        .unwrap();
+    let codes: Vec<&str> = std::str::from_utf8(&output.stdout)
+        .unwrap()
+        .lines()
+        .filter(|line| line.parse::<i32>().is_ok())
+        .collect();
+    assert_eq!(codes, ["5", "5", "5"], "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(!place.join("new.svg").exists());
+    assert_eq!(std::fs::read_to_string(place.join("old.svg")).unwrap(), "old");
+    assert_eq!(std::fs::read_dir(place.join("out")).unwrap().count(), 0);
+    let partial =
+        |name: &std::fs::DirEntry| name.file_name().to_string_lossy().ends_with("partial");
+    assert!(!std::fs::read_dir(place).unwrap().any(|entry| partial(&entry.unwrap())));
 }

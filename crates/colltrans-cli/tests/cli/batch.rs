@@ -331,3 +331,43 @@ fn what_was_merged_is_told_with_the_result() {
         assert!(note.contains("twins.off: 1 vertex on open edges merged"), "{note}");
     }
 }
+
+/// Somebody ends it in the middle: what was there stays, and no file looks like results.
+#[cfg(unix)]
+#[test]
+fn a_batch_that_is_killed_leaves_no_results() {
+    let folder = folder();
+    for name in ["new.jsonl", "old.jsonl"] {
+        let path = folder.path().join(name);
+        if name.starts_with("old") {
+            std::fs::write(&path, "old\n").unwrap();
+        }
+        let mut child = Command::new(assert_cmd::cargo::cargo_bin("colltrans"))
+            .args(["batch", "-", "-o", name])
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut input = child.stdin.take().unwrap();
+        input.write_all(queries(600).as_bytes()).unwrap();
+        // Until some results are written.
+        let partial = || {
+            let entries = std::fs::read_dir(folder.path()).unwrap();
+            let mut paths = entries.map(|entry| entry.unwrap().path());
+            paths.find(|p| {
+                p.to_string_lossy().ends_with(".partial") && p.metadata().unwrap().len() > 0
+            })
+        };
+        let written = loop {
+            if let Some(path) = partial() {
+                break path;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        };
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let left = std::fs::read_to_string(&path).ok();
+        assert_eq!(left.as_deref(), name.starts_with("old").then_some("old\n"));
+        std::fs::remove_file(written).unwrap();
+    }
+}

@@ -418,3 +418,39 @@ fn a_mesh_that_is_not_finite_has_no_volume() {
     assert!(text.contains("volume       none: vertex 2 is not finite"), "{text}");
     assert!(text.contains("extent       none: vertex 2 is not finite"), "{text}");
 }
+
+/// Help fits the terminal, and says who speaks.
+#[test]
+fn help_fits_the_terminal() {
+    let folder = folder();
+    let version = colltrans(folder.path()).arg("--version").output().unwrap();
+    assert_eq!(stdout(&version), "colltrans 0.1.0\n");
+    for command in ["", "cast", "clearance", "clear", "batch", "assembly", "info", "replay"] {
+        for columns in [80, 120] {
+            for flag in ["--help", "-h"] {
+                let mut program = colltrans(folder.path());
+                program.env("COLUMNS", columns.to_string());
+                let arguments = [command, flag];
+                let output =
+                    program.args(arguments.iter().filter(|a| !a.is_empty())).output().unwrap();
+                let text = stdout(&output);
+                let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
+                assert!(longest <= columns, "{command} at {columns}: {longest}\n{text}");
+                assert!(text.contains("colltrans"));
+            }
+        }
+    }
+}
+
+/// A closed surface is closed in all that is said of it.
+#[test]
+fn info_does_not_call_a_closed_mesh_open() {
+    let folder = folder();
+    let turned = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n";
+    std::fs::write(folder.path().join("turned.off"), turned).unwrap();
+    let output = colltrans(folder.path()).args(["info", "turned.off"]).output().unwrap();
+    let text = stdout(&output);
+    assert!(text.contains("surface      closed"), "{text}");
+    assert!(!text.contains("not closed"), "{text}");
+    assert!(text.contains("the part's is unknown (its faces are oriented inwards)"), "{text}");
+}

@@ -303,7 +303,9 @@ fn a_margin_is_kept_or_not() {
     };
     assert!(room(0.4, DVec3::Z).is_free());
     assert!(matches!(room(0.6, DVec3::Z), PartRoom::Overlapping { .. }));
-    assert!((room(0.4, DVec3::X).distance() - 0.1).abs() < 1e-12);
+    let aside = room(0.4, DVec3::X);
+    assert!((aside.displaced_distance() - 0.1).abs() < 1e-12, "{aside:?}");
+    assert!(aside.distance() <= 0.1 && aside.distance() > 0.1 - 1e-11, "{aside:?}");
     let refused = Bodies::new(&assembly, Fit::Apart(f64::NAN));
     assert!(matches!(refused, Err(AssemblyError::Length { .. })));
 }

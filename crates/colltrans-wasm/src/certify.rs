@@ -114,7 +114,9 @@ fn certificate(claimed: &Claimed, entries: &[u8]) -> Result<SolidCertificate, Re
         tolerance: claimed.tolerance,
         start,
         lower: claimed.lower,
-        stop: claimed.stop.map(|(shrunk_distance, triangles)| StopProof { shrunk_distance, triangles }),
+        stop: claimed
+            .stop
+            .map(|(shrunk_distance, triangles)| StopProof { shrunk_distance, triangles }),
         cover: cover(after)?,
     })
 }

@@ -88,6 +88,43 @@ fn phi_is_what_the_minimisation_says() {
     }
 }
 
+/// Numbers of the file are told, and what is lit lies where they say, with a vertex that nothing uses;
+/// a face is the polygon; each number has its bounds.
+#[test]
+fn what_a_solid_touches_with() {
+    let file = "OFF\n5 4 0\n50 50 50\n-1 -1 1\n1 -1 1\n0 1 1\n0.25 0 0\n\
+                3 1 2 3\n3 2 1 4\n3 3 2 4\n3 1 3 4\n";
+    let mut desk = loaded("dodecahedron.off", "plate.off", "solid");
+    let load = json!({ "do": "load", "slot": "moving", "name": "tip.off", "take": "solid" });
+    let (body, numbers) = ask(&mut desk, &load, file.into());
+    assert_eq!(body["body"]["vertices"], 4, "{body}");
+    let mut question = pair("cast", [0.0, 0.0, -1.0]);
+    question["moving_pose"] = json!([6.0, 5.0, 4.0, 0.0, 0.0, 0.0, 1.0]);
+    let (answer, _) = ask(&mut desk, &question, Vec::new());
+    let first = &answer["first"];
+    assert_eq!(
+        first["moving"],
+        json!({ "kind": "vertex", "vertices": [3], "face": null, "file": [4] })
+    );
+    assert_eq!(numbers[9..12], [0.25, 0.0, 0.0], "the vertex that is lit");
+    assert_eq!(first["fixed"]["kind"], "face", "{answer}");
+    assert!(first["fixed"]["file"].as_array().unwrap().len() > 4, "with its hole: {answer}");
+    let number = |value: &Value| value.as_f64().unwrap();
+    let t = number(&first["t"]);
+    assert!(
+        number(&answer["distance"]) <= t && t - number(&answer["distance"]) < 1e-11,
+        "{answer}"
+    );
+    for (name, value) in
+        [("bounds", t), ("shrunk_distance_bounds", number(&answer["shrunk_distance"]))]
+    {
+        let [lower, upper] = [0, 1].map(|k| number(&answer[name][k]));
+        assert!(lower <= value && value <= upper, "{name}: {answer}");
+    }
+    let [lower, upper] = [0, 1].map(|k| number(&answer["exit_bounds"][k]));
+    assert!(lower <= number(&answer["exit"]) && number(&answer["exit"]) <= upper, "{answer}");
+}
+
 #[test]
 fn what_cannot_be_answered_is_said() {
     let mut desk = Desk::default();

@@ -13,15 +13,17 @@
 //! direction's length can be (some `8 u S` of `32 u S`), is the lower bound.
 //!
 //! *The true place.* The same two facets are looked at once more, as they are. Where they face each
-//! other and their shadows overlap, decided exactly, their gap is where they meet, to within its error,
+//! other and their shadows overlap, for certain, their gap is where they meet, to within its error,
 //! and from there on the bodies as they are overlap. Where they do not (the floor of a pocket grows
-//! when its walls are moved back, so that facets at its rim may have no room for each other as they
-//! are), the place is that of their planes at the contact point, and all that is known from above is
-//! that the shrunk bodies overlap beyond their own upper bound. Whatever comes out, no bound is larger
-//! than that of the shrunk bodies.
+//! when its walls are moved back, so that facets at its rim may pass each other as they are), or
+//! where rounding cannot tell in poses that turn, the place is that of their planes at the contact
+//! point, unless these are all but on edge. Then all that is known from above is that the shrunk bodies
+//! overlap beyond their own upper bound, and from below that the two facets do not meet before the least
+//! gap at any corner that their common shadow may have ([`leaf::least_possible`]). Whatever comes out,
+//! no bound is larger than that of the shrunk bodies.
 //!
-//! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, and those two
-//! facets have not met; beyond `upper` the bodies overlap. Nothing is said of other facets of the
+//! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, which is
+//! proven, and those two facets have not met; beyond `upper` the bodies overlap. Nothing is said of other facets of the
 //! bodies as they are: that they may overlap on the way by less than the tolerance is what a tolerance
 //! is for. Without one, both bounds are those of the bodies as given.
 
@@ -190,7 +192,8 @@ fn true_place(
             let steep = slope <= STEEPEST * scene.length;
             let back = if steep { 0.0 } else { normal.dot(shift) / slope };
             let value = shrunk.value + back;
-            Bounded { value, lower: value - scene.blur / scene.length, upper: f64::INFINITY }
+            let lower = (leaf::least_possible(&bare, pair) - scene.blur) / scene.length;
+            Bounded { value, lower, upper: f64::INFINITY }
         },
         |(gap, error)| Found { gap, error, others: gap, ..*found }.bounded(&bare),
     );

@@ -191,7 +191,6 @@ fn measured(
 ) -> (Hull, Vec<u32>) {
     let corners: Vec<DVec3> = hull.vertices.iter().map(|&i| points[i as usize]).collect();
     let mut gauge = Gauge::new(&corners, &hull.topology, points.len(), rounding(tolerance));
-    let mut violation = violation::unevenness(&gauge.locator, &corners, &hull.topology);
     let mut beyond = Vec::new();
     let mut face = 0;
     let mut is_vertex = vec![false; points.len()];
@@ -199,14 +198,13 @@ fn measured(
         is_vertex[v as usize] = true;
     }
     for v in others.filter(|&v| !is_vertex[v as usize]) {
-        let away = gauge.distance(points[v as usize], BEYOND * tolerance, &mut face);
-        violation = violation.max(away);
-        if away > BEYOND * tolerance {
+        if gauge.distance(points[v as usize], BEYOND * tolerance, &mut face) > BEYOND * tolerance {
             beyond.push(v);
         }
     }
     beyond.sort_unstable();
     beyond.dedup();
+    let violation = gauge.violation;
     (Hull { violation, ..hull }, beyond)
 }
 

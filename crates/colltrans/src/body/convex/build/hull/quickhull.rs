@@ -270,16 +270,11 @@ impl<'a> Builder<'a> {
         for face in faces {
             work::count(1);
             let distance = self.distance(face, p);
-            let is_sharp = self.triangles[face as usize].doubt <= self.tolerance;
             if distance > best.0 && self.is_outside(face, p, distance) {
                 best = (distance, face);
             }
-            // The rounded distance from a sliver's plane says nothing.
-            is_near |= if is_sharp {
-                distance > -self.tolerance
-            } else {
-                self.is_outside(face, p, distance)
-            };
+            // The rounded distance from a sliver's plane says little.
+            is_near = is_near || distance > -self.tolerance || self.is_outside(face, p, distance);
         }
         let (distance, face) = best;
         if face == NONE {

@@ -121,7 +121,7 @@ impl Locator {
 
 /// The largest distance of a hull's vertex outside a face plane: polygons are flat only up to
 /// rounding.
-pub(super) fn unevenness(locator: &Locator, vertices: &[DVec3], topology: &Topology) -> f64 {
+fn unevenness(locator: &Locator, vertices: &[DVec3], topology: &Topology) -> f64 {
     let mut worst = 0.0_f64;
     for (face, (normal, offset)) in locator.planes.iter().enumerate() {
         for v in topology.face_vertices(face as u32) {
@@ -136,13 +136,15 @@ const LOOKS: usize = 128;
 
 /// How far points are from a body, bounded from above.
 pub(super) struct Gauge<'a> {
-    pub(super) locator: Locator,
+    locator: Locator,
     vertices: &'a [DVec3],
     topology: &'a Topology,
     /// Bound on the rounding errors of a witness.
     rounding: f64,
     /// How far the locator's centre is from the body: rounding can leave it outside of a thin one.
     center_off: Option<f64>,
+    /// The largest bound so far, at first the unevenness of the faces.
+    pub(super) violation: f64,
     /// Triangles that may still be looked at for points of which the walk does not tell enough.
     looks: usize,
 }
@@ -155,8 +157,10 @@ impl<'a> Gauge<'a> {
         points: usize,
         rounding: f64,
     ) -> Self {
+        let locator = Locator::of_faces(vertices, topology);
         Self {
-            locator: Locator::of_faces(vertices, topology),
+            violation: unevenness(&locator, vertices, topology),
+            locator,
             vertices,
             topology,
             rounding,
@@ -169,6 +173,12 @@ impl<'a> Gauge<'a> {
     /// nearer than that, or too many points have taken a look at all faces.
     /// `near`: where the walk starts, and where it ended.
     pub(super) fn distance(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
+        let away = self.bound(p, enough, near);
+        self.violation = self.violation.max(away);
+        away
+    }
+
+    fn bound(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
         // The front of a flat polygon is where its back is.
         let is_solid = self.topology.face_count() > 2;
         if is_solid {
@@ -233,7 +243,8 @@ impl<'a> Gauge<'a> {
         is_below_some
     }
 
-    /// The bound from triangles of a face's fan. 0 only if the point lies in one of them, exactly.
+    /// The bound from triangles of a face's fan. 0 if the point lies in one of them, exactly, which is
+    /// looked at where it makes a difference.
     fn to_face(&self, p: DVec3, face: usize, search: Search) -> f64 {
         let range = self.topology.face(face as u32);
         let corner = |k: usize| {
@@ -244,22 +255,23 @@ impl<'a> Gauge<'a> {
         let first = corner(0);
         let foot = projection.of(p - normal * normal.dot(p - first));
         let count = range.len();
-        let (from, to) = match search {
-            Search::All => (1, count - 1),
-            Search::Foot => {
-                let at =
-                    fan_triangle(projection.of(first), count, foot, |k| projection.of(corner(k)));
-                // Of a needle, the rounding of the foot can be as much as its width.
-                ((at - 1).max(1), (at + 2).min(count - 1))
-            }
-        };
         let away = |k: usize| {
             let triangle = [first, corner(k), corner(k + 1)];
             let away = to_triangle(p, triangle, foot, projection) + self.rounding;
-            let is_on = away <= 2.0 * self.rounding && is_in_triangle(p, triangle, projection);
-            if is_on { 0.0 } else { away }
+            let may_be_on = away > self.violation && away <= 2.0 * self.rounding;
+            if may_be_on && is_in_triangle(p, triangle, projection) { 0.0 } else { away }
         };
-        (from..to).map(away).fold(f64::INFINITY, f64::min)
+        if let Search::All = search {
+            return (1..count - 1).map(away).fold(f64::INFINITY, f64::min);
+        }
+        let at = fan_triangle(projection.of(first), count, foot, |k| projection.of(corner(k)));
+        let found = away(at);
+        if found <= 2.0 * self.rounding {
+            return found;
+        }
+        // Of a needle, the rounding of the foot can be as much as its width.
+        let beside = (at - 1).max(1)..(at + 2).min(count - 1);
+        beside.map(away).fold(found, f64::min)
     }
 }
 

@@ -267,7 +267,8 @@ pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
 }
 
 /// The least gap of two triangles, the moving body's first, where they certainly block each other, and
-/// its error; `None` as well where only whole numbers could tell, which would take longer than a search.
+/// its error; `None` as well where only whole numbers could tell that, which would take longer than a
+/// search.
 pub(super) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
     let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
     let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
@@ -284,9 +285,12 @@ pub(super) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f
     } else if !of_f.are_certain() || !of_g.are_certain() {
         return None;
     }
-    match rounded(scene, &f, &g, &of_f, &of_g).judge(FINE * scene.blur, false) {
-        Rounded::Known(gap) if gap.counts() => Some((gap.least, gap.error)),
-        _ => None,
+    match rounded(scene, &f, &g, &of_f, &of_g).judge(SHARP * scene.blur, false) {
+        Rounded::Known(gap) if !gap.counts() => None,
+        Rounded::Known(gap) if gap.error <= FINE * scene.blur => Some((gap.least, gap.error)),
+        // Slivers.
+        Rounded::Known(_) => Some((least_exactly(scene, &f, &g).0, 0.0)),
+        Rounded::Beyond(_) => None,
     }
 }
 

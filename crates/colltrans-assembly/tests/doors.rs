@@ -69,6 +69,9 @@ fn gltf(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     file.to_string().into_bytes()
 }
 
+/// Something that is changed in a file.
+type Change = Box<dyn FnOnce(&mut Value)>;
+
 #[test]
 fn numbers_of_gltf_that_lie_are_refused_before_memory_is_taken() {
     let cube = from_memory("a.gltf", &[("a.gltf", gltf(|_| ()))]).unwrap();
@@ -78,7 +81,6 @@ fn numbers_of_gltf_that_lie_are_refused_before_memory_is_taken() {
         json!({"count": count, "indices": {"bufferView": view, "componentType": 5123},
                "values": {"bufferView": 0}})
     };
-    type Change = Box<dyn FnOnce(&mut Value)>;
     let set = |path: &'static str, value: Value| -> Change {
         Box::new(move |file: &mut Value| {
             let (object, key) = path.rsplit_once('/').unwrap();
@@ -111,7 +113,6 @@ fn numbers_of_gltf_that_lie_are_refused_before_memory_is_taken() {
         (set("/asset/version", json!("1.0")), "version 1.0"),
     ];
     for (change, words) in cases {
-        // The pointer of the last key may be the file itself.
         let mut file = cube_gltf();
         change(&mut file);
         let bytes = file.to_string().into_bytes();

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use colltrans_mesh::{Error, Mesh, ReadOptions, read, read_with};
+use colltrans_mesh::{Error, Format, Mesh, ReadOptions, read, read_with};
 
 fn collection() -> Option<PathBuf> {
     let folder = std::env::var_os("COLLTRANS_DATA").map_or_else(
@@ -21,7 +21,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         let path = entry.unwrap().path();
         if path.is_dir() {
             found.extend(files(&path));
-        } else if !matches!(path.extension().and_then(|e| e.to_str()), Some("md" | "urdf")) {
+        } else if Format::of_path(&path).is_ok() {
             found.push(path);
         }
     }

@@ -187,6 +187,7 @@ pub const MOST_REPEATED: usize = 1 << 23;
 #[derive(Default)]
 struct Budget {
     bytes: usize,
+    #[cfg(feature = "files")]
     files: HashSet<PathBuf>,
     placed: usize,
     facets: usize,

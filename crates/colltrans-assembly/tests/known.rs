@@ -16,10 +16,13 @@ use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Room, Watch};
+use colltrans_assembly::{
+    Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Room, Watch,
+};
 use colltrans_kit::random::Random;
 use common::*;
 use glam::{DAffine3, DVec3};
@@ -453,4 +456,69 @@ fn directions_and_names_that_are_wrong_are_refused() {
     let alone = assembly.clone().with_ignored(&[["lid", "lid"]], Ignored::Overlap);
     assert!(matches!(alone, Err(AssemblyError::SamePart { .. })));
     assert!(matches!(Part::new(" ", &[]), Err(AssemblyError::NoName)));
+}
+
+/// The sides of a box that are listed, of sheet.
+fn sheets(low: [f64; 3], high: [f64; 3], sides: &[usize]) -> Piece {
+    let closed = cuboid(low, high);
+    let faces = sides.iter().map(|&side| closed.faces[side].clone()).collect();
+    Piece { faces, ..closed }
+}
+
+fn along(assembly: &Assembly, part: usize, d: DVec3) -> PartRoom {
+    let bodies = Bodies::new(assembly, Fit::Tolerance(1e-6)).unwrap();
+    let all = vec![true; bodies.len()];
+    room_of(&bodies, &[part], &all, d, StartOverlap::Refuse, &mut Default::default())
+}
+
+#[test]
+fn a_sheet_on_edge_does_not_pass_through_a_block() {
+    // In the plane y = 1, beside a block; a wall of a box that is flat.
+    let sheet = part("sheet", &[sheets([-9.0, 1.0, -1.0], [-3.0, 1.0, 1.0], &[2])]);
+    let block = part("block", &[cuboid([0.0, -4.0, -4.0], [4.0; 3])]);
+    let assembly = Assembly::new(vec![sheet, block]).unwrap();
+    assert!(assembly.parts()[0].is_surface() && !assembly.parts()[1].is_surface());
+    let room = along(&assembly, 0, DVec3::X);
+    assert!((room.distance() - 3.0).abs() < 1e-5, "{room:?}");
+    assert!(along(&assembly, 0, DVec3::NEG_X).is_free());
+    assert!((along(&assembly, 1, DVec3::NEG_X).distance() - 3.0).abs() < 1e-5);
+    let plan = planned(&assembly);
+    assert_eq!(steps(&assembly, &plan)[0], ["sheet"]);
+    assert_eq!(plan.steps[0].surfaces, [0], "it rests on itself");
+}
+
+#[test]
+fn a_cube_leaves_a_tray_of_sheets_upwards() {
+    let tray = part("tray", &[sheets([-4.0, -4.0, 0.0], [4.0, 4.0, 5.0], &[0, 2, 3, 4, 5])]);
+    let cube = part("cube", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0])]);
+    let assembly = Assembly::new(vec![cube, tray]).unwrap();
+    for d in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
+        assert!((along(&assembly, 0, d).distance() - 3.0).abs() < 1e-5, "{d}");
+        assert!((along(&assembly, 1, d).distance() - 3.0).abs() < 1e-5, "{d}");
+    }
+    assert!(along(&assembly, 0, DVec3::NEG_Z).distance() < 1e-5);
+    let plan = planned(&assembly);
+    assert_eq!(steps(&assembly, &plan), [["cube"], ["tray"]]);
+    assert_eq!(plan.steps[0].direction, DVec3::Z);
+    assert_eq!(plan.steps[0].surfaces, [1], "the tray, which it leaves");
+    assert!(plan.steps[1].surfaces.is_empty(), "nothing else is there");
+}
+
+#[test]
+fn files_of_sheets_say_the_same() {
+    let folder =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/assemblies");
+    for (name, first, d) in
+        [("cube_in_tray", "cube", Some(DVec3::Z)), ("sheet_through_block", "sheet", None)]
+    {
+        let source = folder.join(name);
+        if !source.exists() {
+            continue;
+        }
+        let assembly = read(&source, &ReadOptions::default()).unwrap();
+        let plan = planned(&assembly);
+        assert_eq!(steps(&assembly, &plan)[0], [first], "{name}");
+        assert!(d.is_none_or(|d| plan.steps[0].direction == d), "{name}");
+        assert_eq!(plan.steps[0].surfaces.len(), 1, "{name}");
+    }
 }

@@ -353,9 +353,12 @@ fn open_surfaces_are_refused_unless_they_are_meant() {
     let (answer, notes) = ask(folder.path(), &format!("{words} --open"));
     assert!((number(&answer, "translation") - 4.0).abs() < 1e-9, "{answer}");
     assert!(notes.contains("open.off: an open surface (4 open edges)"), "{notes}");
-    // Its floor looks downwards: it blocks from there only.
+    assert_eq!(answer["surfaces"], serde_json::json!(["moving"]));
+    // Nothing is inside it, but its walls block from both sides.
     let inside = "block.off --from open.off --direction -z --moving-scale 0.5 --open";
-    assert_eq!(ask(folder.path(), inside).0["outcome"], "free", "nothing is inside it");
+    let (within, _) = ask(folder.path(), inside);
+    assert_eq!(within["surfaces"], serde_json::json!(["fixed"]));
+    assert!((number(&within, "nominal") - 0.5).abs() < 1e-9, "{within}");
     let below = format!("{inside} --moving-pose 0,0,-4").replace("-z", "z");
     assert!((number(&ask(folder.path(), &below).0, "translation") - 2.5).abs() < 1e-9);
 }
@@ -498,6 +501,7 @@ fn info_speaks_of_holes_and_defects() {
         ("two.off", "solid        yes: 2 shells, 1 hole through"),
         ("two.off", "mended       1 shell turned, inside out in the file"),
         ("open.off", "solid        no: the surface is not closed: 4 edges"),
+        ("open.off", "with --open  1 sheet, blocking from both sides, rims included"),
     ] {
         let text = info(name);
         assert!(text.contains(part), "{part:?} is not in {text}");

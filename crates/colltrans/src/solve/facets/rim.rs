@@ -39,9 +39,6 @@ pub(super) struct Blade {
     /// How each side `k`, from corner `k` to the next, lies: `Greater` if the rest of the blade is
     /// behind it, `Less` if ahead, `Equal` if it is upright.
     leads: [Ordering; 3],
-    /// Whether the sheet goes on ahead of a leading side, in the same plane: what the side would cross is
-    /// crossed by what is ahead before.
-    goes_on: [bool; 3],
     /// The corners at the ends of the shadow.
     ends: [usize; 2],
     low: DVec3,
@@ -127,13 +124,11 @@ impl Blade {
             corners,
             moving,
             leads: [Equal; 3],
-            goes_on: [false; 3],
             ends: [0, 1],
             low,
             high,
         };
-        blade.leads = [0, 1, 2].map(|k| blade.lead(scene, k, &blade.corners[(k + 2) % 3]));
-        blade.goes_on = [0, 1, 2].map(|k| blade.leads[k] == Greater && blade.continues(scene, k));
+        blade.leads = [0, 1, 2].map(|k| blade.lead(scene, k));
         // The two corners that are farthest apart along the shadow.
         let axis = blade.axis(scene);
         let order = |i: usize, j: usize| scene.drift(axis, &blade.corners[i], &blade.corners[j]);
@@ -161,9 +156,8 @@ impl Blade {
         (0..3).find(|&axis| apart(axis)).unwrap_or(0)
     }
 
-    /// Whether a corner in the blade's plane is behind side `k`.
-    fn lead(&self, scene: &Scene, k: usize, r: &Corner) -> Ordering {
-        let [p, q] = self.side(k);
+    fn lead(&self, scene: &Scene, k: usize) -> Ordering {
+        let ([p, q], r) = (self.side(k), &self.corners[(k + 2) % 3]);
         // Across an axis along which the facet has an area: where `r` is, and where the direction goes.
         let rest = |axis: &usize| scene.turn_about(*axis, p, q, r) != Equal;
         let Some(axis) = (0..3).find(rest) else { return Equal };
@@ -174,15 +168,6 @@ impl Blade {
             (_, true) => Less,
             (_, false) => Greater,
         }
-    }
-
-    /// Whether the sheet goes on ahead of a leading side.
-    fn continues(&self, scene: &Scene, k: usize) -> bool {
-        let Some(apex) = across(scene.side(self.moving), self.triangle as usize, k) else {
-            return false;
-        };
-        let [p, q] = self.side(k);
-        scene.turn(p, q, &apex) == Equal && self.lead(scene, k, &apex) == Less
     }
 
     fn leading(&self) -> impl Iterator<Item = usize> + '_ {
@@ -200,7 +185,7 @@ impl Blade {
         if self.is_beside(scene, facet.low, facet.high) {
             return;
         }
-        for k in self.leading().filter(|&k| !self.goes_on[k]) {
+        for k in self.leading() {
             if let Some(gap) = self.side_and_facet(scene, k, facet) {
                 take(gap);
             }
@@ -285,12 +270,12 @@ impl Blade {
         Some([*self.end(1 - end), apex])
     }
 
-    /// The leading side whose shadow reaches to or across the line of another blade's shadow; none if it
-    /// is what is ahead of it that counts.
+    /// The leading side whose shadow reaches to or across the line of another blade's shadow.
     fn leading_at(&self, scene: &Scene, other: &Self) -> Option<usize> {
-        let turns = |k: usize| self.side(k).map(|c| scene.turn(other.end(0), other.end(1), c));
-        let k = self.leading().find(|&k| turns(k)[0] != turns(k)[1])?;
-        (!(self.goes_on[k] && are_opposite(turns(k)))).then_some(k)
+        self.leading().find(|&k| {
+            let [p, q] = self.side(k).map(|c| scene.turn(other.end(0), other.end(1), c));
+            p != q
+        })
     }
 }
 

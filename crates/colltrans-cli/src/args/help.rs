@@ -235,7 +235,8 @@ With --json:
    "liaisons": [{"parts": [a, b], "area", "center"}],
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
      "shrunk_distance", "shrunk_distance_bounds" (or "grown_distance", "grown_distance_bounds")}],
-   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within", "ignored"}],
+   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within", "ignored",
+     "surfaces"}],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
    "maps": [...]}
   Directions have length 1, so distances are lengths; distance is safe to move by: what stops the part

@@ -422,11 +422,11 @@ fn met(
     }
 }
 
-fn placed<'s>(
-    [moving, fixed]: [&'s Solid; 2],
+fn placed(
+    [moving, fixed]: [&Solid; 2],
     d: DVec3,
     options: SolidOptions,
-) -> Option<Cast<'s, Solid>> {
+) -> Option<Cast<'_, Solid>> {
     let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY), d);
     // Directions and tolerances are checked at the door, so nothing is refused here.
     cast.and_then(|c| c.with_options(options)).ok()

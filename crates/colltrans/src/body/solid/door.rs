@@ -50,7 +50,9 @@ impl Surface {
         let mut copies = vec![0; self.vertices.len()];
         for (t, kind) in self.triangles.iter().zip(&self.kinds) {
             if !sheet(kind) {
-                t.iter().for_each(|&v| copies[v as usize] = TAKEN);
+                for &v in t {
+                    copies[v as usize] = TAKEN;
+                }
             }
         }
         for (t, kind) in self.triangles.iter_mut().zip(&self.kinds) {

@@ -312,12 +312,7 @@ impl Solid {
 
     /// Whether all shells are closed; if not, the body is a *surface*, at least in part.
     pub fn is_closed(&self) -> bool {
-        !self.is_open_at(&self.nodes[0])
-    }
-
-    /// Whether a node has facets of open shells.
-    pub(crate) fn is_open_at(&self, node: &Node) -> bool {
-        node.spread == tree::OPEN
+        !self.nodes[0].is_open()
     }
 
     /// Whether a triangle belongs to an open shell: it has no side.

@@ -55,6 +55,11 @@ impl Node {
         self.skip == 0
     }
 
+    /// Whether it has facets of open shells.
+    pub(crate) fn is_open(&self) -> bool {
+        self.spread == OPEN
+    }
+
     pub(crate) fn facets(&self) -> std::ops::Range<usize> {
         self.first as usize..(self.first + self.count) as usize
     }
@@ -140,7 +145,7 @@ pub(super) fn open_nodes(nodes: &mut [Node], is_open: impl Fn(usize) -> bool) {
             node.facets().any(&is_open)
         } else {
             let first = at + node.skip as usize;
-            nodes[first].spread == OPEN || nodes[first + 1].spread == OPEN
+            nodes[first].is_open() || nodes[first + 1].is_open()
         };
         if open {
             nodes[at].spread = OPEN;

@@ -78,7 +78,7 @@ impl Shade {
         shade.spread +=
             if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
         (shade.low, shade.high) = boxed(scene, side, shade.local);
-        if side.solid.is_open_at(node) {
+        if node.is_open() {
             // What is on edge has a shadow without a width, but counts.
             shade.low -= scene.blur;
             shade.high += scene.blur;

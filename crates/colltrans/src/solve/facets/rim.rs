@@ -47,10 +47,10 @@ pub(super) struct Blade {
 
 /// Whether two nodes have facets without a side.
 pub(super) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
-    [true, false].into_iter().zip(nodes).any(|(moving, node)| {
-        let solid = scene.side(moving).solid;
-        solid.is_open_at(&solid.nodes()[node as usize])
-    })
+    [true, false]
+        .into_iter()
+        .zip(nodes)
+        .any(|(moving, node)| scene.side(moving).solid.nodes()[node as usize].is_open())
 }
 
 /// The least gap of two triangles of which one is a blade, the moving body's first, where they block
@@ -473,10 +473,6 @@ fn over_side(scene: &Scene, [a, b]: [&Corner; 2], [c, e]: [&Corner; 2]) -> Above
 
 /// How far side `a b` is above a corner whose shadow is on the line of the side's.
 fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
-    let (axis, height) = {
-        let apart = |axis: &usize| scene.drift(*axis, a, b) != Equal;
-        ((0..3).find(apart).unwrap_or(0), scene.direction.abs().max_position())
-    };
     fn of<const N: usize>(
         scene: &Scene,
         [a, b, c]: [&Corner; 3],
@@ -493,7 +489,9 @@ fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
         let rise = side[height].multiply(&part).subtract(&from[height].multiply(&whole));
         Above::new(&rise, &whole.multiply(&direction[height]))
     }
-    let all = [a, b, corner];
+    let apart = |axis: &usize| scene.drift(*axis, a, b) != Equal;
+    let axis = (0..3).find(apart).unwrap_or(0);
+    let (height, all) = (scene.direction.abs().max_position(), [a, b, corner]);
     let small = of::<SMALL>(scene, all, [axis, height]);
     small.or_else(|| of::<LARGE>(scene, all, [axis, height])).unwrap_or(Above::LEVEL)
 }

@@ -1,7 +1,8 @@
 //! What holds between solids for every setting, random or tied.
 
-use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions};
+use colltrans::{Cast, Clearance, Pose, ShellKind, Solid, SolidOptions};
 use colltrans_oracle::solids::settings::{FAMILIES, Setting};
+use colltrans_oracle::solids::sheets;
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -220,6 +221,27 @@ proptest! {
             } else if part > 1.001 {
                 prop_assert!(agree(cut, Said::At(t)));
             }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(192))]
+
+    /// The same of open surfaces; and what is inside out blocks as it did.
+    #[test]
+    fn open_surfaces_block_mutually_and_from_both_sides(family in 0..3_usize, seed in any::<u32>()) {
+        let setting = sheets::Setting::draw(sheets::FAMILIES[family], seed.into());
+        let setting = setting.expect("a setting");
+        let ([a, b], [s, t], d) = (&setting.solids, setting.poses, setting.direction);
+        let forth = ask_at([a, b], [s, t], d);
+        let back = ask_at([b, a], [t, s], -d);
+        prop_assert!(agree(forth, back), "{forth:?} and {back:?}");
+        if a.report().count(ShellKind::Closed) == 0 {
+            let facets: Vec<[u32; 3]> = a.triangles().iter().map(|&[p, q, r]| [p, r, q]).collect();
+            let over = Solid::from_open_mesh(a.vertices(), &facets).expect("turned over");
+            let turned = ask_at([&over, b], [s, t], d);
+            prop_assert!(agree(forth, turned), "{forth:?} and turned over {turned:?}");
         }
     }
 }

@@ -55,6 +55,7 @@ struct Scene {
 }
 
 /// Scenes that a person can decide, with names.
+#[expect(clippy::too_many_lines, reason = "a table")]
 fn scenes() -> Vec<Scene> {
     let mut scenes = Vec::new();
     let mut add = |name: String, moving: &Solid, fixed: &Solid, d: [i32; 3], wanted| {

@@ -386,9 +386,11 @@ fn an_overlap_that_is_ignored_does_not_become_deeper() {
     for free in [DVec3::NEG_X, DVec3::Y, DVec3::NEG_Z] {
         assert!(room_with(&ignored, free).is_free(), "{free}");
     }
-    // A twentieth deeper than 0.25 is let pass as rounding.
-    let pushed = room_with(&ignored, DVec3::X).distance();
-    assert!((pushed - 0.0125).abs() < 1e-9, "{pushed}");
+    // In their true place the faces that stop it are past each other by the depth, 0.25; a twentieth
+    // deeper is let pass as rounding.
+    let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::X) else { panic!("deeper") };
+    assert_eq!(stop.distance, 0.0);
+    assert!((stop.displaced.value + 0.25).abs() < 1e-9, "{stop:?}");
     let away = steps(&ignored, &planned(&ignored));
     assert_eq!(away, [["cube"], ["long"]]);
     assert!(planned(&ignored).steps[0].direction.x <= 0.0);

@@ -291,11 +291,12 @@ proptest! {
             .expect("a direction");
         match (cast.clearance().expect("an answer"), solids) {
             (
-                Clearance::Blocked { distance, contact },
-                Clearance::Blocked { distance: other, .. },
+                Clearance::Blocked { contact, .. },
+                Clearance::Blocked { contact: other, .. },
             ) => {
+                let [one, other] = [contact.translation, other.shrunk_distance.value];
                 let both = contact.certificate.rounding + 1e-9;
-                prop_assert!((distance - other).abs() < both, "{distance} and {other}");
+                prop_assert!((one - other).abs() < both, "{one} and {other}");
             }
             (Clearance::Free(_), Clearance::Free(_)) => (),
             (a, b) => prop_assert!(false, "{a:?} and {b:?}"),

@@ -358,7 +358,7 @@ fn open_surfaces_are_refused_unless_they_are_meant() {
     let inside = "block.off --from open.off --direction -z --moving-scale 0.5 --open";
     let (within, _) = ask(folder.path(), inside);
     assert_eq!(within["surfaces"], serde_json::json!(["fixed"]));
-    assert!((number(&within, "nominal") - 0.5).abs() < 1e-9, "{within}");
+    assert!((number(&within, "translation") - 0.5).abs() < 1e-9, "{within}");
     let below = format!("{inside} --moving-pose 0,0,-4").replace("-z", "z");
     assert!((number(&ask(folder.path(), &below).0, "translation") - 2.5).abs() < 1e-9);
 }

@@ -2,6 +2,7 @@
 //! bodies against the points that they were made of.
 
 use colltrans::{Bounded, Cast, Clearance, Outcome, Solid, SolidOptions};
+use glam::DVec3;
 
 use super::encloses;
 use super::facets::{rule, triangles};
@@ -37,7 +38,26 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
         against_rule(setting, &a, &b, found, cast.exit())?;
     }
     let core = Cast::new(p.at(*s), q.at(*t), setting.direction).and_then(|c| c.first_contact());
-    against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), noise(setting, &a, &b))
+    let limits = Limits {
+        noise: noise(setting, &a, &b),
+        dents: (p.hull_error() + q.hull_error()) / setting.direction.length(),
+        direction: setting.direction.normalize(),
+    };
+    against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), &limits)
+}
+
+/// By how much a convex body as a solid may differ, in multiples of the direction.
+///
+/// A solid has the same corners, so it meets nothing earlier. But where polygons are flat up to rounding
+/// only, triangles cut them: it is dented by as much as the corners are off their planes, and so it may
+/// meet later by that over the slope of the contact plane.
+struct Limits {
+    /// The rounding error of a coordinate.
+    noise: f64,
+    /// Of both bodies.
+    dents: f64,
+    /// Of length 1.
+    direction: DVec3,
 }
 
 /// The rounding error of a coordinate, in multiples of the direction.
@@ -91,7 +111,7 @@ fn against_core(
     core: Outcome,
     overlaps: bool,
     found: Option<&Clearance<Solid>>,
-    noise: f64,
+    limits: &Limits,
 ) -> Result<Option<Seen>, String> {
     let distance = match found {
         Some(Clearance::Blocked { distance, .. }) => Some(*distance),
@@ -107,9 +127,11 @@ fn against_core(
     match core {
         Outcome::Separated(_) if overlaps || distance.is_some() => wrong(),
         Outcome::Contact(contact) => {
-            let tolerance = contact.certificate.rounding + AGREEMENT * noise;
+            let tolerance = contact.certificate.rounding + AGREEMENT * limits.noise;
+            let late = limits.dents / contact.normal.dot(limits.direction);
             let ahead = contact.translation > tolerance;
-            let near = distance.is_some_and(|d| (d - contact.translation).abs() <= tolerance);
+            let off = |d: f64| d - contact.translation;
+            let near = distance.is_some_and(|d| off(d) >= -tolerance && off(d) <= tolerance + late);
             if ahead && !near { wrong() } else { Ok(Some(seen)) }
         }
         _ => Ok(Some(seen)),

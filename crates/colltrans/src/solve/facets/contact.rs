@@ -170,6 +170,8 @@ pub(super) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidConta
     }
 }
 
+/// Blurs by which a lower bound of the true place may be less than the place without being taken again.
+const ENOUGH: f64 = 64.0;
 /// Slope, of a contact plane against the direction, up to which it is not moved back.
 const STEEPEST: f64 = 1e-3;
 
@@ -192,7 +194,8 @@ fn true_place(
             let steep = slope <= STEEPEST * scene.length;
             let back = if steep { 0.0 } else { normal.dot(shift) / slope };
             let value = shrunk.value + back;
-            let lower = (leaf::least_possible(&bare, pair) - scene.blur) / scene.length;
+            let enough = value * scene.length - ENOUGH * scene.blur;
+            let lower = (leaf::least_possible(&bare, pair, enough) - scene.blur) / scene.length;
             Bounded { value, lower, upper: f64::INFINITY }
         },
         |(gap, error)| Found { gap, error, others: gap, ..*found }.bounded(&bare),

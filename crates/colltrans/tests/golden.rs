@@ -199,13 +199,11 @@ fn solids(family: &str) -> u64 {
 }
 
 fn unchanged(known: &[(&str, u64)], asked: impl Fn(&str) -> u64) {
-    let mut changed = String::new();
-    for &(family, golden) in known {
+    let line = |&(family, golden): &(&str, u64)| {
         let found = asked(family);
-        if found != golden {
-            changed += &format!("    (\"{family}\", {found:#018x}),\n");
-        }
-    }
+        (found != golden).then(|| format!("    (\"{family}\", {found:#018x}),\n"))
+    };
+    let changed: String = known.iter().filter_map(line).collect();
     assert!(changed.is_empty(), "bits have changed; the new lines are\n{changed}");
 }
 

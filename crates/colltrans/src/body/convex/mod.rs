@@ -103,8 +103,8 @@ impl ConvexPolyhedron {
     /// No input point is farther than this from the body (the convex hull of [`Self::vertices`]), nor a
     /// vertex outside a face plane: the hull's own error, in the unit of the input.
     ///
-    /// It has the size of rounding, whatever the shape: `1024 u`, `1.2e-13`, is the most seen, of the largest
-    /// coordinate. The input's own collision translation is at most an answer's upper bound, and at least
+    /// It has the size of rounding, whatever the shape: the most seen is `1024 u`, `1.2e-13`, of the
+    /// largest coordinate. The input's own collision translation is at most an answer's upper bound, and at least
     /// its lower bound less the errors of both bodies, divided by `n . d`; separated bodies are
     /// so as input too if their margin is more than both errors.
     pub fn hull_error(&self) -> f64 {

@@ -101,7 +101,7 @@ def test_bodies_pickle_and_copy_with_the_same_bits() -> None:
     assert answers[0].translation.tobytes() == answers[1].translation.tobytes()
     assert answers[0].normal.tobytes() == answers[1].normal.tobytes()
     assert copy.copy(bodies[0]) is bodies[0] and copy.deepcopy(bodies[0]) is bodies[0]
-    with pytest.raises(CaseError, match="not a case"):
+    with pytest.raises(CaseError, match="not a saved query"):
         ConvexPolyhedron.from_json("{")
 
 

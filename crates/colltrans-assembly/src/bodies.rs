@@ -17,7 +17,7 @@ use crate::error::AssemblyError;
 use crate::part::{Assembly, Ignored, Part};
 
 /// Pairs of parts whose boxes meet: more are refused, for memory goes with their number.
-pub(crate) const MOST_NEIGHBOURS: usize = 1 << 22;
+pub(crate) const MOST_NEIGHBOURS: usize = 1 << 19;
 
 /// How tight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,11 +89,14 @@ pub struct Bodies<'a> {
     tree: BoxTree,
     /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
     overlapping: Vec<[usize; 2]>,
-    /// Pairs whose overlap is ignored, with the further tolerance that lets it pass, if there is one.
+    /// Pairs whose overlap is ignored, with the further tolerance with which there is none, if there is
+    /// one: beyond, it would be deeper.
     passing: BTreeMap<[usize; 2], f64>,
     noise: f64,
 }
 
+/// Roundings of a coordinate that putting a contact point back takes, over the slope of the contact plane.
+const ROUNDINGS: f64 = 64.0;
 /// How deep an overlap that is ignored may become, in multiples of its depth at the start: so much more
 /// that rounding does not decide.
 const DEEPER: f64 = 1.05;
@@ -150,10 +153,6 @@ impl<'a> Bodies<'a> {
             })
         };
         pair.into_iter().all(whole).then_some(tolerance)
-    }
-
-    fn passing(&self, a: usize, b: usize) -> Option<f64> {
-        self.passing.get(&[a.min(b), a.max(b)]).copied()
     }
 
     /// The parts.
@@ -259,8 +258,8 @@ impl<'a> Bodies<'a> {
 
     /// How far part `a` can move along unit direction `d` before `b` stops it; contacts from
     /// `before` on are of no interest. Parts that overlap where they are do so, or, with
-    /// [`StartOverlap::Ignore`], are stopped by contacts that begin later; where the assembly
-    /// [ignores](Assembly::with_ignored) their overlap, by what would make it deeper than it is.
+    /// [`StartOverlap::Ignore`] or where the assembly [ignores](Assembly::with_ignored) their overlap,
+    /// are stopped by contacts that begin later; in the second case also by what would make it deeper.
     pub fn room(
         &self,
         [a, b]: [usize; 2],
@@ -269,27 +268,32 @@ impl<'a> Bodies<'a> {
         start: StartOverlap,
         workspace: &mut Workspace,
     ) -> Room {
-        let passing = self.passing(a, b);
-        let (overlapping, start) = match passing {
-            Some(_) => (false, StartOverlap::Refuse),
-            None => (self.overlaps(a, b), self.start_of(a, b, start)),
-        };
+        let (overlapping, start) = (self.overlaps(a, b), self.start_of(a, b, start));
         if overlapping && start == StartOverlap::Refuse {
             return Room::Overlapping;
         }
         let options = SolidOptions {
             start_overlap: start,
-            tolerance: passing.or(Some(0.0)),
+            tolerance: Some(0.0),
             // A plane between the two, which comes with "free" where there is no limit, is not needed.
             before: before.or(Some(f64::INFINITY)),
             overlapping: Some(overlapping),
         };
-        let contact = met([&self.solids[a], &self.solids[b]], d, options, workspace);
-        contact.map_or(Room::Free, |c| Room::Blocked(self.stop([a, b], d, c.triangles, &c)))
+        let solids = [&self.solids[a], &self.solids[b]];
+        let later = met(solids, d, options, workspace);
+        let deeper = self.passing.get(&[a.min(b), a.max(b)]).and_then(|&tolerance| {
+            let (start_overlap, tolerance) = (StartOverlap::Refuse, Some(tolerance));
+            let options =
+                SolidOptions { start_overlap, tolerance, overlapping: Some(false), ..options };
+            met(solids, d, options, workspace)
+        });
+        let stops = later.into_iter().chain(deeper);
+        let stops = stops.map(|c| self.stop([a, b], d, c.triangles, &c));
+        let nearest = stops.min_by(|x, y| x.displaced.value.total_cmp(&y.displaced.value));
+        nearest.map_or(Room::Free, Room::Blocked)
     }
 
     /// What stops a part, if these were all of the facets of two; parts that overlap are not refused.
-    /// Nothing does parts that pass with a tolerance of their own, which single facets do not have.
     pub(crate) fn stop_by(
         &self,
         [a, b]: [usize; 2],
@@ -297,9 +301,6 @@ impl<'a> Bodies<'a> {
         d: DVec3,
         start: StartOverlap,
     ) -> Option<Stop> {
-        if self.passing(a, b).is_some() {
-            return None;
-        }
         let start = self.start_of(a, b, start);
         let options = SolidOptions {
             start_overlap: start,
@@ -320,7 +321,9 @@ impl<'a> Bodies<'a> {
         contact: &SolidContact,
     ) -> Stop {
         let SolidContact { normal, point_on_fixed: point, translation: displaced, .. } = *contact;
-        let place = displaced.value + self.moved_back(pair, d, triangles, contact);
+        let slope = contact.normal.dot(d);
+        let rounding = ROUNDINGS * f64::EPSILON * self.assembly.size() / slope;
+        let place = displaced.value + self.moved_back(pair, d, triangles, contact) - rounding;
         // Moved back by a length that is not finite, it says nothing.
         let distance = if place.is_finite() { displaced.lower.min(place) } else { displaced.lower };
         Stop { distance: distance.max(0.0), displaced, normal, point, triangles }

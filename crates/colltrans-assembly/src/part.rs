@@ -143,10 +143,9 @@ fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> 
 /// What of two parts is let pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Ignored {
-    /// The overlap at the start: the two pass with a tolerance of a little more than its depth, so
-    /// what would make it deeper blocks, and so do contacts that begin later. Where no tolerance ends
-    /// the overlap and leaves something of both, only such contacts do, as with
-    /// [`StartOverlap::Ignore`](colltrans::StartOverlap::Ignore).
+    /// The overlap at the start. Contacts that begin later block, as with
+    /// [`StartOverlap::Ignore`](colltrans::StartOverlap::Ignore), and so does what would make the overlap
+    /// deeper than it is, where there is a tolerance with which there is none.
     Overlap,
     /// Everything: the two are never asked about.
     Always,

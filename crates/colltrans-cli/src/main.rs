@@ -40,7 +40,11 @@ fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|bug| {
         let _ = writeln!(io::stderr(), "error: this is a bug, please report it: {bug}");
     }));
-    let result = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(told) => return told_by_the_parser(&told),
+    };
+    let result = match arguments.command {
         Command::Cast(arguments) => cast::run(&arguments, Asked::Contact),
         Command::Clearance(arguments) => cast::run(&arguments, Asked::Clearance),
         Command::Clear(arguments) => clear::run(&arguments),
@@ -53,4 +57,16 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
+}
+
+/// Help, the version, or what is wrong with the arguments: these may be names of files, so they are
+/// written out where they would steer a terminal.
+fn told_by_the_parser(told: &clap::Error) -> ExitCode {
+    if !told.use_stderr() {
+        let printed = told.print().and_then(|()| io::stdout().flush());
+        return printed.map_or(ExitCode::FAILURE, |()| ExitCode::SUCCESS);
+    }
+    let text = told.render().to_string();
+    let _ = io::stderr().write_all(terminal::plain(&text).as_bytes());
+    ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2))
 }

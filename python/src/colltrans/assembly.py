@@ -75,10 +75,10 @@ class Step:
     within : int or None
         For a step that takes a group apart, the position of the step that took the group out.
     ignored : list of tuple of (str, str)
-        What the step does not speak of: the first part moves, the second stays, and their overlap at
-        the start, or all that they do, is ignored on request.
+        What the step does not speak of: the first part moves, the second stays, and their overlap
+        at the start, or all that they do, is ignored on request.
     surfaces : list of str
-        The open surfaces that the step rests on: parts of the group or in its way that are not closed.
+        The open surfaces that the step rests on: parts of the group or in its way, not closed.
     """
 
     parts: list[str]
@@ -251,9 +251,8 @@ class Assembly:
     def with_ignored(self, *pairs: tuple[str, str], always: bool = False) -> "Assembly":
         """The same with these pairs of parts let pass, though they overlap at the start.
 
-        They pass with a tolerance of their own, a little more than the depth of that overlap: what
-        would make it deeper blocks, and so do contacts that begin later. With ``always`` nothing
-        between them does, whatever they run through.
+        Contacts that begin later block, and so does what would make the overlap deeper. With
+        ``always`` nothing between them does, whatever they run through.
         """
         return self._of(self._assembly.with_ignored(list(pairs), always))
 

@@ -15,7 +15,8 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (mut files, mut others) = (Vec::new(), Others::default());
     for entry in std::fs::read_dir(source.path).map_err(io(source.path))? {
         let file = entry.map_err(io(source.path))?.path();
-        if file.is_file() && Format::of_path(&file).is_ok() {
+        // A link that leads nowhere and a pipe are refused when they are read, not left out.
+        if !file.is_dir() && Format::of_path(&file).is_ok() {
             files.push(file);
         } else {
             others.count(&file);

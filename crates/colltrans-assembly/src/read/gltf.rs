@@ -12,6 +12,7 @@ use base64::engine::general_purpose::STANDARD;
 use colltrans_mesh::Mesh;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::files::Source;
@@ -54,7 +55,16 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
         document.nodes.len(),
         document.meshes.len()
     );
-    Ok(assembled(source, parts, &holds)?.with_unit("m"))
+    let assembly = assembled(source, parts, &holds)?.with_unit("m");
+    let shaped = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let at_rest = shaped.filter(|shape| !shape.targets.is_empty()).count()
+        + document.nodes.iter().filter(|node| node.skin.is_some()).count();
+    Ok(if at_rest == 0 {
+        assembly
+    } else {
+        assembly
+            .with_note("morph targets and skins are left out: meshes are taken as they are at rest")
+    })
 }
 
 /// The JSON text, and the binary chunk of a GLB file.
@@ -130,6 +140,7 @@ struct Scene {
 struct Node {
     name: Option<String>,
     mesh: Option<usize>,
+    skin: Option<usize>,
     #[serde(default)]
     children: Vec<usize>,
     matrix: Option<[f64; 16]>,
@@ -153,6 +164,8 @@ struct Primitive {
     attributes: Attributes,
     indices: Option<usize>,
     mode: Option<u32>,
+    #[serde(default)]
+    targets: Vec<IgnoredAny>,
 }
 
 #[derive(Deserialize)]

@@ -146,8 +146,8 @@ fn plain(error: &serde_json::Error) -> String {
 }
 
 /// A parser's message in words of the file, not of the parser.
-fn plain_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 16] = [
+pub fn plain_words(message: &str) -> String {
+    const WORDS: [(&str, &str); 18] = [
         ("expected ident", "it is no JSON"),
         ("expected value", "it is no JSON"),
         ("floating point", "number"),
@@ -163,6 +163,8 @@ fn plain_words(message: &str) -> String {
         ("found map", "found an object"),
         ("EOF while parsing", "the file ends inside"),
         ("recursion limit exceeded", "it is nested too deep"),
+        ("unknown variant ", "unknown word "),
+        ("expected an array of length ", "expected a list of "),
         (", expected literal string", ""),
     ];
     WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))

@@ -81,7 +81,12 @@ impl<'a> Gathered<'a> {
             match shape.name.as_str() {
                 "mesh" => pieces.extend(self.mesh(shape, name, at)?),
                 "capsule" => self.notes.push(format!("link {name}: a capsule is left out")),
-                _ => pieces.push(solid(shape, at).map_err(refused)?),
+                _ => {
+                    let piece = solid(shape, at).map_err(refused)?;
+                    self.budget.place().map_err(refused)?;
+                    self.budget.facets(piece.faces.len()).map_err(refused)?;
+                    pieces.push(piece);
+                }
             }
         }
         if !pieces.is_empty() {

@@ -193,7 +193,8 @@ Each result is one JSON object with those of these fields that apply:
   rounding     of convex bodies: what rounding alone can make of the bounds' difference
   tolerance    of solids: the one that was used, both are shrunk by half of it
   start_overlaps  of solids that overlap now: [{"depth"}], the least tolerance with which they
-               would not
+               would not; missing of surfaces
+  surfaces     of solids: which bodies are open, at least in part: ["moving", "fixed"]
   normal       unit normal from moving to fixed: of the contact plane, or of the separating plane
   point        the contact point on the fixed body, in the world
   features     {"moving": {"kind": "vertex"|"edge"|"face", "vertices": [...]}, "fixed": ...} by the

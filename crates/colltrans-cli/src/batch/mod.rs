@@ -97,6 +97,10 @@ fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure>
     let unreadable = |e: io::Error| {
         Failure::new(Code::Input, format!("{}: cannot be read: {e}", path.display()))
     };
+    // Pipes are read like standard input; a device may never end.
+    if is_device(&path.metadata().map_err(unreadable)?) && path != Path::new("/dev/stdin") {
+        return Err(Failure::new(Code::Input, format!("{}: is a device", path.display())));
+    }
     let file = File::open(path).map_err(unreadable)?;
     let metadata = file.metadata().map_err(unreadable)?;
     if metadata.is_dir() {
@@ -105,6 +109,18 @@ fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure>
     let size = metadata.is_file().then_some(metadata.len());
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     Ok((BufReader::with_capacity(1 << 16, Box::new(file)), size, folder))
+}
+
+#[cfg(unix)]
+fn is_device(metadata: &std::fs::Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    let kind = metadata.file_type();
+    kind.is_char_device() || kind.is_block_device()
+}
+
+#[cfg(not(unix))]
+fn is_device(_: &std::fs::Metadata) -> bool {
+    false
 }
 
 /// Bytes of the query file that were read.

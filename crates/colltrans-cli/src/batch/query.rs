@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
+use colltrans_assembly::read::plain_words;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -335,14 +336,8 @@ fn syntax_message(number: u64, error: &serde_json::Error) -> String {
     let message = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     let what = message.strip_suffix(&place).unwrap_or(&message);
-    // The parser names types by what Rust calls them.
-    let what = what
-        .replace("floating point", "number")
-        .replace("expected f64", "expected a number")
-        .replace("expected path string", "expected a path")
-        .replace("expected ident", "it is no JSON")
-        .replace("expected value", "it is no JSON")
-        .replace("EOF while parsing", "the line ends inside")
-        .replace("expected an array of length", "expected numbers in an array of length");
+    let what = plain_words(what)
+        .replace("the file ends inside", "the line ends inside")
+        .replace("expected path string", "expected a path");
     format!("line {number}, column {}: {what}", error.column())
 }

@@ -78,7 +78,7 @@ fn a_bad_line_costs_one_result() {
             "bad".into(),
             "moving_pose",
         ),
-        (with("\"id\"", "\"solver\":\"best\",\"id\""), "bad".into(), "unknown variant `best`"),
+        (with("\"id\"", "\"solver\":\"best\",\"id\""), "bad".into(), "unknown word `best`"),
         (with("\"id\"", "\"graze_tolerance\":-1,\"id\""), "bad".into(), "graze tolerance"),
     ];
     let mut text = String::new();
@@ -290,9 +290,9 @@ fn errors_speak_json_and_not_rust() {
     assert_eq!(results.len(), 10);
     for (result, word) in results.iter().zip([
         "expected an object that holds a body",
-        "expected a sequence",
+        "expected a list",
         "expected a number",
-        "expected numbers in an array of length 3",
+        "expected a list of 3",
         "expected a number",
         "expected an object that holds a pose",
         "expected a number",

@@ -21,5 +21,5 @@ fn a_saved_query_is_answered_again() {
     std::fs::write(folder.path().join("none.json"), "{}").unwrap();
     let output = colltrans(folder.path()).args(["replay", "none.json"]).output().unwrap();
     assert_eq!(output.status.code(), Some(3));
-    assert!(stderr(&output).contains("none.json: not a case"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("none.json: not a saved query"), "{}", stderr(&output));
 }

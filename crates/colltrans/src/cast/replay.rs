@@ -19,7 +19,7 @@ use crate::solve::options::{NarrowFrom, Narrowing, Options};
 #[non_exhaustive]
 pub enum CaseError {
     /// It is not JSON, or lacks something.
-    #[error("not a case: {0}")]
+    #[error("not a saved query: {}", what_is_wrong(.0))]
     Syntax(#[from] serde_json::Error),
     /// It was written by another version.
     #[error("the format is {found:?}, not {FORMAT:?}")]
@@ -47,6 +47,18 @@ pub enum CaseError {
     /// The direction or a choice is refused.
     #[error(transparent)]
     Query(#[from] QueryError),
+}
+
+/// In words of the file, not of its parser.
+fn what_is_wrong(error: &serde_json::Error) -> String {
+    use serde_json::error::Category;
+    let what = match error.classify() {
+        Category::Io => return error.to_string(),
+        Category::Syntax => "it is no JSON",
+        Category::Eof => "it ends too early",
+        Category::Data => "something is missing, or is not what a saved query has there",
+    };
+    format!("line {}, column {}: {what}", error.line(), error.column())
 }
 
 /// What a file of this version calls itself.

@@ -19,8 +19,8 @@
 //! where rounding cannot tell in poses that turn, the place is that of their planes at the contact
 //! point, unless these are all but on edge. Then all that is known from above is that the shrunk bodies
 //! overlap beyond their own upper bound, and from below that the two facets do not meet before the least
-//! gap at any corner that their common shadow may have ([`leaf::least_possible`]). Whatever comes out,
-//! no bound is larger than that of the shrunk bodies.
+//! gap at any corner that their common shadow may have ([`leaf::least_in_doubt`]); where that says too
+//! little, whole numbers decide after all. The lower bound is never larger than that of the shrunk bodies.
 //!
 //! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, which is
 //! proven, and those two facets have not met; beyond `upper` the bodies overlap. Nothing is said of other facets of the
@@ -186,23 +186,35 @@ fn true_place(
 ) -> Bounded {
     let bare = scene.shrunk(0.0, 0.0);
     let pair = [found.moving, found.fixed];
+    let known = |(gap, error): (f64, f64)| {
+        let place = Found { gap, error, others: gap, ..*found }.bounded(&bare);
+        Bounded { lower: place.lower.min(shrunk.lower), ..place }
+    };
     let exact = leaf::gap_of(&bare, pair).or_else(|| rim::least_gap_of(&bare, Aim::Stop, pair));
-    let place = exact.map_or_else(
-        || {
-            let slope = normal.dot(scene.direction);
-            // Along planes that are all but on edge their meeting says nothing of the bodies.
-            let steep = slope <= STEEPEST * scene.length;
-            let back = if steep { 0.0 } else { normal.dot(shift) / slope };
-            let value = shrunk.value + back;
-            let enough = value * scene.length - ENOUGH * scene.blur;
-            let lower = (leaf::least_possible(&bare, pair, enough) - scene.blur) / scene.length;
-            Bounded { value, lower, upper: f64::INFINITY }
-        },
-        |(gap, error)| Found { gap, error, others: gap, ..*found }.bounded(&bare),
-    );
-    let upper = place.upper.min(shrunk.upper);
-    let value = place.value.min(shrunk.value).min(upper);
-    Bounded { value, lower: place.lower.min(shrunk.lower).min(value), upper }
+    if let Some(gap) = exact {
+        return known(gap);
+    }
+    let slope = normal.dot(scene.direction);
+    // Along planes that are all but on edge their meeting says nothing of the bodies.
+    let steep = slope <= STEEPEST * scene.length;
+    let [back, error] = if steep {
+        [0.0, f64::INFINITY]
+    } else {
+        [normal.dot(shift), scene.blur].map(|x| x / slope)
+    };
+    let value = (shrunk.value + back).min(shrunk.value);
+    let least = leaf::least_in_doubt(&bare, pair) / scene.length;
+    if least < value - ENOUGH * error.min(scene.blur / scene.length) {
+        if let Some(gap) = leaf::gap_exactly(&bare, pair) {
+            return known((gap, 0.0));
+        }
+        // They do not meet as they are.
+        let value = if steep { shrunk.value } else { value };
+        let error = if steep { scene.blur / scene.length } else { error };
+        return Bounded { value, lower: shrunk.lower.min(value - error), upper: shrunk.upper };
+    }
+    let lower = (least - scene.blur / scene.length).min(value - error).min(shrunk.lower);
+    Bounded { value, lower, upper: shrunk.upper }
 }
 
 /// A normal of the plane through three points.

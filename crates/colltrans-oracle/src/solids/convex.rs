@@ -2,13 +2,12 @@
 //! bodies against the points that they were made of.
 
 use colltrans::{Bounded, Cast, Clearance, Outcome, Solid, SolidOptions};
-use glam::DVec3;
 
 use super::encloses;
 use super::facets::{rule, triangles};
 use super::settings::Seen;
 use crate::exact::Ratio;
-use crate::settings::Setting;
+use crate::settings::{NEARLY_FLAT, Setting};
 
 /// More pairs of facets than this are not judged by the rule.
 const MOST_PAIRS: usize = 4_000;
@@ -38,26 +37,19 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
         against_rule(setting, &a, &b, found, cast.exit())?;
     }
     let core = Cast::new(p.at(*s), q.at(*t), setting.direction).and_then(|c| c.first_contact());
-    let limits = Limits {
-        noise: noise(setting, &a, &b),
-        dents: (p.hull_error() + q.hull_error()) / setting.direction.length(),
-        direction: setting.direction.normalize(),
-    };
+    let limits =
+        Limits { noise: noise(setting, &a, &b), dented: NEARLY_FLAT.contains(&setting.family) };
     against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), &limits)
 }
 
-/// By how much a convex body as a solid may differ, in multiples of the direction.
-///
-/// A solid has the same corners, so it meets nothing earlier. But where polygons are flat up to rounding
-/// only, triangles cut them: it is dented by as much as the corners are off their planes, and so it may
-/// meet later by that over the slope of the contact plane.
+/// By how much a convex body as a solid may differ.
 struct Limits {
-    /// The rounding error of a coordinate.
+    /// The rounding error of a coordinate, in multiples of the direction.
     noise: f64,
-    /// Of both bodies.
-    dents: f64,
-    /// Of length 1.
-    direction: DVec3,
+    /// A solid has the same corners, so it meets nothing earlier. But polygons are flat up to rounding
+    /// only, and triangles cut them: of a body that is as thin as that they leave another one, which may
+    /// meet later, or miss. What it does is judged by the rule alone.
+    dented: bool,
 }
 
 /// The rounding error of a coordinate, in multiples of the direction.
@@ -128,11 +120,10 @@ fn against_core(
         Outcome::Separated(_) if overlaps || distance.is_some() => wrong(),
         Outcome::Contact(contact) => {
             let tolerance = contact.certificate.rounding + AGREEMENT * limits.noise;
-            let late = limits.dents / contact.normal.dot(limits.direction);
             let ahead = contact.translation > tolerance;
-            let off = |d: f64| d - contact.translation;
-            let near = distance.is_some_and(|d| off(d) >= -tolerance && off(d) <= tolerance + late);
-            if ahead && !near { wrong() } else { Ok(Some(seen)) }
+            let early = distance.is_some_and(|d| d < contact.translation - tolerance);
+            let late = distance.is_none_or(|d| d > contact.translation + tolerance);
+            if ahead && (early || late && !limits.dented) { wrong() } else { Ok(Some(seen)) }
         }
         _ => Ok(Some(seen)),
     }

@@ -215,7 +215,7 @@ fn shapes_are_not_placed_without_end() {
         let bodies = Bodies::new(&same, Fit::Tolerance(0.0));
         message = bodies.err().unwrap().to_string();
     });
-    says(&message, &["more than 4194304 pairs of parts"]);
+    says(&message, &["more than 524288 pairs of parts"]);
     assert!(memory.bytes_max < 400 << 20, "{}", memory.bytes_max);
 }
 

@@ -67,7 +67,7 @@ fn a_bad_line_costs_one_result() {
         ("not json".to_string(), Value::Null, "column"),
         (with("\"direction\"", "\"directoin\""), "bad".into(), "unknown field `directoin`"),
         (with("[1,0,0]}", "[0,0,0]}"), "bad".into(), "direction"),
-        (with("[1,0,0]}", "[1,0]}"), "bad".into(), "length 2"),
+        (with("[1,0,0]}", "[1,0]}"), "bad".into(), "a length of 2"),
         (with(BOX, r#"{"mesh":"none.off"}"#), "bad".into(), "none.off"),
         (with(BOX, r#"{"mesh":"dent.off"}"#), "bad".into(), "--hull"),
         (with(BOX, r#"{"points":[]}"#), "bad".into(), "no points"),

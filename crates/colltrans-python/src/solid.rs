@@ -3,7 +3,7 @@
 //! A solid keeps what it was made of, so that it can be pickled: made of the same again, it is the
 //! same.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -319,7 +319,7 @@ impl Solid {
     /// closed) and ``sheet``. Open ones block from both sides, rims included; sheets are neither shrunk
     /// nor grown.
     #[getter]
-    fn shells(&self) -> HashMap<&'static str, usize> {
+    fn shells(&self) -> BTreeMap<&'static str, usize> {
         let report = self.solid.report();
         ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.count(kind))).collect()
     }

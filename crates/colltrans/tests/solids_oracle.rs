@@ -8,6 +8,14 @@ use colltrans_oracle::solids::sheets;
 /// Settings of all families together.
 const SETTINGS: u64 = 10_000;
 
+fn each_was_seen(seen: &HashMap<Seen, usize>) {
+    let least = [Seen::Overlapping, Seen::Free, Seen::BlockedNow, Seen::Blocked];
+    for outcome in least {
+        let count = seen.get(&outcome).copied().unwrap_or(0);
+        assert!(count as u64 > SETTINGS / 40, "{outcome:?} only {count} times");
+    }
+}
+
 #[test]
 fn bodies_of_cubes_agree_with_exact_arithmetic() {
     let mut seen: HashMap<Seen, usize> = HashMap::new();
@@ -22,11 +30,7 @@ fn bodies_of_cubes_agree_with_exact_arithmetic() {
             }
         }
     }
-    let least = [Seen::Overlapping, Seen::Free, Seen::BlockedNow, Seen::Blocked];
-    for outcome in least {
-        let count = seen.get(&outcome).copied().unwrap_or(0);
-        assert!(count as u64 > SETTINGS / 40, "{outcome:?} only {count} times");
-    }
+    each_was_seen(&seen);
 }
 
 #[test]
@@ -41,9 +45,5 @@ fn open_surfaces_agree_with_exact_arithmetic() {
             }
         }
     }
-    let least = [Seen::Overlapping, Seen::Free, Seen::BlockedNow, Seen::Blocked];
-    for outcome in least {
-        let count = seen.get(&outcome).copied().unwrap_or(0);
-        assert!(count as u64 > SETTINGS / 40, "{outcome:?} only {count} times");
-    }
+    each_was_seen(&seen);
 }

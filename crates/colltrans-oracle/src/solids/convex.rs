@@ -1,11 +1,11 @@
 //! Convex bodies as solids, against the convex core and against the rule over all pairs of facets; the
 //! bodies against the points that they were made of.
 
-use colltrans::{Bounded, Cast, Clearance, Outcome, Solid, SolidOptions};
+use colltrans::{Bounded, Cast, Clearance, Outcome, Solid};
 
-use super::encloses;
 use super::facets::{rule, triangles};
 use super::settings::Seen;
+use super::{encloses, exactly};
 use crate::exact::Ratio;
 use crate::settings::{NEARLY_FLAT, Setting};
 
@@ -26,11 +26,8 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
         return Ok(None);
     }
     let (Ok(a), Ok(b)) = (Solid::from_convex(p), Solid::from_convex(q)) else { return Ok(None) };
-    let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
     let (s, t) = (&setting.moving_pose, &setting.fixed_pose);
-    let cast = Cast::new(a.at(*s), b.at(*t), setting.direction)
-        .and_then(|cast| cast.with_options(options))
-        .map_err(|e| e.to_string())?;
+    let cast = exactly([&a, &b], [*s, *t], setting.direction)?;
     let overlaps = cast.overlaps();
     let found = if overlaps { None } else { Some(cast.clearance()) };
     if let Some(found) = &found {

@@ -11,11 +11,23 @@ pub mod settings;
 pub mod sheets;
 pub mod squares;
 
-use colltrans::Bounded;
+use colltrans::{Bounded, Cast, Pose, Solid};
+use glam::DVec3;
 
 use crate::exact::Ratio;
 pub use convex::as_solids;
 pub use settings::Seen;
+
+/// The query between two solids as they are, without a tolerance.
+pub(crate) fn exactly<'a>(
+    [a, b]: [&'a Solid; 2],
+    poses: [Pose; 2],
+    direction: DVec3,
+) -> Result<Cast<'a, Solid>, String> {
+    Cast::new(a.at(poses[0]), b.at(poses[1]), direction)
+        .and_then(|cast| cast.with_tolerance(0.0))
+        .map_err(|e| e.to_string())
+}
 
 /// Whether a number lies between bounds, exactly, and the estimate too.
 pub(crate) fn encloses(found: &Bounded, right: &Ratio) -> bool {

@@ -1,11 +1,11 @@
 //! Settings of bodies made of cubes, most of them tied, and how an answer is judged.
 
-use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions};
+use colltrans::{Clearance, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::{Cells, Motion, motion};
-use super::encloses;
 use super::proof::{MOST_PAIRS, approve};
+use super::{encloses, exactly};
 use crate::exact::{Ratio, Vector};
 use crate::settings::Rng;
 
@@ -132,10 +132,7 @@ impl Setting {
             Solid::from_mesh(vertices, facets).map_err(|e| format!("body {k}: {e}"))
         };
         let (a, b) = (solid(0)?, solid(1)?);
-        let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
-        let cast = Cast::new(a.at(self.poses[0]), b.at(self.poses[1]), self.direction)
-            .and_then(|cast| cast.with_options(options))
-            .map_err(|e| e.to_string())?;
+        let cast = exactly([&a, &b], self.poses, self.direction)?;
         let expected = self.expected();
         let tolerance = self.tolerance();
         let near =

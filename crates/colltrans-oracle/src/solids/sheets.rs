@@ -1,12 +1,12 @@
 //! Settings of open surfaces, most of them tied, and how an answer is judged.
 
-use colltrans::{Cast, Clearance, Pose, Solid, SolidOptions};
+use colltrans::{Clearance, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::Cells;
-use super::encloses;
 use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way, whole};
 use super::squares::{Crossing, Mixed, Squares};
+use super::{encloses, exactly};
 use crate::exact::{Ratio, Vector};
 use crate::settings::Rng;
 
@@ -98,10 +98,7 @@ impl Setting {
     /// What disagrees.
     pub fn examine(&self) -> Result<Seen, String> {
         let [a, b] = &self.solids;
-        let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
-        let cast = Cast::new(a.at(self.poses[0]), b.at(self.poses[1]), self.direction)
-            .and_then(|cast| cast.with_options(options))
-            .map_err(|e| e.to_string())?;
+        let cast = exactly([a, b], self.poses, self.direction)?;
         let expected = self.expected();
         let tolerance = self.tolerance();
         if let Some(last) = &expected.last {

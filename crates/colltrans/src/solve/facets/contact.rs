@@ -197,23 +197,19 @@ fn true_place(
     let slope = normal.dot(scene.direction);
     // Along planes that are all but on edge their meeting says nothing of the bodies.
     let steep = slope <= STEEPEST * scene.length;
-    let [back, error] = if steep {
-        [0.0, f64::INFINITY]
-    } else {
-        [normal.dot(shift), scene.blur].map(|x| x / slope)
-    };
+    let noise = scene.blur / scene.length;
+    let [back, error] =
+        if steep { [0.0, noise] } else { [normal.dot(shift), scene.blur].map(|x| x / slope) };
     let value = (shrunk.value + back).min(shrunk.value);
-    let least = leaf::least_in_doubt(&bare, pair) / scene.length;
-    if least < value - ENOUGH * error.min(scene.blur / scene.length) {
+    let mut least = leaf::least_in_doubt(&bare, pair) / scene.length;
+    if least < value - ENOUGH * noise {
         if let Some(gap) = leaf::gap_exactly(&bare, pair) {
             return known((gap, 0.0));
         }
         // They do not meet as they are.
-        let value = if steep { shrunk.value } else { value };
-        let error = if steep { scene.blur / scene.length } else { error };
-        return Bounded { value, lower: shrunk.lower.min(value - error), upper: shrunk.upper };
+        least = f64::INFINITY;
     }
-    let lower = (least - scene.blur / scene.length).min(value - error).min(shrunk.lower);
+    let lower = (least - noise).min(value - error).min(shrunk.lower);
     Bounded { value, lower, upper: shrunk.upper }
 }
 

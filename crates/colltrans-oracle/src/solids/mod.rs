@@ -19,11 +19,11 @@ pub use convex::as_solids;
 pub use settings::Seen;
 
 /// The query between two solids as they are, without a tolerance.
-pub(crate) fn exactly<'a>(
-    [a, b]: [&'a Solid; 2],
+pub(crate) fn exactly(
+    [a, b]: [&Solid; 2],
     poses: [Pose; 2],
     direction: DVec3,
-) -> Result<Cast<'a, Solid>, String> {
+) -> Result<Cast<'_, Solid>, String> {
     Cast::new(a.at(poses[0]), b.at(poses[1]), direction)
         .and_then(|cast| cast.with_tolerance(0.0))
         .map_err(|e| e.to_string())

@@ -31,10 +31,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::leaf::{self, Meeting, listed};
+use super::leaf::{self, Gap, Meeting, listed};
 use super::rim;
 use super::scene::{Scene, Side};
-use super::search::{Aim, Found};
+use super::search::{Aim, Found, exact_gap};
 use crate::answer::Bounded;
 use crate::body::Feature;
 use crate::body::solid::Solid;
@@ -190,7 +190,7 @@ fn true_place(
         let place = Found { gap, error, others: gap, ..*found }.bounded(&bare);
         Bounded { lower: place.lower.min(shrunk.lower), ..place }
     };
-    let exact = leaf::gap_of(&bare, pair).or_else(|| rim::least_gap_of(&bare, Aim::Stop, pair));
+    let exact = leaf::gap_of(&bare, pair).or_else(|| rim::least_gap_of(&bare, Gap::counts, pair));
     if let Some(gap) = exact {
         return known(gap);
     }
@@ -203,8 +203,8 @@ fn true_place(
     let value = (shrunk.value + back).min(shrunk.value);
     let mut least = leaf::least_in_doubt(&bare, pair) / scene.length;
     if least < value - ENOUGH * noise {
-        if let Some(gap) = leaf::gap_exactly(&bare, pair) {
-            return known((gap, 0.0));
+        if let Some(gap) = exact_gap(&bare, Aim::Stop, pair) {
+            return known(gap);
         }
         // They do not meet as they are.
         least = f64::INFINITY;

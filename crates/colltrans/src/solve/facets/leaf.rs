@@ -294,15 +294,6 @@ pub(super) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f
     }
 }
 
-/// The least gap of two triangles, the moving body's first, where they block each other, exact but for its
-/// last roundings.
-pub(super) fn gap_exactly(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<f64> {
-    let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
-    let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
-    gap(scene, &f, &g, f64::INFINITY, Wanted::NotParting).filter(Gap::counts)?;
-    Some(sharpened(scene, &f, &g).least)
-}
-
 /// Two triangles, the moving body's first, have no smaller gap than this where the interiors of their
 /// shadows overlap, whatever rounding leaves in doubt; infinite if they face away or certainly do not
 /// overlap.
@@ -629,6 +620,7 @@ mod tests {
     use glam::DQuat;
     use proptest::prelude::*;
 
+    use super::super::search::{Aim, exact_gap};
     use super::*;
     use crate::body::Pose;
     use crate::body::solid::Solid;
@@ -672,7 +664,7 @@ mod tests {
                 let least = sharpened(&scene, &f, &g).least;
                 let possible = least_in_doubt(&scene, [0, 0]);
                 prop_assert!(possible <= least + scene.blur, "{possible}, but {least}");
-                if let Some(exact) = gap_exactly(&scene, [0, 0]) {
+                if let Some((exact, _)) = exact_gap(&scene, Aim::Stop, [0, 0]) {
                     prop_assert_eq!(exact, least);
                 }
             }

@@ -27,7 +27,6 @@ use glam::DVec3;
 
 use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP};
 use super::scene::{Corner, Scene, Side};
-use super::search::Aim;
 use super::wide::{LARGE, SMALL, Wide, determinant, difference};
 use crate::body::solid::edges::NONE;
 
@@ -55,10 +54,14 @@ pub(super) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
 
 /// The least gap of two triangles of which one is a blade, the moving body's first, where they block
 /// each other, and its error.
-pub(super) fn least_gap_of(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
+pub(super) fn least_gap_of(
+    scene: &Scene,
+    counts: impl Fn(&Gap) -> bool,
+    pair: [u32; 2],
+) -> Option<(f64, f64)> {
     let mut least: Option<(f64, f64)> = None;
     each_gap_of(scene, pair, &mut |_, gap| {
-        if aim.value(&gap).is_some() && least.is_none_or(|(value, _)| gap.least < value) {
+        if counts(&gap) && least.is_none_or(|(value, _)| gap.least < value) {
             least = Some((gap.least, gap.error));
         }
     });

@@ -384,6 +384,21 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     }
 }
 
+/// The gap of two facets that block each other, the moving body's first, exact but for its last roundings,
+/// with its error: of their shadows, or of what is on edge.
+pub(super) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
+    let [s, t] = pair.map(|triangle| triangle as usize);
+    let f = Facet::facing(scene, true, s, Ordering::Greater);
+    let g = Facet::facing(scene, false, t, Ordering::Less);
+    let (Some(f), Some(g)) = (f, g) else {
+        return rim::least_gap_of(scene, |gap| aim.value(gap).is_some(), pair);
+    };
+    let gap = leaf::gap(scene, &f, &g, f64::INFINITY, aim.wanted())?;
+    aim.value(&gap)?;
+    let gap = leaf::sharpened(scene, &f, &g);
+    Some((gap.least, gap.error))
+}
+
 /// The nodes of a pair.
 fn nodes(seen: &[Seen; 2], views: [u32; 2]) -> [u32; 2] {
     [0, 1].map(|k| seen[k].views[views[k] as usize].shade.node)

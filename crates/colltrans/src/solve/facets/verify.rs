@@ -1,17 +1,14 @@
 //! Proofs between solids checked: each entry by itself, without a search.
 
-use std::cmp::Ordering;
-
 use super::bound::{Reason, Shade, apart};
 use super::fan::Fan;
-use super::leaf::{self, Facet};
+use super::leaf;
 use super::overlap::{is_overlap, leaves_apart, nested, never_overlap};
 use super::proof::{
     Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves, node_rounding,
 };
-use super::rim;
 use super::scene::Scene;
-use super::search::{Aim, SLACK};
+use super::search::{Aim, SLACK, exact_gap};
 use super::separate;
 use crate::answer::{CertificateError, Separation};
 use crate::body::solid::Solid;
@@ -156,7 +153,7 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), Certific
     if !within(true, s) || !within(false, t) {
         return Err(refused);
     }
-    let (least, error) = stopping_gap(scene, aim, stop.triangles).ok_or(refused)?;
+    let (least, error) = exact_gap(scene, aim, stop.triangles).ok_or(refused)?;
     let proven = aim.clamp(least) / scene.length;
     let tolerance = (error + leaf::FINE * scene.blur) / scene.length;
     if (stop.shrunk_distance - proven).abs() <= tolerance {
@@ -164,17 +161,4 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), Certific
     } else {
         Err(CertificateError::Bound { proven, claimed: stop.shrunk_distance })
     }
-}
-
-/// The gap of two facets that block, with its error: of their shadows, or of what is on edge.
-fn stopping_gap(scene: &Scene, aim: Aim, [s, t]: [u32; 2]) -> Option<(f64, f64)> {
-    let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
-    let g = Facet::facing(scene, false, t as usize, Ordering::Less);
-    if let (Some(f), Some(g)) = (f, g) {
-        let facing = leaf::gap(scene, &f, &g, f64::INFINITY, aim.wanted());
-        facing.and_then(|gap| aim.value(&gap))?;
-        let gap = leaf::sharpened(scene, &f, &g);
-        return Some((gap.least, gap.error));
-    }
-    rim::least_gap_of(scene, aim, [s, t])
 }

@@ -138,15 +138,15 @@ fn contents(path: &Path, place: impl Into<String>, reason: impl std::fmt::Displa
     ReadError::Contents { path: path.into(), place: place.into(), reason: reason.to_string() }
 }
 
-/// What is wrong with JSON, without the place.
-fn plain(error: &serde_json::Error) -> String {
+/// What is wrong with JSON, in words of the file and without the place.
+pub fn plain(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     plain_words(message.strip_suffix(&place).unwrap_or(&message))
 }
 
 /// A parser's message in words of the file, not of the parser.
-pub fn plain_words(message: &str) -> String {
+fn plain_words(message: &str) -> String {
     const WORDS: [(&str, &str); 18] = [
         ("expected ident", "it is no JSON"),
         ("expected value", "it is no JSON"),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
-use colltrans_assembly::read::plain_words;
+use colltrans_assembly::read::plain;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -333,10 +333,7 @@ impl PoseSource {
 
 /// The parser sees one line and calls it line 1.
 fn syntax_message(number: u64, error: &serde_json::Error) -> String {
-    let message = error.to_string();
-    let place = format!(" at line {} column {}", error.line(), error.column());
-    let what = message.strip_suffix(&place).unwrap_or(&message);
-    let what = plain_words(what)
+    let what = plain(error)
         .replace("the file ends inside", "the line ends inside")
         .replace("expected path string", "expected a path");
     format!("line {number}, column {}: {what}", error.column())

@@ -39,6 +39,13 @@ fn steps<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
     plan.steps.iter().map(|s| assembly.names(&s.parts)).collect()
 }
 
+/// The room of a part among all others.
+fn room_of_part(assembly: &Assembly, fit: Fit, part: usize, d: DVec3) -> PartRoom {
+    let bodies = Bodies::new(assembly, fit).unwrap();
+    let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
+    room_of(&bodies, &[part], &all, d, start, &mut Default::default())
+}
+
 #[test]
 fn linked_rings_do_not_come_apart() {
     let assembly = Assembly::new(links().to_vec()).unwrap();
@@ -297,11 +304,7 @@ fn a_margin_is_kept_or_not() {
     let peg = part("peg", &[cuboid([-0.5, -0.5, 0.5], [0.5, 0.5, 6.0])]);
     let block = part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0));
     let assembly = Assembly::new(vec![peg, block]).unwrap();
-    let room = |apart: f64, d: DVec3| {
-        let bodies = Bodies::new(&assembly, Fit::Apart(apart)).unwrap();
-        let start = StartOverlap::Refuse;
-        room_of(&bodies, &[0], &[true; 2], d, start, &mut Default::default())
-    };
+    let room = |apart: f64, d: DVec3| room_of_part(&assembly, Fit::Apart(apart), 0, d);
     assert!(room(0.4, DVec3::Z).is_free());
     assert!(matches!(room(0.6, DVec3::Z), PartRoom::Overlapping { .. }));
     let aside = room(0.4, DVec3::X);
@@ -326,10 +329,7 @@ fn overlaps_at_the_start_are_measured_and_can_be_ignored() {
     assert!((depth - 0.05).abs() < 1e-6, "{depth}");
     let suggested = start.suggested.unwrap();
     assert!(suggested > depth && suggested < 1.2 * depth);
-    let room = |fit: Fit, d: DVec3| {
-        let bodies = Bodies::new(&assembly, fit).unwrap();
-        room_of(&bodies, &[0], &[true; 2], d, StartOverlap::Refuse, &mut Default::default())
-    };
+    let room = |fit: Fit, d: DVec3| room_of_part(&assembly, fit, 0, d);
     assert!(matches!(room(Fit::Tolerance(0.0), DVec3::Z), PartRoom::Overlapping { .. }));
     assert!(room(Fit::Tolerance(suggested), DVec3::Z).is_free());
     let stopped = room(Fit::Tolerance(suggested), DVec3::NEG_Z);
@@ -341,9 +341,7 @@ fn overlaps_at_the_start_are_measured_and_can_be_ignored() {
 }
 
 fn room_with(assembly: &Assembly, d: DVec3) -> PartRoom {
-    let bodies = Bodies::new(assembly, Fit::Tolerance(0.0)).unwrap();
-    let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
-    room_of(&bodies, &[0], &all, d, start, &mut Default::default())
+    room_of_part(assembly, Fit::Tolerance(0.0), 0, d)
 }
 
 #[test]
@@ -466,9 +464,7 @@ fn sheets(low: [f64; 3], high: [f64; 3], sides: &[usize]) -> Piece {
 }
 
 fn along(assembly: &Assembly, part: usize, d: DVec3) -> PartRoom {
-    let bodies = Bodies::new(assembly, Fit::Tolerance(1e-6)).unwrap();
-    let all = vec![true; bodies.len()];
-    room_of(&bodies, &[part], &all, d, StartOverlap::Refuse, &mut Default::default())
+    room_of_part(assembly, Fit::Tolerance(1e-6), part, d)
 }
 
 #[test]

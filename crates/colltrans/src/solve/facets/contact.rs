@@ -190,7 +190,7 @@ fn true_place(
         let place = Found { gap, error, others: gap, ..*found }.bounded(&bare);
         Bounded { lower: place.lower.min(shrunk.lower), ..place }
     };
-    let exact = leaf::gap_of(&bare, pair).or_else(|| rim::least_gap_of(&bare, Gap::counts, pair));
+    let exact = leaf::gap_of(&bare, pair).or_else(|| rim::least_gap_of(&bare, &Gap::counts, pair));
     if let Some(gap) = exact {
         return known(gap);
     }

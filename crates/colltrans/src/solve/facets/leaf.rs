@@ -547,13 +547,8 @@ fn exact_in<const N: usize>(
     of_g: &Turns,
     keep: &impl Fn(Meeting) -> bool,
 ) -> Option<Gap> {
-    let direction = scene.direction.to_array().map(Wide::number);
-    // Of a corner above a facet, the plane through the facet turning counter-clockwise from below.
-    let above = |facet: &Facet, corner: &Corner| {
-        let [a, b, c] = facet.corners.each_ref();
-        let [x, y, z] = scene.spans_wide::<N>(a, [b, c, corner]);
-        Above::new(&determinant(&x, &y, &z), &determinant(&x, &y, &direction))
-    };
+    let direction = scene.direction.to_array().map(Wide::<N>::number);
+    let above = |facet: &Facet, corner: &Corner| above_facet(scene, &direction, facet, corner);
     let mut gap = NO_GAP;
     for k in 0..3 {
         if of_g.contain(k) && keep(Meeting::Corner(k as u8)) {
@@ -566,15 +561,53 @@ fn exact_in<const N: usize>(
     for k in 0..3 {
         for j in 0..3 {
             if cross(of_f, of_g, [k, j]) && keep(Meeting::Sides(k as u8, j as u8)) {
-                let ([a, b], [c, e]) = (f.side(k), g.side(j));
-                let [x, y, z] = scene.spans_wide::<N>(a, [b, c, e]);
-                let plane = determinant(&x, &difference(&z, &y), &direction);
-                let above = Above::new(&determinant(&x, &y, &z), &plane)?.reversed();
+                let above = above_side(scene, &direction, f.side(k), g.side(j))?;
                 gap.add(scene, above, Meeting::Sides(k as u8, j as u8));
             }
         }
     }
     Some(gap)
+}
+
+/// How far a corner is above the plane through a facet, which turns counter-clockwise from below; `None`
+/// if a number does not fit.
+fn above_facet<const N: usize>(
+    scene: &Scene,
+    direction: &[Wide<N>; 3],
+    facet: &Facet,
+    corner: &Corner,
+) -> Option<Above> {
+    let [a, b, c] = facet.corners.each_ref();
+    let [x, y, z] = scene.spans_wide(a, [b, c, corner]);
+    Above::new(&determinant(&x, &y, &z), &determinant(&x, &y, direction))
+}
+
+/// How far side `c e` is above side `a b` where their shadows cross; `None` if a number does not fit.
+fn above_side<const N: usize>(
+    scene: &Scene,
+    direction: &[Wide<N>; 3],
+    [a, b]: [&Corner; 2],
+    [c, e]: [&Corner; 2],
+) -> Option<Above> {
+    let [x, y, z] = scene.spans_wide(a, [b, c, e]);
+    let plane = determinant(&x, &difference(&z, &y), direction);
+    Some(Above::new(&determinant(&x, &y, &z), &plane)?.reversed())
+}
+
+/// How far a corner is above a facet whose shadow holds its own.
+pub(super) fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above {
+    let d = scene.direction.to_array();
+    let small = above_facet::<SMALL>(scene, &d.map(Wide::number), facet, corner);
+    let large = || above_facet::<LARGE>(scene, &d.map(Wide::number), facet, corner);
+    small.or_else(large).unwrap_or(Above::LEVEL)
+}
+
+/// How far a side is above another one where their shadows cross.
+pub(super) fn over_side(scene: &Scene, side: [&Corner; 2], above: [&Corner; 2]) -> Above {
+    let d = scene.direction.to_array();
+    let small = above_side::<SMALL>(scene, &d.map(Wide::number), side, above);
+    let large = || above_side::<LARGE>(scene, &d.map(Wide::number), side, above);
+    small.or_else(large).unwrap_or(Above::LEVEL)
 }
 
 /// A quotient of two numbers: its sign, and its value to within a few roundings.

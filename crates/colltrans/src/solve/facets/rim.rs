@@ -25,9 +25,9 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 
 use glam::DVec3;
 
-use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP};
+use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP, over_facet, over_side};
 use super::scene::{Corner, Scene, Side};
-use super::wide::{LARGE, SMALL, Wide, determinant, difference};
+use super::wide::{LARGE, SMALL, Wide};
 use crate::body::solid::edges::NONE;
 
 /// A facet of an open shell, on edge.
@@ -56,7 +56,7 @@ pub(super) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
 /// each other, and its error.
 pub(super) fn least_gap_of(
     scene: &Scene,
-    counts: impl Fn(&Gap) -> bool,
+    counts: &dyn Fn(&Gap) -> bool,
     pair: [u32; 2],
 ) -> Option<(f64, f64)> {
     let mut least: Option<(f64, f64)> = None;
@@ -69,7 +69,7 @@ pub(super) fn least_gap_of(
 }
 
 /// The gaps of two triangles of which one is a blade.
-pub(super) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut impl FnMut([u32; 2], Gap)) {
+pub(super) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
     let blade = |moving, t: u32| {
         let open = scene.side(moving).solid.is_open(t as usize);
         open.then(|| Blade::new(scene, moving, t as usize)).flatten()
@@ -86,7 +86,7 @@ pub(super) fn each_gap(
     scene: &Scene,
     (blades, front): (&[Blade], &[Facet]),
     (others, back): (&[Blade], &[Facet]),
-    take: &mut impl FnMut([u32; 2], Gap),
+    take: &mut dyn FnMut([u32; 2], Gap),
 ) {
     for f in blades {
         for g in back {
@@ -184,7 +184,7 @@ impl Blade {
     }
 
     /// The gaps of the leading sides and a facet of the other body.
-    fn with_facet(&self, scene: &Scene, facet: &Facet, take: &mut impl FnMut(Gap)) {
+    fn with_facet(&self, scene: &Scene, facet: &Facet, take: &mut dyn FnMut(Gap)) {
         if self.is_beside(scene, facet.low, facet.high) {
             return;
         }
@@ -447,31 +447,6 @@ fn is_between(scene: &Scene, corner: &Corner, [p, q]: [&Corner; 2]) -> bool {
     let Some(axis) = (0..3).find(apart) else { return false };
     let way = scene.drift(axis, p, q);
     scene.drift(axis, p, corner) == way && scene.drift(axis, corner, q) == way
-}
-
-/// How far a corner is above a facet.
-fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above {
-    fn of<const N: usize>(scene: &Scene, facet: &Facet, corner: &Corner) -> Option<Above> {
-        let direction = scene.direction.to_array().map(Wide::number);
-        let [a, b, c] = facet.corners.each_ref();
-        let [x, y, z] = scene.spans_wide::<N>(a, [b, c, corner]);
-        Above::new(&determinant(&x, &y, &z), &determinant(&x, &y, &direction))
-    }
-    let small = of::<SMALL>(scene, facet, corner);
-    small.or_else(|| of::<LARGE>(scene, facet, corner)).unwrap_or(Above::LEVEL)
-}
-
-/// How far side `c e` is above side `a b` where their shadows cross.
-fn over_side(scene: &Scene, [a, b]: [&Corner; 2], [c, e]: [&Corner; 2]) -> Above {
-    fn of<const N: usize>(scene: &Scene, [a, b, c, e]: [&Corner; 4]) -> Option<Above> {
-        let direction = scene.direction.to_array().map(Wide::number);
-        let [x, y, z] = scene.spans_wide::<N>(a, [b, c, e]);
-        let plane = determinant(&x, &difference(&z, &y), &direction);
-        Some(Above::new(&determinant(&x, &y, &z), &plane)?.reversed())
-    }
-    let all = [a, b, c, e];
-    let small = of::<SMALL>(scene, all);
-    small.or_else(|| of::<LARGE>(scene, all)).unwrap_or(Above::LEVEL)
 }
 
 /// How far side `a b` is above a corner whose shadow is on the line of the side's.

@@ -391,7 +391,7 @@ pub(super) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64,
     let f = Facet::facing(scene, true, s, Ordering::Greater);
     let g = Facet::facing(scene, false, t, Ordering::Less);
     let (Some(f), Some(g)) = (f, g) else {
-        return rim::least_gap_of(scene, |gap| aim.value(gap).is_some(), pair);
+        return rim::least_gap_of(scene, &|gap| aim.value(gap).is_some(), pair);
     };
     let gap = leaf::gap(scene, &f, &g, f64::INFINITY, aim.wanted())?;
     aim.value(&gap)?;

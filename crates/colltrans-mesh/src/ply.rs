@@ -23,8 +23,7 @@ use crate::text::{quoted, without_mark};
 pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let bytes = with_line_feeds(without_mark(bytes)?);
     let mut reader = Reader::new(&*bytes);
-    // Any kind of element will do for the header.
-    let header = Parser::<Vertex>::new().read_header(&mut reader).map_err(|e| fault(&e, true))?;
+    let header = Parser::<Row>::new().read_header(&mut reader).map_err(|e| fault(&e, true))?;
     let text = header.encoding == Encoding::Ascii;
     let fault = |e| fault(&e, text);
     check_counts(&header, reader.get_ref().len())?;
@@ -32,21 +31,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let mut mesh = Mesh::default();
     let mut faces = Vec::new();
     for (name, element) in &header.elements {
+        let rows = Parser::<Row>::new().read_payload_for_element(&mut reader, element, &header);
+        let rows = rows.map_err(fault)?;
         match name.as_str() {
-            "vertex" => {
-                let parser = Parser::<Vertex>::new();
-                let found = parser.read_payload_for_element(&mut reader, element, &header);
-                mesh.vertices = found.map_err(fault)?.into_iter().map(|v| v.0).collect();
-            }
-            "face" => {
-                let parser = Parser::<Face>::new();
-                let found = parser.read_payload_for_element(&mut reader, element, &header);
-                faces = found.map_err(fault)?;
-            }
-            _ => {
-                let parser = Parser::<Skipped>::new();
-                parser.read_payload_for_element(&mut reader, element, &header).map_err(fault)?;
-            }
+            "vertex" => mesh.vertices = rows.into_iter().map(|row| row.point).collect(),
+            "face" => faces = rows,
+            _ => {}
         }
     }
     for (index, face) in faces.into_iter().enumerate() {
@@ -153,14 +143,21 @@ fn check_properties(header: &Header) -> Result<Precision, Fault> {
         let property = vertex.properties.get(coordinate);
         let property = property
             .ok_or_else(|| fault(format!("the element `vertex` has no property `{coordinate}`")))?;
-        if matches!(property.data_type, PropertyType::Scalar(ScalarType::Float)) {
-            precision = Precision::Single;
+        match property.data_type {
+            PropertyType::Scalar(ScalarType::Float) => precision = Precision::Single,
+            PropertyType::Scalar(_) => {}
+            PropertyType::List(..) => {
+                return Err(fault(format!("the property `{coordinate}` of `vertex` is a list")));
+            }
         }
     }
     if let Some((_, face)) = element("face") {
-        let known = ["vertex_indices", "vertex_index"];
-        if face.count > 0 && !known.iter().any(|name| face.properties.contains_key(*name)) {
+        let mut lists = CORNERS.iter().filter_map(|name| face.properties.get(*name)).peekable();
+        if face.count > 0 && lists.peek().is_none() {
             return Err(fault("the element `face` has no list `vertex_indices`".into()));
+        }
+        if !lists.all(|list| is_list_of_integers(&list.data_type)) {
+            return Err(fault("the vertex indices of `face` are no list of integers".into()));
         }
     }
     if element("tristrips").is_some() {
@@ -169,41 +166,25 @@ fn check_properties(header: &Header) -> Result<Precision, Fault> {
     Ok(precision)
 }
 
-struct Vertex(DVec3);
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Self(DVec3::ZERO)
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        let coordinate = match name {
-            "x" => &mut self.0.x,
-            "y" => &mut self.0.y,
-            "z" => &mut self.0.z,
-            _ => return PropertyAccessResult::Ignored,
-        };
-        *coordinate = match value {
-            Property::Char(v) => f64::from(v),
-            Property::UChar(v) => f64::from(v),
-            Property::Short(v) => f64::from(v),
-            Property::UShort(v) => f64::from(v),
-            Property::Int(v) => f64::from(v),
-            Property::UInt(v) => f64::from(v),
-            Property::Float(v) => f64::from(v),
-            Property::Double(v) => v,
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
-    }
+fn is_list_of_integers(property: &PropertyType) -> bool {
+    let PropertyType::List(_, scalar) = property else { return false };
+    !matches!(scalar, ScalarType::Float | ScalarType::Double)
 }
 
-/// The corners, or `None` where an index is negative.
-struct Face(Option<Vec<u32>>);
+/// The names that the corners of a face go by.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-impl Face {
+/// A row of any element: the parser, which is large, is compiled for one kind.
+struct Row {
+    point: DVec3,
+    /// `None` where an index is negative.
+    corners: Option<Vec<u32>>,
+}
+
+impl Row {
+    /// The corners of the face of this number.
     fn checked(self, index: usize, vertex_count: usize) -> Result<Vec<u32>, Fault> {
-        let Some(corners) = self.0 else {
+        let Some(corners) = self.corners else {
             return Err(Fault::new(Place::Face(index), "a vertex index is negative"));
         };
         match corners.iter().find(|&&v| v as usize >= vertex_count) {
@@ -216,27 +197,34 @@ impl Face {
     }
 }
 
-impl PropertyAccess for Face {
+impl PropertyAccess for Row {
     fn new() -> Self {
-        Self(Some(Vec::new()))
+        Self { point: DVec3::ZERO, corners: Some(Vec::new()) }
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        if !matches!(name, "vertex_indices" | "vertex_index") {
-            return PropertyAccessResult::Ignored;
-        }
-        if matches!(value, Property::ListFloat(_) | Property::ListDouble(_)) {
-            return PropertyAccessResult::UnsupportedType;
-        }
-        self.0 = value.to_u32_list();
+        let coordinate = match name {
+            "x" => &mut self.point.x,
+            "y" => &mut self.point.y,
+            "z" => &mut self.point.z,
+            _ if CORNERS.contains(&name) => {
+                self.corners = value.to_u32_list();
+                return PropertyAccessResult::Set;
+            }
+            _ => return PropertyAccessResult::Ignored,
+        };
+        *coordinate = match value {
+            Property::Char(v) => f64::from(v),
+            Property::UChar(v) => f64::from(v),
+            Property::Short(v) => f64::from(v),
+            Property::UShort(v) => f64::from(v),
+            Property::Int(v) => f64::from(v),
+            Property::UInt(v) => f64::from(v),
+            Property::Float(v) => f64::from(v),
+            Property::Double(v) => v,
+            // Of another element: those of `vertex` are numbers.
+            _ => return PropertyAccessResult::Ignored,
+        };
         PropertyAccessResult::Set
-    }
-}
-
-struct Skipped;
-
-impl PropertyAccess for Skipped {
-    fn new() -> Self {
-        Self
     }
 }

@@ -206,6 +206,11 @@ fn ply_errors_say_where() {
     assert_eq!(place(Format::Ply, ""), Place::End);
     assert_eq!(place(Format::Ply, "ply\n"), Place::Line(2));
     assert_eq!(place(Format::Ply, PLY.replace("property double y\n", "")), Place::Header);
+    let list = PLY.replace("property double y\n", "property list uchar double y\n");
+    assert_eq!(place(Format::Ply, list), Place::Header);
+    let float = PLY.replace("list uchar int vertex_ind", "list uchar float vertex_ind");
+    assert_ne!(float, PLY);
+    assert_eq!(place(Format::Ply, float), Place::Header);
     assert_eq!(place(Format::Ply, PLY.replace("vertex 3", "vertex 999999999999")), Place::Header);
     assert_eq!(place(Format::Ply, PLY.replace("1 0 0 2", "1 0 zero 2")), Place::Line(14));
     assert_eq!(place(Format::Ply, PLY.replace("3 0 1 2 0.5", "3 0 1 3 0.5")), Place::Face(0));

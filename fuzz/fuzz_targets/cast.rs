@@ -1,4 +1,4 @@
 #![no_main]
-//! See [`colltrans_oracle::fuzz::cast`]: the corpus runs through it as an ordinary test too.
+//! See [`colltrans_testkit::oracle::fuzz::cast`]: the corpus runs through it as an ordinary test too.
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| colltrans_oracle::fuzz::cast(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| colltrans_testkit::oracle::fuzz::cast(bytes));

@@ -100,7 +100,7 @@ impl Blocking {
 
 #[cfg(test)]
 mod tests {
-    use colltrans_kit::random::Random;
+    use colltrans_testkit::random::Random;
 
     use super::*;
 

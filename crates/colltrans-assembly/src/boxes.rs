@@ -153,7 +153,7 @@ impl BoxTree {
 
 #[cfg(test)]
 mod tests {
-    use colltrans_kit::random::Random;
+    use colltrans_testkit::random::Random;
 
     use super::*;
 

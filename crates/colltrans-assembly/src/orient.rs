@@ -71,8 +71,8 @@ fn neighbours(vertices: &[DVec3], faces: &[Vec<u32>]) -> Vec<Vec<(usize, bool)>>
 
 #[cfg(test)]
 mod tests {
-    use colltrans_kit::random::Random;
-    use colltrans_kit::shapes::ring_sphere;
+    use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::ring_sphere;
 
     use super::*;
 

@@ -21,7 +21,7 @@ use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Room, Watch};
-use colltrans_kit::random::Random;
+use colltrans_testkit::random::Random;
 use common::*;
 use glam::{DAffine3, DVec3};
 

@@ -11,7 +11,7 @@ use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
-use colltrans_kit::random::Random;
+use colltrans_testkit::random::Random;
 use common::*;
 use glam::{DAffine3, DVec3};
 

@@ -1,4 +1,4 @@
-//! The same casts as Python's, without Python: the yardstick of `python/benchmarks/overhead.py`.
+//! The same casts as Python's, without Python: the measure of `python/benchmarks/overhead.py`.
 //!
 //! `bare POINTS_A POINTS_B ROWS THREADS REPEATS`: files of raw doubles, three for a point and ten for
 //! a row (a translation and a quaternion of the moving body, a direction). Prints nanoseconds of wall

@@ -17,9 +17,9 @@ mod tests {
     use std::cell::Cell;
     use std::f64::consts::TAU;
 
-    use colltrans_kit::random::Random;
-    use colltrans_kit::shapes::{Mesh, even_rings, random_hull, ring_points};
-    use colltrans_kit::solids::washer;
+    use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::{Mesh, even_rings, random_hull, ring_points};
+    use colltrans_testkit::solids::washer;
     use glam::{DQuat, DVec3};
 
     use crate::{ConvexPolyhedron, Solid};

@@ -1,9 +1,9 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is.
 
 use colltrans::{Cast, Focus, Region, Solid, Solver, Tracker, Workspace};
-use colltrans_oracle::sequences::Walk;
-use colltrans_oracle::settings::{FAMILIES, setting};
-use colltrans_oracle::solids::settings as solids;
+use colltrans_testkit::oracle::sequences::Walk;
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::oracle::solids::settings as solids;
 
 #[test]
 fn queries_allocate_nothing() {

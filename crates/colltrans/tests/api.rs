@@ -6,8 +6,8 @@ use colltrans::{
     MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, OverlapAhead, Pose, PoseError,
     QueryError, Separation, TopologyError, WhyFree, cast,
 };
-use colltrans_oracle::exact::Vector;
-use colltrans_oracle::settings::{FAMILIES, Setting, cuboid, setting};
+use colltrans_testkit::oracle::exact::Vector;
+use colltrans_testkit::oracle::settings::{FAMILIES, Setting, cuboid, setting};
 
 fn cube() -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5))).expect("a body")

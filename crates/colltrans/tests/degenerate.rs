@@ -2,8 +2,8 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solver};
-use colltrans_oracle::check::Judge;
-use colltrans_oracle::settings::{Rng, cuboid};
+use colltrans_testkit::oracle::check::Judge;
+use colltrans_testkit::oracle::settings::{Rng, cuboid};
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(points).expect("a body")

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use colltrans_oracle::fuzz;
+use colltrans_testkit::oracle::fuzz;
 
 /// Runs a target over every file of its corpus.
 fn replay(name: &str, target: fn(&[u8]), at_least: usize) {

@@ -12,8 +12,8 @@ use colltrans::glam::{DMat3, DVec3};
 use colltrans::{
     Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, Solid, Solver, Tracker,
 };
-use colltrans_oracle::settings::{FAMILIES, NEARLY_FLAT, Setting, setting};
-use colltrans_oracle::solids;
+use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, Setting, setting};
+use colltrans_testkit::oracle::solids;
 
 /// Settings of each family.
 const SETTINGS: u64 = 60;

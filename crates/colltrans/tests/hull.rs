@@ -3,8 +3,8 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{BuildError, ConvexPolyhedron, TopologyError, convexity_defect};
 use colltrans::{Cast, Outcome, Pose};
-use colltrans_oracle::input;
-use colltrans_oracle::settings::{NEARLY_FLAT, Rng, narrow_rings, setting};
+use colltrans_testkit::oracle::input;
+use colltrans_testkit::oracle::settings::{NEARLY_FLAT, Rng, narrow_rings, setting};
 use proptest::prelude::*;
 
 /// A small generator of numbers in `[0, 1)` with a fixed seed.

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use colltrans::{BuildError, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
-use colltrans_kit::random::Random;
-use colltrans_kit::shapes::{Mesh, cuboid, prism, random_hull, ring_sphere, superellipsoid};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{Mesh, cuboid, prism, random_hull, ring_sphere, superellipsoid};
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Random and tied settings against exact arithmetic, of the input points: a sample of the long campaign.
 
 use colltrans::{Outcome, Solver};
-use colltrans_oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 
 const SOLVERS: [Solver; 3] = [Solver::Cta, Solver::Portal, Solver::Auto];
 

@@ -6,10 +6,10 @@ use colltrans::glam::DVec3;
 use colltrans::{
     Clearance, ConvexPolyhedron, Outcome, OverlapAhead, Pose, QueryError, Solver, WhyFree,
 };
-use colltrans_oracle::scene::Scene;
-use colltrans_oracle::settings::{Bodies, FAMILIES, Rng, Setting, setting};
-use colltrans_oracle::shadow::sideways_overlap;
-use colltrans_oracle::simplex::collision_translation;
+use colltrans_testkit::oracle::scene::Scene;
+use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Rng, Setting, setting};
+use colltrans_testkit::oracle::shadow::sideways_overlap;
+use colltrans_testkit::oracle::simplex::collision_translation;
 use proptest::prelude::*;
 
 /// Any setting of any family.

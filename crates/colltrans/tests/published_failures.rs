@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Contact, ConvexPolyhedron, Outcome, Pose, Solver};
-use colltrans_oracle::check::Judge;
-use colltrans_oracle::settings::cuboid;
+use colltrans_testkit::oracle::check::Judge;
+use colltrans_testkit::oracle::settings::cuboid;
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(points).expect("a body")

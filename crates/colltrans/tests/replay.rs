@@ -2,7 +2,7 @@
 #![cfg(feature = "json")]
 
 use colltrans::{Case, CaseError, Narrowing, Options, Solver};
-use colltrans_oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
 
 #[test]
 fn every_family_comes_back_in_bits() {

@@ -2,8 +2,8 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver, WhyFree};
-use colltrans_oracle::check::Judge;
-use colltrans_oracle::settings::{Rng, cuboid};
+use colltrans_testkit::oracle::check::Judge;
+use colltrans_testkit::oracle::settings::{Rng, cuboid};
 
 /// Cubes one above the other along x with a gap beside them, turned as a whole by `rotation`.
 fn slide(gap: f64, rotation: DQuat, start: DVec3, origin: DVec3) {

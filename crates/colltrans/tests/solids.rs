@@ -4,8 +4,8 @@ use colltrans::{
     Bounded, Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
     SolidOverlap, StartOverlap,
 };
-use colltrans_kit::shapes::Mesh;
-use colltrans_kit::solids::{bolt, pin, slab, turned, washer};
+use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DQuat, DVec3};
 
 fn solid(mesh: &Mesh) -> Solid {

@@ -2,8 +2,8 @@
 //! triangulation, by the numbers of the input.
 
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Feature, Outcome, Pose, Solid, SolidContact};
-use colltrans_kit::shapes::Mesh;
-use colltrans_kit::solids::{bolt, pin, slab, washer};
+use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::solids::{bolt, pin, slab, washer};
 use glam::{DQuat, DVec3};
 
 fn solid(mesh: &Mesh) -> Solid {

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use colltrans_oracle::solids::settings::{FAMILIES, Seen, Setting};
-use colltrans_oracle::solids::sheets;
+use colltrans_testkit::oracle::solids::settings::{FAMILIES, Seen, Setting};
+use colltrans_testkit::oracle::solids::sheets;
 
 /// Settings of all families together.
 const SETTINGS: u64 = 10_000;

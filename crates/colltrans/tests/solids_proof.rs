@@ -4,9 +4,9 @@ use colltrans::{
     Cast, CertificateError, Clearance, Overlap, Pose, Reason, Solid, SolidCertificate,
     SolidOptions, StartOverlap, StartProof,
 };
-use colltrans_kit::shapes::Mesh;
-use colltrans_kit::solids::{bolt, bumpy_ball, slab, washer};
-use colltrans_oracle::solids::proof::approve;
+use colltrans_testkit::oracle::solids::proof::approve;
+use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::solids::{bolt, bumpy_ball, slab, washer};
 use glam::{DQuat, DVec3};
 
 fn solid(mesh: &Mesh) -> Solid {

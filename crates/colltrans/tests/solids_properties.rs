@@ -1,8 +1,8 @@
 //! What holds between solids for every setting, random or tied.
 
 use colltrans::{Cast, Clearance, Pose, ShellKind, Solid, SolidOptions};
-use colltrans_oracle::solids::settings::{FAMILIES, Setting};
-use colltrans_oracle::solids::sheets;
+use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
+use colltrans_testkit::oracle::solids::sheets;
 use glam::DVec3;
 use proptest::prelude::*;
 

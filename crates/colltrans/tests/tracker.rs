@@ -5,11 +5,11 @@ use colltrans::{
     Cast, Clearance, ContactRange, ConvexPolyhedron, Focus, Outcome, OverlapAhead, Pose,
     QueryError, Region, Solver, StartedFrom, Steps, Tracker,
 };
-use colltrans_oracle::check::same;
-use colltrans_oracle::sequences::Walk;
-use colltrans_oracle::settings::{Bodies, FAMILIES, Rng, Setting, cuboid};
-use colltrans_oracle::shadow::sideways_overlap;
-use colltrans_oracle::tracked::{Lanes, track, without_steps};
+use colltrans_testkit::oracle::check::same;
+use colltrans_testkit::oracle::sequences::Walk;
+use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Rng, Setting, cuboid};
+use colltrans_testkit::oracle::shadow::sideways_overlap;
+use colltrans_testkit::oracle::tracked::{Lanes, track, without_steps};
 use proptest::prelude::*;
 
 /// Walks of every family, each asked of every lane; one step in so many is solved by the oracle.

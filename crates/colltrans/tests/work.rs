@@ -2,8 +2,8 @@
 
 use colltrans::glam::DVec3;
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
-use colltrans_kit::random::Random;
-use colltrans_kit::shapes::{Mesh, ring_sphere};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{Mesh, ring_sphere};
 
 const CASTS: u32 = 400;
 

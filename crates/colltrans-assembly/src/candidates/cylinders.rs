@@ -91,8 +91,8 @@ fn smooth_edges(solid: &Solid) -> Vec<(DVec3, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use colltrans_kit::random::Random;
-    use colltrans_kit::shapes::prism;
+    use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::prism;
 
     use super::*;
 

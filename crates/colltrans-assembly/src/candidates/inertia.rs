@@ -69,8 +69,8 @@ fn eigen(matrix: DMat3) -> (DVec3, DMat3) {
 
 #[cfg(test)]
 mod tests {
-    use colltrans_kit::random::Random;
-    use colltrans_kit::shapes::cuboid;
+    use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::cuboid;
 
     use super::*;
     use crate::sphere::angle;

@@ -3,7 +3,7 @@
 #![allow(dead_code, unreachable_pub, reason = "each test program uses a part of it")]
 
 use colltrans_assembly::{Assembly, Part, Piece};
-use colltrans_kit::random::Random;
+use colltrans_testkit::random::Random;
 use glam::{DAffine3, DVec3};
 
 pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Piece {

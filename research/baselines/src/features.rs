@@ -1,0 +1,311 @@
+//! Vertices, edges and faces with their neighbours.
+//!
+//! Notation. The half-edges of a face lie one after the other, counter-clockwise as seen from
+//! outside; half-edge `h` runs from `origin` to `target` with `face` on its left, `twin` is the
+//! other way. An *edge* is known by the smaller of its two half-edges.
+//!
+//! Voronoi planes (Mirtich 1998), never stored, because two points and a normal are
+//! at hand: between a vertex `v` and an edge `vw` the plane through `v` normal to `w - v`
+//! ([`Shell::beyond_vertex`]), between a face of normal `n` and its edge `ab` the plane through `a`
+//! normal to `n x (b - a)` ([`Shell::inside_edge`]). Both features that a plane parts ask the same
+//! function, so that rounding cannot make each of them send a walk to the other.
+
+use std::fmt;
+
+use colltrans::ConvexPolyhedron;
+use glam::DVec3;
+
+/// A directed edge along the boundary of its face.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HalfEdge {
+    pub(crate) origin: u32,
+    pub(crate) target: u32,
+    pub(crate) twin: u32,
+    pub(crate) face: u32,
+}
+
+impl HalfEdge {
+    pub(crate) fn both_ends(self) -> [u32; 2] {
+        [self.origin, self.target]
+    }
+}
+
+/// A vertex, an edge (its smaller half-edge) or a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Feature {
+    Vertex(u32),
+    Edge(u32),
+    Face(u32),
+}
+
+/// The surface of a solid, ready for walks over its features: vertices, edges, faces and who is
+/// next to whom, in `O(n)` space.
+///
+/// ```
+/// use colltrans::ConvexPolyhedron;
+/// use colltrans::glam::DVec3;
+/// use colltrans_baselines::vclip::Shell;
+///
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let shell = Shell::new(&ConvexPolyhedron::from_points(&corners)?)?;
+/// assert_eq!((shell.vertex_count(), shell.edge_count(), shell.face_count()), (4, 6, 4));
+///
+/// let flat = ConvexPolyhedron::from_points(&corners[..3])?;
+/// assert_eq!(Shell::new(&flat).unwrap_err().dimension, 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Shell {
+    vertices: Vec<DVec3>,
+    half_edges: Vec<HalfEdge>,
+    /// First half-edge of each face, and one entry past the end.
+    face_start: Vec<u32>,
+    normals: Vec<DVec3>,
+    /// First entry of each vertex in `outgoing`, and one entry past the end.
+    vertex_start: Vec<u32>,
+    outgoing: Vec<u32>,
+    /// Largest distance of a vertex from the origin.
+    reach: f64,
+}
+
+/// A body of lower dimension, which the published algorithm is not for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NotSolid {
+    /// The dimension of the body.
+    pub dimension: u8,
+}
+
+impl fmt::Display for NotSolid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the body has dimension {}; only solids (3) have Voronoi regions", self.dimension)
+    }
+}
+
+impl std::error::Error for NotSolid {}
+
+impl Shell {
+    /// The features of a body, in its frame. Takes `O(n log d)` for vertices of degree `d`.
+    ///
+    /// # Errors
+    /// The body is a polygon, a segment or a point.
+    pub fn new(body: &ConvexPolyhedron) -> Result<Self, NotSolid> {
+        if body.dimension() < 3 {
+            return Err(NotSolid { dimension: body.dimension() });
+        }
+        let faces = 0..body.face_count() as u32;
+        let mut half_edges = Vec::with_capacity(2 * body.edge_count());
+        let mut face_start = vec![0];
+        for face in faces.clone() {
+            let corners = body.face_vertices(face);
+            let next = corners.clone().cycle().skip(1);
+            half_edges.extend(corners.zip(next).map(|(origin, target)| HalfEdge {
+                origin,
+                target,
+                twin: 0,
+                face,
+            }));
+            face_start.push(half_edges.len() as u32);
+        }
+        let (vertex_start, outgoing) = group_by_origin(body.vertices().len(), &half_edges);
+        pair_twins(&mut half_edges, &vertex_start, &outgoing);
+        Ok(Self {
+            vertices: body.vertices().to_vec(),
+            half_edges,
+            face_start,
+            normals: faces.map(|f| body.face_normal(f)).collect(),
+            vertex_start,
+            outgoing,
+            reach: body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max),
+        })
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// Number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.half_edges.len() / 2
+    }
+
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        self.normals.len()
+    }
+
+    /// Bytes of memory that the shell occupies, on the heap and in itself.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + size_of::<DVec3>() * (self.vertices.capacity() + self.normals.capacity())
+            + size_of::<HalfEdge>() * self.half_edges.capacity()
+            + size_of::<u32>()
+                * (self.face_start.capacity()
+                    + self.vertex_start.capacity()
+                    + self.outgoing.capacity())
+    }
+
+    pub(crate) fn vertex(&self, v: u32) -> DVec3 {
+        self.vertices[v as usize]
+    }
+
+    pub(crate) fn half_edge(&self, h: u32) -> HalfEdge {
+        self.half_edges[h as usize]
+    }
+
+    /// The ends of a half-edge.
+    pub(crate) fn ends(&self, h: u32) -> [DVec3; 2] {
+        let HalfEdge { origin, target, .. } = self.half_edge(h);
+        [self.vertex(origin), self.vertex(target)]
+    }
+
+    pub(crate) fn length(&self, h: u32) -> f64 {
+        let [a, b] = self.ends(h);
+        a.distance(b)
+    }
+
+    pub(crate) fn normal(&self, face: u32) -> DVec3 {
+        self.normals[face as usize]
+    }
+
+    /// The half-edges that leave a vertex.
+    pub(crate) fn outgoing(&self, v: u32) -> &[u32] {
+        let v = v as usize;
+        &self.outgoing[self.vertex_start[v] as usize..self.vertex_start[v + 1] as usize]
+    }
+
+    /// The half-edges around a face.
+    pub(crate) fn boundary(&self, face: u32) -> std::ops::Range<u32> {
+        let f = face as usize;
+        self.face_start[f]..self.face_start[f + 1]
+    }
+
+    /// The edge that a half-edge belongs to.
+    pub(crate) fn edge(&self, h: u32) -> Feature {
+        Feature::Edge(h.min(self.half_edge(h).twin))
+    }
+
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// A vertex of the feature.
+    pub(crate) fn some_vertex(&self, feature: Feature) -> u32 {
+        match feature {
+            Feature::Vertex(v) => v,
+            Feature::Edge(h) => self.half_edge(h).origin,
+            Feature::Face(f) => self.half_edge(self.face_start[f as usize]).origin,
+        }
+    }
+
+    /// Positive where `x` is on the edge's side of the plane between the half-edge's origin and its
+    /// edge; the height above that plane times the edge's length.
+    pub(crate) fn beyond_vertex(&self, h: u32, x: DVec3) -> f64 {
+        let [v, w] = self.ends(h);
+        (x - v).dot(w - v)
+    }
+
+    /// Positive where `x` is on the face's side of the plane between the half-edge's face and its
+    /// edge; the height above that plane times the edge's length.
+    pub(crate) fn inside_edge(&self, h: u32, x: DVec3) -> f64 {
+        let [a, b] = self.ends(h);
+        self.normal(self.half_edge(h).face).cross(b - a).dot(x - a)
+    }
+
+    /// The signed distance of `x` from the plane of a face, positive outside.
+    pub(crate) fn height(&self, face: u32, x: DVec3) -> f64 {
+        let origin = self.half_edge(self.face_start[face as usize]).origin;
+        self.normal(face).dot(x - self.vertex(origin))
+    }
+
+    /// The vertex farthest along `direction`, by a walk along edges from `near`: a local maximum on
+    /// a convex body is the global one, up to rounding.
+    pub(crate) fn support(&self, direction: DVec3, near: u32) -> u32 {
+        let (mut best, mut height) = (near, direction.dot(self.vertex(near)));
+        // Strictly ascending, so it ends.
+        loop {
+            let start = best;
+            for &h in self.outgoing(start) {
+                let target = self.half_edge(h).target;
+                let above = direction.dot(self.vertex(target));
+                if above > height {
+                    (best, height) = (target, above);
+                }
+            }
+            if best == start {
+                return best;
+            }
+        }
+    }
+}
+
+/// The half-edges by origin: where each vertex's start, and all of them.
+fn group_by_origin(vertex_count: usize, half_edges: &[HalfEdge]) -> (Vec<u32>, Vec<u32>) {
+    let mut start = vec![0_u32; vertex_count + 1];
+    for h in half_edges {
+        start[h.origin as usize + 1] += 1;
+    }
+    for v in 0..vertex_count {
+        start[v + 1] += start[v];
+    }
+    let mut cursor = start.clone();
+    let mut outgoing = vec![0; half_edges.len()];
+    for (index, h) in half_edges.iter().enumerate() {
+        let slot = &mut cursor[h.origin as usize];
+        outgoing[*slot as usize] = index as u32;
+        *slot += 1;
+    }
+    (start, outgoing)
+}
+
+/// The half-edges that leave one vertex, sorted by target, are searched by those that come back.
+fn pair_twins(half_edges: &mut [HalfEdge], vertex_start: &[u32], outgoing: &[u32]) {
+    let mut by_target = outgoing.to_vec();
+    let range = |v: u32| vertex_start[v as usize] as usize..vertex_start[v as usize + 1] as usize;
+    for v in 0..vertex_start.len() as u32 - 1 {
+        by_target[range(v)].sort_unstable_by_key(|&h| half_edges[h as usize].target);
+    }
+    for h in 0..half_edges.len() {
+        let HalfEdge { origin, target, .. } = half_edges[h];
+        let back = &by_target[range(target)];
+        let place = back.partition_point(|&g| half_edges[g as usize].target < origin);
+        half_edges[h].twin = back[place];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use colltrans_testkit::oracle::settings::Rng;
+
+    #[test]
+    fn every_link_leads_where_the_coordinates_say() {
+        let mut rng = Rng::new(1);
+        for n in [4, 8, 20, 300] {
+            let points: Vec<DVec3> = (0..n).map(|_| rng.direction()).collect();
+            let body = ConvexPolyhedron::from_points(&points).unwrap();
+            let shell = Shell::new(&body).unwrap();
+            assert_eq!(shell.edge_count(), body.edge_count());
+            for h in 0..2 * shell.edge_count() as u32 {
+                let [edge, twin] = [h, shell.half_edge(h).twin].map(|h| shell.half_edge(h));
+                assert_eq!((edge.origin, edge.target), (twin.target, twin.origin));
+                assert!(shell.outgoing(edge.origin).contains(&h));
+                assert!(shell.boundary(edge.face).contains(&h));
+                assert!(body.neighbours(edge.origin).contains(&edge.target));
+                let middle = (shell.vertex(edge.origin) + shell.vertex(edge.target)) / 2.0;
+                assert!(shell.height(edge.face, middle).abs() < 1e-14);
+                assert!(shell.inside_edge(h, middle).abs() < 1e-14);
+                let corners = body.face_vertices(edge.face).map(|v| shell.vertex(v));
+                let inside = corners.clone().sum::<DVec3>() / corners.len() as f64;
+                assert!(shell.inside_edge(h, inside) > 0.0);
+                assert!(shell.beyond_vertex(h, middle) > 0.0);
+            }
+            for _ in 0..50 {
+                let along = rng.direction();
+                let highest = points.iter().map(|p| along.dot(*p)).fold(f64::MIN, f64::max);
+                let found = shell.support(along, rng.int(0, n - 1) as u32);
+                assert!((along.dot(shell.vertex(found)) - highest).abs() < 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Enhanced GJK against the exact distance.
+//!
+//! What is asked of every answer, with `noise = 32 u S` the rounding error of a point of the
+//! Minkowski difference: the distance and that of the nearest points err by no more than the gap
+//! the answer states and two noises, one for either bound; the nearest points are no more than one
+//! noise off their bodies; and the gap is at most [`GOAL`] of the size.
+
+use std::f64::consts::{PI, TAU};
+
+use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_baselines::Proximity;
+use colltrans_baselines::egjk::{Egjk, Steps, SupportSearch};
+use colltrans_testkit::oracle::distance::{Distance, distance_of_bodies, distance_of_point};
+use colltrans_testkit::oracle::settings::{FAMILIES, Rng, cuboid, setting};
+use glam::{DQuat, DVec3};
+
+type Placed<'a> = (&'a ConvexPolyhedron, &'a Pose);
+
+/// The gap that is tolerated, in units of the size: simplices that are thin up to rounding miss a
+/// gap of one noise.
+const GOAL: f64 = 1e-12;
+
+fn noise(moving: Placed, fixed: Placed) -> f64 {
+    let reach = |(body, _): Placed| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let offset = moving.1.translation().distance(fixed.1.translation());
+    16.0 * f64::EPSILON * (reach(moving) + reach(fixed) + offset)
+}
+
+fn check(name: &str, answer: &Proximity<Steps>, moving: Placed, fixed: Placed) -> Distance {
+    let exact = distance_of_bodies(moving, fixed);
+    let truth = exact.to_f64();
+    let noise = noise(moving, fixed);
+    // Answers are in the world, at whatever distance from its origin.
+    let away = 4.0 * f64::EPSILON * (answer.on_moving.length() + answer.on_fixed.length());
+    let error = (answer.distance - truth).abs();
+    let report = format!("{name}: {answer:?}, exactly {truth:e}, noise {noise:e}");
+    let stated = answer.steps.gap + 2.0 * noise;
+    assert!(error <= stated, "distance: {report}");
+    assert!(answer.steps.gap <= GOAL * noise / (16.0 * f64::EPSILON), "gap: {report}");
+    let between = answer.on_moving.distance(answer.on_fixed);
+    assert!((between - truth).abs() <= stated + away, "nearest points: {report}");
+    for (point, body) in [(answer.on_moving, moving), (answer.on_fixed, fixed)] {
+        let off = distance_of_point(point, body).to_f64();
+        assert!(off <= noise + away, "{off:e} off its body: {report}");
+    }
+    exact
+}
+
+fn check_from_scratch(name: &str, moving: Placed, fixed: Placed) -> Distance {
+    let egjk = || Egjk::new(moving.0, fixed.0);
+    let mut linear = egjk().with_support_search(SupportSearch::Linear);
+    check(name, &linear.distance(moving.1, fixed.1), moving, fixed);
+    check(name, &egjk().distance(moving.1, fixed.1), moving, fixed)
+}
+
+fn body(points: &[DVec3]) -> ConvexPolyhedron {
+    ConvexPolyhedron::from_points(points).unwrap()
+}
+
+/// From 4 to 20 points, in a box or on an ellipsoid, stretched by up to `stretch`.
+fn cloud(rng: &mut Rng, stretch: f64) -> ConvexPolyhedron {
+    let axes = DVec3::from_array([0; 3].map(|_| rng.range(0.3, 1.3) * rng.pick(&[1.0, stretch])));
+    let (n, round) = (rng.int(4, 20), rng.one_in(2));
+    let points: Vec<DVec3> =
+        (0..n).map(|_| axes * if round { rng.direction() } else { rng.vector() }).collect();
+    body(&points)
+}
+
+fn pose(rng: &mut Rng, away: f64) -> Pose {
+    Pose::new(rng.rotation(), rng.direction() * away).unwrap()
+}
+
+/// Vertices of an ellipsoid in rings.
+fn rings(count: u32, semi_axes: DVec3) -> ConvexPolyhedron {
+    let ring = |k: u32| {
+        let polar_rad = PI * (f64::from(k) + 0.5) / f64::from(count);
+        (0..count).map(move |i| {
+            let angle_rad = TAU * f64::from(i) / f64::from(count);
+            let (sin, cos) = (polar_rad.sin(), polar_rad.cos());
+            DVec3::new(sin * angle_rad.cos(), sin * angle_rad.sin(), cos)
+        })
+    };
+    let points: Vec<DVec3> = (0..count).flat_map(ring).map(|v| v * semi_axes).collect();
+    body(&points)
+}
+
+/// Moves `moving` along the shortest vector until only `gap` is left of it, up to rounding.
+fn brought_near(moving: Placed, fixed: Placed, gap: f64) -> Option<Pose> {
+    let exact = distance_of_bodies(moving, fixed);
+    (!exact.intersects()).then(|| {
+        let shortest = exact.shortest;
+        moving.1.translated(shortest - shortest.normalize() * gap).unwrap()
+    })
+}
+
+#[test]
+fn every_family_of_settings() {
+    for (family, _) in FAMILIES {
+        for seed in 0..150 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().unwrap();
+            let moving = (&bodies.moving, &setting.moving_pose);
+            let fixed = (&bodies.fixed, &setting.fixed_pose);
+            check_from_scratch(&setting.to_string(), moving, fixed);
+        }
+    }
+}
+
+/// Every support point costs a look at all vertices.
+#[test]
+fn linear_search_looks_at_all_vertices() {
+    let mut rng = Rng::new(9);
+    for count in [5, 40] {
+        let (p, q) = (rings(count, DVec3::ONE), rings(count, DVec3::ONE));
+        let (at, world) = (pose(&mut rng, 3.0), pose(&mut rng, 0.0));
+        let mut egjk = Egjk::new(&p, &q).with_support_search(SupportSearch::Linear);
+        let steps = egjk.distance(&at, &world).steps;
+        let vertices = p.vertices().len() + q.vertices().len();
+        assert!(steps.supports > 0);
+        assert_eq!(steps.climbed as usize, steps.supports as usize * vertices);
+    }
+}
+
+#[test]
+fn random_bodies_apart_near_touching_and_overlapping() {
+    let mut rng = Rng::new(1);
+    let (mut apart, mut near, mut met) = (0, 0, 0);
+    for case in 0..1000 {
+        let stretch = rng.pick(&[1.0, 1.0, 30.0, 1000.0]);
+        let (p, q) = (cloud(&mut rng, stretch), cloud(&mut rng, stretch));
+        let away = rng.pick(&[0.0, 0.5, 2.0, 3.0]) * stretch;
+        let (at, world) = (pose(&mut rng, away), pose(&mut rng, 0.0));
+        let (moving, fixed) = ((&p, &at), (&q, &world));
+        let exact = check_from_scratch(&format!("case {case}"), moving, fixed);
+        if exact.intersects() {
+            met += 1;
+            continue;
+        }
+        apart += 1;
+        for gap in [1e-3, 1e-6, 1e-9, 1e-12, 0.0, -1e-12, -1e-9, -1e-3] {
+            let at = brought_near(moving, fixed, gap).unwrap();
+            check_from_scratch(&format!("case {case}, gap {gap:e}"), (&p, &at), fixed);
+            near += 1;
+        }
+    }
+    assert!(apart > 200 && near > 2000 && met > 200, "{apart} {near} {met}");
+}
+
+#[test]
+fn one_inside_the_other() {
+    let mut rng = Rng::new(2);
+    for case in 0..200 {
+        let stretch = rng.pick(&[1.0, 100.0]);
+        let q = cloud(&mut rng, stretch);
+        let small: Vec<DVec3> = q.vertices().iter().map(|v| *v * 0.25).collect();
+        let centre = small.iter().sum::<DVec3>() * (3.0 / small.len() as f64);
+        let small: Vec<DVec3> = small.iter().map(|v| *v + centre).collect();
+        let p = body(&small);
+        let at = pose(&mut rng, 7.0);
+        let exact = check_from_scratch(&format!("case {case}"), (&p, &at), (&q, &at));
+        assert!(exact.intersects());
+        let exact = check_from_scratch(&format!("case {case} turned"), (&q, &at), (&p, &at));
+        assert!(exact.intersects());
+    }
+}
+
+/// Faces, edges and corners on each other, exactly.
+#[test]
+fn boxes_on_a_grid() {
+    let mut rng = Rng::new(3);
+    for case in 0..600 {
+        let (p, q) = (body(&cuboid(rng.grid(1, 3))), body(&cuboid(rng.grid(1, 3))));
+        let place = |rng: &mut Rng| {
+            let turn = DQuat::from_rotation_z(TAU / 8.0 * rng.pick(&[0.0, 0.0, 1.0, 2.0]));
+            Pose::new(turn, rng.grid(-5, 5)).unwrap()
+        };
+        let (at, other) = (place(&mut rng), place(&mut rng));
+        check_from_scratch(&format!("case {case}"), (&p, &at), (&q, &other));
+    }
+}
+
+#[test]
+fn points_segments_and_polygons() {
+    let mut rng = Rng::new(4);
+    for case in 0..600 {
+        let mut flat = || {
+            let n = rng.int(1, 6);
+            let whole = rng.one_in(2);
+            let points: Vec<DVec3> = (0..n)
+                .map(|_| if whole { rng.grid(-2, 2) } else { rng.vector() * 2.0 })
+                .map(|v| DVec3::new(v.x, v.y, 0.0))
+                .collect();
+            body(&points)
+        };
+        let (p, q) = (flat(), flat());
+        let turned = rng.one_in(2);
+        let at = if turned {
+            pose(&mut rng, 1.0)
+        } else {
+            Pose::from_translation(rng.grid(-2, 2)).unwrap()
+        };
+        check_from_scratch(&format!("case {case}"), (&p, &at), (&q, &Pose::IDENTITY));
+    }
+}
+
+/// A common displacement costs the distance nothing.
+#[test]
+fn far_from_the_origin_of_the_world() {
+    let mut rng = Rng::new(5);
+    for case in 0..100 {
+        let (p, q) = (cloud(&mut rng, 1.0), cloud(&mut rng, 1.0));
+        let far = rng.grid(-9, 9) * 2.0_f64.powi(20);
+        let at = pose(&mut rng, 2.0).translated(far).unwrap();
+        let other = pose(&mut rng, 0.0).translated(far).unwrap();
+        check_from_scratch(&format!("case {case}"), (&p, &at), (&q, &other));
+    }
+}
+
+/// What a query leaves behind may save time, not change the answer.
+#[test]
+fn coherent_sequences() {
+    let mut rng = Rng::new(6);
+    for case in 0..60 {
+        let stretch = rng.pick(&[1.0, 1000.0]);
+        let (p, q) = (cloud(&mut rng, stretch), cloud(&mut rng, stretch));
+        let mut coherent = Egjk::new(&p, &q);
+        let mut at = pose(&mut rng, 2.5 * stretch);
+        let (turn, step) = (rng.pick(&[0.3, 1e-3]), rng.pick(&[0.5, 1e-2]) * stretch);
+        for tick in 0..40 {
+            let rotation = DQuat::from_axis_angle(rng.direction(), turn) * at.rotation();
+            let there = at.translation() + rng.direction() * step - at.translation() * 0.02;
+            at = Pose::new(rotation.normalize(), there).unwrap();
+            let (moving, fixed) = ((&p, &at), (&q, &Pose::IDENTITY));
+            let answer = coherent.distance(moving.1, fixed.1);
+            check(&format!("case {case}, tick {tick}"), &answer, moving, fixed);
+            let scratch = Egjk::new(&p, &q).distance(moving.1, fixed.1);
+            let off = (scratch.distance - answer.distance).abs();
+            let stated = scratch.steps.gap + answer.steps.gap + 2.0 * noise(moving, fixed);
+            assert!(off <= stated, "case {case}, tick {tick}: {off:e}");
+        }
+    }
+}
+
+#[test]
+fn the_same_query_again_takes_one_iteration_and_reset_forgets() {
+    let (p, q) = (rings(20, DVec3::new(1.0, 0.7, 1.3)), rings(20, DVec3::ONE));
+    let at = Pose::new(DQuat::from_rotation_x(0.4), DVec3::new(3.0, 1.0, 0.5)).unwrap();
+    let mut egjk = Egjk::new(&p, &q);
+    let first = egjk.distance(&at, &Pose::IDENTITY);
+    let again = egjk.distance(&at, &Pose::IDENTITY);
+    assert_eq!(again.distance, first.distance);
+    assert_eq!((again.steps.iterations, again.steps.supports, again.steps.climbed), (1, 1, 2));
+    egjk.reset();
+    assert_eq!(egjk.distance(&at, &Pose::IDENTITY), first);
+}
+
+#[test]
+fn large_bodies() {
+    let mut rng = Rng::new(7);
+    for axes in [DVec3::new(1.2, 0.7, 1.0), DVec3::new(1e-3, 1e-3, 1.0), DVec3::new(1.0, 1.0, 1e-3)]
+    {
+        let (p, q) = (rings(45, axes), rings(45, axes));
+        let mut coherent = Egjk::new(&p, &q);
+        for case in 0..4 {
+            let (at, world) = (pose(&mut rng, 3.0), pose(&mut rng, 0.0));
+            let (moving, fixed) = ((&p, &at), (&q, &world));
+            check_from_scratch(&format!("{axes}, case {case}"), moving, fixed);
+            for gap in [1e-3, 1e-6, 1e-9, -1e-6] {
+                let at = brought_near(moving, fixed, gap).unwrap();
+                let answer = coherent.distance(&at, &world);
+                check(&format!("{axes}, case {case}, gap {gap:e}"), &answer, (&p, &at), fixed);
+            }
+        }
+    }
+}

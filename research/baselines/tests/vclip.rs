@@ -1,0 +1,96 @@
+//! V-Clip against the exact distance.
+
+mod walks;
+
+use colltrans_baselines::Proximity;
+use colltrans_baselines::vclip::{Shell, Steps, VClip};
+use walks::{Placed, coherent, hard_settings, large, random_settings, wide_settings};
+
+fn shells(placed: &Placed) -> [Shell; 2] {
+    [&placed.moving, &placed.fixed].map(|body| Shell::new(body).unwrap())
+}
+
+fn from_scratch(placed: &Placed) -> Proximity<Steps> {
+    let [moving, fixed] = shells(placed);
+    VClip::new(&moving, &fixed).distance(&placed.moving_pose, &placed.fixed_pose)
+}
+
+/// Largest errors of a share of the size, and that nothing is claimed that does not hold.
+fn check(settings: impl Iterator<Item = Placed>, accuracy: f64) {
+    let mut count = 0;
+    for placed in settings {
+        let Proximity { distance, on_moving, on_fixed, steps } = from_scratch(&placed);
+        let error = placed.error(distance);
+        let place = placed.error_of_points(distance, on_moving, on_fixed);
+        assert!(error <= accuracy && !steps.gave_up, "{}: {error:e}, {steps:?}", placed.name);
+        assert!(place <= accuracy, "{}: points {place:e}, {steps:?}", placed.name);
+        count += 1;
+    }
+    assert!(count >= 60, "{count} settings");
+}
+
+#[test]
+fn random_solids_at_all_distances() {
+    check(random_settings(2_000), 4e-15);
+}
+
+#[test]
+fn ties_needles_plates_and_what_else_is_hard() {
+    check(hard_settings(100), 1e-14);
+}
+
+#[test]
+fn wide_faces_and_crowded_vertices() {
+    check(wide_settings(), 4e-15);
+}
+
+#[test]
+fn a_query_after_another_gives_the_same_with_fewer_steps() {
+    for seed in 0..5 {
+        let placed = large(500, seed);
+        let [moving, fixed] = shells(&placed);
+        let (mut fresh, mut carried) = (VClip::new(&moving, &fixed), VClip::new(&moving, &fixed));
+        let (mut fresh_pairs, mut carried_pairs) = (0, 0);
+        let poses = coherent(&placed, 0.0025, 200, seed);
+        carried.distance(&poses[0], &placed.fixed_pose);
+        for pose in &poses {
+            fresh.reset();
+            let expected = fresh.distance(pose, &placed.fixed_pose);
+            let answer = carried.distance(pose, &placed.fixed_pose);
+            let difference = (expected.distance - answer.distance).abs();
+            assert!(difference <= 1e-14 * placed.size(), "{seed}: {difference:e}");
+            fresh_pairs += expected.steps.pairs;
+            carried_pairs += answer.steps.pairs;
+        }
+        assert!(3 * carried_pairs < fresh_pairs, "{seed}: {carried_pairs} of {fresh_pairs}");
+    }
+}
+
+#[test]
+fn tied_bodies_that_move_along_their_ties() {
+    for placed in hard_settings(12) {
+        let [moving, fixed] = shells(&placed);
+        let mut carried = VClip::new(&moving, &fixed);
+        for pose in coherent(&placed, 0.05, 12, 1) {
+            let answer = carried.distance(&pose, &placed.fixed_pose);
+            let here = Placed { moving_pose: pose, ..placed.clone() };
+            let error = here.error(answer.distance);
+            assert!(error <= 1e-14 && !answer.steps.gave_up, "{}: {error:e} {answer:?}", here.name);
+        }
+    }
+}
+
+#[test]
+fn large_bodies() {
+    for (n, seed) in [(2_000, 1), (2_000, 2), (20_000, 3)] {
+        let placed = large(n, seed);
+        let [moving, fixed] = shells(&placed);
+        let mut solver = VClip::new(&moving, &fixed);
+        for gap in [None, Some(1e-3), Some(1e-9), Some(-0.01), Some(-1.0)] {
+            let here = gap.map_or_else(|| placed.clone(), |gap| placed.at_gap(gap));
+            let answer = solver.distance(&here.moving_pose, &here.fixed_pose);
+            let error = here.error(answer.distance);
+            assert!(error <= 1e-14 && !answer.steps.gave_up, "{}: {error:e}", here.name);
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What the tests of V-Clip and H-Walk share: settings, and the exact distance beside an answer.
+
+#![allow(unreachable_pub, reason = "a module of two test programs")]
+
+use std::f64::consts::TAU;
+
+use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_testkit::oracle::distance::{distance_of_bodies, distance_of_point};
+use colltrans_testkit::oracle::settings::{FAMILIES, Rng, setting};
+use glam::{DQuat, DVec2, DVec3};
+
+/// Two solids in place.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    pub name: String,
+    pub moving: ConvexPolyhedron,
+    pub fixed: ConvexPolyhedron,
+    pub moving_pose: Pose,
+    pub fixed_pose: Pose,
+}
+
+impl Placed {
+    /// Reaches of both bodies and the distance of their frames.
+    pub fn size(&self) -> f64 {
+        let reach = |body: &ConvexPolyhedron| {
+            body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
+        };
+        reach(&self.moving)
+            + reach(&self.fixed)
+            + self.moving_pose.translation().distance(self.fixed_pose.translation())
+    }
+
+    /// Moved along the shortest vector so that about `gap` is left of it.
+    pub fn at_gap(&self, gap: f64) -> Self {
+        let exact = self.exact();
+        let share = 1.0 - gap / exact.to_f64();
+        let moving_pose = self.moving_pose.translated(exact.shortest * share).unwrap();
+        Self { name: format!("{} at {gap:e}", self.name), moving_pose, ..self.clone() }
+    }
+
+    fn exact(&self) -> colltrans_testkit::oracle::distance::Distance {
+        distance_of_bodies((&self.moving, &self.moving_pose), (&self.fixed, &self.fixed_pose))
+    }
+
+    /// The error of a distance, as a share of the size.
+    pub fn error(&self, distance: f64) -> f64 {
+        (distance - self.exact().to_f64()).abs() / self.size()
+    }
+
+    /// How far nearest points are from their bodies, and from being `distance` apart, as a share of
+    /// the size and of where in the world it is.
+    pub fn error_of_points(&self, distance: f64, on_moving: DVec3, on_fixed: DVec3) -> f64 {
+        let of_point = |x, body, pose| distance_of_point(x, (body, pose)).to_f64();
+        let errors = [
+            (distance - on_moving.distance(on_fixed)).abs(),
+            of_point(on_moving, &self.moving, &self.moving_pose),
+            of_point(on_fixed, &self.fixed, &self.fixed_pose),
+        ];
+        let place = self.moving_pose.translation().length();
+        errors.into_iter().fold(0.0, f64::max) / (self.size() + place)
+    }
+}
+
+/// Random solids of 4 to 20 vertices: apart, at gaps down to nothing, overlapping, nested.
+pub fn random_settings(count: u64) -> impl Iterator<Item = Placed> {
+    (0..count).map(|seed| {
+        let mut rng = Rng::new(seed);
+        let mut solid = || {
+            let (n, axes) =
+                (rng.int(4, 20), DVec3::from_array([0; 3].map(|_| rng.range(0.3, 1.5))));
+            let points: Vec<DVec3> = (0..n).map(|_| rng.direction() * axes).collect();
+            ConvexPolyhedron::from_points(&points).unwrap()
+        };
+        let (moving, fixed) = (solid(), solid());
+        let distance = rng.range(3.0, 6.0);
+        let at = rng.direction() * distance;
+        let moving_pose = Pose::new(rng.rotation(), rng.vector()).unwrap();
+        let fixed_pose = Pose::new(rng.rotation(), moving_pose.translation() + at).unwrap();
+        let apart =
+            Placed { name: format!("random {seed}"), moving, fixed, moving_pose, fixed_pose };
+        match seed % 5 {
+            0 => apart,
+            1 => apart.at_gap(10.0_f64.powf(rng.range(-9.0, -3.0))),
+            2 => apart.at_gap(0.0),
+            3 => apart.at_gap(-rng.range(0.0, 0.8)),
+            _ => nested(&apart),
+        }
+    })
+}
+
+/// The moving body, made a tenth of its size, about the middle of the fixed one.
+fn nested(apart: &Placed) -> Placed {
+    let small: Vec<DVec3> = apart.moving.vertices().iter().map(|v| v * 0.1).collect();
+    let vertices = apart.fixed.vertices();
+    let middle = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+    let at = apart.fixed_pose.transform_point(middle);
+    Placed {
+        name: format!("{} nested", apart.name),
+        moving: ConvexPolyhedron::from_points(&small).unwrap(),
+        moving_pose: Pose::new(apart.moving_pose.rotation(), at).unwrap(),
+        ..apart.clone()
+    }
+}
+
+/// The hard families of the oracle, solids only, as they are and moved to a gap, to contact and
+/// beyond.
+pub fn hard_settings(seeds: u64) -> impl Iterator<Item = Placed> {
+    FAMILIES
+        .iter()
+        .flat_map(move |&(family, _)| (0..seeds).map(move |seed| (family, seed)))
+        .filter_map(|(family, seed)| {
+            let drawn = setting(family, seed);
+            let bodies = drawn.bodies().ok()?;
+            if bodies.moving.dimension() < 3 || bodies.fixed.dimension() < 3 {
+                return None;
+            }
+            let placed = Placed {
+                name: format!("{family}:{seed}"),
+                moving: bodies.moving,
+                fixed: bodies.fixed,
+                moving_pose: drawn.moving_pose,
+                fixed_pose: drawn.fixed_pose,
+            };
+            let (size, distance) = (placed.size(), placed.exact().to_f64());
+            if distance <= 1e-12 * size {
+                return Some(placed);
+            }
+            Some(match seed % 4 {
+                0 | 1 => placed,
+                2 => placed.at_gap(0.0),
+                _ => placed.at_gap(1e-6 * distance),
+            })
+        })
+}
+
+/// Prisms and double cones over a polygon of many sides: wide faces, vertices with many neighbours,
+/// one over the other and side by side, apart by a little or not at all, tilted by a little or not
+/// at all.
+pub fn wide_settings() -> impl Iterator<Item = Placed> {
+    let ring = (0..200).map(|k| DVec3::from((DVec2::from_angle(TAU * f64::from(k) / 200.0), -0.5)));
+    let prism: Vec<DVec3> = ring.clone().flat_map(|p| [p, p + DVec3::Z]).collect();
+    let cone: Vec<DVec3> = ring.chain([DVec3::Z, DVec3::NEG_Z]).collect();
+    let solids = [prism, cone].map(|points| ConvexPolyhedron::from_points(&points).unwrap());
+    let (axis, aslant) = (DVec3::new(0.6, 0.8, 0.0), DVec3::new(1.0, 0.3, 1.0));
+    let places = [DVec3::ZERO, DVec3::Z, DVec3::Z * 2.0, DVec3::X * 2.0, aslant, aslant * 0.1];
+    let mut settings = Vec::new();
+    for body in solids {
+        for place in places {
+            for (gap, tilt) in [(0.0, 0.0), (0.0, 1e-12), (1e-9, 0.0), (1e-9, 1e-9), (1e-6, 1e-5)] {
+                let at = place * (1.0 + gap);
+                settings.push(Placed {
+                    name: format!("wide, {} faces at {at} by {tilt:e}", body.face_count()),
+                    moving: body.clone(),
+                    fixed: body.clone(),
+                    moving_pose: Pose::new(DQuat::from_axis_angle(axis, tilt), DVec3::ZERO)
+                        .unwrap(),
+                    fixed_pose: Pose::from_translation(at).unwrap(),
+                });
+            }
+        }
+    }
+    settings.into_iter()
+}
+
+/// Ellipsoids with `n` vertices at random, semi-axes from 0.6 to 1.4, about as far apart as they
+/// are large.
+pub fn large(n: usize, seed: u64) -> Placed {
+    let mut rng = Rng::new(seed);
+    let mut ellipsoid = || {
+        let axes = DVec3::from_array([0; 3].map(|_| rng.range(0.6, 1.4)));
+        let points: Vec<DVec3> = (0..n).map(|_| rng.direction() * axes).collect();
+        ConvexPolyhedron::from_points(&points).unwrap()
+    };
+    let (moving, fixed) = (ellipsoid(), ellipsoid());
+    let moving_pose = Pose::new(rng.rotation(), rng.vector()).unwrap();
+    let at = moving_pose.translation() + rng.direction() * rng.range(3.0, 4.0);
+    let fixed_pose = Pose::new(rng.rotation(), at).unwrap();
+    Placed { name: format!("large {seed}"), moving, fixed, moving_pose, fixed_pose }
+}
+
+/// The moving body turned about a fixed axis and moved past the other, `share` of its size a step.
+pub fn coherent(placed: &Placed, share: f64, steps: u32, seed: u64) -> Vec<Pose> {
+    let mut rng = Rng::new(seed);
+    let (axis, along) = (rng.direction(), rng.direction());
+    let reach = placed.moving.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let poses = (0..steps).map(|k| {
+        let turn = DQuat::from_axis_angle(axis, share * f64::from(k));
+        let rotation = (turn * placed.moving_pose.rotation()).normalize();
+        let at = placed.moving_pose.translation() + along * reach * share * f64::from(k);
+        Pose::new(rotation, at).unwrap()
+    });
+    poses.collect()
+}

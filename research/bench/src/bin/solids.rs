@@ -1,0 +1,399 @@
+//! `solids`: meshes that are not convex, beside `parry3d-f64`'s cast of two triangle meshes.
+//!
+//! Three groups. *Pairs*: random rotations and directions, the moving mesh starting beside the fixed
+//! one; each query is timed alone, both libraries on the same settings, fifty at a time in turns: a
+//! query of a library behind one of the other would find the caches full of the other's. *Growth*: the same
+//! bumpy ball in more and more facets. *Flat*: two slabs with many facets in one plane, resting,
+//! sliding, parting, and with a gap.
+//!
+//! A pair starts in three ways. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
+//! one, up to 0.7 times it aside, whether they meet or not. *Near*: of these settings those that meet,
+//! the moving mesh put forward to [`NEAR`] times the sum before it meets the fixed one. *Near miss*: those
+//! that meet, started as far, the moving mesh put aside along a random axis until it misses the fixed one
+//! by at most [`MISS`] times the sum, found by halving between none and twice the sum.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use colltrans::{Cast, Clearance, Pose, Solid, Workspace};
+use colltrans_bench::arguments::Arguments;
+use colltrans_bench::parry::{ParrySetting, triangle_mesh};
+use colltrans_bench::report::{self, Times};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::solids::{bolt, bumpy_ball, perforated_plate, slab};
+use colltrans_testkit::timing::Stopwatch;
+use glam::{DQuat, DVec3};
+use serde_json::{Value, json};
+
+/// Measures solids and parry3d-f64's triangle meshes on the same settings; prints a table
+#[derive(Debug, Parser)]
+struct Command {
+    #[command(flatten)]
+    arguments: Arguments,
+    /// A folder with `trimesh/teapot.stl` and the like
+    #[arg(long, value_name = "DIR", default_value = "../shared/data")]
+    data: PathBuf,
+    /// Only the rows whose names contain this
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
+}
+
+/// Two answers agree when they differ by less than this share of the bodies' size.
+const AGREEMENT: f64 = 1e-4;
+/// Shares of the sum of the radii: how far before they meet bodies start that start near, and the most by
+/// which they miss each other narrowly.
+const NEAR: f64 = 0.02;
+const MISS: f64 = 0.01;
+/// Queries of one library in a row.
+const BLOCK: usize = 50;
+
+fn main() -> ExitCode {
+    let command = Command::parse();
+    let mut rows = Vec::new();
+    println!(
+        "{:<44} {:>9} {:>11} {:>11} {:>9} {:>11} {:>6} {:>5}",
+        "pair", "facets", "ours", "mean", "p99", "parry", "ratio", "hits"
+    );
+    for pair in pairs(&command) {
+        for start in Start::ALL {
+            let row = pair.measure(&command.arguments, start);
+            print_pair(&row);
+            rows.push(row);
+        }
+    }
+    if command.only.as_ref().is_none_or(|only| "growth".contains(only.as_str())) {
+        rows.extend(growth(&command.arguments));
+    }
+    if command.only.as_ref().is_none_or(|only| "flat".contains(only.as_str())) {
+        rows.extend(flat(&command.arguments));
+    }
+    report::write("solids", &command.arguments, &rows)
+}
+
+fn print_pair(row: &Value) {
+    let number = |name: &str| row[name].as_f64().unwrap_or(f64::NAN);
+    println!(
+        "{:<44} {:>9} {:>8.1} us {:>8.1} us {:>6.0} us {:>8.0} us {:>6.1} {:>5}",
+        row["name"].as_str().unwrap_or(""),
+        row["facets"],
+        number("median_ns") / 1e3,
+        number("mean_ns") / 1e3,
+        number("p99_ns") / 1e3,
+        number("parry_mean_ns") / 1e3,
+        number("ratio"),
+        row["hits"],
+    );
+}
+
+/// Two meshes to measure with.
+struct Pair {
+    name: String,
+    bodies: [Mesh; 2],
+}
+
+fn pairs(command: &Command) -> Vec<Pair> {
+    let mut pairs = Vec::new();
+    let mut push = |name: &str, a: Mesh, b: Mesh| {
+        let wanted = command.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
+        if wanted {
+            pairs.push(Pair { name: name.into(), bodies: [centered(a), centered(b)] });
+        }
+    };
+    let ball = bumpy_ball(16_000);
+    push("bumpy balls", ball.clone(), ball);
+    let plate = perforated_plate([6, 4], 0.4, 32);
+    push("perforated plates", plate.clone(), plate.clone());
+    push("bolt x perforated plate", bolt([0.3, 0.6], [0.0, 2.0, 2.5], 48), plate);
+    for (a, b) in [
+        ("teapot.stl", "teapot.stl"),
+        ("fandisk.obj", "fandisk.obj"),
+        ("bunny.ply", "bunny.ply"),
+        ("featuretype.STL", "plate_holes.STL"),
+        ("featuretype.STL", "featuretype.STL"),
+        ("angle_block.STL", "plate_holes.STL"),
+    ] {
+        let read = |name: &str| load(&command.data.join("trimesh").join(name));
+        if let (Some(x), Some(y)) = (read(a), read(b)) {
+            push(&format!("{a} x {b}"), x, y);
+        }
+    }
+    pairs
+}
+
+fn load(path: &Path) -> Option<Mesh> {
+    if !path.exists() {
+        return None;
+    }
+    match colltrans_mesh::read(path) {
+        Ok(mesh) => Some(Mesh { vertices: mesh.vertices, faces: mesh.faces }),
+        Err(error) => {
+            eprintln!("{error}");
+            None
+        }
+    }
+}
+
+fn centered(mesh: Mesh) -> Mesh {
+    let (low, high) = mesh
+        .vertices
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    mesh.translated((low + high) * -0.5)
+}
+
+fn radius(mesh: &Mesh) -> f64 {
+    mesh.vertices.iter().map(|v| v.length()).fold(0.0, f64::max)
+}
+
+/// A closed solid, or an open surface where the mesh is not closed.
+fn solid(mesh: &Mesh) -> Option<Solid> {
+    Solid::from_mesh(&mesh.vertices, &mesh.faces)
+        .or_else(|_| Solid::from_open_mesh(&mesh.vertices, &mesh.faces))
+        .map_err(|error| eprintln!("{error}"))
+        .ok()
+}
+
+/// How a pair starts: see the module's head.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Start {
+    Far,
+    Near,
+    NearMiss,
+}
+
+impl Start {
+    const ALL: [Self; 3] = [Self::Far, Self::Near, Self::NearMiss];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Far => "far",
+            Self::Near => "near",
+            Self::NearMiss => "near miss",
+        }
+    }
+}
+
+struct Placement {
+    poses: [Pose; 2],
+    direction: DVec3,
+}
+
+impl Placement {
+    /// The moving body beside the fixed one, heading for it, more or less.
+    fn draw(radii: [f64; 2], random: &mut Random) -> Self {
+        let direction = random.direction();
+        let reach = radii[0] + radii[1];
+        let aside = random.direction().reject_from_normalized(direction);
+        let start = -direction * reach * 1.05 + aside * (0.7 * reach * random.unit());
+        let pose = |rotation, at| Pose::new(rotation, at).unwrap_or(Pose::IDENTITY);
+        let poses = [pose(random.rotation(), start), pose(random.rotation(), DVec3::ZERO)];
+        Self { poses, direction }
+    }
+
+    /// The distance after which the bodies meet, if they do.
+    fn distance(&self, [p, q]: [&Solid; 2], workspace: &mut Workspace) -> Option<f64> {
+        let cast = Cast::new(p.at(self.poses[0]), q.at(self.poses[1]), self.direction).ok()?;
+        cast.clearance_in(workspace).distance().filter(|d| d.is_finite())
+    }
+
+    /// Of bodies that meet the same, the moving one put aside until they do not.
+    fn missing(&self, aside: DVec3, bodies: [&Solid; 2], workspace: &mut Workspace) -> Self {
+        let (mut meets, mut misses) = (0.0, 2.0);
+        while misses - meets > MISS {
+            let middle = 0.5 * (meets + misses);
+            let met = self.moved(aside * middle).distance(bodies, workspace).is_some();
+            *(if met { &mut meets } else { &mut misses }) = middle;
+        }
+        self.moved(aside * misses)
+    }
+
+    /// The same with the moving body elsewhere.
+    fn moved(&self, by: DVec3) -> Self {
+        let [moving, fixed] = self.poses;
+        let at = moving.translation() + by;
+        let moving = Pose::new(moving.rotation(), at).unwrap_or(moving);
+        Self { poses: [moving, fixed], ..*self }
+    }
+}
+
+impl Pair {
+    /// So many settings.
+    fn placements(
+        &self,
+        bodies: [&Solid; 2],
+        start: Start,
+        count: usize,
+        seed: u64,
+    ) -> Vec<Placement> {
+        let radii = [radius(&self.bodies[0]), radius(&self.bodies[1])];
+        let reach = radii[0] + radii[1];
+        let facets = bodies[0].triangles().len();
+        let mut random = Random::new(seed, &[self.name.len() as u64, facets as u64]);
+        let mut workspace = Workspace::default();
+        let mut draw = || {
+            let placement = Placement::draw(radii, &mut random);
+            if start == Start::Far {
+                return Some(placement);
+            }
+            let distance = placement.distance(bodies, &mut workspace)?;
+            if start == Start::Near {
+                return Some(placement.moved(placement.direction * (distance - NEAR * reach)));
+            }
+            let aside = random.direction().reject_from_normalized(placement.direction);
+            Some(placement.missing(aside.normalize_or_zero() * reach, bodies, &mut workspace))
+        };
+        // Not all that are drawn meet.
+        (0..100 * count).filter_map(|_| draw()).take(count).collect()
+    }
+
+    fn measure(&self, arguments: &Arguments, start: Start) -> Value {
+        let [a, b] = &self.bodies;
+        let (Some(p), Some(q)) = (solid(a), solid(b)) else { return Value::Null };
+        let (r, f) = (
+            triangle_mesh(p.vertices(), p.triangles()),
+            triangle_mesh(q.vertices(), q.triangles()),
+        );
+        let radii = [radius(a), radius(b)];
+        let count = if arguments.quick || start != Start::Far { 60 } else { 300 };
+        let stopwatch = Stopwatch::new();
+        let (mut ours, mut theirs) = (Times::default(), Times::default());
+        let (mut hits, mut apart) = (0, 0);
+        let mut workspace = Workspace::default();
+        let placements = self.placements([&p, &q], start, count, arguments.seed);
+        // What a solid prepares in its first query is no part of the others.
+        placements.first().and_then(|first| first.distance([&p, &q], &mut workspace));
+        for block in placements.chunks(BLOCK) {
+            let mut distances = Vec::with_capacity(BLOCK);
+            for Placement { poses: [s, t], direction } in block {
+                let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else {
+                    distances.push(None);
+                    continue;
+                };
+                let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
+                ours.add(time);
+                distances.push(answer.distance().filter(|d| d.is_finite()));
+            }
+            for (Placement { poses: [s, t], direction }, distance) in block.iter().zip(distances) {
+                let placed = ParrySetting::placed([s, t], *direction);
+                let (other, time) = stopwatch.time(|| placed.cast(&r, &f));
+                theirs.add(time);
+                hits += usize::from(distance.is_some());
+                let agree = match (distance, other) {
+                    (Some(x), Some(y)) => (x - y).abs() <= AGREEMENT * (radii[0] + radii[1]),
+                    (None, None) => true,
+                    _ => false,
+                };
+                apart += usize::from(!agree);
+            }
+        }
+        ours.sort();
+        theirs.sort();
+        let name = match start {
+            Start::Far => self.name.clone(),
+            _ => format!("{}, {}", self.name, start.name()),
+        };
+        let mut row = ours.to_json();
+        row.insert("group".into(), json!("pairs"));
+        row.insert("name".into(), json!(name));
+        row.insert("start".into(), json!(start.name()));
+        row.insert("facets".into(), json!(p.triangles().len() + q.triangles().len()));
+        row.insert("settings".into(), json!(count));
+        row.insert("hits".into(), json!(hits));
+        row.insert("answers_apart".into(), json!(apart));
+        row.insert("parry_median_ns".into(), json!(theirs.median()));
+        row.insert("parry_mean_ns".into(), json!(theirs.mean()));
+        row.insert("ratio".into(), json!(theirs.mean() / ours.mean()));
+        row.insert("ratio_of_medians".into(), json!(theirs.median() / ours.median()));
+        Value::Object(row)
+    }
+}
+
+/// The same body in more and more facets.
+fn growth(arguments: &Arguments) -> Vec<Value> {
+    let sizes: &[usize] =
+        if arguments.quick { &[16_000, 1_000_000] } else { &[16_000, 64_000, 256_000, 1_000_000] };
+    let stopwatch = Stopwatch::new();
+    let mut rows = Vec::new();
+    println!("\n{:<28} {:>11} {:>11} {:>11} {:>8}", "growth", "build", "median", "mean", "B/facet");
+    for &size in sizes {
+        let mesh = bumpy_ball(size);
+        let (body, build) = stopwatch.time(|| solid(&mesh));
+        let Some(body) = body else { continue };
+        let mut random = Random::new(arguments.seed, &[7]);
+        let mut workspace = Workspace::default();
+        let mut times = Times::default();
+        for _ in 0..if arguments.quick { 300 } else { 2_000 } {
+            let Placement { poses, direction } = Placement::draw([1.2, 1.2], &mut random);
+            if let Ok(cast) = Cast::new(body.at(poses[0]), body.at(poses[1]), direction) {
+                times.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
+            }
+        }
+        times.sort();
+        let facets = body.triangles().len();
+        let bytes = body.memory_bytes() as f64 / facets as f64;
+        println!(
+            "{facets:<28} {:>8.1} ms {:>8.1} us {:>8.1} us {bytes:>8.0}",
+            build / 1e6,
+            times.median() / 1e3,
+            times.mean() / 1e3
+        );
+        let mut row = times.to_json();
+        row.insert("group".into(), json!("growth"));
+        row.insert("facets".into(), json!(facets));
+        row.insert("build_ns".into(), json!(build));
+        row.insert("bytes_per_facet".into(), json!(bytes));
+        rows.push(Value::Object(row));
+    }
+    rows
+}
+
+/// Two slabs of 131,000 facets each.
+fn flat(arguments: &Arguments) -> Vec<Value> {
+    let mesh = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), [180, 180, 4]);
+    let Some(body) = solid(&mesh) else { return Vec::new() };
+    let stopwatch = Stopwatch::new();
+    let mut workspace = Workspace::default();
+    let oblique = DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize();
+    let cases = [
+        ("resting", 0.25, DVec3::NEG_Z),
+        ("sliding", 0.25, DVec3::X),
+        ("sliding aslant", 0.25, DVec3::new(0.6, 0.8, 0.0)),
+        ("parting", 0.25, DVec3::Z),
+        ("gap 1", 1.25, DVec3::NEG_Z),
+    ];
+    println!("\n{:<28} {:>11}   {} facets each", "flat on flat", "median", body.triangles().len());
+    let mut rows = Vec::new();
+    for (name, height, direction) in cases {
+        for (turned, rotation) in [("", DQuat::IDENTITY), (", turned", oblique)] {
+            let at = DVec3::new(0.125, 0.0625, height);
+            let (Ok(above), Ok(below)) =
+                (Pose::new(rotation, rotation * at), Pose::new(rotation, DVec3::ZERO))
+            else {
+                continue;
+            };
+            let way = rotation * direction;
+            let Ok(cast) = Cast::new(body.at(above), body.at(below), way) else { continue };
+            let answer = cast.clearance();
+            let mut times = Times::default();
+            for _ in 0..if arguments.quick { 20 } else { 200 } {
+                times.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
+            }
+            times.sort();
+            let said = match answer {
+                Clearance::Free(_) => "free".into(),
+                Clearance::Blocked { distance, .. } => format!("blocked at {distance}"),
+                Clearance::Overlapping(overlap) => format!("overlapping {:?}", overlap.depth),
+            };
+            println!("{:<28} {:>8.1} us   {said}", format!("{name}{turned}"), times.median() / 1e3);
+            let mut row = times.to_json();
+            row.insert("group".into(), json!("flat"));
+            row.insert("name".into(), json!(format!("{name}{turned}")));
+            row.insert("facets".into(), json!(body.triangles().len()));
+            row.insert("answer".into(), json!(said));
+            rows.push(Value::Object(row));
+        }
+    }
+    rows
+}

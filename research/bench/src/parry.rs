@@ -1,0 +1,107 @@
+//! The same bodies and settings in `parry3d-f64`.
+
+use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_lab::settings::{Meeting, Setting};
+use colltrans_lab::shapes::Bodies;
+use colltrans_testkit::random::Random;
+use colltrans_testkit::timing::Stopwatch;
+use glam::DVec3;
+use parry3d_f64::math as parry_math;
+use parry3d_f64::query::{ShapeCastOptions, cast_shapes};
+use parry3d_f64::shape::{ConvexPolyhedron as ParryPolyhedron, Shape, TriMesh};
+
+use crate::report::Times;
+
+/// Our vertices and faces, the latter cut into fans of triangles; `None` if parry refuses them.
+pub fn body(body: &ConvexPolyhedron) -> Option<ParryPolyhedron> {
+    let points = body.vertices().iter().map(|v| vector(*v)).collect();
+    let mut triangles = Vec::new();
+    for face in 0..body.face_count() as u32 {
+        let mut corners = body.face_vertices(face);
+        let (first, mut second) = (corners.next()?, corners.next()?);
+        for third in corners {
+            triangles.push([first, second, third]);
+            second = third;
+        }
+    }
+    ParryPolyhedron::from_convex_mesh(points, &triangles)
+}
+
+/// Poses and a direction in parry's types, converted before the clock starts.
+#[derive(Debug, Clone, Copy)]
+pub struct ParrySetting {
+    poses: [parry_math::Pose; 2],
+    velocity: parry_math::Vector,
+}
+
+impl ParrySetting {
+    /// Converts a setting.
+    pub fn new(setting: &Setting) -> Self {
+        Self::placed([&setting.moving, &setting.fixed], setting.direction)
+    }
+
+    /// Converts the poses of the moving and of the fixed body and a direction.
+    pub fn placed(poses: [&Pose; 2], direction: DVec3) -> Self {
+        Self { poses: poses.map(pose), velocity: vector(direction) }
+    }
+
+    /// Asks parry: the time of impact, if there is one.
+    pub fn cast(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+        let options = ShapeCastOptions {
+            compute_impact_geometry_on_penetration: false,
+            ..ShapeCastOptions::default()
+        };
+        let still = parry_math::Vector::ZERO;
+        let [a, b] = &self.poses;
+        cast_shapes(a, self.velocity, moving, b, still, fixed, options)
+            .ok()?
+            .map(|hit| hit.time_of_impact)
+    }
+}
+
+/// Parry's casts of two bodies of 8 vertices, measured along with every row: a unit that the
+/// machine's mood changes as much as ours.
+pub struct Scale {
+    bodies: [ParryPolyhedron; 2],
+    settings: Vec<ParrySetting>,
+}
+
+impl Scale {
+    /// Draws so many settings in which the bodies meet.
+    ///
+    /// # Panics
+    /// If parry refuses a body.
+    pub fn new(small: &Bodies, settings: usize, random: &mut Random) -> Self {
+        let mut draw = || ParrySetting::new(&Setting::draw(small, Meeting::Colliding, random));
+        let settings = (0..settings).map(|_| draw()).collect();
+        let convert = |small| body(small).expect("a body that parry takes");
+        Self { bodies: small.pair.each_ref().map(convert), settings }
+    }
+
+    /// Times every setting once.
+    pub fn measure(&self, times: &mut Times) {
+        let stopwatch = Stopwatch::new();
+        let [moving, fixed] = &self.bodies;
+        for setting in &self.settings {
+            times.add(stopwatch.time(|| setting.cast(moving, fixed)).1);
+        }
+    }
+}
+
+fn vector(v: DVec3) -> parry_math::Vector {
+    parry_math::Vector::from_array(v.to_array())
+}
+
+fn pose(pose: &Pose) -> parry_math::Pose {
+    let rotation = parry_math::Rotation::from_array(pose.rotation().to_array());
+    parry_math::Pose::from_parts(vector(pose.translation()), rotation)
+}
+
+/// A triangle mesh with its tree, from our vertices and triangles.
+///
+/// # Panics
+/// If there are no triangles.
+pub fn triangle_mesh(vertices: &[DVec3], triangles: &[[u32; 3]]) -> TriMesh {
+    let points = vertices.iter().map(|v| vector(*v)).collect();
+    TriMesh::new(points, triangles.to_vec()).expect("triangles")
+}

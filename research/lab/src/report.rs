@@ -1,0 +1,282 @@
+//! One page about a run: what was found, beside the claims it supports or refutes, and where the
+//! numbers come from. It needs nothing but itself: no script, no font, no picture from elsewhere.
+
+use std::fmt::{self, Write};
+use std::time::Duration;
+
+use crate::Experiment;
+use crate::claims::{PaperClaim, Verdict};
+use crate::draw::Picture;
+use crate::finding::{Claim, Figure, Finding, Table};
+use crate::plan::Plan;
+use colltrans_testkit::provenance::{Provenance, for_people};
+
+/// An experiment that was run.
+#[derive(Debug, Clone)]
+pub struct Done {
+    /// Which.
+    pub experiment: Experiment,
+    /// What it found.
+    pub finding: Finding,
+    /// Its figures, drawn, in their order.
+    pub pictures: Vec<Picture>,
+    /// How long it took.
+    pub wall: Duration,
+}
+
+/// What the page is about.
+#[derive(Debug)]
+pub struct Report<'r> {
+    /// Where the numbers come from.
+    pub provenance: &'r Provenance,
+    /// How much was measured.
+    pub plan: &'r Plan,
+    /// What is finished.
+    pub done: &'r [Done],
+    /// How many experiments there are to be.
+    pub all: usize,
+    /// The time since the start.
+    pub wall: Duration,
+}
+
+/// The page.
+pub fn html(report: &Report) -> String {
+    let mut page = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_page(&mut page, report);
+    page
+}
+
+/// What is to be said of such a build.
+pub(crate) const UNOPTIMISED: &str = "This is an unoptimised build: its times mean nothing.";
+
+/// All verdicts, the worst first.
+const VERDICTS: [Verdict; 4] =
+    [Verdict::Fails, Verdict::Undecided, Verdict::Holds, Verdict::Better];
+
+/// How many of the claims hold, in words.
+pub(crate) fn count(done: &[Done]) -> String {
+    let claims = || done.iter().flat_map(|done| &done.finding.claims);
+    let with = |verdict: Verdict| claims().filter(|claim| claim.verdict == verdict).count();
+    let all = claims().count();
+    if all == 0 {
+        return "No claim was put to the test".into();
+    }
+    let [fail, undecided, hold, better] = VERDICTS.map(with);
+    format!(
+        "{} of {all} claims hold, {better} of them better than the paper says; {fail} do not hold, \
+         {undecided} are undecided",
+        hold + better
+    )
+}
+
+fn write_page(page: &mut String, report: &Report) -> fmt::Result {
+    let style = include_str!("report.css");
+    write!(
+        page,
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>Collision translations: the paper's experiments</title>\n\
+         <style>\n{style}</style>\n</head>\n<body>\n<header>\n\
+         <h1>Collision translations: the paper’s experiments, run anew</h1>\n\
+         <p class=\"faint\">The paper: Mirolo, Carpin and Pagello, “Incremental Convex Minimization for Computing \
+         Collision Translations of Convex Polyhedra”, IEEE Transactions on Robotics 23(3), 2007, \
+         section V.</p>\n"
+    )?;
+    write_state(page, report)?;
+    write_overview(page, report.done)?;
+    write_reasons(page, report.done)?;
+    write_facts(page, report)?;
+    page.push_str("</header>\n<main>\n");
+    for done in report.done {
+        write_experiment(page, done)?;
+    }
+    page.push_str("</main>\n</body>\n</html>\n");
+    Ok(())
+}
+
+fn write_state(page: &mut String, report: &Report) -> fmt::Result {
+    writeln!(page, "<p><strong>{}.</strong></p>", count(report.done))?;
+    let (done, all) = (report.done.len(), report.all);
+    if done < all {
+        let state = format!("{done} of {all} experiments were finished when this was written.");
+        writeln!(page, "<p class=\"warning\">{state}</p>")?;
+    }
+    if !report.provenance.is_optimised {
+        writeln!(page, "<p class=\"warning\">{UNOPTIMISED}</p>")?;
+    }
+    Ok(())
+}
+
+fn write_facts(page: &mut String, report: &Report) -> fmt::Result {
+    let Provenance { processor, cores, system, versions, build, date, command, .. } =
+        report.provenance;
+    let (scale, seed) = (report.plan.scale.name().to_owned(), report.plan.seed.to_string());
+    let facts = [
+        ("Processor", processor),
+        ("Cores", cores),
+        ("System", system),
+        ("Versions", versions),
+        ("Build", build),
+        ("Date", date),
+        ("Command", command),
+        ("Scale", &scale),
+        ("Seed", &seed),
+        ("Wall time", &for_people(report.wall)),
+    ];
+    page.push_str("<dl class=\"facts\">\n");
+    for (name, value) in facts {
+        writeln!(page, "<dt>{name}</dt><dd>{}</dd>", Escaped(value))?;
+    }
+    page.push_str("</dl>\n");
+    Ok(())
+}
+
+/// All claims, a line each, by verdict: the paper's number, and what was measured first.
+fn write_overview(page: &mut String, done: &[Done]) -> fmt::Result {
+    page.push_str("<div class=\"overview\">\n");
+    for verdict in VERDICTS {
+        for (id, claim) in claims_of(done, verdict) {
+            let PaperClaim { id: name, statement, paper, .. } = claim.paper;
+            let here = claim.measured.first().map_or(String::new(), ToString::to_string);
+            writeln!(
+                page,
+                "<p class=\"{}\"><a href=\"#{id}\" title=\"{}\">{name}</a> <span \
+                 class=\"faint\">{}:</span> {here} <span class=\"verdict\">{verdict}</span></p>",
+                class(verdict),
+                Escaped(statement),
+                Escaped(paper)
+            )?;
+        }
+    }
+    page.push_str("</div>\n");
+    Ok(())
+}
+
+/// The reasons for what does not hold or is undecided, by their first sentence.
+fn write_reasons(page: &mut String, done: &[Done]) -> fmt::Result {
+    page.push_str("<ul class=\"reasons\">\n");
+    for verdict in [Verdict::Fails, Verdict::Undecided] {
+        for (id, claim) in claims_of(done, verdict) {
+            let why = claim.why.as_deref().unwrap_or("");
+            let end = why.find(". ").map_or(why.len(), |end| end + 1);
+            let (name, why) = (claim.paper.id, Escaped(&why[..end]));
+            writeln!(page, "<li><a href=\"#{id}\">{name}</a>: {why}</li>")?;
+        }
+    }
+    page.push_str("</ul>\n");
+    Ok(())
+}
+
+/// The claims with a verdict, with the ids of their experiments.
+fn claims_of(done: &[Done], verdict: Verdict) -> impl Iterator<Item = (&'static str, &Claim)> {
+    let claims = done
+        .iter()
+        .flat_map(|done| done.finding.claims.iter().map(|claim| (done.experiment.id, claim)));
+    claims.filter(move |(_, claim)| claim.verdict == verdict)
+}
+
+fn write_experiment(page: &mut String, done: &Done) -> fmt::Result {
+    let (id, name) = (done.experiment.id, done.experiment.name());
+    let title = Escaped(done.experiment.title);
+    let wall = for_people(done.wall);
+    write!(
+        page,
+        "<section id=\"{id}\">\n<h2>{name}: {title}</h2>\n<p class=\"faint\">Measured in {wall}.\
+         </p>\n<div class=\"beside\">\n<div>\n"
+    )?;
+    for (figure, picture) in done.finding.figures.iter().zip(&done.pictures) {
+        write_figure(page, figure, picture)?;
+    }
+    for table in &done.finding.tables {
+        write_table(page, table)?;
+    }
+    page.push_str("</div>\n<ul class=\"claims\">\n");
+    for claim in &done.finding.claims {
+        write_claim(page, claim)?;
+    }
+    page.push_str("</ul>\n</div>\n</section>\n");
+    Ok(())
+}
+
+fn write_figure(page: &mut String, figure: &Figure, picture: &Picture) -> fmt::Result {
+    writeln!(page, "<figure>\n{}\n<figcaption>", picture.svg.trim_end())?;
+    for note in &picture.notes {
+        writeln!(page, "{}<br>", Escaped(note))?;
+    }
+    writeln!(page, "Data: {}.csv</figcaption>\n</figure>", Escaped(&figure.id))
+}
+
+fn write_table(page: &mut String, table: &Table) -> fmt::Result {
+    let title = Escaped(&table.title);
+    write!(page, "<div class=\"wide\"><table>\n<caption>{title}</caption>\n<thead><tr>")?;
+    for head in &table.columns {
+        write!(page, "<th>{}</th>", Escaped(head))?;
+    }
+    page.push_str("</tr></thead>\n<tbody>\n");
+    for row in &table.rows {
+        page.push_str("<tr>");
+        for cell in row {
+            let is_number = cell.starts_with(|c: char| c.is_ascii_digit() || "-−+.<".contains(c));
+            let class = if is_number { " class=\"number\"" } else { "" };
+            write!(page, "<td{class}>{}</td>", Escaped(cell))?;
+        }
+        page.push_str("</tr>\n");
+    }
+    let id = Escaped(&table.id);
+    writeln!(page, "</tbody></table>\n<p class=\"faint\">Data: {id}.csv</p></div>")
+}
+
+fn write_claim(page: &mut String, claim: &Claim) -> fmt::Result {
+    let PaperClaim { id, statement, paper, place, criteria } = claim.paper;
+    write!(
+        page,
+        "<li class=\"{}\"><span class=\"verdict\">{}</span> <span class=\"faint\">{id}</span>\n\
+         <p class=\"statement\">{}</p>\n<p>The paper: {} ({}).</p>\n",
+        class(claim.verdict),
+        claim.verdict,
+        Escaped(statement),
+        Escaped(paper),
+        Escaped(place)
+    )?;
+    for (criterion, measured) in criteria.iter().zip(&claim.measured) {
+        let what = Escaped(criterion.what);
+        let judged = Escaped(&criterion.band());
+        writeln!(page, "<p>Measured: <strong>{measured}</strong>: {what}; {judged}</p>")?;
+    }
+    if !claim.details.is_empty() {
+        writeln!(page, "<p>{}</p>", Escaped(&claim.details))?;
+    }
+    if let Some(why) = &claim.why {
+        writeln!(page, "<p>Why: {}</p>", Escaped(why))?;
+    }
+    page.push_str("</li>\n");
+    Ok(())
+}
+
+fn class(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "holds",
+        Verdict::Better => "better",
+        Verdict::Undecided => "undecided",
+        Verdict::Fails => "fails",
+    }
+}
+
+/// Text as HTML, in elements and in quoted attributes.
+struct Escaped<'t>(&'t str);
+
+impl fmt::Display for Escaped<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in self.0.chars() {
+            match c {
+                '&' => f.write_str("&amp;")?,
+                '<' => f.write_str("&lt;")?,
+                '>' => f.write_str("&gt;")?,
+                '"' => f.write_str("&quot;")?,
+                _ => f.write_char(c)?,
+            }
+        }
+        Ok(())
+    }
+}

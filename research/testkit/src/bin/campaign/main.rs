@@ -1,0 +1,185 @@
+//! The long campaign: many settings of every family, each cast with every solver, every certificate
+//! re-verified in exact arithmetic, and a sample compared with the rational linear programme. Or
+//! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
+//! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
+//! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
+//! that answers are judged for the input.
+//!
+//! ```text
+//! campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
+//! campaign --sequences QUERIES [--seed S] [--only FAMILY]
+//! campaign --solids N [--seed S] [--only FAMILY]
+//! campaign --bodies N [--seed S] [--only FAMILY]
+//! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
+//! ```
+//! Exit code 1 if anything disagrees.
+
+mod bodies;
+mod casts;
+mod sequences;
+mod solids;
+
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::time::Instant;
+
+use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+/// Disagreements printed for each family; all are counted.
+const SHOWN: usize = 12;
+
+struct Arguments {
+    settings: u64,
+    sequences: Option<u64>,
+    solids: Option<u64>,
+    bodies: Option<u64>,
+    lp: u64,
+    seed: u64,
+    only: Option<String>,
+    case: Option<String>,
+}
+
+fn main() -> ExitCode {
+    let arguments = match parse(std::env::args().skip(1)) {
+        Ok(arguments) => arguments,
+        Err(message) => {
+            eprintln!("{message}");
+            return ExitCode::from(2);
+        }
+    };
+    if let Some(case) = &arguments.case {
+        let Some(clean) = replay(case) else {
+            eprintln!("a case is FAMILY:SEED or FAMILY:SEED:STEP");
+            return ExitCode::from(2);
+        };
+        return exit_code(clean);
+    }
+    if let Some(count) = arguments.solids {
+        return exit_code(solids::run(count, arguments.seed, arguments.only.as_deref()));
+    }
+    let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
+    exit_code(if let Some(count) = arguments.bodies {
+        run(&arguments, NEARLY_FLAT, count, bodies::examine)
+    } else if let Some(queries) = arguments.sequences {
+        run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
+    } else {
+        let every = (arguments.settings / arguments.lp.max(1)).max(1);
+        run(&arguments, &families, arguments.settings, |name, seed, tally| {
+            casts::examine(name, seed, every, tally);
+        })
+    })
+}
+
+fn exit_code(clean: bool) -> ExitCode {
+    if clean { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
+    let mut arguments = Arguments {
+        settings: 20_000,
+        sequences: None,
+        solids: None,
+        bodies: None,
+        lp: 1_000,
+        seed: 1,
+        only: None,
+        case: None,
+    };
+    while let Some(word) = words.next() {
+        let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
+        match word.as_str() {
+            "--settings" => arguments.settings = number(&value)?,
+            "--sequences" => arguments.sequences = Some(number(&value)?),
+            "--solids" => arguments.solids = Some(number(&value)?),
+            "--bodies" => arguments.bodies = Some(number(&value)?),
+            "--lp" => arguments.lp = number(&value)?,
+            "--seed" => arguments.seed = number(&value)?,
+            "--only" => arguments.only = Some(value),
+            "--case" => arguments.case = Some(value),
+            _ => return Err(format!("unknown option {word}")),
+        }
+    }
+    Ok(arguments)
+}
+
+fn number<T: FromStr>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|_| format!("{text} is not a number"))
+}
+
+/// What became of the settings, or the sequences, of one family.
+trait Tally: Default + Send {
+    /// How many of them a thread is handed at a time.
+    const CHUNK: u64;
+
+    /// The heads of the columns.
+    fn header() -> String;
+    /// A line of the table.
+    fn line(&self) -> String;
+    /// Both together.
+    fn merge(self, other: Self) -> Self;
+    /// What is wrong.
+    fn disagreements(&self) -> &[String];
+}
+
+/// Examines so many seeds, the same number of each family; `true` if nothing disagrees.
+fn run<T: Tally>(
+    arguments: &Arguments,
+    families: &[&str],
+    count: u64,
+    examine: impl Fn(&str, u64, &mut T) + Sync,
+) -> bool {
+    let families: Vec<&str> = families
+        .iter()
+        .copied()
+        .filter(|name| arguments.only.as_ref().is_none_or(|only| only == name))
+        .collect();
+    let per_family = count.div_ceil(families.len().max(1) as u64);
+    let started = Instant::now();
+    let bar = ProgressBar::new(per_family * families.len() as u64).with_style(
+        ProgressStyle::with_template("{msg:20} {wide_bar} {pos}/{len} {eta}").expect("a template"),
+    );
+    println!("{:<20} {}", "family", T::header());
+    let mut total = T::default();
+    for name in families {
+        bar.set_message(name.to_owned());
+        let tally = (0..per_family.div_ceil(T::CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut tally = T::default();
+                let range = chunk * T::CHUNK..((chunk + 1) * T::CHUNK).min(per_family);
+                bar.inc(range.end - range.start);
+                for index in range {
+                    examine(name, arguments.seed << 32 | index, &mut tally);
+                }
+                tally
+            })
+            .reduce(T::default, T::merge);
+        bar.suspend(|| print(name, &tally));
+        total = total.merge(tally);
+    }
+    bar.finish_and_clear();
+    println!("{:<20} {}", "all", total.line());
+    println!("{:.1} s", started.elapsed().as_secs_f64());
+    total.disagreements().is_empty()
+}
+
+/// A line of the table, and the first disagreements.
+fn print(name: &str, tally: &impl Tally) {
+    println!("{name:<20} {}", tally.line());
+    for line in tally.disagreements().iter().take(SHOWN) {
+        println!("    {line}");
+    }
+}
+
+/// One setting, or one step of a sequence, with all its numbers; `None` if there is no such case.
+fn replay(case: &str) -> Option<bool> {
+    let mut parts = case.split(':');
+    let family = parts.next().filter(|name| FAMILIES.iter().any(|f| f.0 == *name))?;
+    let seed = number(parts.next()?).ok()?;
+    match parts.next() {
+        Some(step) => Some(sequences::replay(family, seed, number(step).ok()?)),
+        None => Some(casts::replay(family, seed)),
+    }
+}

@@ -1,0 +1,86 @@
+//! Solids: bodies of cubes against exact arithmetic, and convex bodies as solids against the convex
+//! core and against the rule over all pairs of facets.
+
+use std::sync::Mutex;
+use std::time::Instant;
+
+use colltrans_testkit::oracle::settings;
+use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
+use colltrans_testkit::oracle::solids::{Seen, as_solids, sheets};
+use rayon::prelude::*;
+
+use super::SHOWN;
+
+/// One proof in so many is judged in fractions, if the bodies are small.
+const FRACTIONS_EVERY: u64 = 64;
+
+/// Examines so many settings of cubes and a tenth as many convex pairs; `true` if nothing disagrees.
+pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {
+    let wanted = |name: &&str| only.is_none_or(|only| only == *name);
+    let mut clean = true;
+    println!(
+        "{:<20} {:>10} {:>12} {:>10} {:>10} {:>10} {:>8} {:>8}",
+        "family", "settings", "overlapping", "free", "touching", "blocked", "skipped", "wrong"
+    );
+    let cubes: Vec<&str> = FAMILIES.iter().copied().filter(wanted).collect();
+    for &name in &cubes {
+        let each = count.div_ceil(FAMILIES.len() as u64);
+        clean &= family(name, seed, each, |seed| {
+            let in_fractions = seed.is_multiple_of(FRACTIONS_EVERY);
+            Setting::draw(name, seed).ok_or("no such family")?.examine(in_fractions).map(Some)
+        });
+    }
+    for &name in sheets::FAMILIES.iter().filter(|name| wanted(name)) {
+        let each = count.div_ceil(FAMILIES.len() as u64);
+        clean &=
+            family(name, seed, each, |seed| sheets::Setting::draw(name, seed)?.examine().map(Some));
+    }
+    let convex: Vec<&str> = settings::FAMILIES.iter().map(|f| f.0).collect();
+    for &name in
+        convex.iter().filter(|name| only.is_none_or(|only| only == format!("convex-{name}")))
+    {
+        let each = (count / 10).div_ceil(convex.len() as u64);
+        let label = format!("convex-{name}");
+        clean &= family(&label, seed, each, |seed| as_solids(&settings::setting(name, seed)));
+    }
+    clean
+}
+
+fn family(
+    name: &str,
+    first: u64,
+    count: u64,
+    examine: impl Fn(u64) -> Result<Option<Seen>, String> + Sync,
+) -> bool {
+    let started = Instant::now();
+    let wrong = Mutex::new(Vec::new());
+    let counts = (first..first + count)
+        .into_par_iter()
+        .map(|seed| {
+            let mut counts = [0_u64; 6];
+            match examine(seed) {
+                Ok(None) => counts[4] = 1,
+                Ok(Some(seen)) => counts[seen as usize] = 1,
+                Err(error) => {
+                    counts[5] = 1;
+                    if let Ok(mut wrong) = wrong.lock() {
+                        wrong.push((seed, error));
+                    }
+                }
+            }
+            counts
+        })
+        .reduce(|| [0; 6], |a, b| std::array::from_fn(|k| a[k] + b[k]));
+    let [overlapping, free, now, later, skipped, bad] = counts;
+    println!(
+        "{name:<20} {count:>10} {overlapping:>12} {free:>10} {now:>10} {later:>10} {skipped:>8} \
+         {bad:>8}   {:.0} s",
+        started.elapsed().as_secs_f64()
+    );
+    let mut wrong = wrong.into_inner().unwrap_or_default();
+    wrong.sort();
+    for (seed, error) in wrong.iter().take(SHOWN) {
+        println!("    {name}:{seed}: {error}");
+    }
+    bad == 0
+}

@@ -1,0 +1,400 @@
+//! The distance of two convex bodies, exactly, with its proof.
+//!
+//! Notation. `P` is the moving body, `Q` the fixed one, both the convex hulls of their vertices;
+//! `M = {q - p}`, and `v` is the point of `M` nearest to the origin. The distance is `|v|`, and `v`
+//! is the nearest point if and only if
+//!
+//! ```text
+//! v = sum w_i m_i  with w_i >= 0, sum w_i = 1, m_i differences of vertices   (v belongs to M)
+//! v . m >= v . v   for all differences m of vertices                         (nothing is nearer)
+//! ```
+//!
+//! [`distance`] looks for `v` as Wolfe does ("Finding the nearest point in a polytope",
+//! Mathematical Programming 11, 1976): while some `m` violates the second line, the lowest such `m`
+//! joins the simplex, whose nearest point is found by trying *all* of its faces. `|v|` decreases
+//! strictly, so no simplex returns. Every number is exact, so what it ends with satisfies both
+//! lines without an error, whatever way led there. Only vertices are read: no faces, no edges.
+//!
+//! Divisions are put off: `v = V / D` with `D > 0`, both dyadic.
+//!
+//! [`brute_force`] shares nothing with that: it compares all pairs of vertices and triangles and of
+//! edges, in `f64`.
+
+use colltrans::{ConvexPolyhedron, Pose};
+use glam::DVec3;
+
+use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
+
+/// The distance of two bodies and the shortest vector between them.
+#[derive(Debug, Clone)]
+pub struct Distance {
+    /// The squared distance, in squared world units; 0 if and only if the bodies meet.
+    pub square: Ratio,
+    /// The shortest vector from the moving body to the fixed one, which is unique, rounded.
+    pub shortest: DVec3,
+}
+
+impl Distance {
+    /// Whether the bodies have a point in common, exactly.
+    pub fn intersects(&self) -> bool {
+        self.square.is_zero()
+    }
+
+    /// The nearest `f64`, up to a few rounding errors; 0 only if the bodies meet or the distance is
+    /// below all `f64`.
+    pub fn to_f64(&self) -> f64 {
+        self.square.sqrt_to_f64()
+    }
+}
+
+/// The exact distance of two placed bodies of any dimension.
+///
+/// The nine entries of a pose's matrix and its translation, as exact numbers, say where a body is.
+/// Takes `O(n)` long products a step: fit for thousands of vertices.
+pub fn distance_of_bodies(
+    (moving, moving_pose): (&ConvexPolyhedron, &Pose),
+    (fixed, fixed_pose): (&ConvexPolyhedron, &Pose),
+) -> Distance {
+    let put = |body: &ConvexPolyhedron, pose: &Pose| {
+        place(pose.matrix(), pose.translation(), body.vertices())
+    };
+    distance(&put(moving, moving_pose), &put(fixed, fixed_pose))
+}
+
+/// The exact distance of a point of the world, as it is written, from a placed body.
+pub fn distance_of_point(point: DVec3, (body, pose): (&ConvexPolyhedron, &Pose)) -> Distance {
+    distance(&[Vector::new(point)], &place(pose.matrix(), pose.translation(), body.vertices()))
+}
+
+/// The exact distance of the convex hulls of two sets of points.
+///
+/// # Panics
+/// If one of them is empty.
+pub fn distance(moving: &[Vector], fixed: &[Vector]) -> Distance {
+    let mut simplex = vec![fixed[0].minus(&moving[0])];
+    loop {
+        let (nearest, face) = nearest_of_simplex(&simplex);
+        let lowest = lowest_difference(moving, fixed, &nearest.numerator);
+        let (along, square) = (nearest.numerator.dot(&lowest), nearest.square_of_numerator());
+        if &along * &nearest.denominator >= square {
+            return nearest.into_distance();
+        }
+        simplex = face;
+        simplex.push(lowest);
+    }
+}
+
+/// A vertex difference `m` with the least `direction . m`.
+fn lowest_difference(moving: &[Vector], fixed: &[Vector], direction: &Vector) -> Vector {
+    let farthest = moving.iter().max_by_key(|p| direction.dot(p)).expect("a body has a point");
+    let nearest = fixed.iter().min_by_key(|q| direction.dot(q)).expect("a body has a point");
+    nearest.minus(farthest)
+}
+
+/// A point `numerator / denominator`, the denominator positive.
+#[derive(Debug, Clone)]
+struct Fraction {
+    numerator: Vector,
+    denominator: Dyadic,
+}
+
+impl Fraction {
+    fn square_of_numerator(&self) -> Dyadic {
+        self.numerator.dot(&self.numerator)
+    }
+
+    fn square(&self) -> Ratio {
+        Ratio::new(self.square_of_numerator(), &self.denominator * &self.denominator)
+    }
+
+    fn into_distance(self) -> Distance {
+        let coordinate = |x: Dyadic| Ratio::new(x, self.denominator.clone()).to_f64();
+        Distance {
+            square: self.square(),
+            shortest: DVec3::from_array(self.numerator.0.clone().map(coordinate)),
+        }
+    }
+}
+
+/// The point of a simplex of up to four corners nearest to the origin, and the corners of a face
+/// that it is an inner point of.
+fn nearest_of_simplex(corners: &[Vector]) -> (Fraction, Vec<Vector>) {
+    let faces = (1..1_usize << corners.len()).map(|face| {
+        let chosen = corners.iter().enumerate().filter(move |(i, _)| face >> i & 1 == 1);
+        chosen.map(|(_, corner)| corner.clone()).collect::<Vec<_>>()
+    });
+    let (_, nearest, face) = faces
+        .filter_map(|face| Some((nearest_inside(&face)?, face)))
+        .map(|(point, face)| (point.square(), point, face))
+        .min_by(|a, b| a.0.cmp(&b.0))
+        .expect("every corner is a face");
+    (nearest, face)
+}
+
+/// The point nearest to the origin of the plane, line or point that the corners span, if it is an
+/// inner point of their hull: Cramer's rule for `G w = b` with `G_ij = e_i . e_j`, `b_i = -e_i .
+/// a_0`, `e_i = a_i - a_0`. None as well if the corners depend on each other: a face does as well.
+fn nearest_inside(corners: &[Vector]) -> Option<Fraction> {
+    let (first, rest) = corners.split_first().expect("no empty face");
+    let edges: Vec<Vector> = rest.iter().map(|a| a.minus(first)).collect();
+    let gram: Vec<Vec<Dyadic>> =
+        edges.iter().map(|e| edges.iter().map(|f| e.dot(f)).collect()).collect();
+    let right_side: Vec<Dyadic> = edges.iter().map(|e| -e.dot(first)).collect();
+    let whole = determinant(&gram);
+    if whole.is_zero() {
+        return None;
+    }
+    let weights: Vec<Dyadic> = (0..edges.len())
+        .map(|i| {
+            // G is symmetric: rows will do for columns.
+            let mut replaced = gram.clone();
+            replaced[i].clone_from(&right_side);
+            determinant(&replaced)
+        })
+        .collect();
+    let first_weight = weights.iter().fold(whole.clone(), |rest, w| &rest - w);
+    if !(first_weight.is_positive() && weights.iter().all(Dyadic::is_positive)) {
+        return None;
+    }
+    let numerator = edges
+        .iter()
+        .zip(&weights)
+        .fold(first.times(&whole), |sum, (edge, weight)| sum.plus(&edge.times(weight)));
+    Some(Fraction { numerator, denominator: whole })
+}
+
+/// Of a matrix of up to three rows, along its first row.
+fn determinant(rows: &[Vec<Dyadic>]) -> Dyadic {
+    let Some((first, others)) = rows.split_first() else { return Dyadic::new(1.0) };
+    let mut sum = Dyadic::ZERO;
+    for (i, entry) in first.iter().enumerate() {
+        let without = |row: &Vec<Dyadic>| {
+            let kept = row.iter().enumerate().filter(|(j, _)| *j != i);
+            kept.map(|(_, x)| x.clone()).collect()
+        };
+        let minor: Vec<Vec<Dyadic>> = others.iter().map(without).collect();
+        let term = entry * &determinant(&minor);
+        sum = if i % 2 == 0 { &sum + &term } else { &sum - &term };
+    }
+    sum
+}
+
+/// The distance of the *surfaces* of two placed bodies, up to rounding errors of some `1e-15` of
+/// the size: all vertices against all triangles and all edges against all edges.
+///
+/// For separated bodies that is their distance; for bodies that overlap it is of no use.
+pub fn brute_force(
+    (moving, moving_pose): (&ConvexPolyhedron, &Pose),
+    (fixed, fixed_pose): (&ConvexPolyhedron, &Pose),
+) -> f64 {
+    // Relative to the fixed body's frame origin: a common displacement costs no accuracy.
+    let offset = moving_pose.translation() - fixed_pose.translation();
+    let moving = Soup::new(moving, |v| moving_pose.transform_vector(v) + offset);
+    let fixed = Soup::new(fixed, |v| fixed_pose.transform_vector(v));
+    let one_way = |points: &[DVec3], triangles: &[[DVec3; 3]]| {
+        points
+            .iter()
+            .flat_map(|&p| triangles.iter().map(move |t| point_to_triangle(p, *t)))
+            .fold(f64::INFINITY, f64::min)
+    };
+    let edges = moving
+        .edges
+        .iter()
+        .flat_map(|&e| fixed.edges.iter().map(move |&f| segment_to_segment(e, f)))
+        .fold(f64::INFINITY, f64::min);
+    edges
+        .min(one_way(&moving.points, &fixed.triangles))
+        .min(one_way(&fixed.points, &moving.triangles))
+}
+
+/// A body as loose vertices, edges and triangles; a point is an edge of length 0 as well.
+struct Soup {
+    points: Vec<DVec3>,
+    edges: Vec<[DVec3; 2]>,
+    triangles: Vec<[DVec3; 3]>,
+}
+
+impl Soup {
+    fn new(body: &ConvexPolyhedron, put: impl Fn(DVec3) -> DVec3) -> Self {
+        let points: Vec<DVec3> = body.vertices().iter().map(|v| put(*v)).collect();
+        let mut edges: Vec<[DVec3; 2]> = Vec::new();
+        for v in 0..points.len() as u32 {
+            let above = body.neighbours(v).iter().filter(|w| **w > v);
+            edges.extend(above.map(|w| [points[v as usize], points[*w as usize]]));
+        }
+        if let [only] = points[..] {
+            edges.push([only, only]);
+        }
+        let mut triangles = Vec::new();
+        for face in 0..body.face_count() as u32 {
+            let corners: Vec<DVec3> =
+                body.face_vertices(face).map(|v| points[v as usize]).collect();
+            let fan = corners[1..].windows(2);
+            triangles.extend(fan.map(|pair| [corners[0], pair[0], pair[1]]));
+        }
+        Self { points, edges, triangles }
+    }
+}
+
+/// Infinite if the foot of the point lies outside: an edge is nearer then.
+fn point_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let inside =
+        [(a, b), (b, c), (c, a)].iter().all(|(s, t)| normal.cross(t - s).dot(point - s) >= 0.0);
+    if inside && normal != DVec3::ZERO {
+        normal.normalize().dot(point - a).abs()
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// The distance of a point from a triangle, up to rounding.
+pub(crate) fn point_to_triangle_or_edges(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let edges = [[a, b], [b, c], [c, a]].map(|edge| point_to_segment(point, edge));
+    edges.into_iter().fold(point_to_triangle(point, [a, b, c]), f64::min)
+}
+
+/// The least of: inner points of both, if the lines' feet are inner points, and each end against
+/// the other segment.
+fn segment_to_segment([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
+    let (along, other) = (b - a, d - c);
+    let normal = along.cross(other);
+    let square = normal.length_squared();
+    let (s, t) = ((c - a).cross(other).dot(normal), (c - a).cross(along).dot(normal));
+    // The product of edges that are parallel to rounding points anywhere; their ends tell.
+    let parallel = (64.0 * f64::EPSILON).powi(2) * along.length_squared() * other.length_squared();
+    let crossing =
+        if square > parallel && (0.0..=square).contains(&s) && (0.0..=square).contains(&t) {
+            normal.normalize().dot(c - a).abs()
+        } else {
+            f64::INFINITY
+        };
+    crossing
+        .min(point_to_segment(a, [c, d]))
+        .min(point_to_segment(b, [c, d]))
+        .min(point_to_segment(c, [a, b]))
+        .min(point_to_segment(d, [a, b]))
+}
+
+fn point_to_segment(point: DVec3, [a, b]: [DVec3; 2]) -> f64 {
+    let (edge, to_point) = (b - a, point - a);
+    let square = edge.length_squared();
+    let along = if square > 0.0 { (to_point.dot(edge) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (to_point - edge * along).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oracle::settings::{FAMILIES, cuboid, setting};
+    use glam::DQuat;
+
+    fn body(points: &[DVec3]) -> ConvexPolyhedron {
+        ConvexPolyhedron::from_points(points).unwrap()
+    }
+
+    fn at(x: f64, y: f64, z: f64) -> Pose {
+        Pose::from_translation(DVec3::new(x, y, z)).unwrap()
+    }
+
+    fn cubes(pose: &Pose) -> Distance {
+        let cube = body(&cuboid(DVec3::splat(0.5)));
+        distance_of_bodies((&cube, &Pose::IDENTITY), (&cube, pose))
+    }
+
+    #[test]
+    fn cubes_face_edge_and_corner() {
+        assert_eq!(cubes(&at(3.0, 0.25, 0.5)).to_f64(), 2.0);
+        assert_eq!(cubes(&at(3.0, 0.25, 0.5)).shortest, DVec3::X * 2.0);
+        assert_eq!(cubes(&at(4.0, 5.0, 0.25)).to_f64(), 5.0);
+        assert_eq!(cubes(&at(-2.0, 3.0, 3.0)).to_f64(), 3.0);
+        assert_eq!(cubes(&at(2.0, 2.0, -2.0)).square, Ratio::from_f64(3.0));
+    }
+
+    #[test]
+    fn touching_is_meeting_and_the_next_number_is_not() {
+        for touching in [at(1.0, 0.25, 0.0), at(1.0, 1.0, 0.5), at(1.0, -1.0, 1.0)] {
+            assert!(cubes(&touching).intersects());
+            assert_eq!(cubes(&touching).to_f64(), 0.0);
+        }
+        assert!(cubes(&at(0.0, 0.0, 0.0)).intersects() && cubes(&at(0.1, 0.2, 0.3)).intersects());
+        let apart = cubes(&at(1.0_f64.next_up(), 0.25, 0.0));
+        assert!(!apart.intersects());
+        assert_eq!(apart.to_f64(), f64::EPSILON);
+    }
+
+    #[test]
+    fn lower_dimensions() {
+        let world = &Pose::IDENTITY;
+        let of = |a: &[DVec3], b: &[DVec3]| {
+            distance_of_bodies((&body(a), world), (&body(b), world)).to_f64()
+        };
+        let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+        assert_eq!(of(&[x * 3.0], &[y * 4.0]), 5.0);
+        assert_eq!(of(&[x, -x], &[y + z * 2.0, -y + z * 2.0]), 2.0);
+        assert_eq!(of(&[x, -x], &[y + x * 9.0, y + x * 4.0 + z]), 11.0_f64.sqrt());
+        assert_eq!(of(&[x, -x], &[y, -y]), 0.0);
+        assert_eq!(of(&[x, y, -x - y], &[z * 0.125, x + y + z * 8.0]), 0.125);
+        assert_eq!(of(&[x, y, -x - y], &[x + z, y + z, -x - y + z]), 1.0);
+        assert_eq!(of(&[x, y, z], &[DVec3::ZERO]), (1.0_f64 / 3.0).sqrt());
+        assert_eq!(
+            distance_of_point(z * 3.0, (&body(&[x, -x, y]), &at(0.0, 0.0, 1.0))).to_f64(),
+            2.0
+        );
+    }
+
+    #[test]
+    fn distances_that_no_f64_square_holds() {
+        let tiny = Pose::from_translation(DVec3::X * 2.0_f64.powi(-190)).unwrap();
+        let point = body(&[DVec3::ZERO]);
+        let is = distance_of_bodies((&point, &Pose::IDENTITY), (&point, &tiny)).to_f64();
+        assert_eq!(is, 2.0_f64.powi(-190));
+        let turned = Pose::new(DQuat::from_rotation_z(0.5), DVec3::X * 1e60).unwrap();
+        let is = distance_of_bodies((&point, &turned), (&point, &tiny)).to_f64();
+        assert!((is - 1e60).abs() <= 1e45);
+    }
+
+    /// Two ways that have nothing in common, in every family of settings.
+    #[test]
+    fn agrees_with_all_pairs_of_features() {
+        let (mut apart, mut met) = (0, 0);
+        for (family, _) in FAMILIES {
+            for seed in 0..40 {
+                let setting = setting(family, seed);
+                let bodies = setting.bodies().unwrap();
+                let moving = (&bodies.moving, &setting.moving_pose);
+                let fixed = (&bodies.fixed, &setting.fixed_pose);
+                let exact = distance_of_bodies(moving, fixed);
+                let brute = brute_force(moving, fixed);
+                // What the hull left outside a face or put inside one counts as well.
+                let size = setting.judge(&bodies).scene.size;
+                let hull = bodies.moving.hull_error() + bodies.fixed.hull_error();
+                let tolerance = 64.0 * f64::EPSILON * size + 2.0 * hull;
+                if exact.intersects() {
+                    met += 1;
+                } else {
+                    apart += 1;
+                    let off = (brute - exact.to_f64()).abs();
+                    assert!(off <= tolerance, "{setting}: {brute:e} {:e}", exact.to_f64());
+                }
+                let backwards = distance_of_bodies(fixed, moving);
+                assert_eq!(exact.square, backwards.square, "{setting}");
+            }
+        }
+        assert!(apart > 300 && met > 100, "{apart} {met}");
+    }
+
+    /// Overlap has a proof of its own: a point that is exactly in both.
+    #[test]
+    fn inner_points_are_inside() {
+        let cloud = body(&cuboid(DVec3::new(0.3, 1.7, 0.9)));
+        let pose = Pose::new(DQuat::from_rotation_y(0.7), DVec3::new(0.1, 7.0, 2.0)).unwrap();
+        for corner in cloud.vertices() {
+            let inside = pose.transform_point(*corner * 0.999_999);
+            let outside = pose.transform_point(*corner * 1.000_001);
+            assert!(distance_of_point(inside, (&cloud, &pose)).intersects());
+            let away = distance_of_point(outside, (&cloud, &pose)).to_f64();
+            assert!((away - corner.length() * 1e-6).abs() < 1e-14, "{away:e}");
+        }
+    }
+}

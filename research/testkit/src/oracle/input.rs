@@ -1,0 +1,189 @@
+//! Whether a body is the convex hull of the points that it was made of, within what it says.
+//!
+//! Notation. `I` is the convex hull of the input points, `K` that of the body's vertices, `h` its
+//! [`hull_error`](ConvexPolyhedron::hull_error). What is claimed of a body is
+//!
+//! ```text
+//! K <= I              (a) every vertex is one of the points, bit by bit
+//! I <= K + B(h)       (b) no point is farther from K than h
+//! ```
+//!
+//! [`judge`] holds both against exact arithmetic. (b) is asked of the points alone, as the distance from
+//! a convex set is convex: in `I` it is greatest at a point.
+//!
+//! What this makes of the answers about `K`, which [`check`](crate::oracle::check) judges exactly: with `M_K`
+//! and `M_I` the differences `{q - p}` of both bodies and `h` the sum of their errors, `M_K <= M_I
+//! <= M_K + B(h)`. So:
+//!
+//! - *Upper bound.* A point of `M_K` on the line is one of `M_I`: it holds for the input exactly.
+//! - *Lower bound.* A plane `n.m >= L n.d` below `M_K`, `|n| = 1`, is at most `h` above `M_I`: for the input
+//!   `coll >= L - h / n.d`.
+//! - *Separation.* Shadows of `M_K` that are a margin away from the line are at least `margin - h` away
+//!   for `M_I`: with a margin of more than `h` the input is separated, with less it overlaps by `h -
+//!   margin` at most.
+//! - *Grazing.* The sideways overlap of the input is that of `K`, or up to `h` more.
+//!
+//! (a), (b) and the exact judgement of `K` are therefore a complete judgement of the input. For a sample
+//! the four consequences are held against the linear programme over the input points as well
+//! ([`Judge::compare_with_oracle`](crate::oracle::check::Judge::compare_with_oracle)).
+
+use colltrans::ConvexPolyhedron;
+use glam::DVec3;
+
+use crate::oracle::check::Objection;
+use crate::oracle::distance::{distance, point_to_triangle_or_edges};
+use crate::oracle::exact::{Dyadic, Ratio, Vector};
+
+/// The largest hull error that rounding explains, in multiples of the largest coordinate: 16
+/// tolerances of 64 roundings.
+pub const ROUNDING: f64 = 512.0 * f64::EPSILON;
+
+/// How a body keeps its input.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Kept {
+    /// Points that are no vertices.
+    pub dropped: usize,
+    /// No dropped point is farther from the body than this, in the unit of the input.
+    pub farthest: f64,
+}
+
+/// Holds a body against the points that it was made of.
+///
+/// # Errors
+/// A vertex that is no point, a point that is farther from the body than it says, or an error that is
+/// larger than rounding makes it.
+pub fn judge(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Kept, Objection> {
+    let claimed = body.hull_error();
+    let largest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    if !(0.0..=ROUNDING * largest).contains(&claimed) {
+        return Err(Objection(format!("hull error {claimed:e}, coordinates up to {largest:e}")));
+    }
+    let dropped = dropped(points, body)?;
+    let allowed = Ratio::from_f64(claimed);
+    let allowed = allowed.times(&allowed);
+    let mut kept = Kept { dropped: dropped.len(), farthest: 0.0 };
+    let triangles = triangles(body);
+    for index in dropped {
+        let point = points[index];
+        if is_in_some_tetrahedron(point, body.vertices(), &triangles) {
+            continue;
+        }
+        let mut square = square_from_nearest(point, body.vertices(), &triangles);
+        if square > allowed {
+            square = square_from(point, body.vertices());
+        }
+        let away = square.sqrt_to_f64();
+        if square > allowed {
+            let claim = format!("hull error {claimed:e}");
+            return Err(Objection(format!("point {index} is {away:e} from the body, {claim}")));
+        }
+        kept.farthest = kept.farthest.max(away);
+    }
+    Ok(kept)
+}
+
+/// The points that are no vertices.
+fn dropped(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Vec<usize>, Objection> {
+    let bits = |v: &DVec3| v.to_array().map(f64::to_bits);
+    let mut is_vertex = vec![false; points.len()];
+    for (vertex, &index) in body.vertices().iter().zip(body.input_indices()) {
+        if points.get(index as usize).map(bits) != Some(bits(vertex)) {
+            return Err(Objection(format!("vertex {vertex} is not the point {index}")));
+        }
+        is_vertex[index as usize] = true;
+    }
+    Ok((0..points.len()).filter(|&i| !is_vertex[i]).collect())
+}
+
+/// The squared distance of a point from the hull of others, exactly.
+fn square_from(point: DVec3, others: &[DVec3]) -> Ratio {
+    let others: Vec<Vector> = others.iter().map(|v| Vector::new(*v)).collect();
+    distance(&[Vector::new(point)], &others).square
+}
+
+/// The faces as triangles. They only help to guess which vertices are near a point: what these prove is
+/// proven whether they make a surface or not.
+fn triangles(body: &ConvexPolyhedron) -> Vec<[DVec3; 3]> {
+    let fan = |face: u32| {
+        let corners: Vec<DVec3> =
+            body.face_vertices(face).map(|v| body.vertices()[v as usize]).collect();
+        let first = corners[0];
+        corners[1..].windows(2).map(|pair| [first, pair[0], pair[1]]).collect::<Vec<_>>()
+    };
+    (0..body.face_count() as u32).flat_map(fan).collect()
+}
+
+/// The squared distance from the triangle that is nearest up to rounding, exactly: no less than that from
+/// the body.
+fn square_from_nearest(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3; 3]]) -> Ratio {
+    let away = |triangle: &&[DVec3; 3]| point_to_triangle_or_edges(point, **triangle);
+    let nearest = triangles.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    // A point or a segment has no triangles.
+    square_from(point, nearest.map_or(vertices, |t| t))
+}
+
+/// Whether a point is in the tetrahedron of the farthest vertex and the triangle that is opposite up to
+/// rounding, exactly: then it is in the body.
+fn is_in_some_tetrahedron(point: DVec3, vertices: &[DVec3], triangles: &[[DVec3; 3]]) -> bool {
+    let farther = |a: &&DVec3, b: &&DVec3| a.distance(point).total_cmp(&b.distance(point));
+    let Some(&apex) = vertices.iter().max_by(farther) else { return false };
+    let least = |&&[b, c, d]: &&[DVec3; 3]| {
+        let volume = |[a, b, c, d]: [DVec3; 4]| (b - a).cross(c - a).dot(d - a);
+        let whole = volume([apex, b, c, d]);
+        let shares = faces_with(point, [apex, b, c, d]).map(|corners| volume(corners) / whole);
+        shares.into_iter().fold(f64::INFINITY, |x, y| if y < x || y.is_nan() { y } else { x })
+    };
+    let deeper = |a: &&[DVec3; 3], b: &&[DVec3; 3]| least(a).total_cmp(&least(b));
+    let found = triangles.iter().filter(|t| least(t) >= 0.0).max_by(deeper);
+    found.is_some_and(|&[b, c, d]| is_in_tetrahedron(point, [apex, b, c, d]))
+}
+
+/// The tetrahedron with each of its corners replaced by a point.
+fn faces_with(point: DVec3, corners: [DVec3; 4]) -> [[DVec3; 4]; 4] {
+    std::array::from_fn(|k| std::array::from_fn(|i| if i == k { point } else { corners[i] }))
+}
+
+/// Exactly; never in one without a volume.
+fn is_in_tetrahedron(point: DVec3, corners: [DVec3; 4]) -> bool {
+    let volume = |corners: [DVec3; 4]| {
+        let [a, b, c, d] = corners.map(Vector::new);
+        b.minus(&a).cross(&c.minus(&a)).dot(&d.minus(&a))
+    };
+    let is_reversed = match volume(corners) {
+        v if v.is_zero() => return false,
+        v => v.is_negative(),
+    };
+    let is_other_side = |v: Dyadic| if is_reversed { v.is_positive() } else { v.is_negative() };
+    !faces_with(point, corners).into_iter().any(|corners| is_other_side(volume(corners)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oracle::settings::cuboid;
+
+    #[test]
+    fn a_point_that_is_left_out_is_found() {
+        let points = cuboid(DVec3::ONE);
+        let body = ConvexPolyhedron::from_points(&points).expect("a cube");
+        assert_eq!(judge(&points, &body), Ok(Kept::default()));
+        let with = |extra: DVec3| {
+            let points: Vec<DVec3> = points.iter().copied().chain([extra]).collect();
+            judge(&points, &body)
+        };
+        assert_eq!(with(DVec3::new(0.5, 1.0, -1.0)), Ok(Kept { dropped: 1, farthest: 0.0 }));
+        assert_eq!(with(DVec3::new(0.3, 0.1, -0.2)), Ok(Kept { dropped: 1, farthest: 0.0 }));
+        assert_eq!(with(DVec3::splat(0.25)), Ok(Kept { dropped: 1, farthest: 0.0 }));
+        for outside in [DVec3::X * 1.0_f64.next_up(), DVec3::splat(1.0_f64.next_up())] {
+            assert!(with(outside).is_err(), "{outside}");
+        }
+    }
+
+    #[test]
+    fn a_vertex_that_is_no_point_is_found() {
+        let mut points = cuboid(DVec3::ONE);
+        let body = ConvexPolyhedron::from_points(&points).expect("a cube");
+        points[3].x = points[3].x.next_down();
+        assert!(judge(&points, &body).is_err());
+    }
+}

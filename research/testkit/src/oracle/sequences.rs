@@ -1,0 +1,326 @@
+//! Sequences of settings: the same two bodies, asked again after each of many changes of poses,
+//! direction and graze tolerance.
+//!
+//! A *walk* is a function of a family's name and a seed, as its first setting is, so that
+//! `FAMILY:SEED:STEP` in a report is enough to replay it. A change is drawn together with how often
+//! it is repeated, so that some runs are smooth motions and others jump about.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use colltrans::{MIN_MAGNITUDE, Pose};
+use glam::{DQuat, DVec3};
+
+use crate::oracle::settings::{Rng, Setting, setting};
+
+/// Times at most that a change is repeated.
+const LONGEST_RUN: i64 = 8;
+
+/// Seeds of a walk's other configurations: far from those that walks begin with.
+const OTHER_SEEDS: u64 = 1 << 60;
+
+/// Corners of a shadow nearer to each other than this share of it are one.
+const SAME: f64 = 1e-9;
+
+/// Where the bodies are, and the direction.
+#[derive(Debug, Clone, Copy)]
+struct Configuration {
+    moving: Pose,
+    fixed: Pose,
+    direction: DVec3,
+}
+
+/// From one setting to the next.
+#[derive(Debug, Clone, Copy)]
+enum Change {
+    /// None.
+    Repeat,
+    /// The bodies change to another configuration and, next time, back.
+    Alternate,
+    /// A body turns about its middle and is displaced.
+    Motion { of_moving: bool, turn: DQuat, displacement: DVec3 },
+    /// The direction turns.
+    Turn(DQuat),
+    /// Another direction.
+    Direction(DVec3),
+    /// The direction is turned around.
+    Reverse,
+    /// The poses and the direction of another setting of the family.
+    Other(u64),
+    /// Somewhere else, in a ball of so many diameters about the fixed body.
+    Jump { rotation: DQuat, to: DVec3 },
+    /// Sideways to where the shadows of the two bodies only touch, or overlap by this much.
+    Rim { toward: DVec3, along: f64, overlap: f64 },
+    /// Another graze tolerance.
+    Tolerance(f64),
+}
+
+/// A random walk of settings.
+#[derive(Debug, Clone)]
+pub struct Walk {
+    /// Where it is.
+    pub setting: Setting,
+    /// Changes so far.
+    pub step: u32,
+    other: Configuration,
+    change: Change,
+    /// How often the change is still to be repeated.
+    left: i64,
+    rng: Rng,
+}
+
+impl fmt::Display for Walk {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.setting, self.step)
+    }
+}
+
+impl Walk {
+    /// Begins with the setting of a family with a seed.
+    ///
+    /// # Panics
+    /// If there is no such family.
+    pub fn new(family: &str, seed: u64) -> Self {
+        let setting = setting(family, seed);
+        let other = Configuration::of(&setting);
+        let rng = Rng::new(!seed);
+        Self { setting, step: 0, other, change: Change::Repeat, left: 0, rng }
+    }
+
+    /// One change more.
+    pub fn advance(&mut self) {
+        if self.left == 0 {
+            self.change = self.draw();
+            self.left = self.rng.int(1, LONGEST_RUN);
+        }
+        self.left -= 1;
+        self.step += 1;
+        self.apply();
+    }
+
+    fn draw(&mut self) -> Change {
+        let size = self.size();
+        let rng = &mut self.rng;
+        match rng.int(0, 15) {
+            0 => Change::Repeat,
+            1 => Change::Alternate,
+            2 => Change::Turn(turn(rng, [-15.0, -9.0])),
+            3 => Change::Turn(turn(rng, [-3.0, -0.5])),
+            4 => Change::Direction(any_direction(rng) * rng.range(-7.0, 7.0).exp()),
+            5 => Change::Reverse,
+            6 => Change::Other(rng.bits() % OTHER_SEEDS + OTHER_SEEDS),
+            7 => Change::Jump { rotation: rng.rotation(), to: rng.vector() * size * 2.0 },
+            8 | 9 => {
+                let overlap = size * overlap(rng);
+                let along = rng.pick(&[0.0, 0.5, rng.clone().unit()]);
+                Change::Rim { toward: rng.direction(), along, overlap }
+            }
+            10 => Change::Tolerance(size * rng.pick(&[0.0, 0.0, 0.0, 1e-9, 1e-4, 1e-2])),
+            _ => self.motion(size),
+        }
+    }
+
+    /// A displacement, a turn, a screw or a step on a grid, tiny or small or along the direction.
+    fn motion(&mut self, size: f64) -> Change {
+        let setting = &self.setting;
+        let rng = &mut self.rng;
+        let exponents = rng.pick(&[[-15.0, -9.0], [-3.0, -1.3]]);
+        let step = size * ten_to(rng, exponents);
+        let (axis, turn) = (rng.direction(), turn(rng, exponents));
+        let (turn, displacement) = match rng.int(0, 5) {
+            0 => (DQuat::IDENTITY, axis * step),
+            1 => (turn, DVec3::ZERO),
+            2 => (turn, rng.direction() * step),
+            3 => {
+                let along = rng.range(-1.0, 1.0) * size;
+                (DQuat::IDENTITY, setting.direction.normalize() * along)
+            }
+            4 => {
+                let quarters = TAU * rng.pick(&[0.25, 0.5, 0.125]);
+                (DQuat::from_axis_angle(rng.pick(&DVec3::AXES), quarters), DVec3::ZERO)
+            }
+            _ => {
+                // Whole steps of a power of two along the fixed body's axes: ties stay ties.
+                let unit = size.log2().floor().exp2() * rng.pick(&[0.125, 0.25, 1.0]);
+                (DQuat::IDENTITY, setting.fixed_pose.matrix() * (rng.grid(-1, 1) * unit))
+            }
+        };
+        Change::Motion { of_moving: !rng.one_in(4), turn, displacement }
+    }
+
+    fn apply(&mut self) {
+        let setting = &mut self.setting;
+        match self.change {
+            Change::Repeat => {}
+            Change::Alternate => {
+                let here = Configuration::of(setting);
+                std::mem::replace(&mut self.other, here).place(setting);
+            }
+            Change::Motion { of_moving, turn, displacement } => {
+                let (points, pose) = if of_moving {
+                    (&setting.moving, &mut setting.moving_pose)
+                } else {
+                    (&setting.fixed, &mut setting.fixed_pose)
+                };
+                *pose = moved(points, pose, turn, displacement);
+            }
+            Change::Turn(turn) => setting.direction = significant(turn * setting.direction),
+            Change::Direction(direction) => setting.direction = direction,
+            Change::Reverse => setting.direction = -setting.direction,
+            Change::Other(seed) => {
+                self.other = Configuration::of(setting);
+                Configuration::of(&crate::oracle::settings::setting(setting.family, seed))
+                    .place(setting);
+                // The same change does not change it again.
+                self.left = 0;
+            }
+            Change::Jump { rotation, to } => {
+                self.other = Configuration::of(setting);
+                let target = setting.fixed_pose.transform_point(middle(&setting.fixed)) + to;
+                let at = target - rotation * middle(&setting.moving);
+                setting.moving_pose = Pose::new(rotation, significant(at)).expect("in range");
+                self.left = 0;
+            }
+            Change::Rim { toward, along, overlap } => {
+                let displacement = rim_displacement(setting, toward, along, overlap);
+                let pose = &setting.moving_pose;
+                setting.moving_pose = moved(&setting.moving, pose, DQuat::IDENTITY, displacement);
+            }
+            Change::Tolerance(tolerance) => setting.graze_tolerance = tolerance,
+        }
+    }
+
+    /// The larger diameter of one of the bodies or, for two points, something else to step by.
+    fn size(&mut self) -> f64 {
+        let (moving, fixed) = (diameter(&self.setting.moving), diameter(&self.setting.fixed));
+        let (large, small) = (moving.max(fixed), moving.min(fixed));
+        if small > 0.0 && self.rng.one_in(2) {
+            small
+        } else if large > 0.0 {
+            large
+        } else {
+            1.0
+        }
+    }
+}
+
+impl Configuration {
+    fn of(setting: &Setting) -> Self {
+        let Setting { moving_pose, fixed_pose, direction, .. } = *setting;
+        Self { moving: moving_pose, fixed: fixed_pose, direction }
+    }
+
+    fn place(self, setting: &mut Setting) {
+        setting.moving_pose = self.moving;
+        setting.fixed_pose = self.fixed;
+        setting.direction = self.direction;
+    }
+}
+
+/// Ten to a power between two exponents.
+fn ten_to(rng: &mut Rng, [low, high]: [f64; 2]) -> f64 {
+    10.0_f64.powf(rng.range(low, high))
+}
+
+fn turn(rng: &mut Rng, exponents: [f64; 2]) -> DQuat {
+    DQuat::from_axis_angle(rng.direction(), ten_to(rng, exponents))
+}
+
+/// An axis, a diagonal of the grid, or any direction.
+fn any_direction(rng: &mut Rng) -> DVec3 {
+    let grid = rng.grid(-1, 1);
+    let grid = if grid == DVec3::ZERO { DVec3::Z } else { grid };
+    let any = rng.direction();
+    rng.pick(&[grid, any])
+}
+
+/// Shares of a body's size by which shadows overlap: nothing, rounding error, a little, more.
+fn overlap(rng: &mut Rng) -> f64 {
+    let sign = rng.pick(&[1.0, -1.0]);
+    let digits = ten_to(rng, [-16.0, -12.0]);
+    let little = ten_to(rng, [-12.0, -1.0]);
+    sign * rng.pick(&[0.0, digits, digits, little])
+}
+
+/// Components that rounding has left out of the exact range become zero.
+fn significant(v: DVec3) -> DVec3 {
+    DVec3::from_array(v.to_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }))
+}
+
+fn middle(points: &[DVec3]) -> DVec3 {
+    points.iter().sum::<DVec3>() / points.len() as f64
+}
+
+fn diameter(points: &[DVec3]) -> f64 {
+    let middle = middle(points);
+    2.0 * points.iter().map(|v| v.distance(middle)).fold(0.0, f64::max)
+}
+
+/// A body turned about its middle and displaced.
+fn moved(points: &[DVec3], pose: &Pose, turn: DQuat, displacement: DVec3) -> Pose {
+    if turn == DQuat::IDENTITY {
+        // Nothing but the displacement: a body on a grid stays there.
+        let at = significant(pose.translation() + displacement);
+        return Pose::new(pose.rotation(), at).expect("in range");
+    }
+    let middle = middle(points);
+    let rotation = (turn * pose.rotation()).normalize();
+    let at = pose.transform_point(middle) + displacement - rotation * middle;
+    Pose::new(rotation, significant(at)).expect("in range")
+}
+
+/// What brings a point of the rim of the shadow of `M = {q - p}` onto the line, or `overlap` inside
+/// of it: on the side between the corner of the shadow farthest `toward` somewhere and the next, a
+/// share `along` of the way.
+fn rim_displacement(setting: &Setting, toward: DVec3, along: f64, overlap: f64) -> DVec3 {
+    let unit = setting.direction.normalize();
+    let place = |points: &[DVec3], pose: &Pose| -> Vec<DVec3> {
+        points.iter().map(|v| pose.transform_point(*v).reject_from_normalized(unit)).collect()
+    };
+    let moving = place(&setting.moving, &setting.moving_pose);
+    let fixed = place(&setting.fixed, &setting.fixed_pose);
+    let shadows = || fixed.iter().flat_map(|q| moving.iter().map(move |p| *q - *p));
+    let farther = |a: DVec3, b: DVec3| if b.dot(toward) > a.dot(toward) { b } else { a };
+    let Some(corner) = shadows().reduce(farther) else { return DVec3::ZERO };
+    // Other pairs that give the same corner do so up to rounding only.
+    let size = shadows().map(|s| s.distance(corner)).fold(0.0, f64::max);
+    let others = shadows().filter(|s| s.distance(corner) > SAME * size);
+    // Gift wrapping: all the others are on one side of the way to the next.
+    let side = |a: DVec3, b: DVec3| (a - corner).cross(b - corner).dot(unit);
+    let next = others.reduce(|a, b| if side(a, b) < 0.0 { b } else { a }).unwrap_or(corner);
+    let inward = unit.cross(next - corner).normalize_or_zero();
+    corner.lerp(next, along) + inward * overlap
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oracle::settings::FAMILIES;
+    use crate::oracle::shadow::sideways_overlap;
+
+    #[test]
+    fn a_walk_is_a_function_of_its_name() {
+        for (family, _) in FAMILIES {
+            let mut walks = [0; 2].map(|_| Walk::new(family, 7));
+            for _ in 0..50 {
+                walks.iter_mut().for_each(Walk::advance);
+                assert_eq!(walks[0].setting.dump(), walks[1].setting.dump());
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_to_the_rim_ends_there() {
+        for seed in 0..200 {
+            let mut setting = setting(["random", "boxes", "prisms"][seed as usize % 3], seed);
+            let mut rng = Rng::new(seed);
+            let wanted = rng.range(-0.1, 0.0);
+            let displacement = rim_displacement(&setting, rng.direction(), 0.5, wanted);
+            setting.moving_pose = setting.moving_pose.translated(displacement).expect("in range");
+            let judge_bodies = setting.bodies().expect("bodies");
+            let scene = setting.judge(&judge_bodies).scene;
+            let found = sideways_overlap(&scene).to_f64();
+            assert!((found - wanted).abs() < 4.0 * scene.noise, "{setting}: {found} {wanted}");
+        }
+    }
+}

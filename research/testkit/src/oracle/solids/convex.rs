@@ -1,0 +1,127 @@
+//! Convex bodies as solids, against the convex core and against the rule over all pairs of facets; the
+//! bodies against the points that they were made of.
+
+use colltrans::{Bounded, Cast, Clearance, Outcome, Solid};
+
+use super::facets::{rule, triangles};
+use super::settings::Seen;
+use super::{encloses, exactly};
+use crate::oracle::exact::Ratio;
+use crate::oracle::settings::{NEARLY_FLAT, Setting};
+
+/// More pairs of facets than this are not judged by the rule.
+const MOST_PAIRS: usize = 4_000;
+/// Agreement, in multiples of the rounding error of a coordinate.
+const AGREEMENT: f64 = 512.0;
+
+/// Asks both, and compares; `None` for bodies without a volume, or so thin that they lose it.
+///
+/// # Errors
+/// What disagrees.
+pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
+    let bodies = setting.bodies().map_err(|e| e.to_string())?;
+    setting.judge_bodies(&bodies).map_err(|e| e.to_string())?;
+    let (p, q) = (&bodies.moving, &bodies.fixed);
+    if p.dimension() < 3 || q.dimension() < 3 {
+        return Ok(None);
+    }
+    let (Ok(a), Ok(b)) = (Solid::from_convex(p), Solid::from_convex(q)) else { return Ok(None) };
+    let (s, t) = (&setting.moving_pose, &setting.fixed_pose);
+    let cast = exactly([&a, &b], [*s, *t], setting.direction)?;
+    let overlaps = cast.overlaps();
+    let found = if overlaps { None } else { Some(cast.clearance()) };
+    if let Some(found) = &found {
+        against_rule(setting, &a, &b, found, cast.exit())?;
+    }
+    let core = Cast::new(p.at(*s), q.at(*t), setting.direction).and_then(|c| c.first_contact());
+    let limits =
+        Limits { noise: noise(setting, &a, &b), dented: NEARLY_FLAT.contains(&setting.family) };
+    against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), &limits)
+}
+
+/// By how much a convex body as a solid may differ.
+struct Limits {
+    /// The rounding error of a coordinate, in multiples of the direction.
+    noise: f64,
+    /// A solid has the same corners, so it meets nothing earlier. But polygons are flat up to rounding
+    /// only, and triangles cut them: of a body that is as thin as that they leave another one, which may
+    /// meet later, or miss. What it does is judged by the rule alone.
+    dented: bool,
+}
+
+/// The rounding error of a coordinate, in multiples of the direction.
+fn noise(setting: &Setting, a: &Solid, b: &Solid) -> f64 {
+    let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let offset = setting.fixed_pose.translation() - setting.moving_pose.translation();
+    let size = reach(a) + reach(b) + offset.length();
+    16.0 * f64::EPSILON * size / setting.direction.length()
+}
+
+fn against_rule(
+    setting: &Setting,
+    a: &Solid,
+    b: &Solid,
+    found: &Clearance<Solid>,
+    exit: Option<Bounded>,
+) -> Result<(), String> {
+    if a.triangles().len() * b.triangles().len() > MOST_PAIRS {
+        return Ok(());
+    }
+    let placed = |s: &Solid, pose: &colltrans::Pose| {
+        triangles(s.vertices(), s.triangles(), (pose.matrix(), pose.translation()))
+    };
+    let (f, g) = (placed(a, &setting.moving_pose), placed(b, &setting.fixed_pose));
+    let right = rule(&f, &g, setting.direction);
+    let zero = || Ratio::from_f64(0.0);
+    match (exit, right.exit.map(|exit| exit.max(zero()))) {
+        (None, None) => {}
+        (Some(found), Some(right)) if encloses(&found, &right) => {}
+        (found, right) => {
+            return Err(format!("exit {found:?}, not {:?}", right.map(|r| r.to_f64())));
+        }
+    }
+    let right = right.stop;
+    let tolerance = AGREEMENT * noise(setting, a, b);
+    let agree = match (found, &right) {
+        (Clearance::Free(_), None) => true,
+        (Clearance::Blocked { distance, contact }, Some(right)) => {
+            let place = &contact.translation;
+            let near = |found: f64| right.minus(&Ratio::from_f64(found)).is_within(tolerance);
+            near(*distance) && near(place.value) && encloses(place, right)
+        }
+        _ => false,
+    };
+    let right = right.map(|r| r.to_f64());
+    if agree { Ok(()) } else { Err(format!("{found:?}, by the rule {right:?}")) }
+}
+
+/// Where the core is certain, the solid says the same.
+fn against_core(
+    core: Outcome,
+    overlaps: bool,
+    found: Option<&Clearance<Solid>>,
+    limits: &Limits,
+) -> Result<Option<Seen>, String> {
+    let distance = match found {
+        Some(Clearance::Blocked { distance, .. }) => Some(*distance),
+        _ => None,
+    };
+    let seen = match (overlaps, distance) {
+        (true, _) => Seen::Overlapping,
+        (false, None) => Seen::Free,
+        (false, Some(0.0)) => Seen::BlockedNow,
+        (false, Some(_)) => Seen::Blocked,
+    };
+    let wrong = || Err(format!("{seen:?} at {distance:?}, but the core says {core:?}"));
+    match core {
+        Outcome::Separated(_) if overlaps || distance.is_some() => wrong(),
+        Outcome::Contact(contact) => {
+            let tolerance = contact.certificate.rounding + AGREEMENT * limits.noise;
+            let ahead = contact.translation > tolerance;
+            let early = distance.is_some_and(|d| d < contact.translation - tolerance);
+            let late = distance.is_none_or(|d| d > contact.translation + tolerance);
+            if ahead && (early || late && !limits.dented) { wrong() } else { Ok(Some(seen)) }
+        }
+        _ => Ok(Some(seen)),
+    }
+}

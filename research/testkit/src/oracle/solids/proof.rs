@@ -1,0 +1,96 @@
+//! Proofs between solids, judged in fractions: without trees, boxes or rounded numbers.
+//!
+//! The library says of which facets each entry of a cover speaks; all pairs of facets must be spoken
+//! of, each once, and what is said of a pair must hold for its two triangles.
+
+use std::cmp::Ordering;
+
+use colltrans::{Cast, Claim, Reason, Solid, SolidCertificate, StartProof};
+
+use super::facets::{Gaps, Judge, Triangle, triangles};
+use crate::oracle::exact::Ratio;
+
+/// More pairs of facets than this are not judged.
+pub const MOST_PAIRS: usize = 2_500;
+
+/// Judges the proof of a clearance between bodies that are not shrunk; whether they overlap where they
+/// are is known otherwise. `slack`, in multiples of the direction, is what a sum of rounded numbers may
+/// be off by.
+///
+/// # Errors
+/// What does not hold.
+pub fn approve(
+    cast: &Cast<'_, Solid>,
+    certificate: &SolidCertificate,
+    slack: f64,
+) -> Result<(), String> {
+    if let StartProof::Apart(cover) = &certificate.start {
+        let claims = cover.claims(cast).ok_or("the cover of the start does not fit")?;
+        once(cast, &claims)?;
+    }
+    if matches!(certificate.start, StartProof::Overlapping(_)) {
+        return Ok(());
+    }
+    let claims = certificate.cover.claims(cast).ok_or("the cover does not fit")?;
+    once(cast, &claims)?;
+    let placed = |solid: &Solid, pose: colltrans::Pose| {
+        triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
+    };
+    let moving = placed(cast.moving(), cast.moving_pose());
+    let fixed = placed(cast.fixed(), cast.fixed_pose());
+    let judge = Judge::new(cast.direction());
+    for claim in &claims {
+        for s in claim.moving.clone() {
+            for t in claim.fixed.clone() {
+                let gaps = judge.gaps(&moving[s], &fixed[t]);
+                if !holds(&judge, claim.reason, certificate.lower, &gaps, [&moving[s], &fixed[t]]) {
+                    let reason = claim.reason;
+                    return Err(format!("{reason:?} of facets {s} and {t}: {gaps:?}"));
+                }
+            }
+        }
+    }
+    let Some(stop) = &certificate.stop else { return Ok(()) };
+    let [s, t] = stop.triangles.map(|k| k as usize);
+    let value = judge.gaps(&moving[s], &fixed[t]).contribution();
+    let near = |v: &Ratio| v.minus(&Ratio::from_f64(stop.shrunk_distance)).is_within(slack);
+    match value {
+        Some(value) if near(&value) => Ok(()),
+        other => {
+            Err(format!("facets {s} and {t} stop it at {other:?}, not {}", stop.shrunk_distance))
+        }
+    }
+}
+
+/// Whether each pair of facets is spoken of once.
+fn once(cast: &Cast<'_, Solid>, claims: &[Claim]) -> Result<(), String> {
+    let (m, n) = (cast.moving().triangles().len(), cast.fixed().triangles().len());
+    let mut spoken = vec![0_u8; m * n];
+    for claim in claims {
+        for s in claim.moving.clone() {
+            for t in claim.fixed.clone() {
+                spoken[s * n + t] += 1;
+            }
+        }
+    }
+    match spoken.iter().position(|&count| count != 1) {
+        None => Ok(()),
+        Some(k) => Err(format!("facets {} and {}: {} times", k / n, k % n, spoken[k])),
+    }
+}
+
+fn holds(judge: &Judge, reason: Reason, lower: f64, gaps: &Gaps, [f, g]: [&Triangle; 2]) -> bool {
+    let negative = |gaps: &Gaps| {
+        gaps.range.as_ref().is_none_or(|[_, largest]| *largest < Ratio::from_f64(0.0))
+    };
+    match reason {
+        Reason::MovingFacesAway => judge.facing(f) != Ordering::Greater,
+        Reason::FixedFacesAway => judge.facing(g) != Ordering::Less,
+        Reason::ShadowsApart => gaps.range.is_none(),
+        Reason::Parting => !gaps.front || negative(gaps),
+        Reason::NotBefore | Reason::Examined => gaps
+            .contribution()
+            .is_none_or(|value| lower.is_finite() && value >= Ratio::from_f64(lower)),
+        Reason::Disjoint | Reason::FaceToFace => false,
+    }
+}

@@ -1,0 +1,241 @@
+//! Settings of bodies made of cubes, most of them tied, and how an answer is judged.
+
+use colltrans::{Clearance, Pose, Solid};
+use glam::{DMat3, DQuat, DVec3};
+
+use super::cells::{Cells, Motion, motion};
+use super::proof::{MOST_PAIRS, approve};
+use super::{encloses, exactly};
+use crate::oracle::exact::{Ratio, Vector};
+use crate::oracle::settings::Rng;
+
+/// The families, by name.
+pub const FAMILIES: [&str; 6] = ["grid", "sheared", "quarter", "rotated", "mould", "halves"];
+
+/// Distances agree when they differ by no more than this many times the noise of the setting.
+pub(super) const AGREEMENT: f64 = 512.0;
+
+/// What came out, for statistics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Seen {
+    /// The bodies overlap.
+    Overlapping,
+    /// Nothing is in the way.
+    Free,
+    /// They touch and block.
+    BlockedNow,
+    /// Something is ahead.
+    Blocked,
+}
+
+/// Two bodies of cubes, placed.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    /// The moving and the fixed body, in the grid.
+    pub cells: [Cells; 2],
+    /// Both grids are mapped by this in the body frames.
+    pub shear: DMat3,
+    /// Surfaces, in the body frames.
+    pub surfaces: [(Vec<DVec3>, Vec<Vec<u32>>); 2],
+    /// Poses.
+    pub poses: [Pose; 2],
+    /// The direction.
+    pub direction: DVec3,
+    /// The rotations that the poses apply to the cubes themselves.
+    turns: [DMat3; 2],
+}
+
+impl Setting {
+    /// The setting of a family for a seed; `None` for an unknown family.
+    ///
+    /// # Panics
+    /// Never: the poses are rotations.
+    pub fn draw(family: &str, seed: u64) -> Option<Self> {
+        let mut rng = Rng::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x51);
+        let rng = &mut rng;
+        let count = |rng: &mut Rng| rng.int(1, 7) as usize;
+        let mut cells = [Cells::random(count(rng), rng), Cells::random(count(rng), rng)];
+        let mut shear = DMat3::IDENTITY;
+        let mut turns = [DMat3::IDENTITY; 2];
+        let mut rotation = DQuat::IDENTITY;
+        let mut translations = [whole(3, rng), whole(3, rng)];
+        let mut direction = way(rng);
+        match family {
+            "grid" => {}
+            "halves" => {
+                translations = translations.map(|t| t * 0.5);
+                direction *= [1.0, 0.25, 3.0][rng.int(0, 2) as usize];
+            }
+            "sheared" => shear = sheared(rng),
+            "quarter" => turns = [quarter(rng), quarter(rng)],
+            "rotated" => {
+                shear = if rng.one_in(2) { sheared(rng) } else { shear };
+                rotation = any_rotation(rng);
+                let map = DMat3::from_quat(rotation) * shear;
+                // Translations and directions of the grid, rounded, or none at all.
+                let zero = rng.one_in(2);
+                translations = translations.map(|t| if zero { DVec3::ZERO } else { map * t });
+                direction = map * direction;
+                if zero {
+                    cells[1] = displaced(&cells[1], whole(2, rng));
+                }
+            }
+            "mould" => {
+                let axis = rng.int(0, 2) as usize;
+                cells[0] = Cells::random(rng.int(1, 3) as usize, rng);
+                cells[1] = cells[0].mould((!rng.one_in(4)).then_some(axis));
+                shear = if rng.one_in(2) { sheared(rng) } else { shear };
+                translations = [DVec3::ZERO; 2];
+                if rng.one_in(2) {
+                    direction = shear * DVec3::AXES[axis];
+                    rotation = if rng.one_in(2) { any_rotation(rng) } else { rotation };
+                    // The exact direction of the rounded matrix, if it has one.
+                    let matrix = Pose::new(rotation, DVec3::ZERO).expect("a rotation").matrix();
+                    direction = matrix * direction;
+                }
+            }
+            _ => return None,
+        }
+        let surfaces = [0, 1].map(|k| cells[k].surface(shear, rng));
+        let pose = |k: usize| {
+            // Quarter turns as they are: their quaternions may round.
+            if turns[k] == DMat3::IDENTITY {
+                Pose::new(rotation, translations[k]).expect("a rotation")
+            } else {
+                Pose::from_matrix(turns[k], translations[k]).expect("a rotation")
+            }
+        };
+        let poses = [pose(0), pose(1)];
+        Some(Self { cells, shear, surfaces, poses, direction, turns })
+    }
+
+    /// What happens, exactly.
+    pub fn expected(&self) -> Motion {
+        let offset = Vector::new(self.poses[1].translation())
+            .minus(&Vector::new(self.poses[0].translation()));
+        let identity = DMat3::IDENTITY;
+        if self.turns == [identity; 2] {
+            let cells = (&self.cells[0], &self.cells[1]);
+            return motion(cells, [self.poses[0].matrix(), self.shear], &offset, self.direction);
+        }
+        let [a, b] = [0, 1].map(|k| self.cells[k].turned(self.turns[k]));
+        motion((&a, &b), [identity; 2], &offset, self.direction)
+    }
+
+    /// Asks the library and compares; proofs of small bodies are judged in fractions if so said.
+    ///
+    /// # Errors
+    /// What disagrees.
+    pub fn examine(&self, in_fractions: bool) -> Result<Seen, String> {
+        let solid = |k: usize| {
+            let (vertices, facets) = &self.surfaces[k];
+            Solid::from_mesh(vertices, facets).map_err(|e| format!("body {k}: {e}"))
+        };
+        let (a, b) = (solid(0)?, solid(1)?);
+        let cast = exactly([&a, &b], self.poses, self.direction)?;
+        let expected = self.expected();
+        let tolerance = self.tolerance();
+        let near =
+            |found: f64, right: &Ratio| right.minus(&Ratio::from_f64(found)).is_within(tolerance);
+        let exit = cast.exit();
+        match (&expected.exit, exit) {
+            (None, None) => {}
+            (Some(right), Some(found))
+                if encloses(&found, &right.clone().max(Ratio::from_f64(0.0)))
+                    && (near(found.value, right)
+                        || found.value == 0.0 && right.to_f64() <= tolerance) => {}
+            (right, found) => {
+                return Err(format!("exit {found:?}, not {:?}", right.as_ref().map(Ratio::to_f64)));
+            }
+        }
+        let (found, certificate) = cast.certified_clearance();
+        cast.verify(&certificate).map_err(|e| format!("{found:?}: {e}: {certificate:?}"))?;
+        let pairs = a.triangles().len() * b.triangles().len();
+        if in_fractions && pairs <= MOST_PAIRS {
+            approve(&cast, &certificate, tolerance)?;
+        }
+        if expected.overlaps && cast.overlaps() {
+            let said = matches!(found, Clearance::Overlapping(_));
+            return if said { Ok(Seen::Overlapping) } else { Err(format!("{found:?}")) };
+        }
+        if let Clearance::Free(Some(separation)) = &found {
+            cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
+        }
+        match (found, expected.overlaps, &expected.stop) {
+            (Clearance::Free(_), false, None) => Ok(Seen::Free),
+            (Clearance::Blocked { distance, contact }, false, Some(stop))
+                if near(distance, stop)
+                    && near(contact.translation.value, stop)
+                    && encloses(&contact.translation, stop) =>
+            {
+                Ok(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked })
+            }
+            (found, overlaps, stop) => Err(format!(
+                "{found:?}, but overlapping: {overlaps}, stop: {:?}",
+                stop.as_ref().map(Ratio::to_f64)
+            )),
+        }
+    }
+
+    fn tolerance(&self) -> f64 {
+        let reach = |k: usize| self.surfaces[k].0.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let offset = self.poses[1].translation() - self.poses[0].translation();
+        let size = reach(0) + reach(1) + offset.length();
+        AGREEMENT * 16.0 * f64::EPSILON * size / self.direction.length()
+    }
+}
+
+pub(super) fn whole(most: i64, rng: &mut Rng) -> DVec3 {
+    DVec3::new(rng.whole(-most, most), rng.whole(-most, most), rng.whole(-most, most))
+}
+
+/// A direction along an axis or a diagonal, or of small whole numbers.
+pub(super) fn way(rng: &mut Rng) -> DVec3 {
+    loop {
+        let most = [1, 1, 3][rng.int(0, 2) as usize];
+        let mut d = whole(most, rng);
+        if rng.one_in(3) {
+            d = DVec3::AXES[rng.int(0, 2) as usize] * rng.whole(1, 3);
+        }
+        if d != DVec3::ZERO {
+            return d;
+        }
+    }
+}
+
+pub(super) fn sheared(rng: &mut Rng) -> DMat3 {
+    loop {
+        let m = DMat3::from_cols(whole(2, rng), whole(2, rng), whole(2, rng));
+        if m.determinant() != 0.0 {
+            return m;
+        }
+    }
+}
+
+/// A rotation that permutes axes.
+fn quarter(rng: &mut Rng) -> DMat3 {
+    loop {
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+        let pick =
+            |rng: &mut Rng| axes[rng.int(0, 2) as usize] * if rng.one_in(2) { 1.0 } else { -1.0 };
+        let (x, y) = (pick(rng), pick(rng));
+        if x.dot(y) == 0.0 {
+            return DMat3::from_cols(x, y, x.cross(y));
+        }
+    }
+}
+
+pub(super) fn any_rotation(rng: &mut Rng) -> DQuat {
+    loop {
+        let q = [0; 4].map(|_| rng.range(-1.0, 1.0));
+        let q = DQuat::from_array(q);
+        if q.length() > 0.1 {
+            return q.normalize();
+        }
+    }
+}
+
+fn displaced(cells: &Cells, by: DVec3) -> Cells {
+    let by = by.to_array().map(|c| c as i32);
+    Cells(cells.0.iter().map(|c| [0, 1, 2].map(|k| c[k] + by[k])).collect())
+}

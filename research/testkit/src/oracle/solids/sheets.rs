@@ -1,0 +1,148 @@
+//! Settings of open surfaces, most of them tied, and how an answer is judged.
+
+use colltrans::{Clearance, Pose, Solid};
+use glam::{DMat3, DQuat, DVec3};
+
+use super::cells::Cells;
+use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way, whole};
+use super::squares::{Crossing, Mixed, Squares};
+use super::{encloses, exactly};
+use crate::oracle::exact::{Ratio, Vector};
+use crate::oracle::settings::Rng;
+
+/// The families, by name.
+pub const FAMILIES: [&str; 3] = ["sheets", "sheets-sheared", "sheets-rotated"];
+
+/// Two bodies, at least one of them open, placed.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    /// The moving and the fixed body, in the grid.
+    pub bodies: [Mixed; 2],
+    /// Their surfaces, in the body frames.
+    pub solids: [Solid; 2],
+    /// Poses: one rotation, two translations.
+    pub poses: [Pose; 2],
+    /// The direction.
+    pub direction: DVec3,
+    shear: DMat3,
+}
+
+impl Setting {
+    /// The setting of a family for a seed.
+    ///
+    /// # Errors
+    /// An unknown family; a body that the library refuses.
+    pub fn draw(family: &str, seed: u64) -> Result<Self, String> {
+        let mut rng = Rng::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x5ee7);
+        let rng = &mut rng;
+        // Which of the two has cubes, and which has squares: not cubes alone on both sides.
+        let mut kinds = [rng.int(0, 2), rng.int(0, 2)];
+        if kinds == [0, 0] {
+            kinds[rng.int(0, 1) as usize] = rng.int(1, 2);
+        }
+        let bodies = kinds.map(|kind| Mixed {
+            cubes: (kind != 1).then(|| Cells::random(rng.int(1, 4) as usize, rng)),
+            squares: if kind == 0 {
+                Squares::default()
+            } else {
+                Squares::random(rng.int(1, 9) as usize, rng)
+            },
+        });
+        let half = if rng.one_in(3) { 0.5 } else { 1.0 };
+        let mut direction = way(rng);
+        let mut translations = [whole(3, rng) * half, whole(3, rng) * half];
+        if !rng.one_in(4) {
+            // Mostly behind the other one.
+            let behind = direction * rng.whole(0, 3);
+            translations[0] = translations[1] + whole(1, rng) * half - behind;
+        }
+        let mut shear = DMat3::IDENTITY;
+        let mut rotation = DQuat::IDENTITY;
+        match family {
+            "sheets" => direction *= [1.0, 0.25, 3.0][rng.int(0, 2) as usize],
+            "sheets-sheared" => {
+                shear = sheared(rng);
+                // Along planes of the grid, or not.
+                direction = if rng.one_in(4) { direction } else { shear * direction };
+                translations = translations.map(|t| shear * t);
+            }
+            "sheets-rotated" => {
+                shear = if rng.one_in(2) { sheared(rng) } else { shear };
+                rotation = any_rotation(rng);
+                let map = Pose::new(rotation, DVec3::ZERO).map_err(|e| e.to_string())?.matrix();
+                let zero = rng.one_in(2);
+                let place = |t| if zero { DVec3::ZERO } else { map * (shear * t) };
+                translations = translations.map(place);
+                direction = map * (shear * direction);
+            }
+            _ => return Err(format!("no such family: {family}")),
+        }
+        let mut solid = |body: &Mixed| body.solid(shear, rng).map_err(|e| e.to_string());
+        let solids = [solid(&bodies[0])?, solid(&bodies[1])?];
+        let pose = |t| Pose::new(rotation, t).map_err(|e| e.to_string());
+        let poses = [pose(translations[0])?, pose(translations[1])?];
+        Ok(Self { bodies, solids, poses, direction, shear })
+    }
+
+    /// What happens, exactly.
+    pub fn expected(&self) -> Crossing {
+        let [s, t] = self.poses.map(|pose| Vector::new(pose.translation()));
+        let maps = [self.poses[0].matrix(), self.shear];
+        let [a, b] = &self.bodies;
+        Crossing::new([a, b], maps, &t.minus(&s), self.direction)
+    }
+
+    /// Asks the library and compares.
+    ///
+    /// # Errors
+    /// What disagrees.
+    pub fn examine(&self) -> Result<Seen, String> {
+        let [a, b] = &self.solids;
+        let cast = exactly([a, b], self.poses, self.direction)?;
+        let expected = self.expected();
+        let tolerance = self.tolerance();
+        if let Some(last) = &expected.last {
+            let late = cast.exit().is_some_and(|exit| *last <= Ratio::from_f64(exit.upper));
+            if !late && last.to_f64() > tolerance {
+                return Err(format!("exit {:?}, not {}", cast.exit(), last.to_f64()));
+            }
+        }
+        let (found, certificate) = cast.certified_clearance();
+        cast.verify(&certificate).map_err(|e| format!("{found:?}: {e}: {certificate:?}"))?;
+        if found != cast.clearance() {
+            return Err(format!("{found:?}, and without a proof {:?}", cast.clearance()));
+        }
+        if let Clearance::Free(Some(separation)) = &found {
+            cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
+        }
+        let not_before = |stop: &Ratio| *stop >= Ratio::from_f64(certificate.lower);
+        match (&found, expected.overlaps, &expected.stop) {
+            (Clearance::Overlapping(overlap), true, _) if overlap.depth.is_none() => {
+                Ok(Seen::Overlapping)
+            }
+            (Clearance::Free(_), false, None) => Ok(Seen::Free),
+            (Clearance::Blocked { distance, contact }, false, Some(stop))
+                if stop.minus(&Ratio::from_f64(*distance)).is_within(tolerance)
+                    && encloses(&contact.translation, stop)
+                    && not_before(stop)
+                    && contact.normal.dot(self.direction) > -1e-12
+                    && contact.point_on_moving.is_finite()
+                    && contact.point_on_fixed.is_finite() =>
+            {
+                Ok(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked })
+            }
+            (found, overlaps, stop) => Err(format!(
+                "{found:?}, but overlapping: {overlaps}, stop: {:?}",
+                stop.as_ref().map(Ratio::to_f64)
+            )),
+        }
+    }
+
+    fn tolerance(&self) -> f64 {
+        let reach =
+            |k: usize| self.solids[k].vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+        let offset = self.poses[1].translation() - self.poses[0].translation();
+        let size = reach(0) + reach(1) + offset.length();
+        AGREEMENT * 16.0 * f64::EPSILON * size / self.direction.length()
+    }
+}

@@ -1,0 +1,149 @@
+//! Where numbers come from: the machine, the build, the day and the command.
+
+use std::thread::available_parallelism;
+use std::time::{Duration, SystemTime};
+
+use chrono::{DateTime, Utc};
+use serde_json::{Value, json};
+
+/// The circumstances of a run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Provenance {
+    /// Model of the processor.
+    pub processor: String,
+    /// Cores this process may use.
+    pub cores: String,
+    /// Operating system and architecture.
+    pub system: String,
+    /// Versions of what was measured, what compiled it, and what draws.
+    pub versions: String,
+    /// How it was compiled.
+    pub build: String,
+    /// Day and minute of the start, UTC.
+    pub date: String,
+    /// The command line.
+    pub command: String,
+    /// Whether this is a build whose times mean something.
+    pub is_optimised: bool,
+}
+
+impl Provenance {
+    /// That of this process, now; `other`: the version of what else the numbers depend on.
+    pub fn of_this_process(other: &str) -> Self {
+        let version = env!("CARGO_PKG_VERSION");
+        let compiler = env!("COLLTRANS_TESTKIT_COMPILER");
+        Self {
+            processor: processor().unwrap_or_else(unknown),
+            cores: available_parallelism().map_or_else(|_| unknown(), |count| count.to_string()),
+            system: system(),
+            versions: format!("colltrans {version}; {compiler}; {other}"),
+            build: env!("COLLTRANS_TESTKIT_BUILD").into(),
+            date: DateTime::<Utc>::from(SystemTime::now()).format("%Y-%m-%d %H:%M UTC").to_string(),
+            command: command(std::env::args()),
+            is_optimised: !cfg!(debug_assertions),
+        }
+    }
+
+    /// An object that the report of a run begins with: `date`, `command`, `machine` (`cpu`, `cores`,
+    /// `system`), `versions`, `build`.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "date": self.date,
+            "command": self.command,
+            "machine": { "cpu": self.processor, "cores": self.cores, "system": self.system },
+            "versions": self.versions,
+            "build": self.build,
+        })
+    }
+}
+
+fn unknown() -> String {
+    "unknown".into()
+}
+
+fn processor() -> Option<String> {
+    let from_file = || {
+        let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+        let line = text.lines().find(|line| line.starts_with("model name"))?;
+        Some(line.split_once(':')?.1.trim().to_owned())
+    };
+    let from_program = || {
+        let mut program = std::process::Command::new("sysctl");
+        let output = program.args(["-n", "machdep.cpu.brand_string"]).output().ok()?;
+        let name = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+        (!name.is_empty()).then_some(name)
+    };
+    let from_environment = || std::env::var("PROCESSOR_IDENTIFIER").ok();
+    match std::env::consts::OS {
+        "linux" => from_file(),
+        "macos" => from_program(),
+        _ => from_environment(),
+    }
+}
+
+fn system() -> String {
+    use std::env::consts::{ARCH, OS};
+    let release = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
+    match release.trim() {
+        "" => format!("{OS}, {ARCH}"),
+        release => format!("{OS} {release}, {ARCH}"),
+    }
+}
+
+/// The command as one could type it, with the program's name for its path.
+fn command(mut arguments: impl Iterator<Item = String>) -> String {
+    let program = arguments.next().unwrap_or_default();
+    let name = program.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+    let quoted = arguments.map(|argument| {
+        let is_plain = |c: char| c.is_alphanumeric() || "-_./=,:".contains(c);
+        if !argument.is_empty() && argument.chars().all(is_plain) {
+            argument
+        } else {
+            format!("'{}'", argument.replace('\'', r"'\''"))
+        }
+    });
+    std::iter::once(name).chain(quoted).collect::<Vec<_>>().join(" ")
+}
+
+/// A duration for people: `0.4 s`, `12 s`, `3 min 20 s`, `1 h 2 min`.
+pub fn for_people(duration: Duration) -> String {
+    let seconds = duration.as_secs();
+    match seconds {
+        0..10 => format!("{:.1} s", duration.as_secs_f64()),
+        10..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_can_be_typed_again() {
+        let typed = |arguments: &[&str]| command(arguments.iter().map(|a| (*a).to_owned()));
+        assert_eq!(
+            typed(&["/a b/colltrans-lab", "all", "-o", "my dir"]),
+            "colltrans-lab all -o 'my dir'"
+        );
+        assert_eq!(typed(&["colltrans", "it's", ""]), r"colltrans 'it'\''s' ''");
+        assert_eq!(typed(&[]), "");
+    }
+
+    #[test]
+    fn durations() {
+        for (seconds, expected) in
+            [(0.44, "0.4 s"), (12.9, "12 s"), (200.0, "3 min 20 s"), (3725.0, "1 h 2 min")]
+        {
+            assert_eq!(for_people(Duration::from_secs_f64(seconds)), expected);
+        }
+    }
+
+    #[test]
+    fn nothing_is_left_blank() {
+        let here = Provenance::of_this_process("-");
+        let facts = [&here.processor, &here.cores, &here.system, &here.versions, &here.build];
+        assert!(facts.into_iter().chain([&here.date, &here.command]).all(|f| !f.is_empty()));
+    }
+}

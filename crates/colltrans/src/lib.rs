@@ -135,6 +135,10 @@ pub use body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError
 pub use body::{
     Body, ConvexPolyhedron, ConvexityDefect, Feature, OffsetReport, Placed, Pose, convexity_defect,
 };
+pub use cast::solid::{
+    Claim, Cover, SolidCertificate, SolidOptions, SolidOverlap, SolidProof, StartOverlap,
+    StartProof, StopProof,
+};
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, Features, WitnessPoints, cast};
@@ -142,10 +146,7 @@ pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;
-pub use solve::facets::{
-    Claim, Cover, Overlap, Reason, SolidCertificate, SolidContact, SolidOptions, SolidOverlap,
-    SolidProof, StartOverlap, StartProof, StopProof, Workspace,
-};
+pub use solve::facets::{Overlap, Reason, SolidContact, Workspace};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
 pub use tracker::Tracker;

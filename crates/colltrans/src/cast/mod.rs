@@ -8,6 +8,7 @@ mod contact;
 mod derive;
 #[cfg(feature = "json")]
 mod replay;
+pub(crate) mod solid;
 
 use std::fmt;
 

@@ -1,162 +1,233 @@
-//! Integers times powers of two, of fixed size on the stack.
+//! Whole numbers of fixed capacity, for the signs that rounding cannot tell.
+//!
+//! A number is `limbs 2^(64 base)`: coordinates are dyadic rationals. The door admits magnitudes from
+//! `2^-200` to `2^200` with 53 significant bits, so a product of two spans `2^-505..2^400`, and with
+//! barycentric weights that are multiples of `1/64`, a coordinate (eight terms) has at most 917 bits. A
+//! determinant of three differences has at most `3 * 918 + 3 = 2757` bits: 46 limbs, wherever limbs
+//! begin. So [`LARGE`] ones never overflow. Almost all coordinates need a few limbs only, and moving
+//! numbers costs more than multiplying them: [`SMALL`] ones are tried first, which say so if they
+//! overflow. Nothing is allocated.
 
 use std::cmp::Ordering;
 
-/// Limbs that are enough for all that is admitted.
-pub(super) const ALL: usize = 48;
-/// Limbs that are enough for what is usual.
-pub(super) const USUAL: usize = 14;
+/// Limbs of numbers of ordinary size.
+pub(crate) const SMALL: usize = 15;
+/// Limbs that suffice for all.
+pub(crate) const LARGE: usize = 48;
 
-/// `sum_k limbs[k] 2^(64 (lowest + k))` with a sign; not zero: the limbs at both ends are not.
-/// Limbs beyond `len` are zero.
+/// An integer with a sign, times a power of `2^64`.
 #[derive(Clone, Copy)]
-pub(super) struct Integer<const N: usize> {
+pub(crate) struct Integer<const N: usize> {
     negative: bool,
-    lowest: i32,
-    len: usize,
+    /// Whether it did not fit; nothing else holds then.
+    overflown: bool,
+    /// The exponent of the lowest limb.
+    base: i16,
+    /// Limbs in use; the highest and the lowest are not zero.
+    len: u16,
     limbs: [u64; N],
 }
 
 impl<const N: usize> Integer<N> {
-    pub(super) const ZERO: Self = Self { negative: false, lowest: 0, len: 0, limbs: [0; N] };
+    pub(crate) const ZERO: Self =
+        Self { negative: false, overflown: false, base: 0, len: 0, limbs: [0; N] };
+    const OVERFLOWN: Self = Self { overflown: true, ..Self::ZERO };
 
     /// `a b`, exactly.
-    pub(super) fn product(a: f64, b: f64) -> Self {
-        let mut result = Self::ZERO;
-        let ((m, e), (n, f)) = (decode(a), decode(b));
-        let bits = u128::from(m) * u128::from(n);
-        if bits == 0 {
-            return result;
+    pub(crate) fn product(a: f64, b: f64) -> Self {
+        if a == 0.0 || b == 0.0 {
+            return Self::ZERO;
         }
-        result.negative = a.is_sign_negative() != b.is_sign_negative();
-        let zeros = bits.trailing_zeros();
-        let bits = bits >> zeros;
-        let shift = e + f + zeros as i32;
-        result.lowest = shift.div_euclid(64);
-        let bit = shift.rem_euclid(64);
-        let high = u128::from((bits >> 64) as u64) << bit;
+        let ((m, e), (n, f)) = (decode(a), decode(b));
+        let negative = a.is_sign_negative() != b.is_sign_negative();
+        let bits = u128::from(m) * u128::from(n);
+        let exponent = e + f;
+        let mut result =
+            Self { negative, base: exponent.div_euclid(64) as i16, len: 3, ..Self::ZERO };
+        let bit = exponent.rem_euclid(64);
         let low = u128::from(bits as u64) << bit;
-        result.limbs[0] = low as u64;
-        result.limbs[1] = (low >> 64) as u64 | high as u64;
-        result.limbs[2] = (high >> 64) as u64;
-        result.len = 3;
+        let high = (u128::from((bits >> 64) as u64) << bit) + (low >> 64);
+        (result.limbs[0], result.limbs[1], result.limbs[2]) =
+            (low as u64, high as u64, (high >> 64) as u64);
         result.trim();
         result
     }
 
+    /// `a`, exactly.
+    pub(crate) fn number(a: f64) -> Self {
+        Self::product(a, 1.0)
+    }
+
     fn trim(&mut self) {
-        while self.len > 0 && self.limbs[self.len - 1] == 0 {
+        while self.len > 0 && self.limbs[usize::from(self.len) - 1] == 0 {
             self.len -= 1;
+        }
+        let used = usize::from(self.len);
+        let zeros = self.limbs[..used].iter().take_while(|&&l| l == 0).count();
+        if zeros > 0 {
+            self.limbs.copy_within(zeros..used, 0);
+            self.limbs[used - zeros..used].fill(0);
+            self.len -= zeros as u16;
+            self.base += zeros as i16;
+        }
+        if self.len == 0 {
+            (self.base, self.negative) = (0, false);
         }
     }
 
-    pub(super) fn negate(mut self) -> Self {
-        self.negative = !self.negative;
-        self
+    /// One past the exponent of the highest limb.
+    fn top(&self) -> i16 {
+        self.base + self.len as i16
     }
 
-    /// Limb with the weight `2^(64 place)`.
-    fn limb(&self, place: i32) -> u64 {
-        let k = place - self.lowest;
-        if (0..self.len as i32).contains(&k) { self.limbs[k as usize] } else { 0 }
-    }
-
-    /// Place above the highest limb.
-    fn top(&self) -> i32 {
-        self.lowest + self.len as i32
+    /// The limb of an exponent.
+    fn limb(&self, exponent: i16) -> u64 {
+        let k = exponent - self.base;
+        if k >= 0 && k < self.len as i16 { self.limbs[k as usize] } else { 0 }
     }
 
     fn compare_magnitude(&self, other: &Self) -> Ordering {
-        let (top, lowest) = (self.top().max(other.top()), self.lowest.min(other.lowest));
-        for place in (lowest..top).rev() {
-            match self.limb(place).cmp(&other.limb(place)) {
-                Ordering::Equal => {}
-                unequal => return unequal,
-            }
-        }
-        Ordering::Equal
+        let low = self.base.min(other.base);
+        self.top().cmp(&other.top()).then_with(|| {
+            let exponents = (low..self.top()).rev();
+            exponents
+                .map(|e| self.limb(e).cmp(&other.limb(e)))
+                .find(|o| o.is_ne())
+                .unwrap_or(Ordering::Equal)
+        })
     }
 
-    /// The sum; `None` if it has too many limbs.
-    pub(super) fn add(&self, other: &Self) -> Option<Self> {
-        if self.len == 0 {
-            return Some(*other);
+    pub(crate) fn add(&self, other: &Self) -> Self {
+        self.sum(other, other.negative)
+    }
+
+    pub(crate) fn subtract(&self, other: &Self) -> Self {
+        self.sum(other, !other.negative)
+    }
+
+    /// `self` and the magnitude of `other` with a sign.
+    fn sum(&self, other: &Self, negative: bool) -> Self {
+        if self.overflown || other.overflown {
+            return Self::OVERFLOWN;
         }
         if other.len == 0 {
-            return Some(*self);
+            return *self;
         }
-        if self.negative == other.negative {
-            return self.combine(other, false);
+        if self.len == 0 {
+            return Self { negative, ..*other };
+        }
+        if self.negative == negative {
+            return self.add_magnitude(other);
         }
         match self.compare_magnitude(other) {
-            Ordering::Less => other.combine(self, true),
-            Ordering::Equal => Some(Self::ZERO),
-            Ordering::Greater => self.combine(other, true),
+            Ordering::Less => other.subtract_magnitude(self, negative),
+            Ordering::Equal => Self::ZERO,
+            Ordering::Greater => self.subtract_magnitude(other, self.negative),
         }
     }
 
-    pub(super) fn subtract(&self, other: &Self) -> Option<Self> {
-        self.add(&other.negate())
-    }
-
-    /// The sum of the magnitudes, or the larger one minus the smaller one, with the sign of the
-    /// first.
-    fn combine(&self, other: &Self, subtract: bool) -> Option<Self> {
-        let lowest = self.lowest.min(other.lowest);
-        let len = (self.top().max(other.top()) - lowest) as usize + 1;
-        if len > N {
-            return None;
+    fn add_magnitude(&self, other: &Self) -> Self {
+        let base = self.base.min(other.base);
+        let count = (self.top().max(other.top()) - base) as usize;
+        if count + 1 > N {
+            return Self::OVERFLOWN;
         }
-        let mut result = Self { negative: self.negative, lowest, len, ..Self::ZERO };
+        let mut sum = Self { negative: self.negative, base, len: count as u16 + 1, ..Self::ZERO };
         let mut carry = false;
-        for k in 0..len {
-            let (a, b) = (self.limb(lowest + k as i32), other.limb(lowest + k as i32));
-            let (s, c, d);
-            if subtract {
-                (s, c) = a.overflowing_sub(b);
-                (result.limbs[k], d) = s.overflowing_sub(u64::from(carry));
-            } else {
-                (s, c) = a.overflowing_add(b);
-                (result.limbs[k], d) = s.overflowing_add(u64::from(carry));
-            }
+        for (k, limb) in sum.limbs[..count].iter_mut().enumerate() {
+            let e = base + k as i16;
+            let (s, c) = self.limb(e).overflowing_add(other.limb(e));
+            let (s, d) = s.overflowing_add(u64::from(carry));
+            *limb = s;
             carry = c || d;
         }
-        result.trim();
-        Some(result)
+        sum.limbs[count] = u64::from(carry);
+        sum.trim();
+        sum
     }
 
-    /// The product; `None` if it has too many limbs.
-    pub(super) fn multiply(&self, other: &Self) -> Option<Self> {
-        if self.len == 0 || other.len == 0 {
-            return Some(Self::ZERO);
+    /// The larger magnitude minus the smaller one.
+    fn subtract_magnitude(&self, smaller: &Self, negative: bool) -> Self {
+        let base = self.base.min(smaller.base);
+        let count = (self.top() - base) as usize;
+        if count > N {
+            return Self::OVERFLOWN;
         }
-        let len = self.len + other.len;
-        if len > N {
-            return None;
+        let mut rest = Self { negative, base, len: count as u16, ..Self::ZERO };
+        let mut borrow = false;
+        for (k, limb) in rest.limbs[..count].iter_mut().enumerate() {
+            let e = base + k as i16;
+            let (s, c) = self.limb(e).overflowing_sub(smaller.limb(e));
+            let (s, d) = s.overflowing_sub(u64::from(borrow));
+            *limb = s;
+            borrow = c || d;
         }
-        let negative = self.negative != other.negative;
-        let mut result = Self { negative, lowest: self.lowest + other.lowest, len, ..Self::ZERO };
-        for i in 0..self.len {
+        rest.trim();
+        rest
+    }
+
+    pub(crate) fn multiply(&self, other: &Self) -> Self {
+        if self.overflown || other.overflown {
+            return Self::OVERFLOWN;
+        }
+        let (m, n) = (usize::from(self.len), usize::from(other.len));
+        if m == 0 || n == 0 {
+            return Self::ZERO;
+        }
+        if m + n > N {
+            return Self::OVERFLOWN;
+        }
+        let mut result = Self {
+            negative: self.negative != other.negative,
+            base: self.base + other.base,
+            len: (m + n) as u16,
+            ..Self::ZERO
+        };
+        for i in 0..m {
             let mut carry = 0_u128;
-            for j in 0..other.len {
+            for j in 0..n {
                 let wide = u128::from(self.limbs[i]) * u128::from(other.limbs[j])
                     + u128::from(result.limbs[i + j])
                     + carry;
                 result.limbs[i + j] = wide as u64;
                 carry = wide >> 64;
             }
-            result.limbs[i + other.len] = carry as u64;
+            result.limbs[i + n] = carry as u64;
         }
         result.trim();
-        Some(result)
+        result
     }
 
-    pub(super) fn sign(&self) -> Ordering {
-        match (self.len, self.negative) {
-            (0, _) => Ordering::Equal,
-            (_, true) => Ordering::Less,
-            (_, false) => Ordering::Greater,
+    /// `None` if it did not fit.
+    pub(crate) fn sign(&self) -> Option<Ordering> {
+        match (self.overflown, self.len, self.negative) {
+            (true, ..) => None,
+            (_, 0, _) => Some(Ordering::Equal),
+            (_, _, true) => Some(Ordering::Less),
+            (_, _, false) => Some(Ordering::Greater),
         }
+    }
+
+    /// `m 2^e` to within `2^-52` of itself.
+    fn leading(&self) -> (f64, i32) {
+        if self.len == 0 {
+            return (0.0, 0);
+        }
+        let top = self.top() - 1;
+        let bits = u128::from(self.limb(top)) << 64 | u128::from(self.limb(top - 1));
+        let magnitude = bits as f64;
+        (if self.negative { -magnitude } else { magnitude }, 64 * (i32::from(top) - 1))
+    }
+
+    /// `self / other`, to within a few roundings of itself; `None` if one of them did not fit.
+    pub(crate) fn ratio(&self, other: &Self) -> Option<f64> {
+        if self.overflown || other.overflown {
+            return None;
+        }
+        let ((n, i), (d, j)) = (self.leading(), other.leading());
+        let (quotient, exponent) = (n / d, i - j);
+        let half = exponent / 2;
+        Some(quotient * 2.0_f64.powi(half) * 2.0_f64.powi(exponent - half))
     }
 }
 
@@ -168,19 +239,81 @@ fn decode(x: f64) -> (u64, i32) {
     if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
 }
 
+/// `det[a, b, c]`.
+pub(crate) fn determinant<const N: usize>(
+    a: &[Integer<N>; 3],
+    b: &[Integer<N>; 3],
+    c: &[Integer<N>; 3],
+) -> Integer<N> {
+    let mut sum = Integer::ZERO;
+    for (k, component) in a.iter().enumerate() {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let minor = b[i].multiply(&c[j]).subtract(&b[j].multiply(&c[i]));
+        sum = sum.add(&component.multiply(&minor));
+    }
+    sum
+}
+
+/// `a - b`.
+pub(crate) fn difference<const N: usize>(
+    a: &[Integer<N>; 3],
+    b: &[Integer<N>; 3],
+) -> [Integer<N>; 3] {
+    std::array::from_fn(|k| a[k].subtract(&b[k]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::tests::{number, rational};
     use dashu_ratio::RBig;
     use proptest::prelude::*;
 
+    fn rational(x: f64) -> RBig {
+        RBig::try_from(x).unwrap()
+    }
+
+    /// Numbers of very different size, zero and ties among them.
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            Just(0.0),
+            (-4_i32..=4).prop_map(f64::from),
+            -1.0..1.0_f64,
+            (-1.0..1.0_f64, -180_i32..180).prop_map(|(x, e)| x * 2.0_f64.powi(e)),
+        ]
+    }
+
     proptest! {
         #[test]
-        fn integers_agree_with_rationals(a in number(), b in number(), c in number(), d in number()) {
-            let sum = Integer::<ALL>::product(a, b).add(&Integer::product(c, d)).unwrap();
+        fn sums_of_products_agree_with_rationals(a in number(), b in number(), c in number(), d in number()) {
             let expected = rational(a) * rational(b) + rational(c) * rational(d);
-            prop_assert_eq!(sum.sign(), expected.cmp(&RBig::ZERO));
+            let sign = Some(expected.cmp(&RBig::ZERO));
+            let large = Integer::<LARGE>::product(a, b).add(&Integer::product(c, d));
+            prop_assert_eq!(large.sign(), sign);
+            let small = Integer::<SMALL>::product(a, b).add(&Integer::product(c, d)).sign();
+            prop_assert!(small.is_none() || small == sign);
+        }
+
+        #[test]
+        fn determinants_and_ratios_agree_with_rationals(numbers in prop::array::uniform9(number()), w in number(), z in number()) {
+            let coordinate = |k: usize| Integer::<LARGE>::product(numbers[k], w).add(&Integer::number(z));
+            let small = |k: usize| Integer::<SMALL>::product(numbers[k], w).add(&Integer::number(z));
+            let exact = |k: usize| rational(numbers[k]) * rational(w) + rational(z);
+            let row = |r: usize| [coordinate(r), coordinate(r + 1), coordinate(r + 2)];
+            let det = determinant(&row(0), &row(3), &row(6));
+            let minor = |a: usize, b: usize| exact(3 + a) * exact(6 + b) - exact(3 + b) * exact(6 + a);
+            let expected = exact(0) * minor(1, 2) + exact(1) * minor(2, 0) + exact(2) * minor(0, 1);
+            let sign = Some(expected.cmp(&RBig::ZERO));
+            prop_assert_eq!(det.sign(), sign);
+            let row = |r: usize| [small(r), small(r + 1), small(r + 2)];
+            let small = determinant(&row(0), &row(3), &row(6)).sign();
+            prop_assert!(small.is_none() || small == sign);
+            let cube = coordinate(0).multiply(&coordinate(0)).multiply(&coordinate(0));
+            let cubed = exact(0) * exact(0) * exact(0);
+            if cubed != RBig::ZERO {
+                let (found, right) = (det.ratio(&cube).unwrap(), (expected / cubed).to_f64().value());
+                let far = !(1e-290..1e290).contains(&right.abs()) && right != 0.0;
+                prop_assert!(far || (found - right).abs() <= 1e-14 * right.abs(), "{found} {right}");
+            }
         }
     }
 }

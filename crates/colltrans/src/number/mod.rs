@@ -5,10 +5,11 @@ pub(crate) mod determinant;
 mod double;
 pub(crate) mod error_free;
 pub(crate) mod extent;
-mod integer;
+pub(crate) mod integer;
 pub(crate) mod noise;
 pub(crate) mod orientation;
 pub(crate) mod plane;
+pub(crate) mod predicates;
 pub(crate) mod range;
 pub(crate) mod symmetric;
 

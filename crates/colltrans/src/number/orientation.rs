@@ -23,7 +23,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::double::{Double, Sums};
 use super::error_free::{difference_error, sum_error};
-use super::integer::{ALL, Integer, USUAL};
+use super::integer::{Integer, LARGE, SMALL};
 
 /// A point of `M` as the sum of products that defines it: `R_Q q - R_P p + high + low`.
 #[derive(Debug, Clone, Copy)]
@@ -54,28 +54,15 @@ impl Terms<'_> {
         DVec3::from_array(self.rounded([0, 1, 2]).map(|coordinate| coordinate.high))
     }
 
-    fn coordinate<const N: usize>(&self, row: usize) -> Option<Integer<N>> {
-        let mut sum = Integer::ZERO;
-        for (a, b) in self.row(row) {
-            if a != 0.0 && b != 0.0 {
-                sum = sum.add(&Integer::product(a, b))?;
-            }
-        }
-        Some(sum)
+    fn coordinate<const N: usize>(&self, row: usize) -> Integer<N> {
+        self.row(row).iter().fold(Integer::ZERO, |sum, &(a, b)| sum.add(&Integer::product(a, b)))
     }
 
     /// The exact shadow.
-    fn shadow<const N: usize>(&self, d: DVec3, [m, u, v]: [usize; 3]) -> Option<[Integer<N>; 2]> {
-        let (along_u, along_v) = (self.coordinate(u)?, self.coordinate(v)?);
-        let times = |x: &Integer<N>, k: usize| x.multiply(&Integer::product(d[k], 1.0));
-        if d[u] == 0.0 && d[v] == 0.0 {
-            return Some([times(&along_u, m)?, times(&along_v, m)?]);
-        }
-        let along_m = self.coordinate(m)?;
-        Some([
-            times(&along_u, m)?.subtract(&times(&along_m, u)?)?,
-            times(&along_v, m)?.subtract(&times(&along_m, v)?)?,
-        ])
+    fn shadow<const N: usize>(&self, d: DVec3, [m, u, v]: [usize; 3]) -> [Integer<N>; 2] {
+        let times = |x: &Integer<N>, k: usize| x.multiply(&Integer::number(d[k]));
+        let along_m = self.coordinate(m);
+        [u, v].map(|k| times(&self.coordinate(k), m).subtract(&times(&along_m, k)))
     }
 }
 
@@ -93,8 +80,8 @@ pub(crate) fn orientation(
 ) -> Ordering {
     let axes = axes_of(d);
     by_doubles(a, b, d, axes, base)
-        .or_else(|| by_integers::<USUAL>(a, b, d, axes))
-        .or_else(|| by_integers::<ALL>(a, b, d, axes))
+        .or_else(|| by_integers::<SMALL>(a, b, d, axes))
+        .or_else(|| by_integers::<LARGE>(a, b, d, axes))
         .unwrap_or(Ordering::Equal)
 }
 
@@ -105,14 +92,14 @@ fn by_integers<const N: usize>(
     d: DVec3,
     axes: [usize; 3],
 ) -> Option<Ordering> {
-    let ([au, av], [bu, bv]) = (a.shadow::<N>(d, axes)?, b.shadow::<N>(d, axes)?);
-    let det = au.multiply(&bv)?.subtract(&av.multiply(&bu)?)?.sign();
+    let ([au, av], [bu, bv]) = (a.shadow::<N>(d, axes), b.shadow::<N>(d, axes));
+    let det = au.multiply(&bv).subtract(&av.multiply(&bu)).sign()?;
     if det != Ordering::Equal {
         return Some(if d[axes[0]] < 0.0 { det.reverse() } else { det });
     }
     // det[a - o, b - o, d] = det[a, b, d] - o . ((b - a) x d)
-    let first = av.subtract(&bv)?.sign();
-    Some(if first.is_ne() { first } else { bu.subtract(&au)?.sign() })
+    let first = av.subtract(&bv).sign()?;
+    if first.is_ne() { Some(first) } else { bu.subtract(&au).sign() }
 }
 
 /// A shadow in numbers of twice the usual precision.

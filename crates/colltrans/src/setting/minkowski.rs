@@ -13,6 +13,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::number::noise::{self, Noise};
 use crate::number::orientation::{self, Shadow, Terms};
+use crate::number::predicates::orient2d;
 use crate::number::symmetric::Symmetric;
 use crate::setting::{Setting, VertexPair};
 
@@ -350,8 +351,7 @@ impl<'a> MinkowskiDifference<'a> {
         }
         // Widened bodies exist only in rounded coordinates; their determinant is exact for those.
         let (a, b) = (from.shadow(), to.shadow());
-        let coord = |v: DVec2| robust::Coord { x: v.x, y: v.y };
-        let det = robust::orient2d(coord(a), coord(b), coord(DVec2::ZERO));
+        let det = orient2d(a, b, DVec2::ZERO);
         if det != 0.0 {
             return det > 0.0;
         }

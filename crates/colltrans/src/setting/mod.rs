@@ -91,6 +91,12 @@ impl<'a, B> Setting<'a, B> {
         })
     }
 
+    /// `t_Q - t_P`, and what rounding took from it.
+    #[inline]
+    pub(crate) fn exact_offset(&self) -> [DVec3; 2] {
+        [self.offset, self.offset_error]
+    }
+
     /// The same bodies, and the direction turned round.
     #[inline]
     pub(crate) fn reversed(&self) -> Self {
@@ -109,12 +115,6 @@ impl Setting<'_> {
     #[inline]
     pub(crate) fn noise(&self) -> Noise {
         Noise::of(self.scale())
-    }
-
-    /// `t_Q - t_P`, and what rounding took from it.
-    #[inline]
-    pub(crate) fn exact_offset(&self) -> [DVec3; 2] {
-        [self.offset, self.offset_error]
     }
 
     /// A pair's vertices, in the frames of the moving and the fixed body.

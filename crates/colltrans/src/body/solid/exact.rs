@@ -3,7 +3,9 @@
 use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
-use robust::{Coord, Coord3D, orient2d, orient3d};
+
+pub(crate) use crate::number::predicates::sign;
+use crate::number::predicates::{orient2d, orient3d};
 
 /// The point along one of the axes, counter-clockwise order kept.
 pub(super) fn drop_axis(p: DVec3, axis: usize) -> DVec2 {
@@ -16,21 +18,13 @@ pub(super) fn drop_axis(p: DVec3, axis: usize) -> DVec2 {
 
 /// Sign of `det[b - a, c - a, e]` with `e` the unit vector of an axis.
 pub(crate) fn turn(a: DVec3, b: DVec3, c: DVec3, axis: usize) -> Ordering {
-    let coord = |p: DVec3| {
-        let p = drop_axis(p, axis);
-        Coord { x: p.x, y: p.y }
-    };
-    sign(orient2d(coord(a), coord(b), coord(c)))
+    let [a, b, c] = [a, b, c].map(|p| drop_axis(p, axis));
+    sign(orient2d(a, b, c))
 }
 
 /// Sign of `det[b - a, c - a, e - a]`.
 pub(crate) fn side(a: DVec3, b: DVec3, c: DVec3, e: DVec3) -> Ordering {
-    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
-    sign(-orient3d(coord(a), coord(b), coord(c), coord(e)))
-}
-
-pub(crate) fn sign(x: f64) -> Ordering {
-    x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+    sign(orient3d(a, b, c, e))
 }
 
 /// Whether three points lie on one line.

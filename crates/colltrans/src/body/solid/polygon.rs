@@ -10,7 +10,8 @@
 //! looks at a few, so that `k` corners take about `k log k` steps.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
-use robust::{Coord, orient2d};
+
+use crate::number::predicates::orient2d as turn;
 
 use crate::work;
 
@@ -166,12 +167,6 @@ fn project(corners: &[DVec3]) -> Vec<DVec2> {
     let upwards = area[area.abs().max_position()] >= 0.0;
     let turned = |p: DVec2| if upwards { p } else { DVec2::new(-p.x, p.y) };
     corners.iter().map(|p| turned(flat(p))).collect()
-}
-
-/// Positive if `a b c` turn to the left; exact in sign.
-fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
-    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
-    orient2d(coord(a), coord(b), coord(c))
 }
 
 #[cfg(test)]

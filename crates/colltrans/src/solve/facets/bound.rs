@@ -3,15 +3,16 @@
 //! A node is looked at in the query frame as a [`Shade`], a box and a slab `low <= n.x <= high` that hold
 //! its facets, and how far their normals differ from `n`; and as a [`Profile`], which says besides how
 //! far it reaches along the directions of the query's [fan](super::fan). Everything is rounded outwards
-//! by the blur of coordinates, except along axes where coordinates are exact: there boxes that touch
+//! by the noise of coordinates, except along axes where coordinates are exact: there boxes that touch
 //! are told from boxes that overlap, so that zero clearance is cut off high up in the trees.
 
 use glam::{DMat3, DVec3};
 
 use super::fan::Reach;
-use super::scene::{Scene, Side, sum_error};
+use super::scene::{Scene, Side};
 use crate::body::solid::Shrinking;
 use crate::body::solid::cuts::Parts;
+use crate::number::error_free::sum_error;
 
 /// Cosine from which on a slab bounds more along an axis than the box does.
 const PARALLEL: f64 = 0.75;
@@ -41,15 +42,15 @@ pub enum Reason {
 
 /// A node in the query frame.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shade {
-    pub(super) node: u32,
-    pub(super) low: DVec3,
-    pub(super) high: DVec3,
+pub(crate) struct Shade {
+    pub(crate) node: u32,
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
     /// The box in the body frame, after shrinking.
-    pub(super) local: [DVec3; 2],
+    pub(crate) local: [DVec3; 2],
     /// The node's axis and its slab.
-    pub(super) axis: DVec3,
-    pub(super) slab: [f64; 2],
+    pub(crate) axis: DVec3,
+    pub(crate) slab: [f64; 2],
     /// The axis' component along the direction, rounded in the body frame.
     along: f64,
     /// Facing can be told if `|along|` reaches this.
@@ -57,7 +58,7 @@ pub(super) struct Shade {
 }
 
 impl Shade {
-    pub(super) fn new(scene: &Scene, side: &Side, at: usize) -> Self {
+    pub(crate) fn new(scene: &Scene, side: &Side, at: usize) -> Self {
         let node = &side.solid.nodes()[at];
         let axis = side.view * node.axis;
         let shift = axis.dot(side.view_offset);
@@ -67,7 +68,7 @@ impl Shade {
             high: node.high,
             local: [node.low, node.high],
             axis,
-            slab: [node.slab[0] + shift - scene.blur, node.slab[1] + shift + scene.blur],
+            slab: [node.slab[0] + shift - scene.noise, node.slab[1] + shift + scene.noise],
             along: node.axis.dot(side.along),
             spread: f64::from(node.spread),
         };
@@ -80,8 +81,8 @@ impl Shade {
         (shade.low, shade.high) = boxed(scene, side, shade.local);
         if node.is_open() {
             // What is on edge has a shadow without a width, but counts.
-            shade.low -= scene.blur;
-            shade.high += scene.blur;
+            shade.low -= scene.noise;
+            shade.high += scene.noise;
         }
         shade
     }
@@ -102,7 +103,7 @@ impl Shade {
 
     /// Whether both nodes lie in one plane, exactly, and look at each other. Boxes without thickness are
     /// exact: others are rounded outwards.
-    pub(super) fn is_face_to_face(&self, other: &Self) -> bool {
+    pub(crate) fn is_face_to_face(&self, other: &Self) -> bool {
         let flat = |k: usize| {
             self.low[k] == self.high[k]
                 && other.low[k] == other.high[k]
@@ -119,13 +120,13 @@ impl Shade {
     }
 
     /// The range of `m.x` over the node, `m` a unit vector.
-    fn range(&self, side: &Side, m: DVec3, blur: f64) -> [f64; 2] {
-        [self.least_along(side, m, blur), -self.least_along(side, -m, blur)]
+    fn range(&self, side: &Side, m: DVec3, noise: f64) -> [f64; 2] {
+        [self.least_along(side, m, noise), -self.least_along(side, -m, noise)]
     }
 
     /// The least `m.x` over the node, `m` a unit vector, by its cut box: of what is left of `m` next to
     /// its part along the slab, if that is most of it.
-    fn least_along(&self, side: &Side, m: DVec3, blur: f64) -> f64 {
+    fn least_along(&self, side: &Side, m: DVec3, noise: f64) -> f64 {
         let along = self.axis.dot(m);
         let (mut rest, mut slab) = (m, 0.0);
         if along.abs() > PARALLEL && self.slab[1] < f64::INFINITY {
@@ -134,7 +135,7 @@ impl Shade {
         }
         let (local, [low, high]) = (side.view.transpose() * rest, self.local);
         let middle = local.dot((low + high) * 0.5) + rest.dot(side.view_offset);
-        let spread = local.abs().dot((high - low) * 0.5) + blur;
+        let spread = local.abs().dot((high - low) * 0.5) + noise;
         let node = &side.solid.nodes()[self.node as usize];
         let gain = Parts::new(-local).gain_of(&node.cuts, node.high - node.low, side.moved());
         slab + middle - spread + gain
@@ -162,7 +163,7 @@ fn boxed(scene: &Scene, side: &Side, [near, far]: [DVec3; 2]) -> (DVec3, DVec3) 
     let middle = side.view * center + side.view_offset;
     let DMat3 { x_axis, y_axis, z_axis } = side.view;
     let extent = x_axis.abs() * half.x + y_axis.abs() * half.y + z_axis.abs() * half.z;
-    let extent = extent + scene.blur;
+    let extent = extent + scene.noise;
     let (mut low, mut high) = (middle - extent, middle + extent);
     if side.shrinking.is_none() && side.aligned != [false; 3] {
         let rows = side.view.transpose();
@@ -181,7 +182,7 @@ fn boxed(scene: &Scene, side: &Side, [near, far]: [DVec3; 2]) -> (DVec3, DVec3) 
 
 /// `a + b`, rounded downwards or upwards unless it is exact.
 fn rounded_sum(a: f64, b: f64, exact: bool, way: i32) -> f64 {
-    let (sum, error) = (a + b, sum_error(a, b));
+    let (sum, error) = (a + b, sum_error(a, b, a + b));
     if exact && (error == 0.0 || (error > 0.0) == (way < 0)) {
         return sum;
     }
@@ -190,10 +191,10 @@ fn rounded_sum(a: f64, b: f64, exact: bool, way: i32) -> f64 {
 
 /// A node as a search compares it.
 #[derive(Clone, Copy)]
-pub(super) struct Profile<'s> {
-    pub(super) shade: &'s Shade,
+pub(crate) struct Profile<'s> {
+    pub(crate) shade: &'s Shade,
     /// Not asked for where both bodies have the axes of the query: then boxes say as much.
-    pub(super) reach: Option<&'s Reach>,
+    pub(crate) reach: Option<&'s Reach>,
 }
 
 impl Profile<'_> {
@@ -210,7 +211,7 @@ impl Profile<'_> {
 
 /// Why no pair of facets under two nodes counts for less than `limit`, as far as boxes and facing say;
 /// `parting` pairs, with a negative largest gap, are of no interest if so said.
-pub(super) fn dismissed(a: &Shade, b: &Shade, limit: f64, parting: bool) -> Option<Reason> {
+pub(crate) fn dismissed(a: &Shade, b: &Shade, limit: f64, parting: bool) -> Option<Reason> {
     if a.looks_back() {
         return Some(Reason::MovingFacesAway);
     }
@@ -231,7 +232,7 @@ pub(super) fn dismissed(a: &Shade, b: &Shade, limit: f64, parting: bool) -> Opti
 ///
 /// # Errors
 /// Why no pair of facets counts for less than `limit`.
-pub(super) fn least_gap(
+pub(crate) fn least_gap(
     scene: &Scene,
     p: Profile,
     q: Profile,
@@ -264,7 +265,7 @@ pub(super) fn least_gap(
 }
 
 /// Whether a reason to cut a pair of nodes holds, checked by itself; `limit` as for [`least_gap`].
-pub(super) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit: f64) -> bool {
+pub(crate) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit: f64) -> bool {
     let (a, b) = (p.shade, q.shade);
     match reason {
         Reason::MovingFacesAway => a.looks_back(),
@@ -300,11 +301,11 @@ fn slab_gaps(scene: &Scene, a: &Shade, b: &Shade) -> [f64; 2] {
         largest = largest.min((low * inverse).max(high * inverse));
     };
     if a.has_heights() {
-        let [low, high] = b.range(&scene.fixed, a.axis, 2.0 * scene.blur);
+        let [low, high] = b.range(&scene.fixed, a.axis, 2.0 * scene.noise);
         add(low - a.slab[1], high - a.slab[0], a.axis.z);
     }
     if b.has_heights() {
-        let [low, high] = a.range(&scene.moving, b.axis, 2.0 * scene.blur);
+        let [low, high] = a.range(&scene.moving, b.axis, 2.0 * scene.noise);
         add(b.slab[0] - high, b.slab[1] - low, b.axis.z);
     }
     [least, largest]
@@ -312,24 +313,24 @@ fn slab_gaps(scene: &Scene, a: &Shade, b: &Shade) -> [f64; 2] {
 
 /// The lower of these bounds.
 fn least_slab_gap(scene: &Scene, a: &Shade, b: &Shade) -> f64 {
-    let blur = 2.0 * scene.blur;
+    let noise = 2.0 * scene.noise;
     let mut least = f64::NEG_INFINITY;
     if a.has_heights() {
         let up = a.axis.z.signum();
         let top = if up > 0.0 { a.slab[1] } else { -a.slab[0] };
-        least = (b.least_along(&scene.fixed, a.axis * up, blur) - top) / a.axis.z.abs();
+        least = (b.least_along(&scene.fixed, a.axis * up, noise) - top) / a.axis.z.abs();
     }
     if b.has_heights() {
         let up = b.axis.z.signum();
         let bottom = if up > 0.0 { b.slab[0] } else { -b.slab[1] };
-        let rest = a.least_along(&scene.moving, b.axis * -up, blur);
+        let rest = a.least_along(&scene.moving, b.axis * -up, noise);
         least = least.max((rest + bottom) / b.axis.z.abs());
     }
     least
 }
 
 /// Whether no point of one node is a point of the other, by boxes and slabs.
-pub(super) fn apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
+pub(crate) fn apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
     (0..3).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k])
         || beyond(scene, (p, a), (q, b))
@@ -337,10 +338,10 @@ pub(super) fn apart(scene: &Scene, a: &Shade, b: &Shade) -> bool {
 }
 
 /// Whether a node is certainly beyond a side of another's box or slab.
-pub(super) fn beyond(scene: &Scene, (p, a): (&Side, &Shade), (q, b): (&Side, &Shade)) -> bool {
+pub(crate) fn beyond(scene: &Scene, (p, a): (&Side, &Shade), (q, b): (&Side, &Shade)) -> bool {
     let apart = |axis: DVec3, range: [f64; 2]| {
-        let [least, largest] = b.range(q, axis, 2.0 * scene.blur);
-        least > range[1] + scene.blur || largest < range[0] - scene.blur
+        let [least, largest] = b.range(q, axis, 2.0 * scene.noise);
+        least > range[1] + scene.noise || largest < range[0] - scene.noise
     };
     a.slab[1] < f64::INFINITY && apart(a.axis, a.slab)
         || p.aligned == [false; 3] && (0..3).any(|k| apart(p.view.col(k), a.local_range(p, k)))

@@ -9,7 +9,7 @@
 //! least a number that the search has kept ([`Found::others`]); or a bound, of nodes or of the facets,
 //! was not less than the limit of that time, which was not less than the last one, and bounds of nodes
 //! are off by less than [`node_rounding`](super::proof::node_rounding). The least of the three, less one
-//! blur, which is more than what the roundings of these few operations and of the division by the
+//! noise, which is more than what the roundings of these few operations and of the division by the
 //! direction's length can be (some `8 u S` of `32 u S`), is the lower bound.
 //!
 //! *The true place.* The same two facets are looked at once more, as they are. Where they face each
@@ -101,16 +101,17 @@ impl Foot {
 
 impl Found {
     /// The gap as a translation with its bounds; see the module's head.
-    pub(super) fn bounded(&self, scene: &Scene) -> Bounded {
-        let lower = self.others.min(self.gap - self.error) - scene.blur;
-        let upper = self.gap + self.error + scene.blur;
-        let [value, lower, upper] = [self.gap, lower, upper].map(|length| length / scene.length);
+    pub(crate) fn bounded(&self, scene: &Scene) -> Bounded {
+        let lower = self.others.min(self.gap - self.error) - scene.noise;
+        let upper = self.gap + self.error + scene.noise;
+        let [value, lower, upper] =
+            [self.gap, lower, upper].map(|length| length / scene.setting.length);
         Bounded { value, lower, upper }
     }
 }
 
 /// The contact of a search with the bodies as `scene` has them.
-pub(super) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidContact {
+pub(crate) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidContact {
     let (moving, fixed) = (&scene.moving, &scene.fixed);
     let of_f = Listed::new(scene, moving, found.moving);
     let of_g = Listed::new(scene, fixed, found.fixed);
@@ -194,14 +195,14 @@ fn true_place(
     if let Some(gap) = exact {
         return known(gap);
     }
-    let slope = normal.dot(scene.direction);
+    let slope = normal.dot(scene.setting.direction);
     // Along planes that are all but on edge their meeting says nothing of the bodies.
-    let steep = slope <= STEEPEST * scene.length;
-    let noise = scene.blur / scene.length;
+    let steep = slope <= STEEPEST * scene.setting.length;
+    let noise = scene.noise / scene.setting.length;
     let [back, error] =
-        if steep { [0.0, noise] } else { [normal.dot(shift), scene.blur].map(|x| x / slope) };
+        if steep { [0.0, noise] } else { [normal.dot(shift), scene.noise].map(|x| x / slope) };
     let value = (shrunk.value + back).min(shrunk.value);
-    let mut least = leaf::least_in_doubt(&bare, pair) / scene.length;
+    let mut least = leaf::least_in_doubt(&bare, pair) / scene.setting.length;
     if least < value - ENOUGH * noise {
         if let Some(gap) = exact_gap(&bare, Aim::Stop, pair) {
             return known(gap);
@@ -299,6 +300,6 @@ fn meeting(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
 /// What a foot names, to within the precision of the coordinates and rounding.
 fn feature(scene: &Scene, side: &Side, triangle: u32, foot: &Foot, normal: DVec3) -> Feature {
     let at = foot.mean(|v| side.solid.vertices()[v as usize]);
-    let slack = 2.0 * side.solid.precision() + scene.blur;
+    let slack = 2.0 * side.solid.precision() + scene.noise;
     side.solid.feature_at(triangle, at, side.matrix.transpose() * normal, slack)
 }

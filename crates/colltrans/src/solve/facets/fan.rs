@@ -14,8 +14,8 @@
 //! A node of the moving body reaches so far along `n`, one of the fixed body along `-n`; less than
 //! nothing for both together is by how much they are apart.
 //!
-//! Rounding. A point's coordinates in the query frame are off by a blur each, and computing how far a
-//! node reaches along `n` by less than another `|n|_1` blurs: `n` in the body frame is off by
+//! Rounding. A point's coordinates in the query frame are off by a noise each, and computing how far a
+//! node reaches along `n` by less than another `|n|_1` noises: `n` in the body frame is off by
 //! `4 u |n|_1`, the box's middle and half extents, products with them and sums with the offset by
 //! `15 u |n|_1` times their sizes, the cuts by `8 u |n|_1` times the body's.
 
@@ -41,7 +41,7 @@ const STEEP: f64 = 1.0 / 1024.0;
 const PARALLEL: f64 = 1e-6;
 
 /// The directions of a query, as the moving body and the fixed one see them.
-pub(super) struct Fan([View; 2]);
+pub(crate) struct Fan([View; 2]);
 
 /// Directions in a body's frame, by coordinates.
 struct View {
@@ -58,7 +58,7 @@ struct View {
 }
 
 impl View {
-    fn new(side: &Side, all: &[DVec3; SHARED], blur: f64) -> Self {
+    fn new(side: &Side, all: &[DVec3; SHARED], noise: f64) -> Self {
         let turn = if side.moving { 1.0 } else { -1.0 };
         let local = all.map(|n| side.view.transpose() * (n * turn));
         let parts = |k: usize| Parts::new(if k < SHARED { local[k] } else { -local[k - 6] });
@@ -66,7 +66,7 @@ impl View {
         Self {
             local: [0, 1, 2].map(|axis| local.map(|n| n[axis])),
             offset: all.map(|n| turn * n.dot(side.view_offset)),
-            slack: all.map(|n| 2.0 * blur * n.abs().element_sum()),
+            slack: all.map(|n| 2.0 * noise * n.abs().element_sum()),
             parts: std::array::from_fn(parts),
             others: AXES[other],
             lines: [LINES[own], LINES[other]],
@@ -112,7 +112,7 @@ impl View {
 }
 
 impl Fan {
-    pub(super) fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(scene: &Scene) -> Self {
         let axes = |side: &Side| [side.view.x_axis, side.view.y_axis, side.view.z_axis];
         let (p, q) = (axes(&scene.moving), axes(&scene.fixed));
         let mut all = [DVec3::Z; SHARED];
@@ -127,12 +127,12 @@ impl Fan {
         for (axis, place) in p.into_iter().chain(q).zip(&mut all[NORMALS..]) {
             *place = axis.xy().perp().try_normalize().unwrap_or(DVec2::X).extend(0.0);
         }
-        Self([&scene.moving, &scene.fixed].map(|side| View::new(side, &all, scene.blur)))
+        Self([&scene.moving, &scene.fixed].map(|side| View::new(side, &all, scene.noise)))
     }
 
     /// How far a node reaches along the directions.
     #[inline]
-    pub(super) fn reach(&self, side: &Side, shade: &Shade) -> Reach {
+    pub(crate) fn reach(&self, side: &Side, shade: &Shade) -> Reach {
         let [low, high] = shade.local;
         let view = &self.0[usize::from(!side.moving)];
         let mut reach = [0.0; ALL];
@@ -145,18 +145,18 @@ impl Fan {
 
 /// How far a node reaches along the directions of a query.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reach([f64; ALL]);
+pub(crate) struct Reach([f64; ALL]);
 
 impl Reach {
     /// No gap between a node of the moving body and one of the fixed body is smaller.
     #[inline]
-    pub(super) fn least_gap(&self, fixed: &Self) -> f64 {
+    pub(crate) fn least_gap(&self, fixed: &Self) -> f64 {
         -least_sum(&self.0[..NORMALS], &fixed.0[..NORMALS])
     }
 
     /// Whether the shadows are apart.
     #[inline]
-    pub(super) fn is_apart(&self, fixed: &Self) -> bool {
+    pub(crate) fn is_apart(&self, fixed: &Self) -> bool {
         least_sum(&self.0[NORMALS..], &fixed.0[NORMALS..]) < 0.0
     }
 }

@@ -14,8 +14,8 @@ use super::bound::Shade;
 use super::overlap::{Plate, lies_on};
 use super::scene::{Corner, Scene, Side, Spot, place_exactly};
 use super::search::children;
-use super::wide::Wide;
 use crate::body::solid::edges::NONE;
+use crate::number::integer::Integer;
 
 /// Triangles of a shell that are tried for a point off the other surface. A shell inside touches it
 /// in isolated points only, so the first or second one does, unless it touches along facets.
@@ -25,7 +25,7 @@ const WEIGHTS: [[f64; 3]; 4] =
     [[0.5, 0.25, 0.25], [0.25, 0.5, 0.25], [0.25, 0.25, 0.5], [0.0, 0.5, 0.5]];
 
 /// A triangle of a shell of one body that lies inside the other.
-pub(super) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
+pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
     let (own, other) = (scene.side(moving), scene.side(!moving));
     if !other.solid.has_inside() {
         return None;
@@ -37,10 +37,10 @@ pub(super) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
         let rows = own.view.transpose();
         let swell = own.shrinking.map_or(0.0, |s| s.farthest * own.amount);
         let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
-        let extent = DVec3::from_array(extent) + DVec3::splat(swell + 4.0 * scene.blur);
+        let extent = DVec3::from_array(extent) + DVec3::splat(swell + 4.0 * scene.noise);
         // A shell that reaches out of the other's box is not inside it.
-        let within = (at + extent).cmple(room.high + 16.0 * scene.blur).all()
-            && (at - extent).cmpge(room.low - 16.0 * scene.blur).all();
+        let within = (at + extent).cmple(room.high + 16.0 * scene.noise).all()
+            && (at - extent).cmpge(room.low - 16.0 * scene.noise).all();
         // The other's box is loose where it is not aligned; then all that overlap are asked.
         let meets = (at + extent).cmpge(room.low).all() && (at - extent).cmple(room.high).all();
         let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
@@ -52,7 +52,7 @@ pub(super) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
 }
 
 /// Whether the shell of a body with this triangle is inside the other body.
-pub(super) fn is_inside(scene: &Scene, moving: bool, triangle: u32) -> bool {
+pub(crate) fn is_inside(scene: &Scene, moving: bool, triangle: u32) -> bool {
     decide(scene, scene.side(moving), scene.side(!moving), triangle)
 }
 
@@ -113,7 +113,7 @@ impl Spot for Mean {
         None
     }
 
-    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3] {
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
         place_exactly(scene.side(self.moving), &self.terms)
     }
 }
@@ -125,11 +125,11 @@ fn winding(scene: &Scene, side: &Side, spot: &impl Spot) -> Option<i32> {
 
 /// The part of it from the facets of one node.
 fn winding_below(scene: &Scene, side: &Side, spot: &impl Spot, at: u32) -> Option<i32> {
-    let (p, blur) = (spot.at(), 4.0 * scene.blur);
+    let (p, noise) = (spot.at(), 4.0 * scene.noise);
     let node = &side.solid.nodes()[at as usize];
     let shade = Shade::new(scene, side, at as usize);
-    let beside = (0..2).any(|k| p[k] < shade.low[k] - blur || p[k] > shade.high[k] + blur);
-    if beside || p.z > shade.high.z + blur {
+    let beside = (0..2).any(|k| p[k] < shade.low[k] - noise || p[k] > shade.high[k] + noise);
+    if beside || p.z > shade.high.z + noise {
         return Some(0);
     }
     if !node.is_leaf() {
@@ -152,7 +152,7 @@ fn winding_below(scene: &Scene, side: &Side, spot: &impl Spot, at: u32) -> Optio
 
 /// The two axes of the world along which the direction is smaller.
 fn sideways(scene: &Scene) -> [usize; 2] {
-    let main = scene.direction.abs().max_position();
+    let main = scene.setting.direction.abs().max_position();
     [(main + 1) % 3, (main + 2) % 3]
 }
 

@@ -18,20 +18,20 @@ use glam::DVec3;
 
 use super::scene::{Corner, Scene, Side};
 use super::sign::rough_turn;
-use super::wide::{LARGE, SMALL, Wide, determinant, difference};
+use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
 
-/// Rounded gaps are used while their error is below so many times the blur of coordinates, `2e-10 S`;
-/// the one that decides is taken again exactly if its error is not below [`FINE`] times the blur.
-pub(super) const SHARP: f64 = 65_536.0;
-pub(super) const FINE: f64 = 256.0;
+/// Rounded gaps are used while their error is below so many times the noise of coordinates, `2e-10 S`;
+/// the one that decides is taken again exactly if its error is not below [`FINE`] times the noise.
+pub(crate) const SHARP: f64 = 65_536.0;
+pub(crate) const FINE: f64 = 256.0;
 
 /// A facet, its shadow running counter-clockwise.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Facet {
-    pub(super) triangle: u32,
-    pub(super) corners: [Corner; 3],
-    pub(super) low: DVec3,
-    pub(super) high: DVec3,
+pub(crate) struct Facet {
+    pub(crate) triangle: u32,
+    pub(crate) corners: [Corner; 3],
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
     /// Its plane.
     slope: Slope,
 }
@@ -39,7 +39,7 @@ pub(super) struct Facet {
 impl Facet {
     /// The facet if it is a front (`Greater`) or back (`Less`) facet of its body; without a side, it is
     /// both.
-    pub(super) fn facing(
+    pub(crate) fn facing(
         scene: &Scene,
         moving: bool,
         triangle: usize,
@@ -69,14 +69,14 @@ impl Facet {
             .fold(f64::INFINITY, f64::min)
     }
 
-    pub(super) fn side(&self, k: usize) -> [&Corner; 2] {
+    pub(crate) fn side(&self, k: usize) -> [&Corner; 2] {
         [&self.corners[k], &self.corners[(k + 1) % 3]]
     }
 }
 
 /// The corners of a triangle, listed so that its shadow runs counter-clockwise if it has an area, and
 /// which way it runs as it is.
-pub(super) fn listed(scene: &Scene, side: &Side, triangle: usize) -> ([Corner; 3], Ordering) {
+pub(crate) fn listed(scene: &Scene, side: &Side, triangle: usize) -> ([Corner; 3], Ordering) {
     let mut corners = side.corners(triangle);
     let turn = scene.turn(&corners[0], &corners[1], &corners[2]);
     if turn == Ordering::Less {
@@ -87,7 +87,7 @@ pub(super) fn listed(scene: &Scene, side: &Side, triangle: usize) -> ([Corner; 3
 
 /// What meets what at a corner of the common shadow; numbers are positions among the [`listed`] corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Meeting {
+pub(crate) enum Meeting {
     /// A corner of the moving facet and the fixed facet.
     Corner(u8),
     /// The moving facet and a corner of the fixed one.
@@ -102,21 +102,21 @@ pub(super) enum Meeting {
 
 /// The range of the gap over the common shadow.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gap {
+pub(crate) struct Gap {
     /// The least gap, as a length.
-    pub(super) least: f64,
-    pub(super) largest: f64,
+    pub(crate) least: f64,
+    pub(crate) largest: f64,
     /// Their signs, exactly.
-    pub(super) signs: [Ordering; 2],
+    pub(crate) signs: [Ordering; 2],
     /// Where the gap is least.
-    pub(super) at: Meeting,
+    pub(crate) at: Meeting,
     /// Bound of the error of its values.
-    pub(super) error: f64,
+    pub(crate) error: f64,
 }
 
 impl Gap {
     /// Whether the largest gap is positive, or the gap zero all over.
-    pub(super) fn counts(&self) -> bool {
+    pub(crate) fn counts(&self) -> bool {
         matches!(self.signs, [_, Ordering::Greater] | [Ordering::Equal, Ordering::Equal])
     }
 }
@@ -198,7 +198,7 @@ impl Turns {
 
 /// Which pairs are of interest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Wanted {
+pub(crate) enum Wanted {
     All,
     /// The largest gap is not negative; the sign of the least one is not needed.
     NotParting,
@@ -208,10 +208,10 @@ pub(super) enum Wanted {
 
 /// The gap where the interiors of the shadows overlap and the pair is of interest; `limit` is what it
 /// has to stay below.
-pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
-    let blur = 4.0 * scene.blur;
-    let apart = |k: usize| g.low[k] - f.high[k] > blur || f.low[k] - g.high[k] > blur;
-    if apart(0) || apart(1) || g.low.z - f.high.z - blur >= limit {
+pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
+    let noise = 4.0 * scene.noise;
+    let apart = |k: usize| g.low[k] - f.high[k] > noise || f.low[k] - g.high[k] > noise;
+    if apart(0) || apart(1) || g.low.z - f.high.z - noise >= limit {
         return None;
     }
     // A gap is linear over either facet: nowhere less than at the corners of one.
@@ -233,7 +233,7 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
     if parting || wanted == Wanted::NotCrossing && range.negative {
         return None;
     }
-    match range.judge(SHARP * scene.blur, wanted == Wanted::NotCrossing) {
+    match range.judge(SHARP * scene.noise, wanted == Wanted::NotCrossing) {
         Rounded::Known(gap) => Some(gap),
         Rounded::Beyond(least) if least >= limit => None,
         Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g, |_| true)),
@@ -242,7 +242,7 @@ pub(super) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wante
 
 /// The least gap of two facets whose shadows overlap, exact but for its last roundings, and where.
 /// Corners of the common shadow that rounding says are not the lowest are left out.
-pub(super) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meeting) {
+pub(crate) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meeting) {
     let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
     let mut least = f64::INFINITY;
     each_gap(scene, f, g, &of_f, &of_g, |(value, error), _| least = least.min(value + error));
@@ -261,7 +261,7 @@ pub(super) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meetin
 }
 
 /// The gap of two facets whose shadows overlap, exact but for its last roundings.
-pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
+pub(crate) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
     let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
     exact(scene, f, g, &of_f, &of_g, |_| true)
 }
@@ -269,7 +269,7 @@ pub(super) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
 /// The least gap of two triangles, the moving body's first, where they certainly block each other, and
 /// its error; `None` as well where only whole numbers could tell that, which would take longer than a
 /// search.
-pub(super) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
+pub(crate) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
     let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
     let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
     let mut of_f = Turns::unless_apart(scene, &f, &g)?;
@@ -285,9 +285,9 @@ pub(super) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f
     } else if !of_f.are_certain() || !of_g.are_certain() {
         return None;
     }
-    match rounded(scene, &f, &g, &of_f, &of_g).judge(SHARP * scene.blur, false) {
+    match rounded(scene, &f, &g, &of_f, &of_g).judge(SHARP * scene.noise, false) {
         Rounded::Known(gap) if !gap.counts() => None,
-        Rounded::Known(gap) if gap.error <= FINE * scene.blur => Some((gap.least, gap.error)),
+        Rounded::Known(gap) if gap.error <= FINE * scene.noise => Some((gap.least, gap.error)),
         // Slivers.
         Rounded::Known(_) => Some((least_exactly(scene, &f, &g).0, 0.0)),
         Rounded::Beyond(_) => None,
@@ -297,7 +297,7 @@ pub(super) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f
 /// Two triangles, the moving body's first, have no smaller gap than this where the interiors of their
 /// shadows overlap, whatever rounding leaves in doubt; infinite if they face away or certainly do not
 /// overlap.
-pub(super) fn least_in_doubt(scene: &Scene, [moving, fixed]: [u32; 2]) -> f64 {
+pub(crate) fn least_in_doubt(scene: &Scene, [moving, fixed]: [u32; 2]) -> f64 {
     let f = Facet::facing(scene, true, moving as usize, Ordering::Greater);
     let g = Facet::facing(scene, false, fixed as usize, Ordering::Less);
     let (Some(f), Some(g)) = (&f, &g) else { return f64::INFINITY };
@@ -462,7 +462,7 @@ fn crossing(
         let share = (x.error + y.error) / width.abs();
         if share < 0.25 { 2.0 * share * rise.abs() } else { f64::INFINITY }
     };
-    let error = 8.0 * scene.blur + slide(across, p, q, b.z - a.z) + slide(back, r, s, e.z - c.z);
+    let error = 8.0 * scene.noise + slide(across, p, q, b.z - a.z) + slide(back, r, s, e.z - c.z);
     if gap.is_finite() && error.is_finite() { (gap, error) } else { (0.0, f64::INFINITY) }
 }
 
@@ -473,7 +473,7 @@ struct Slope {
     normal: DVec3,
     /// Error of a height over a point at distance 1, and at the origin.
     tilt: f64,
-    noise: f64,
+    level: f64,
 }
 
 impl Slope {
@@ -491,22 +491,22 @@ impl Slope {
         let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
         let normal = sides[i].cross(sides[j]);
         let size = sides[i].abs().max_element() + sides[j].abs().max_element();
-        let blur = 8.0 * scene.blur * (size + scene.blur) + 4.0 * f64::EPSILON * size * size;
+        let noise = 8.0 * scene.noise * (size + scene.noise) + 4.0 * f64::EPSILON * size * size;
         let steep = normal.length() / normal.z;
-        let upright = normal.z > 8.0 * blur;
+        let upright = normal.z > 8.0 * noise;
         Self {
             origin: [a, b, c][j],
             normal,
             // A turned normal: its error over its upward part, and what that makes of the rest.
-            tilt: if upright { 6.0 * blur / normal.z * steep } else { f64::INFINITY },
-            noise: if upright { 8.0 * scene.blur * steep } else { f64::INFINITY },
+            tilt: if upright { 6.0 * noise / normal.z * steep } else { f64::INFINITY },
+            level: if upright { 8.0 * scene.noise * steep } else { f64::INFINITY },
         }
     }
 
     /// How far the plane lies above a point.
     fn height_above(&self, p: DVec3) -> (f64, f64) {
         let to = self.origin - p;
-        let error = self.noise + self.tilt * to.abs().max_element();
+        let error = self.level + self.tilt * to.abs().max_element();
         let height = self.normal.dot(to) / self.normal.z;
         // A facet on edge has no heights to speak of.
         if height.is_finite() && !error.is_nan() { (height, error) } else { (0.0, f64::INFINITY) }
@@ -530,7 +530,7 @@ fn exact(
 }
 
 /// Before any corner is looked at.
-pub(super) const NO_GAP: Gap = Gap {
+pub(crate) const NO_GAP: Gap = Gap {
     least: f64::INFINITY,
     largest: f64::NEG_INFINITY,
     signs: [Ordering::Greater, Ordering::Less],
@@ -547,7 +547,7 @@ fn exact_in<const N: usize>(
     of_g: &Turns,
     keep: &impl Fn(Meeting) -> bool,
 ) -> Option<Gap> {
-    let direction = scene.direction.to_array().map(Wide::<N>::number);
+    let direction = scene.setting.direction.to_array().map(Integer::<N>::number);
     let above = |facet: &Facet, corner: &Corner| above_facet(scene, &direction, facet, corner);
     let mut gap = NO_GAP;
     for k in 0..3 {
@@ -573,7 +573,7 @@ fn exact_in<const N: usize>(
 /// if a number does not fit.
 fn above_facet<const N: usize>(
     scene: &Scene,
-    direction: &[Wide<N>; 3],
+    direction: &[Integer<N>; 3],
     facet: &Facet,
     corner: &Corner,
 ) -> Option<Above> {
@@ -585,7 +585,7 @@ fn above_facet<const N: usize>(
 /// How far side `c e` is above side `a b` where their shadows cross; `None` if a number does not fit.
 fn above_side<const N: usize>(
     scene: &Scene,
-    direction: &[Wide<N>; 3],
+    direction: &[Integer<N>; 3],
     [a, b]: [&Corner; 2],
     [c, e]: [&Corner; 2],
 ) -> Option<Above> {
@@ -595,34 +595,34 @@ fn above_side<const N: usize>(
 }
 
 /// How far a corner is above a facet whose shadow holds its own.
-pub(super) fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above {
-    let d = scene.direction.to_array();
-    let small = above_facet::<SMALL>(scene, &d.map(Wide::number), facet, corner);
-    let large = || above_facet::<LARGE>(scene, &d.map(Wide::number), facet, corner);
+pub(crate) fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above {
+    let d = scene.setting.direction.to_array();
+    let small = above_facet::<SMALL>(scene, &d.map(Integer::number), facet, corner);
+    let large = || above_facet::<LARGE>(scene, &d.map(Integer::number), facet, corner);
     small.or_else(large).unwrap_or(Above::LEVEL)
 }
 
 /// How far a side is above another one where their shadows cross.
-pub(super) fn over_side(scene: &Scene, side: [&Corner; 2], above: [&Corner; 2]) -> Above {
-    let d = scene.direction.to_array();
-    let small = above_side::<SMALL>(scene, &d.map(Wide::number), side, above);
-    let large = || above_side::<LARGE>(scene, &d.map(Wide::number), side, above);
+pub(crate) fn over_side(scene: &Scene, side: [&Corner; 2], above: [&Corner; 2]) -> Above {
+    let d = scene.setting.direction.to_array();
+    let small = above_side::<SMALL>(scene, &d.map(Integer::number), side, above);
+    let large = || above_side::<LARGE>(scene, &d.map(Integer::number), side, above);
     small.or_else(large).unwrap_or(Above::LEVEL)
 }
 
 /// A quotient of two numbers: its sign, and its value to within a few roundings.
 #[derive(Clone, Copy)]
-pub(super) struct Above {
+pub(crate) struct Above {
     sign: Ordering,
     value: f64,
 }
 
 impl Above {
     /// For numbers that do not fit, of which there are none.
-    pub(super) const LEVEL: Self = Self { sign: Ordering::Equal, value: 0.0 };
+    pub(crate) const LEVEL: Self = Self { sign: Ordering::Equal, value: 0.0 };
 
     /// `None` if one of them did not fit.
-    pub(super) fn new<const N: usize>(volume: &Wide<N>, plane: &Wide<N>) -> Option<Self> {
+    pub(crate) fn new<const N: usize>(volume: &Integer<N>, plane: &Integer<N>) -> Option<Self> {
         let sign = match plane.sign()? {
             Ordering::Less => volume.sign()?.reverse(),
             _ => volume.sign()?,
@@ -630,16 +630,16 @@ impl Above {
         Some(Self { sign, value: volume.ratio(plane)? })
     }
 
-    pub(super) fn reversed(self) -> Self {
+    pub(crate) fn reversed(self) -> Self {
         Self { sign: self.sign.reverse(), value: -self.value }
     }
 }
 
 impl Gap {
     /// With one more corner of the common shadow, in multiples of the direction.
-    pub(super) fn add(&mut self, scene: &Scene, above: Above, at: Meeting) {
+    pub(crate) fn add(&mut self, scene: &Scene, above: Above, at: Meeting) {
         let Above { sign, value } = above;
-        let value = if sign == Ordering::Equal { 0.0 } else { value * scene.length };
+        let value = if sign == Ordering::Equal { 0.0 } else { value * scene.setting.length };
         if value < self.least {
             (self.least, self.at) = (value, at);
         }
@@ -696,7 +696,7 @@ mod tests {
             {
                 let least = sharpened(&scene, &f, &g).least;
                 let possible = least_in_doubt(&scene, [0, 0]);
-                prop_assert!(possible <= least + scene.blur, "{possible}, but {least}");
+                prop_assert!(possible <= least + scene.noise, "{possible}, but {least}");
                 if let Some((exact, _)) = exact_gap(&scene, Aim::Stop, [0, 0]) {
                     prop_assert_eq!(exact, least);
                 }

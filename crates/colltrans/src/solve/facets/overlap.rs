@@ -46,13 +46,13 @@ pub enum Overlap {
 }
 
 /// Whether the interiors have a point in common, or open shells pass through what is there, and where.
-pub(super) fn find(scene: &Scene) -> Option<Overlap> {
+pub(crate) fn find(scene: &Scene) -> Option<Overlap> {
     find_with(scene, &mut |_| ())
 }
 
 /// The same, telling of every pair of nodes in the order of the descent whether it was split (`None`)
 /// or why it was not.
-pub(super) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
+pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
     let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
     if never_overlap(scene, &a, &b) {
         return None;
@@ -64,7 +64,7 @@ pub(super) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> 
 }
 
 /// Whether the interiors of two whole bodies are disjoint by their boxes and slabs alone.
-pub(super) fn never_overlap(scene: &Scene, a: &Shade, b: &Shade) -> bool {
+pub(crate) fn never_overlap(scene: &Scene, a: &Shade, b: &Shade) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
     beyond(scene, (p, a), (q, b))
         || beyond(scene, (q, b), (p, a))
@@ -72,13 +72,13 @@ pub(super) fn never_overlap(scene: &Scene, a: &Shade, b: &Shade) -> bool {
 }
 
 /// Whether a shell of one body lies inside the other, of bodies whose surfaces do not cross.
-pub(super) fn nested(scene: &Scene) -> Option<Overlap> {
+pub(crate) fn nested(scene: &Scene) -> Option<Overlap> {
     let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
     moving.or_else(|| inside::shell_inside(scene, false).map(Overlap::FixedInside))
 }
 
 /// Whether an overlap is one.
-pub(super) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
+pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
     let count = |side: &Side| side.solid.triangles().len() as u32;
     match overlap {
         Overlap::Facets(f, g) => {
@@ -93,12 +93,12 @@ pub(super) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
 }
 
 /// Whether no two facets of two leaves show an overlap.
-pub(super) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
+pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
     leaves(scene, a, b, Judge::OVERLAP).is_none()
 }
 
 /// Whether the solids, as closed sets, have a point in common.
-pub(super) fn touches(scene: &Scene) -> bool {
+pub(crate) fn touches(scene: &Scene) -> bool {
     let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
     if apart(scene, &a, &b) {
         return false;
@@ -188,7 +188,7 @@ fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)>
 }
 
 /// A triangle of one body.
-pub(super) struct Plate<'s, 'a> {
+pub(crate) struct Plate<'s, 'a> {
     side: &'s Side<'a>,
     triangle: usize,
     corners: [Corner; 3],
@@ -197,7 +197,7 @@ pub(super) struct Plate<'s, 'a> {
 }
 
 impl<'s, 'a> Plate<'s, 'a> {
-    pub(super) fn new(side: &'s Side<'a>, triangle: usize) -> Self {
+    pub(crate) fn new(side: &'s Side<'a>, triangle: usize) -> Self {
         let corners = side.corners(triangle);
         let [a, b, c] = corners.map(|c| c.at);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
@@ -241,8 +241,8 @@ impl<'s, 'a> Plate<'s, 'a> {
 
 /// Whether two triangles show that the solids overlap: cases 1 to 3.
 fn meet(scene: &Scene, f: &Plate, g: &Plate) -> bool {
-    let blur = 4.0 * scene.blur;
-    if (0..3).any(|k| f.high[k] + blur < g.low[k] || g.high[k] + blur < f.low[k]) {
+    let noise = 4.0 * scene.noise;
+    if (0..3).any(|k| f.high[k] + noise < g.low[k] || g.high[k] + noise < f.low[k]) {
         return false;
     }
     let of_g = f.sides(scene, g);
@@ -504,10 +504,10 @@ impl Axis for Around<'_, '_, '_> {
 }
 
 /// Whether a spot lies on a triangle, its rim included.
-pub(super) fn lies_on(scene: &Scene, spot: &impl Spot, plate: &Plate) -> bool {
+pub(crate) fn lies_on(scene: &Scene, spot: &impl Spot, plate: &Plate) -> bool {
     let [a, b, c] = &plate.corners;
-    let (at, blur) = (spot.at(), 4.0 * scene.blur);
-    let boxed = (0..3).all(|k| at[k] >= plate.low[k] - blur && at[k] <= plate.high[k] + blur);
+    let (at, noise) = (spot.at(), 4.0 * scene.noise);
+    let boxed = (0..3).all(|k| at[k] >= plate.low[k] - noise && at[k] <= plate.high[k] + noise);
     if !boxed || scene.outside(a, b, c, spot) != Ordering::Equal {
         return false;
     }

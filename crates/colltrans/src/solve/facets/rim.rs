@@ -27,11 +27,11 @@ use glam::DVec3;
 
 use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP, over_facet, over_side};
 use super::scene::{Corner, Scene, Side};
-use super::wide::{LARGE, SMALL, Wide};
 use crate::body::solid::edges::NONE;
+use crate::number::integer::{Integer, LARGE, SMALL};
 
 /// A facet of an open shell, on edge.
-pub(super) struct Blade {
+pub(crate) struct Blade {
     triangle: u32,
     corners: [Corner; 3],
     moving: bool,
@@ -45,7 +45,7 @@ pub(super) struct Blade {
 }
 
 /// Whether two nodes have facets without a side.
-pub(super) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
+pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
     [true, false]
         .into_iter()
         .zip(nodes)
@@ -54,7 +54,7 @@ pub(super) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
 
 /// The least gap of two triangles of which one is a blade, the moving body's first, where they block
 /// each other, and its error.
-pub(super) fn least_gap_of(
+pub(crate) fn least_gap_of(
     scene: &Scene,
     counts: &dyn Fn(&Gap) -> bool,
     pair: [u32; 2],
@@ -69,7 +69,7 @@ pub(super) fn least_gap_of(
 }
 
 /// The gaps of two triangles of which one is a blade.
-pub(super) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
+pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
     let blade = |moving, t: u32| {
         let open = scene.side(moving).solid.is_open(t as usize);
         open.then(|| Blade::new(scene, moving, t as usize)).flatten()
@@ -82,7 +82,7 @@ pub(super) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut(
 
 /// Each gap that a blade of one leaf makes with what is in another leaf: the leaves' blades, and their
 /// facets that look the right way.
-pub(super) fn each_gap(
+pub(crate) fn each_gap(
     scene: &Scene,
     (blades, front): (&[Blade], &[Facet]),
     (others, back): (&[Blade], &[Facet]),
@@ -107,14 +107,14 @@ pub(super) fn each_gap(
 
 impl Blade {
     /// The blades of a leaf.
-    pub(super) fn of_leaf(scene: &Scene, moving: bool, node: u32) -> Vec<Self> {
+    pub(crate) fn of_leaf(scene: &Scene, moving: bool, node: u32) -> Vec<Self> {
         let solid = scene.side(moving).solid;
         let open = solid.nodes()[node as usize].facets().filter(|&t| solid.is_open(t));
         open.filter_map(|t| Self::new(scene, moving, t)).collect()
     }
 
     /// The facet, if it is on edge.
-    pub(super) fn new(scene: &Scene, moving: bool, triangle: usize) -> Option<Self> {
+    pub(crate) fn new(scene: &Scene, moving: bool, triangle: usize) -> Option<Self> {
         let corners = scene.side(moving).corners(triangle);
         let [a, b, c] = &corners;
         if scene.turn(a, b, c) != Equal {
@@ -179,8 +179,8 @@ impl Blade {
 
     /// Whether boxes say that nothing is met.
     fn is_beside(&self, scene: &Scene, low: DVec3, high: DVec3) -> bool {
-        let blur = 4.0 * scene.blur;
-        (0..2).any(|k| self.low[k] - high[k] > blur || low[k] - self.high[k] > blur)
+        let noise = 4.0 * scene.noise;
+        (0..2).any(|k| self.low[k] - high[k] > noise || low[k] - self.high[k] > noise)
     }
 
     /// The gaps of the leading sides and a facet of the other body.
@@ -456,11 +456,12 @@ fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
         [a, b, c]: [&Corner; 3],
         [axis, height]: [usize; 2],
     ) -> Option<Above> {
-        let direction = scene.direction.to_array().map(Wide::<N>::number);
+        let direction = scene.setting.direction.to_array().map(Integer::<N>::number);
         // Along the shadow: what is left of a vector across the axis and the direction.
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let place =
-            |v: &[Wide<N>; 3]| v[i].multiply(&direction[j]).subtract(&v[j].multiply(&direction[i]));
+        let place = |v: &[Integer<N>; 3]| {
+            v[i].multiply(&direction[j]).subtract(&v[j].multiply(&direction[i]))
+        };
         let [side, _, from] = scene.spans_wide::<N>(a, [b, b, c]);
         let (whole, part) = (place(&side), place(&from));
         // a + part / whole (b - a) - c, along the direction.
@@ -469,7 +470,7 @@ fn over_line(scene: &Scene, corner: &Corner, [a, b]: [&Corner; 2]) -> Above {
     }
     let apart = |axis: &usize| scene.drift(*axis, a, b) != Equal;
     let axis = (0..3).find(apart).unwrap_or(0);
-    let (height, all) = (scene.direction.abs().max_position(), [a, b, corner]);
+    let (height, all) = (scene.setting.direction.abs().max_position(), [a, b, corner]);
     let small = of::<SMALL>(scene, all, [axis, height]);
     small.or_else(|| of::<LARGE>(scene, all, [axis, height])).unwrap_or(Above::LEVEL)
 }

@@ -5,7 +5,7 @@
 //! height; it is used rounded. Exact signs are taken of the setting frame's coordinates, sums of
 //! products of the matrices' entries, vertices and translations as they are.
 //!
-//! Rounding. A coordinate of the query frame is off by at most [`Scene::blur`], `32 u S`: with `|v|`
+//! Rounding. A coordinate of the query frame is off by at most [`Scene::noise`], `32 u S`: with `|v|`
 //! the reach of a body, `17 u |v|` for two matrices (their entries and their application), `12 u` for
 //! the offset, and what the shadow axes lack of being orthogonal to the direction, `4 u` of both. Where
 //! the matrices only permute axes and change signs there is no rounding but that of the offset,
@@ -13,95 +13,67 @@
 
 use glam::{DMat3, DVec3};
 
-use super::wide::Wide;
-use crate::body::Pose;
 use crate::body::solid::{Shrinking, Solid, displace};
+use crate::number::error_free::sum_error;
+use crate::number::integer::Integer;
+use crate::number::noise::Noise;
+use crate::setting::Setting;
 
 /// One of the two bodies.
 #[derive(Clone, Copy)]
 pub(crate) struct Side<'a> {
-    pub(super) solid: &'a Solid,
-    pub(super) moving: bool,
+    pub(crate) solid: &'a Solid,
+    pub(crate) moving: bool,
     /// How much it is shrunk.
-    pub(super) amount: f64,
-    pub(super) shrinking: Option<&'a Shrinking>,
+    pub(crate) amount: f64,
+    pub(crate) shrinking: Option<&'a Shrinking>,
     /// From the body frame to the setting frame, without the offset.
-    pub(super) matrix: DMat3,
+    pub(crate) matrix: DMat3,
     /// The offset in the setting frame and what rounding took from it.
-    pub(super) offset: [DVec3; 2],
+    pub(crate) offset: [DVec3; 2],
     /// From the body frame to the query frame, and the offset there.
-    pub(super) view: DMat3,
-    pub(super) view_offset: DVec3,
+    pub(crate) view: DMat3,
+    pub(crate) view_offset: DVec3,
     /// Whether `matrix` permutes axes and changes signs.
-    pub(super) permutes: bool,
+    pub(crate) permutes: bool,
     /// For each axis of the query frame, whether it is an axis of the body.
-    pub(super) aligned: [bool; 3],
+    pub(crate) aligned: [bool; 3],
     /// The direction in the body frame, at length 1.
-    pub(super) along: DVec3,
+    pub(crate) along: DVec3,
 }
 
-/// Two placed solids and a direction.
+/// A setting of two solids, shrunk and seen along its direction.
 pub(crate) struct Scene<'a> {
-    pub(super) moving: Side<'a>,
-    pub(super) fixed: Side<'a>,
-    /// As given.
-    pub(super) direction: DVec3,
-    /// Its length.
-    pub(super) length: f64,
+    pub(crate) setting: Setting<'a, Solid>,
+    pub(crate) moving: Side<'a>,
+    pub(crate) fixed: Side<'a>,
     /// From the setting frame to the query frame.
-    pub(super) frame: DMat3,
+    pub(crate) frame: DMat3,
     /// Bound of the rounding error of a coordinate in the query frame.
-    pub(super) blur: f64,
+    pub(crate) noise: f64,
 }
 
 impl<'a> Scene<'a> {
-    /// The bodies shrunk by `amounts`; the direction has been checked.
-    pub(crate) fn new(
-        (moving, moving_pose, moving_amount): (&'a Solid, &Pose, f64),
-        (fixed, fixed_pose, fixed_amount): (&'a Solid, &Pose, f64),
-        direction: DVec3,
-    ) -> Self {
-        let frame = frame_along(direction / direction.length());
-        let (s, t) = (moving_pose.translation(), fixed_pose.translation());
-        let offset = t - s;
-        let lost = DVec3::from_array([0, 1, 2].map(|k| difference_error(t[k], s[k])));
-        let place = |solid, moving, amount, matrix, offset: [DVec3; 2]| {
-            Side::new(solid, moving, amount, matrix, offset, frame)
-        };
+    /// The moving and the fixed body shrunk by so much.
+    pub(crate) fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2]) -> Self {
+        let frame = frame_along(setting.direction / setting.length);
+        let at_origin = [DVec3::ZERO; 2];
         let moving =
-            place(moving, true, moving_amount, moving_pose.matrix(), [DVec3::ZERO, DVec3::ZERO]);
-        let fixed = place(fixed, false, fixed_amount, fixed_pose.matrix(), [offset, lost]);
-        let size = moving.reach() + fixed.reach() + offset.length();
-        Self {
-            moving,
-            fixed,
-            direction,
-            length: direction.length(),
-            frame,
-            blur: 16.0 * f64::EPSILON * size.max(crate::number::range::MIN_MAGNITUDE),
-        }
+            Side::new((setting.moving, moving, true), setting.moving_matrix, at_origin, frame);
+        let offset = setting.exact_offset();
+        let fixed = Side::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
+        let size = moving.reach() + fixed.reach() + setting.offset.length();
+        Self { setting: *setting, moving, fixed, frame, noise: Noise::of(size).point() }
     }
 
     /// The same bodies, the other way.
-    pub(super) fn reversed(&self) -> Self {
-        let frame = frame_along(-self.direction / self.length);
-        let turn = |side: &Side<'a>| {
-            let Side { solid, moving, amount, matrix, offset, .. } = *side;
-            Side::new(solid, moving, amount, matrix, offset, frame)
-        };
-        let (moving, fixed) = (turn(&self.moving), turn(&self.fixed));
-        Self {
-            moving,
-            fixed,
-            direction: -self.direction,
-            length: self.length,
-            frame,
-            blur: self.blur,
-        }
+    pub(crate) fn reversed(&self) -> Self {
+        let amounts = [self.moving.amount, self.fixed.amount];
+        Self { noise: self.noise, ..Self::new(&self.setting.reversed(), amounts) }
     }
 
     /// The same with other amounts to shrink by.
-    pub(super) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
+    pub(crate) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &Side<'a>, amount| {
             let amount = if side.solid.can_shrink() { amount } else { 0.0 };
             let shrinking = (amount != 0.0).then(|| side.solid.shrinking());
@@ -111,25 +83,23 @@ impl<'a> Scene<'a> {
     }
 
     /// Whether both bodies have the axes of the query frame.
-    pub(super) fn is_aligned(&self) -> bool {
+    pub(crate) fn is_aligned(&self) -> bool {
         self.moving.aligned == [true; 3] && self.fixed.aligned == [true; 3]
     }
 
-    pub(super) fn side(&self, moving: bool) -> &Side<'a> {
+    pub(crate) fn side(&self, moving: bool) -> &Side<'a> {
         if moving { &self.moving } else { &self.fixed }
     }
 
     /// Size `S` of the configuration.
-    pub(super) fn size(&self) -> f64 {
-        self.blur / (16.0 * f64::EPSILON)
+    pub(crate) fn size(&self) -> f64 {
+        self.noise / (16.0 * f64::EPSILON)
     }
 }
 
 impl<'a> Side<'a> {
     fn new(
-        solid: &'a Solid,
-        moving: bool,
-        amount: f64,
+        (solid, amount, moving): (&'a Solid, f64, bool),
         matrix: DMat3,
         offset: [DVec3; 2],
         frame: DMat3,
@@ -161,11 +131,11 @@ impl<'a> Side<'a> {
     }
 
     /// How far shrinking moves a vertex, at most.
-    pub(super) fn moved(&self) -> f64 {
+    pub(crate) fn moved(&self) -> f64 {
         self.shrinking.map_or(0.0, |s| s.farthest * self.amount.abs())
     }
 
-    pub(super) fn vertex(&self, v: u32) -> DVec3 {
+    pub(crate) fn vertex(&self, v: u32) -> DVec3 {
         let at = self.solid.vertices()[v as usize];
         match self.shrinking {
             None => at,
@@ -173,38 +143,40 @@ impl<'a> Side<'a> {
         }
     }
 
-    pub(super) fn corner(&self, v: u32) -> Corner {
+    pub(crate) fn corner(&self, v: u32) -> Corner {
         let local = self.vertex(v);
         let turned = self.view * local;
         let at = turned + self.view_offset;
         let mut exact = self.aligned == [true; 3];
         if exact && !self.moving {
             // What the addition lost, exactly; an offset that lost bits itself is never exact.
-            let lost = |k: usize| sum_error(turned[k], self.view_offset[k]) != 0.0;
+            let lost = |k: usize| {
+                sum_error(turned[k], self.view_offset[k], turned[k] + self.view_offset[k]) != 0.0
+            };
             exact = self.offset[1] == DVec3::ZERO && !(lost(0) || lost(1) || lost(2));
         }
         Corner { local, at, exact, moving: self.moving }
     }
 
-    pub(super) fn corners(&self, triangle: usize) -> [Corner; 3] {
+    pub(crate) fn corners(&self, triangle: usize) -> [Corner; 3] {
         self.solid.triangles()[triangle].map(|v| self.corner(v))
     }
 }
 
 /// A vertex of one of the bodies.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Corner {
+pub(crate) struct Corner {
     /// In the body frame, after shrinking.
-    pub(super) local: DVec3,
+    pub(crate) local: DVec3,
     /// In the query frame.
-    pub(super) at: DVec3,
+    pub(crate) at: DVec3,
     /// Whether `at` is exact.
-    pub(super) exact: bool,
-    pub(super) moving: bool,
+    pub(crate) exact: bool,
+    pub(crate) moving: bool,
 }
 
 /// Something that has a place: a vertex, or a point within a facet.
-pub(super) trait Spot {
+pub(crate) trait Spot {
     /// In the query frame, rounded.
     fn at(&self) -> DVec3;
     /// Whether that is exact.
@@ -212,7 +184,7 @@ pub(super) trait Spot {
     /// In the setting frame, if that has an exact value in `f64`.
     fn world(&self, scene: &Scene) -> Option<DVec3>;
     /// In the setting frame.
-    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3];
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3];
 }
 
 impl Spot for Corner {
@@ -231,25 +203,28 @@ impl Spot for Corner {
         }
         let turned = side.matrix * self.local;
         let [offset, lost] = side.offset;
-        let exact = (0..3).all(|k| sum_error(turned[k], offset[k]) == 0.0);
+        let exact = (0..3).all(|k| sum_error(turned[k], offset[k], turned[k] + offset[k]) == 0.0);
         (exact && lost == DVec3::ZERO).then(|| turned + offset)
     }
 
-    fn wide<const N: usize>(&self, scene: &Scene) -> [Wide<N>; 3] {
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
         place_exactly(scene.side(self.moving), &[(1.0, self.local)])
     }
 }
 
 /// A weighted mean of vertices of one body in the setting frame; the weights are powers of two, from
 /// `1/64`, and add up to 1.
-pub(super) fn place_exactly<const N: usize>(side: &Side, terms: &[(f64, DVec3)]) -> [Wide<N>; 3] {
+pub(crate) fn place_exactly<const N: usize>(
+    side: &Side,
+    terms: &[(f64, DVec3)],
+) -> [Integer<N>; 3] {
     let [offset, lost] = side.offset;
     std::array::from_fn(|row| {
-        let mut sum = Wide::number(offset[row]).add(&Wide::number(lost[row]));
+        let mut sum = Integer::number(offset[row]).add(&Integer::number(lost[row]));
         for (weight, point) in terms {
             for column in 0..3 {
                 let entry = side.matrix.col(column)[row] * weight;
-                sum = sum.add(&Wide::product(entry, point[column]));
+                sum = sum.add(&Integer::product(entry, point[column]));
             }
         }
         sum
@@ -276,16 +251,4 @@ fn is_axis(v: DVec3) -> bool {
 fn permutes(m: DMat3) -> bool {
     let rows = m.transpose();
     [m.x_axis, m.y_axis, m.z_axis, rows.x_axis, rows.y_axis, rows.z_axis].into_iter().all(is_axis)
-}
-
-/// `a + b = fl(a + b) + error`, exactly.
-pub(super) fn sum_error(a: f64, b: f64) -> f64 {
-    let sum = a + b;
-    let b_virtual = sum - a;
-    let a_virtual = sum - b_virtual;
-    (a - a_virtual) + (b - b_virtual)
-}
-
-fn difference_error(a: f64, b: f64) -> f64 {
-    sum_error(a, -b)
 }

@@ -13,18 +13,17 @@ use std::ops::Range;
 use super::bound::{Profile, Reason, Shade, dismissed, least_gap};
 use super::fan::{Fan, Reach};
 use super::leaf::{self, Facet, Gap, Meeting, Wanted};
-use super::proof::node_rounding;
 use super::rim::{self, Blade};
 use super::scene::{Scene, Side};
 use crate::body::solid::tree::Node;
 
-/// An answer may be larger than the least gap by so many times the blur of coordinates: bounds of
+/// An answer may be larger than the least gap by so many times the noise of coordinates: bounds of
 /// nodes are rounded by a third of that.
-pub(super) const SLACK: f64 = 12.0;
+pub(crate) const SLACK: f64 = 12.0;
 
 /// What is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Aim {
+pub(crate) enum Aim {
     /// The least gap that blocks, at least 0.
     Stop,
     /// The same, without pairs of facets that cross now.
@@ -34,11 +33,11 @@ pub(super) enum Aim {
 }
 
 impl Aim {
-    pub(super) fn clamp(self, gap: f64) -> f64 {
+    pub(crate) fn clamp(self, gap: f64) -> f64 {
         if self == Self::Least { gap } else { gap.max(0.0) }
     }
 
-    pub(super) fn wanted(self) -> Wanted {
+    pub(crate) fn wanted(self) -> Wanted {
         match self {
             Self::Least => Wanted::All,
             Self::Stop => Wanted::NotParting,
@@ -47,7 +46,7 @@ impl Aim {
     }
 
     /// What a pair contributes, if it counts.
-    pub(super) fn value(self, gap: &Gap) -> Option<f64> {
+    pub(crate) fn value(self, gap: &Gap) -> Option<f64> {
         let counts = match self {
             Self::Least => true,
             Self::Stop => gap.counts(),
@@ -59,22 +58,22 @@ impl Aim {
 
 /// The pair of facets that decides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
+pub(crate) struct Found {
     /// The gap, as a length.
-    pub(super) gap: f64,
-    pub(super) moving: u32,
-    pub(super) fixed: u32,
-    pub(super) at: Meeting,
-    pub(super) error: f64,
+    pub(crate) gap: f64,
+    pub(crate) moving: u32,
+    pub(crate) fixed: u32,
+    pub(crate) at: Meeting,
+    pub(crate) error: f64,
     /// No other pair contributes less: their gaps less their errors, and the limit up to which bounds
     /// were looked at, less what bounds are off by.
-    pub(super) others: f64,
+    pub(crate) others: f64,
 }
 
 impl Found {
     /// The same with the gap taken exactly, if it is not sharp.
-    pub(super) fn sharpened(self, scene: &Scene, aim: Aim) -> Self {
-        if self.error <= leaf::FINE * scene.blur {
+    pub(crate) fn sharpened(self, scene: &Scene, aim: Aim) -> Self {
+        if self.error <= leaf::FINE * scene.noise {
             return self;
         }
         let f = Facet::facing(scene, true, self.moving as usize, Ordering::Greater);
@@ -205,7 +204,7 @@ impl PartialEq for Entry {
 impl Eq for Entry {}
 
 /// Whether the moving node of a pair is the one to be split: the larger one, unless it is a leaf.
-pub(super) fn splits_moving(a: &Node, b: &Node) -> bool {
+pub(crate) fn splits_moving(a: &Node, b: &Node) -> bool {
     !a.is_leaf() && (b.is_leaf() || size(a) >= size(b))
 }
 
@@ -214,32 +213,32 @@ fn size(node: &Node) -> f64 {
 }
 
 /// The children of a node.
-pub(super) fn children(node: &Node, at: u32) -> [u32; 2] {
+pub(crate) fn children(node: &Node, at: u32) -> [u32; 2] {
     [at + node.skip, at + node.skip + 1]
 }
 
 /// One search under way.
-pub(super) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
-    pub(super) scene: &'s Scene<'a>,
-    pub(super) aim: Aim,
+pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
+    pub(crate) scene: &'s Scene<'a>,
+    pub(crate) aim: Aim,
     /// What a gap has to stay below to be of interest.
-    pub(super) limit: f64,
-    pub(super) found: Option<Found>,
+    pub(crate) limit: f64,
+    pub(crate) found: Option<Found>,
     /// The least of the gaps of pairs that were looked at and are not `found`, each less its error.
-    pub(super) others: f64,
+    pub(crate) others: f64,
     /// Told of every pair of nodes that is not split, and why.
-    pub(super) cut: F,
+    pub(crate) cut: F,
     /// Pairs of nodes looked at, and pairs of leaves.
-    pub(super) steps: [u32; 2],
+    pub(crate) steps: [u32; 2],
 }
 
 impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
-    pub(super) fn new(scene: &'s Scene<'a>, aim: Aim, limit: f64, cut: F) -> Self {
+    pub(crate) fn new(scene: &'s Scene<'a>, aim: Aim, limit: f64, cut: F) -> Self {
         Self { scene, aim, limit, found: None, others: f64::INFINITY, cut, steps: [0; 2] }
     }
 
     /// What two triangles make.
-    pub(super) fn of_pair(mut self, [s, t]: [u32; 2]) -> Option<Found> {
+    pub(crate) fn of_pair(mut self, [s, t]: [u32; 2]) -> Option<Found> {
         let scene = self.scene;
         let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
         let g = Facet::facing(scene, false, t as usize, Ordering::Less);
@@ -251,7 +250,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         self.found.map(|found| found.sharpened(scene, self.aim))
     }
 
-    pub(super) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
+    pub(crate) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
         let scene = self.scene;
@@ -367,7 +366,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
             self.set_aside(pair);
         } else {
             // What could be better by less is not worth a look: rounding is as much.
-            self.limit = value - SLACK * self.scene.blur;
+            self.limit = value - SLACK * self.scene.noise;
             if let Some(before) = self.found.replace(pair) {
                 self.set_aside(before);
             }
@@ -384,9 +383,14 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     }
 }
 
+/// What bounds of nodes may be off by.
+pub(crate) fn node_rounding(scene: &Scene) -> f64 {
+    SLACK / 3.0 * scene.noise
+}
+
 /// The gap of two facets that block each other, the moving body's first, exact but for its last roundings,
 /// with its error: of their shadows, or of what is on edge.
-pub(super) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
+pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
     let [s, t] = pair.map(|triangle| triangle as usize);
     let f = Facet::facing(scene, true, s, Ordering::Greater);
     let g = Facet::facing(scene, false, t, Ordering::Less);

@@ -16,13 +16,13 @@ use crate::number::noise::UNIT_VECTOR;
 
 /// Each round ends or comes closer; rounding alone could make it last.
 const MOST_ROUNDS: usize = 32;
-/// Rounding of a gap, in multiples of the blur of coordinates: half of it for each of two points that
+/// Rounding of a gap, in multiples of the noise of coordinates: half of it for each of two points that
 /// are taken for the farthest, and what computing them takes.
 const ROUNDING: f64 = 4.0;
 
 /// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one; not
 /// always where large faces are apart by no more than they were shrunk.
-pub(super) fn separation(scene: &Scene) -> Option<Separation> {
+pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
     let middle = |side: &Side| {
         let [low, high] = side.solid.bounds();
         (side.view * ((low + high) * 0.5) + side.view_offset).truncate()
@@ -39,7 +39,7 @@ pub(super) fn separation(scene: &Scene) -> Option<Separation> {
         }
         let [p, q] = &sides;
         let lowest = q.at() - p.at();
-        let closer = simplex.0 == 0 || axis.dot(lowest) < v.dot(axis) - ROUNDING * scene.blur;
+        let closer = simplex.0 == 0 || axis.dot(lowest) < v.dot(axis) - ROUNDING * scene.noise;
         if !closer {
             return None;
         }
@@ -54,10 +54,10 @@ pub(super) fn separation(scene: &Scene) -> Option<Separation> {
 ///
 /// # Errors
 /// It is none.
-pub(super) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, CertificateError> {
+pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, CertificateError> {
     let normal = separation.normal;
     let unit = (normal.length() - 1.0).abs() <= UNIT_VECTOR;
-    if !unit || (normal.dot(scene.direction) / scene.length).abs() > UNIT_VECTOR {
+    if !unit || (normal.dot(scene.setting.direction) / scene.setting.length).abs() > UNIT_VECTOR {
         return Err(CertificateError::Normal { normal });
     }
     let proven = margin_along(scene, normal, &facing_sides(scene, normal));
@@ -81,8 +81,8 @@ fn facing_sides<'s, 'a>(scene: &'s Scene<'a>, normal: DVec3) -> [Farthest<'s, 'a
 fn margin_along(scene: &Scene, normal: DVec3, [p, q]: &[Farthest; 2]) -> f64 {
     let fixed = normal.dot(scene.fixed.offset[0]) - q.reach();
     // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
-    let closing = (normal.dot(scene.direction) / scene.length).abs() * scene.size();
-    fixed - p.reach() - ROUNDING * scene.blur - closing
+    let closing = (normal.dot(scene.setting.direction) / scene.setting.length).abs() * scene.size();
+    fixed - p.reach() - ROUNDING * scene.noise - closing
 }
 
 /// Leaves that are looked into for one farthest vertex. More are needed where a large flat face is

@@ -1,7 +1,7 @@
 //! Signs of determinants of points: exact, by a filter first.
 //!
 //! With `x, y, z` differences of two points, each of whose coordinates is off by at most
-//! `e = 2 blur`, and sizes in the sum norm (plane) or the maximum norm (space), the rounded
+//! `e = 2 noise`, and sizes in the sum norm (plane) or the maximum norm (space), the rounded
 //! determinant is off by at most
 //! `2 e (|x| + |y| + e) + 8 u |x| |y|` in the plane and
 //! `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z|) + e^2) + 48 u |x||y||z|` in space.
@@ -11,36 +11,22 @@
 use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
-use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::scene::{Scene, Spot};
-use super::wide::{LARGE, SMALL, Wide, determinant, difference};
+use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
+use crate::number::predicates::{orient2d, orient3d, sign};
 
 const U: f64 = f64::EPSILON / 2.0;
 
-fn sign(x: f64) -> Ordering {
-    x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
-}
-
 /// The sign of a number that has room for all there are.
-fn decided(number: &Wide<LARGE>) -> Ordering {
+fn decided(number: &Integer<LARGE>) -> Ordering {
     number.sign().unwrap_or(Ordering::Equal)
-}
-
-fn plane_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
-    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
-    sign(orient2d(coord(a), coord(b), coord(c)))
-}
-
-fn space_sign([a, b, c, e]: [DVec3; 4]) -> Ordering {
-    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
-    sign(-orient3d(coord(a), coord(b), coord(c), coord(e)))
 }
 
 /// `det[b - a, c - a, d]` in shadow coordinates, and a bound of its error.
 #[inline]
-pub(super) fn rough_turn(scene: &Scene, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
-    let e = 2.0 * scene.blur;
+pub(crate) fn rough_turn(scene: &Scene, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
+    let e = 2.0 * scene.noise;
     let (x, y) = ((b - a).xy(), (c - a).xy());
     let (m, n) = (x.x.abs() + x.y.abs(), y.x.abs() + y.y.abs());
     (x.perp_dot(y), 2.0 * e * (m + n + e) + 8.0 * U * m * n)
@@ -48,54 +34,54 @@ pub(super) fn rough_turn(scene: &Scene, a: DVec3, b: DVec3, c: DVec3) -> (f64, f
 
 impl Scene<'_> {
     /// Sign of `det[b - a, c - a, d]`: which way the shadows turn.
-    pub(super) fn turn(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Ordering {
+    pub(crate) fn turn(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Ordering {
         let (value, error) = rough_turn(self, a.at(), b.at(), c.at());
         if value.abs() > error {
             return sign(value);
         }
         if a.is_exact() && b.is_exact() && c.is_exact() {
-            return plane_sign(a.at().xy(), b.at().xy(), c.at().xy());
+            return sign(orient2d(a.at().xy(), b.at().xy(), c.at().xy()));
         }
         let small = self.turn_wide::<SMALL>(a, b, c).sign();
         small.unwrap_or_else(|| decided(&self.turn_wide::<LARGE>(a, b, c)))
     }
 
     /// Sign of `det[b - a, c - a, e - a]`: whether `e` is on the outer side of the facet `a b c`.
-    pub(super) fn outside(
+    pub(crate) fn outside(
         &self,
         a: &impl Spot,
         b: &impl Spot,
         c: &impl Spot,
         e: &impl Spot,
     ) -> Ordering {
-        let blur = 2.0 * self.blur;
+        let noise = 2.0 * self.noise;
         let p = a.at();
         let [x, y, z] = [b.at() - p, c.at() - p, e.at() - p];
         let [l, m, n] = [x, y, z].map(|v| v.abs().max_element());
         let value = x.cross(y).dot(z);
         let pairs = l * m + m * n + n * l;
-        let error = 8.0 * blur * (pairs + blur * (l + m + n + blur)) + 48.0 * U * l * m * n;
+        let error = 8.0 * noise * (pairs + noise * (l + m + n + noise)) + 48.0 * U * l * m * n;
         if value.abs() > error {
             return sign(value);
         }
         if a.is_exact() && b.is_exact() && c.is_exact() && e.is_exact() {
-            return space_sign([p, b.at(), c.at(), e.at()]);
+            return sign(orient3d(p, b.at(), c.at(), e.at()));
         }
         if let (Some(a), Some(b), Some(c), Some(e)) =
             (a.world(self), b.world(self), c.world(self), e.world(self))
         {
-            return space_sign([a, b, c, e]);
+            return sign(orient3d(a, b, c, e));
         }
         let small = self.outside_wide::<SMALL>(a, b, c, e).sign();
         small.unwrap_or_else(|| decided(&self.outside_wide::<LARGE>(a, b, c, e)))
     }
 
     /// Points as seen from another, itself.
-    pub(super) fn spans_wide<const N: usize>(
+    pub(crate) fn spans_wide<const N: usize>(
         &self,
         from: &impl Spot,
         points: [&impl Spot; 3],
-    ) -> [[Wide<N>; 3]; 3] {
+    ) -> [[Integer<N>; 3]; 3] {
         let p = from.wide(self);
         points.map(|q| difference(&q.wide(self), &p))
     }
@@ -107,21 +93,21 @@ impl Scene<'_> {
         b: &impl Spot,
         c: &impl Spot,
         e: &impl Spot,
-    ) -> Wide<N> {
+    ) -> Integer<N> {
         let p = a.wide(self);
         let [x, y, z] = [b.wide(self), c.wide(self), e.wide(self)].map(|q| difference(&q, &p));
         determinant(&x, &y, &z)
     }
 
     /// `det[b - a, c - a, d]` itself.
-    fn turn_wide<const N: usize>(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Wide<N> {
-        let (p, d) = (a.wide(self), self.direction.to_array().map(Wide::number));
+    fn turn_wide<const N: usize>(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Integer<N> {
+        let (p, d) = (a.wide(self), self.setting.direction.to_array().map(Integer::number));
         let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
         determinant(&x, &y, &d)
     }
 
     /// Sign of `det[b - a, c - a, e]` with `e` the unit vector of an axis of the world.
-    pub(super) fn turn_about(
+    pub(crate) fn turn_about(
         &self,
         axis: usize,
         a: &impl Spot,
@@ -130,7 +116,7 @@ impl Scene<'_> {
     ) -> Ordering {
         if let (Some(a), Some(b), Some(c)) = (a.world(self), b.world(self), c.world(self)) {
             let drop = |p: DVec3| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
-            return plane_sign(drop(a), drop(b), drop(c));
+            return sign(orient2d(drop(a), drop(b), drop(c)));
         }
         let (value, error) = self.rough_turn_about(axis, a.at(), b.at(), c.at());
         if value.abs() > error {
@@ -141,12 +127,12 @@ impl Scene<'_> {
     }
 
     /// From the query frame, whose axes are orthogonal to within a few `u`: turned back, a coordinate
-    /// is off by two blurs.
+    /// is off by two noises.
     fn rough_turn_about(&self, axis: usize, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let back = self.frame.transpose();
         let (x, y) = (back * (b - a), back * (c - a));
-        let (m, n, e) = (x[i].abs() + x[j].abs(), y[i].abs() + y[j].abs(), 4.0 * self.blur);
+        let (m, n, e) = (x[i].abs() + x[j].abs(), y[i].abs() + y[j].abs(), 4.0 * self.noise);
         (x[i] * y[j] - x[j] * y[i], 2.0 * e * (m + n + e) + 8.0 * U * m * n)
     }
 
@@ -156,7 +142,7 @@ impl Scene<'_> {
         a: &impl Spot,
         b: &impl Spot,
         c: &impl Spot,
-    ) -> Wide<N> {
+    ) -> Integer<N> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let p = a.wide(self);
         let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
@@ -165,21 +151,21 @@ impl Scene<'_> {
 
     /// Sign of `(b - a).(e x d)` with `e` the unit vector of an axis of the world: how
     /// `det[b - a, c - a, d]` changes when `c` moves along that axis.
-    pub(super) fn drift(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
+    pub(crate) fn drift(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let x = difference::<LARGE>(&b.wide(self), &a.wide(self));
-        let d = self.direction.to_array().map(Wide::number);
+        let d = self.setting.direction.to_array().map(Integer::number);
         // det[x, e, d] with e along `axis`: x_j d_i - x_i d_j, up to the order of axes.
         decided(&x[j].multiply(&d[i]).subtract(&x[i].multiply(&d[j])))
     }
 
     /// How `a` and `b` are ordered along an axis of the world.
-    pub(super) fn order(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
+    pub(crate) fn order(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
         if let (Some(a), Some(b)) = (a.world(self), b.world(self)) {
             return sign(a[axis] - b[axis]);
         }
         let rough = (self.frame.transpose() * (a.at() - b.at()))[axis];
-        if rough.abs() > 4.0 * self.blur {
+        if rough.abs() > 4.0 * self.noise {
             return sign(rough);
         }
         decided(&a.wide::<LARGE>(self)[axis].subtract(&b.wide(self)[axis]))

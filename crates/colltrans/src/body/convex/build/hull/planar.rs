@@ -3,9 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use super::quickhull::Flat;
-use super::violation::{Projection, to_segment, turn};
+use super::violation::{Projection, to_segment};
 use super::{BEYOND, Hull, measured, rounding};
 use crate::body::topology::Topology;
+use crate::number::predicates::orient2d as turn;
 use crate::work;
 
 pub(super) fn hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> Hull {

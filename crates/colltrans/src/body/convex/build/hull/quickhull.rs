@@ -137,11 +137,7 @@ fn first_simplex(points: &[DVec3], kept: &[u32], tolerance: f64) -> Result<[u32;
     Ok(if above > 0.0 { [a, c, b, e] } else { [a, b, c, e] })
 }
 
-/// Positive if `p` is above the plane of the counter-clockwise triangle `a b c`; exact sign.
-pub(super) fn side(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
-    let coord = |v: DVec3| robust::Coord3D { x: v.x, y: v.y, z: v.z };
-    -robust::orient3d(coord(a), coord(b), coord(c), coord(p))
-}
+pub(super) use crate::number::predicates::orient3d as side;
 
 /// Where a point went.
 enum Assigned {

@@ -12,6 +12,7 @@ use super::quickhull::{Simplicial, side};
 use crate::body::topology::Topology;
 use crate::number::determinant::triangle_area;
 use crate::number::plane::polygon_normal;
+use crate::number::predicates::orient2d as turn;
 use crate::work;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to
@@ -327,12 +328,6 @@ fn is_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3], projection: Projection) -> bo
         && is_left(v, w)
         && is_left(w, u)
         && side(a, b, c, p) == 0.0
-}
-
-/// Positive if `a b c` is a turn to the left; exact sign.
-pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
-    let coord = |v: DVec2| robust::Coord { x: v.x, y: v.y };
-    robust::orient2d(coord(a), coord(b), coord(c))
 }
 
 /// Points on the two coordinates orthogonal to a normal's largest component, so that what is

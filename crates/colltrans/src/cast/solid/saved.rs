@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::bound::Reason;
-use super::overlap::Overlap;
 use super::proof::{Cover, SolidCertificate, StartProof, StopProof};
 use crate::cast::CaseError;
+use crate::solve::facets::bound::Reason;
+use crate::solve::facets::overlap::Overlap;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof of a solid 1";

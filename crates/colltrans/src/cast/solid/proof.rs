@@ -11,18 +11,19 @@
 
 use std::collections::HashMap;
 
-use super::bound::{Profile, Reason, Shade, holds};
-use super::clearance::{SolidOptions, StartOverlap};
-use super::fan::Fan;
-use super::leaf::{self, Facet, Gap};
-use super::overlap::{self, Overlap};
-use super::rim::{self, Blade};
-use super::scene::Scene;
-use super::search::{Aim, SLACK, Search, Workspace, children, splits_moving};
+use super::{SolidOptions, SolidOverlap, StartOverlap};
 use crate::answer::Clearance;
 use crate::body::solid::Solid;
 use crate::cast::Cast;
-use crate::solve::facets::SolidOverlap;
+use crate::solve::facets::bound::{Profile, Reason, Shade, holds};
+use crate::solve::facets::fan::Fan;
+use crate::solve::facets::leaf::{self, Facet, Gap};
+use crate::solve::facets::overlap::{self, Overlap};
+use crate::solve::facets::rim::{self, Blade};
+use crate::solve::facets::scene::Scene;
+use crate::solve::facets::search::{
+    Aim, Search, Workspace, children, node_rounding, splits_moving,
+};
 
 /// A proof of the answer of [`Cast::clearance`] between solids, checked by [`Cast::verify`] without a
 /// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
@@ -68,7 +69,7 @@ pub struct StopProof {
 /// Split is the node with the longer diagonal of its box, the moving one if they are equal, and never
 /// a leaf.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Cover(pub(super) Vec<Option<Reason>>);
+pub struct Cover(pub(crate) Vec<Option<Reason>>);
 
 impl From<Vec<Option<Reason>>> for Cover {
     fn from(entries: Vec<Option<Reason>>) -> Self {
@@ -108,7 +109,7 @@ impl Cover {
     ///
     /// # Errors
     /// The number of the entry that is refused, or at which the cover does not fit the trees.
-    pub(super) fn walk(
+    pub(crate) fn walk(
         &self,
         bodies: [&Solid; 2],
         mut check: impl FnMut(usize, [u32; 2], Reason) -> bool,
@@ -200,10 +201,10 @@ impl Cast<'_, Solid> {
         let end = search.limit;
         certificate.cover = Cover::new(bodies, &cuts);
         certificate.stop = found.map(|found| StopProof {
-            shrunk_distance: found.gap / scene.length,
+            shrunk_distance: found.gap / scene.setting.length,
             triangles: [found.moving, found.fixed],
         });
-        certificate.lower = proven(&scene, aim, end, &certificate.cover) / scene.length;
+        certificate.lower = proven(&scene, aim, end, &certificate.cover) / scene.setting.length;
         if certificate.lower <= 0.0 {
             // Nothing contributes less than 0.
             certificate.lower = 0.0;
@@ -231,7 +232,7 @@ impl Cast<'_, Solid> {
 
 impl SolidCertificate {
     /// What the search was for; `None` if an overlap is the answer.
-    pub(super) fn aim(&self, asked: SolidOptions) -> Option<Aim> {
+    pub(crate) fn aim(&self, asked: SolidOptions) -> Option<Aim> {
         let overlapping = match self.start {
             StartProof::Assumed => asked.overlapping == Some(true),
             StartProof::Overlapping(_) => true,
@@ -243,11 +244,6 @@ impl SolidCertificate {
             (true, StartOverlap::Refuse) => None,
         }
     }
-}
-
-/// What bounds of nodes may be off by.
-pub(super) fn node_rounding(scene: &Scene) -> f64 {
-    SLACK / 3.0 * scene.blur
 }
 
 /// The least gap that the parts of a cover prove, their rounding taken off, of a search that has ended
@@ -270,7 +266,7 @@ fn proven(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
 
 /// The least gap of pairs of facets of two leaves that count, less its error; what is not below
 /// `limit` may be left out.
-pub(super) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
+pub(crate) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
     use std::cmp::Ordering::{Greater, Less};
     let of = |moving: bool, at: u32, wanted| -> Vec<Facet> {
         let facets = scene.side(moving).solid.nodes()[at as usize].facets();
@@ -281,28 +277,28 @@ pub(super) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
     for f in &front {
         for g in &back {
             // A gap is wanted whatever its size, so that its own error can be taken off.
-            let end = limit + leaf::SHARP * scene.blur;
+            let end = limit + leaf::SHARP * scene.noise;
             let gap = leaf::gap(scene, f, g, end, aim.wanted());
             let sharp = |gap: Gap| {
-                let blunt = gap.error > leaf::FINE * scene.blur;
+                let blunt = gap.error > leaf::FINE * scene.noise;
                 if blunt { leaf::sharpened(scene, f, g) } else { gap }
             };
             let value = gap.map(sharp);
-            let value = value.and_then(|gap| Some(aim.value(&gap)? - gap.error - scene.blur));
+            let value = value.and_then(|gap| Some(aim.value(&gap)? - gap.error - scene.noise));
             least = least.min(value.unwrap_or(f64::INFINITY));
         }
     }
     if rim::matters(scene, nodes) {
         let [f, g] = [true, false].map(|m| Blade::of_leaf(scene, m, nodes[usize::from(!m)]));
         rim::each_gap(scene, (&f, &front), (&g, &back), &mut |_, gap| {
-            least = least.min(aim.value(&gap).map_or(f64::INFINITY, |value| value - scene.blur));
+            least = least.min(aim.value(&gap).map_or(f64::INFINITY, |value| value - scene.noise));
         });
     }
     least
 }
 
 /// Whether an entry of the cover that is no pair of leaves holds.
-pub(super) fn cut_holds(
+pub(crate) fn cut_holds(
     (scene, fan): (&Scene, &Fan),
     aim: Aim,
     nodes: [u32; 2],

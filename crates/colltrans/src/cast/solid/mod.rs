@@ -4,18 +4,25 @@
 //! overlap, and the depth is the least tolerance with which they do not, from above: doubled until
 //! there is one, then halved between the two.
 
+mod proof;
+#[cfg(feature = "json")]
+mod saved;
+mod verify;
+
 use glam::DVec3;
 
-use super::contact::{SolidContact, contact};
-use super::overlap::{self, Overlap};
-use super::scene::Scene;
-use super::search::{Aim, Found, Search, Workspace};
-use super::separate::separation;
+use super::Cast;
 use crate::answer::{Bounded, Clearance, Separation};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
-use crate::cast::Cast;
 use crate::error::QueryError;
+use crate::solve::facets::contact::{SolidContact, contact};
+use crate::solve::facets::overlap::{self, Overlap};
+use crate::solve::facets::scene::Scene;
+use crate::solve::facets::search::{Aim, Found, Search, Workspace};
+use crate::solve::facets::separate::separation;
+pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
+pub use verify::SolidProof;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 const NOISES: f64 = 8.0;
@@ -148,17 +155,15 @@ impl<'a> Cast<'a, Solid> {
         self.options.tolerance.unwrap_or_else(|| {
             let scene = self.scene(0.0);
             let squared = scene.moving.permutes && scene.fixed.permutes;
-            if squared { 0.0 } else { NOISES * scene.blur }
+            if squared { 0.0 } else { NOISES * scene.noise }
         })
     }
 
-    pub(super) fn scene(&self, tolerance: f64) -> Scene<'a> {
-        let half = tolerance / 2.0;
-        let (moving, fixed) = (self.moving_pose(), self.fixed_pose());
-        Scene::new((self.moving(), &moving, half), (self.fixed(), &fixed, half), self.direction())
+    pub(crate) fn scene(&self, tolerance: f64) -> Scene<'a> {
+        Scene::new(&self.setting, [tolerance / 2.0; 2])
     }
 
-    pub(super) fn asked(&self) -> Scene<'a> {
+    pub(crate) fn asked(&self) -> Scene<'a> {
         self.scene(self.tolerance())
     }
 
@@ -209,12 +214,12 @@ impl<'a> Cast<'a, Solid> {
     }
 
     /// Gaps from here on are of no interest, a length.
-    pub(super) fn limit(&self, scene: &Scene) -> f64 {
-        self.options.before.map_or(f64::INFINITY, |t| t * scene.length)
+    pub(crate) fn limit(&self, scene: &Scene) -> f64 {
+        self.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
     }
 
     /// What a search has found, as an answer.
-    pub(super) fn answer(&self, scene: &Scene, found: Option<&Found>) -> Clearance<Solid> {
+    pub(crate) fn answer(&self, scene: &Scene, found: Option<&Found>) -> Clearance<Solid> {
         match found {
             None if self.options.before.is_none() => Clearance::Free(separation(scene)),
             None => Clearance::Free(None),
@@ -275,7 +280,7 @@ impl<'a> Cast<'a, Solid> {
             let half = tolerance / 2.0;
             overlap::find(&bare.shrunk(half, half)).is_none()
         };
-        let (mut low, mut high) = (0.0, bare.blur);
+        let (mut low, mut high) = (0.0, bare.noise);
         while !free(high) {
             (low, high) = (high, 2.0 * high);
             if high > bare.size() {

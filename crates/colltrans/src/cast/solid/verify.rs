@@ -1,18 +1,16 @@
 //! Proofs between solids checked: each entry by itself, without a search.
 
-use super::bound::{Reason, Shade, apart};
-use super::fan::Fan;
-use super::leaf;
-use super::overlap::{is_overlap, leaves_apart, nested, never_overlap};
-use super::proof::{
-    Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves, node_rounding,
-};
-use super::scene::Scene;
-use super::search::{Aim, SLACK, exact_gap};
-use super::separate;
+use super::proof::{Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves};
 use crate::answer::{CertificateError, Separation};
 use crate::body::solid::Solid;
 use crate::cast::Cast;
+use crate::solve::facets::bound::{Reason, Shade, apart};
+use crate::solve::facets::fan::Fan;
+use crate::solve::facets::leaf;
+use crate::solve::facets::overlap::{is_overlap, leaves_apart, nested, never_overlap};
+use crate::solve::facets::scene::Scene;
+use crate::solve::facets::search::{Aim, SLACK, exact_gap, node_rounding};
+use crate::solve::facets::separate;
 
 /// A proof between solids: of a clearance, or of a plane between the bodies.
 #[derive(Debug, Clone, Copy)]
@@ -70,7 +68,7 @@ impl Cast<'_, Solid> {
         let end = options.before.unwrap_or(f64::INFINITY);
         let Some(stop) = stop else {
             // Nothing before the end, to within rounding.
-            let tolerance = node_rounding(&scene) / scene.length + 4.0 * f64::EPSILON * end;
+            let tolerance = node_rounding(&scene) / scene.setting.length + 4.0 * f64::EPSILON * end;
             let reached = *lower >= end || *lower >= end - 2.0 * tolerance;
             let (proven, claimed) = (*lower, end);
             let unproven = CertificateError::Bound { proven, claimed };
@@ -78,7 +76,7 @@ impl Cast<'_, Solid> {
         };
         verify_stop(&scene, aim, stop)?;
         let gap = stop.shrunk_distance - *lower;
-        let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.blur / scene.length;
+        let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.noise / scene.setting.length;
         if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
             Ok(gap.max(0.0))
         } else {
@@ -133,7 +131,7 @@ fn verify_cover(
     }
     let bodies = [scene.moving.solid, scene.fixed.solid];
     // One rounding of the division, and one of this product.
-    let least = (lower * scene.length) * (1.0 - 2.0 * f64::EPSILON);
+    let least = (lower * scene.setting.length) * (1.0 - 2.0 * f64::EPSILON);
     let fan = Fan::new(scene);
     let walked = cover.walk(bodies, |_, nodes, reason| {
         if reason != Reason::Examined {
@@ -154,8 +152,8 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), Certific
         return Err(refused);
     }
     let (least, error) = exact_gap(scene, aim, stop.triangles).ok_or(refused)?;
-    let proven = aim.clamp(least) / scene.length;
-    let tolerance = (error + leaf::FINE * scene.blur) / scene.length;
+    let proven = aim.clamp(least) / scene.setting.length;
+    let tolerance = (error + leaf::FINE * scene.noise) / scene.setting.length;
     if (stop.shrunk_distance - proven).abs() <= tolerance {
         Ok(())
     } else {

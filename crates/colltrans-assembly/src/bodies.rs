@@ -12,9 +12,10 @@ use colltrans::{
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::boxes::{Aabb, BoxTree};
+use crate::boxes::BoxTree;
 use crate::error::AssemblyError;
 use crate::part::{Assembly, Ignored, Part};
+use colltrans::Aabb;
 
 /// Pairs of parts whose boxes meet: more are refused, for memory goes with their number.
 pub(crate) const MOST_NEIGHBOURS: usize = 1 << 19;
@@ -125,7 +126,7 @@ impl<'a> Bodies<'a> {
         let both: Result<Vec<(Solid, ShrinkReport)>, AssemblyError> =
             assembly.parts().par_iter().map(displaced).collect();
         let (solids, displaced): (Vec<Solid>, Vec<ShrinkReport>) = both?.into_iter().unzip();
-        let boxes: Vec<Aabb> = solids.iter().map(|s| Aabb::of(s.bounds())).collect();
+        let boxes: Vec<Aabb> = solids.iter().map(Solid::bounds).collect();
         let tree = BoxTree::new(boxes.iter().copied());
         let noise = 4.0 * Fit::default_for(assembly).tolerance();
         let (overlapping, passing) = (Vec::new(), BTreeMap::new());

@@ -1,63 +1,30 @@
-//! Boxes along the axes, and a tree over them.
+//! A tree over boxes along the axes.
 //!
 //! A box `A` swept along `d` meets `B` at the translations `t` for which `t d` lies in the box
 //! `B - A` (Minkowski difference): one slab test. Faces that only touch count, and the test allows
 //! for its own rounding, so that it never loses a pair.
 
+use colltrans::Aabb;
 use glam::DVec3;
 
-/// A box along the axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Aabb {
-    pub(crate) low: DVec3,
-    pub(crate) high: DVec3,
-}
-
-impl Aabb {
-    pub(crate) const fn of([low, high]: [DVec3; 2]) -> Self {
-        Self { low, high }
-    }
-
-    pub(crate) fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
-        let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        points.into_iter().fold(none, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
-    }
-
-    pub(crate) fn join(&self, other: &Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    pub(crate) fn grown(&self, by: f64) -> Self {
-        Self { low: self.low - by, high: self.high + by }
-    }
-
-    pub(crate) fn meets(&self, other: &Self) -> bool {
-        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
-    }
-
-    pub(crate) fn center(&self) -> DVec3 {
-        (self.low + self.high) * 0.5
-    }
-
-    /// The least translation `t >= 0` along `d` at which this box meets the other, from below.
-    pub(crate) fn entry(&self, other: &Self, d: DVec3) -> Option<f64> {
-        let size = self.low.abs().max(self.high.abs()).max(other.low.abs()).max(other.high.abs());
-        let slack = 8.0 * f64::EPSILON * size.max_element();
-        let (low, high) = (other.low - self.high - slack, other.high - self.low + slack);
-        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
-        for k in 0..3 {
-            if d[k] == 0.0 {
-                if low[k] > 0.0 || high[k] < 0.0 {
-                    return None;
-                }
-                continue;
+/// The least translation `t >= 0` along `d` at which a box meets another, from below.
+pub(crate) fn entry(moving: &Aabb, other: &Aabb, d: DVec3) -> Option<f64> {
+    let size = moving.low.abs().max(moving.high.abs()).max(other.low.abs()).max(other.high.abs());
+    let slack = 8.0 * f64::EPSILON * size.max_element();
+    let (low, high) = (other.low - moving.high - slack, other.high - moving.low + slack);
+    let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+    for k in 0..3 {
+        if d[k] == 0.0 {
+            if low[k] > 0.0 || high[k] < 0.0 {
+                return None;
             }
-            let (x, y) = (low[k] / d[k], high[k] / d[k]);
-            enter = enter.max(x.min(y));
-            leave = leave.min(x.max(y));
+            continue;
         }
-        (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter * (1.0 - 8.0 * f64::EPSILON))
+        let (x, y) = (low[k] / d[k], high[k] / d[k]);
+        enter = enter.max(x.min(y));
+        leave = leave.min(x.max(y));
     }
+    (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter * (1.0 - 8.0 * f64::EPSILON))
 }
 
 const LEAF: usize = 4;
@@ -144,8 +111,8 @@ impl BoxTree {
     /// first.
     pub(crate) fn ahead(&self, moving: &Aabb, d: DVec3) -> Vec<(f64, usize)> {
         let mut found = Vec::new();
-        let wanted = |b: &Aabb| moving.entry(b, d).is_some();
-        self.visit(wanted, |b, k| found.extend(moving.entry(b, d).map(|t| (t, k))));
+        let wanted = |b: &Aabb| entry(moving, b, d).is_some();
+        self.visit(wanted, |b, k| found.extend(entry(moving, b, d).map(|t| (t, k))));
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         found
     }
@@ -180,7 +147,7 @@ mod tests {
             let mut ahead: Vec<usize> = tree.ahead(&query, d).iter().map(|x| x.1).collect();
             ahead.sort_unstable();
             let swept: Vec<usize> =
-                (0..round).filter(|&k| query.entry(&boxes[k], d).is_some()).collect();
+                (0..round).filter(|&k| entry(&query, &boxes[k], d).is_some()).collect();
             assert_eq!(ahead, swept);
         }
     }
@@ -194,7 +161,7 @@ mod tests {
             let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
             let moved = |t: f64| Aabb { low: a.low + d * t, high: a.high + d * t };
             let stepped = (0..60_000).map(|k| f64::from(k) * 1e-3).find(|&t| moved(t).meets(&b));
-            match (a.entry(&b, d), stepped) {
+            match (entry(&a, &b, d), stepped) {
                 (Some(t), Some(s)) => assert!((t - s).abs() < 1.1e-3, "{t} {s}"),
                 (None, None) => (),
                 // Corners that pass between two steps.

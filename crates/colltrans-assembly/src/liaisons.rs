@@ -11,9 +11,10 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::bodies::Bodies;
-use crate::boxes::{Aabb, BoxTree};
+use crate::boxes::BoxTree;
 use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
+use colltrans::Aabb;
 
 /// Normals farther from opposite than this are no contact: the cosine of 25 degrees, a step of a
 /// round of 14 sides.
@@ -87,7 +88,7 @@ fn triangles_in(solid: &Solid, region: &Aabb) -> Vec<Triangle> {
 }
 
 fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
-    let (p, q) = (Aabb::of(a.bounds()).grown(reach), Aabb::of(b.bounds()).grown(reach));
+    let (p, q) = (a.bounds().grown(reach), b.bounds().grown(reach));
     let region = Aabb { low: p.low.max(q.low), high: p.high.min(q.high) };
     let (first, second) = (triangles_in(a, &region), triangles_in(b, &region));
     let tree = BoxTree::new(second.iter().map(|t| Aabb::of_points(*t)));

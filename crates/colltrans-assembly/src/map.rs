@@ -13,7 +13,7 @@ mod way;
 
 use std::collections::BTreeSet;
 
-use colltrans::{StartOverlap, Workspace};
+use colltrans::{Aabb, StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -97,7 +97,7 @@ impl RemovalMap {
                 isolated.push(d);
             }
         }
-        let [low, high] = bodies.assembly().bounds();
+        let Aabb { low, high } = bodies.assembly().bounds();
         let size = (high - low).length();
         Ok(Self { group: group.to_vec(), sphere, rooms, regions, isolated, size })
     }

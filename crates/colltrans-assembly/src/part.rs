@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use colltrans::{Solid, SolidError};
 use glam::{DAffine3, DVec3};
 
-use crate::boxes::Aabb;
 use crate::error::AssemblyError;
 use crate::orient;
+use colltrans::Aabb;
 
 /// A mesh and its place: a part has one or several, which may overlap each other.
 #[derive(Debug, Clone)]
@@ -97,7 +97,7 @@ impl Part {
     }
 
     pub(crate) fn bounds(&self) -> Aabb {
-        Aabb::of(self.solid.bounds())
+        self.solid.bounds()
     }
 }
 
@@ -272,15 +272,15 @@ impl Assembly {
     }
 
     /// The box around all parts; of no extent at the origin without parts.
-    pub fn bounds(&self) -> [DVec3; 2] {
+    pub fn bounds(&self) -> Aabb {
         let all = self.parts.iter().map(Part::bounds).reduce(|a, b| a.join(&b));
-        all.map_or([DVec3::ZERO; 2], |b| [b.low, b.high])
+        all.unwrap_or(Aabb { low: DVec3::ZERO, high: DVec3::ZERO })
     }
 
     /// The largest distance of a vertex's coordinate from the world's origin, or between two: what
     /// rounding errors grow with.
     pub fn size(&self) -> f64 {
-        let [low, high] = self.bounds();
+        let Aabb { low, high } = self.bounds();
         low.abs().max(high.abs()).max(high - low).max_element()
     }
 }

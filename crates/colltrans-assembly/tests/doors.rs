@@ -139,7 +139,7 @@ fn sparse_positions_and_whole_numbers_are_read() {
         views.push(json!({"buffer": 1, "byteOffset": 4, "byteLength": 12}));
     });
     let assembly = from_memory("a.gltf", &[("a.gltf", bytes)]).unwrap();
-    assert_eq!(assembly.parts()[0].solid().bounds()[1], glam::DVec3::splat(2.0));
+    assert_eq!(assembly.parts()[0].solid().bounds().high, glam::DVec3::splat(2.0));
 }
 
 #[test]
@@ -291,8 +291,11 @@ fn slicer(target: &str) -> Vec<u8> {
 #[test]
 fn objects_in_other_files_of_a_3mf_package_are_read() {
     let read = from_memory("a.3mf", &[("a.3mf", slicer("/3D/3dmodel.model"))]).unwrap();
-    let boxes: Vec<_> =
-        read.parts().iter().map(|p| p.solid().bounds().map(|b| b.to_array())).collect();
+    let boxes: Vec<_> = read
+        .parts()
+        .iter()
+        .map(|p| [p.solid().bounds().low, p.solid().bounds().high].map(|b| b.to_array()))
+        .collect();
     assert_eq!(
         boxes,
         [[[0.0, 0.0, 7.0], [1.0, 2.0, 10.0]], [[10.0, 0.0, 7.0], [14.0, 5.0, 13.0]],]
@@ -391,7 +394,7 @@ fn a_long_chain_of_links_is_placed() {
         }
     }
     let read = from_memory("a.urdf", &[("a.urdf", (text + "</robot>").into_bytes())]).unwrap();
-    assert_eq!(read.parts()[0].solid().bounds()[0].x, 2_998.5);
+    assert_eq!(read.parts()[0].solid().bounds().low.x, 2_998.5);
 }
 
 #[test]

@@ -100,8 +100,8 @@ fn rooms_of_boxes_are_intervals() {
         let boxes: Vec<[DVec3; 2]> = assembly
             .parts()
             .iter()
-            .map(|p| p.solid().bounds())
-            .map(|[low, high]| [low + tolerance / 2.0, high - tolerance / 2.0])
+            .map(|p| p.solid().bounds().grown(-tolerance / 2.0))
+            .map(|b| [b.low, b.high])
             .collect();
         let mut directions = vec![DVec3::X, DVec3::NEG_Z];
         // Edges pass exactly by edges.

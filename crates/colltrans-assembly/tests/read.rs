@@ -33,7 +33,8 @@ fn open(path: impl AsRef<Path>) -> Result<Assembly, ReadError> {
 }
 
 fn bounds(assembly: &Assembly, name: &str) -> [DVec3; 2] {
-    assembly.parts()[assembly.index(name).unwrap()].solid().bounds()
+    let bounds = assembly.parts()[assembly.index(name).unwrap()].solid().bounds();
+    [bounds.low, bounds.high]
 }
 
 fn near(found: [DVec3; 2], low: [f64; 3], high: [f64; 3]) {

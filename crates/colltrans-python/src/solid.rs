@@ -333,7 +333,8 @@ impl Solid {
     /// ndarray of shape (2, 3): Smallest and largest coordinates.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.solid.bounds().map(|v| v.to_array()))
+        let bounds = self.solid.bounds();
+        table(py, [bounds.low, bounds.high].map(|v| v.to_array()))
     }
 
     /// int: Bytes of memory that the body occupies, without what it was made of.

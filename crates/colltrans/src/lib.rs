@@ -119,7 +119,6 @@
 mod answer;
 mod body;
 mod cast;
-mod error;
 mod number;
 mod setting;
 mod solve;
@@ -131,9 +130,11 @@ pub use answer::{
     Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver,
     StartedFrom, Steps, WhyFree,
 };
+pub use body::error::{BuildError, PoseError, TopologyError};
 pub use body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{
-    Body, ConvexPolyhedron, ConvexityDefect, Feature, OffsetReport, Placed, Pose, convexity_defect,
+    Aabb, Body, ConvexPolyhedron, ConvexityDefect, Feature, OffsetReport, Placed, Pose,
+    convexity_defect,
 };
 pub use cast::solid::{
     Claim, Cover, SolidCertificate, SolidOptions, SolidOverlap, SolidProof, StartOverlap,
@@ -142,13 +143,13 @@ pub use cast::solid::{
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, Features, WitnessPoints, cast};
-pub use error::{BuildError, PoseError, QueryError, Stalled, TopologyError};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use setting::VertexPair;
-pub use solve::facets::{Overlap, Reason, SolidContact, Workspace};
+pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
+pub use solve::solid::{Overlap, Reason, SolidContact, Workspace};
 pub use tracker::Tracker;
 
 /// The example of the README, compiled and run as a test.

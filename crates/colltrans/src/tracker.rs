@@ -14,7 +14,7 @@ use crate::answer::{
 };
 use crate::body::ConvexPolyhedron;
 use crate::cast::{Cast, clearance_of, depth_of, intersection_of, range_of};
-use crate::error::QueryError;
+use crate::setting::error::QueryError;
 use crate::solve::observe::{Nobody, Observer};
 use crate::solve::options::{Focus, Region};
 use crate::solve::{WarmStart, search};
@@ -104,7 +104,7 @@ impl<'a> Tracker<'a> {
         self.first_contact_observed(cast, &mut Nobody)
     }
 
-    /// The same, with somebody who looks on, as for [`Cast::first_contact_observed`].
+    /// The same, with an observer, as for [`Cast::first_contact_observed`].
     ///
     /// # Errors
     /// As [`Cast::first_contact`].

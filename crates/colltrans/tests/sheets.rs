@@ -1,7 +1,9 @@
 //! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Bounded, Cast, Clearance, Pose, ShellKind, Solid, SolidOptions, StartOverlap};
+use colltrans::{
+    Aabb, Bounded, Cast, Clearance, Pose, ShellKind, Solid, SolidOptions, StartOverlap,
+};
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -299,7 +301,7 @@ fn sheets_are_neither_shrunk_nor_grown() {
     let flag = sheet([[4.0, 4.0, 4.0], [8.0, 4.0, 4.0], [8.0, 4.0, 8.0], [4.0, 4.0, 8.0]], 2);
     let body = Solid::from_pieces([&cube, &flag]).expect("both");
     let (smaller, report) = body.shrunk(0.25).expect("an amount");
-    assert_eq!(smaller.bounds(), [DVec3::splat(0.25), v(8.0, 4.0, 8.0)]);
+    assert_eq!(smaller.bounds(), Aabb { low: DVec3::splat(0.25), high: v(8.0, 4.0, 8.0) });
     assert!(report.stuck.is_empty() && report.inverted.is_empty(), "{report:?}");
     let (larger, _) = flag.grown(0.25).expect("an amount");
     assert_eq!(larger.bounds(), flag.bounds());

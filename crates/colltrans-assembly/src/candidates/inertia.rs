@@ -3,6 +3,7 @@
 //! The second moments about the centre, `C = integral of (x - m)(x - m)^T`, are a sum over
 //! tetrahedra from one point to each facet. Their eigenvectors by Jacobi's rotations.
 
+use colltrans::Aabb;
 use colltrans::Solid;
 use glam::{DMat3, DVec3};
 
@@ -19,7 +20,7 @@ pub fn axes(solid: &Solid) -> Vec<DVec3> {
 }
 
 fn second_moments(solid: &Solid) -> DMat3 {
-    let [low, high] = solid.bounds();
+    let Aabb { low, high } = solid.bounds();
     let origin = (low + high) * 0.5;
     let corner = |v: u32| solid.vertices()[v as usize] - origin;
     let (mut volume, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);

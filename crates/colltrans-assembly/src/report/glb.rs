@@ -7,9 +7,9 @@ use glam::DVec3;
 use serde_json::{Value, json};
 
 use super::tint;
-use crate::boxes::Aabb;
 use crate::part::{Assembly, Part};
 use crate::plan::Plan;
+use colltrans::Aabb;
 
 /// Seconds of a step, and of the pause before it.
 const STEP: f64 = 1.6;
@@ -22,7 +22,7 @@ const MOST_MOVES: usize = 200;
 /// A file's bytes.
 pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     let mut file = File::default();
-    let [low, high] = assembly.bounds();
+    let Aabb { low, high } = assembly.bounds();
     let size = (high - low).length();
     let per_unit = metres_per_unit(assembly.unit());
     let mut nodes = Vec::new();

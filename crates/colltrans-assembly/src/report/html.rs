@@ -3,6 +3,7 @@
 //! Written with `maud`, which escapes every text that is put in. Let through as they are, and marked
 //! [`PreEscaped`], are only what this crate holds (style, script) or draws (pictures, see `markup`).
 
+use colltrans::Aabb;
 use glam::DVec3;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -58,7 +59,7 @@ pub fn page(f: &Findings, title: &str) -> String {
 
 fn overview(f: &Findings) -> Markup {
     let assembly = f.bodies.assembly();
-    let [low, high] = assembly.bounds();
+    let Aabb { low, high } = assembly.bounds();
     let size = high - low;
     let unit = assembly.unit().map_or(String::new(), |unit| format!(" {unit}"));
     let (tolerance, word) = match f.bodies.fit() {
@@ -180,7 +181,7 @@ fn step_figure(f: &Findings, k: usize, gone: &[bool]) -> Markup {
 fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     let step = &f.plan.steps[k];
     let parts = f.bodies.assembly().parts();
-    let [low, high] = f.bodies.assembly().bounds();
+    let Aabb { low, high } = f.bodies.assembly().bounds();
     let by = step.direction
         * (step.travel * 0.5).clamp(0.12 * (high - low).length(), 0.5 * (high - low).length());
     let last = step.travel == 0.0 && step.within.is_none() && k + 1 == f.plan.steps.len();

@@ -5,6 +5,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use colltrans::Aabb;
 use glam::DVec3;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
@@ -46,7 +47,7 @@ fn script_data(data: &Value) -> PreEscaped<String> {
 
 fn data(f: &Findings) -> Value {
     let assembly = f.bodies.assembly();
-    let [low, high] = assembly.bounds();
+    let Aabb { low, high } = assembly.bounds();
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
     let parts: Vec<Value> =
         assembly.parts().iter().enumerate().map(|(k, p)| part(p, tint(k), middle)).collect();

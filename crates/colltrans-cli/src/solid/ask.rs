@@ -197,7 +197,8 @@ impl<'a> Question<'a> {
     /// The largest coordinate.
     fn size(&self) -> f64 {
         let reach = |body: &Body, pose: &Pose| {
-            let corners = body.solid().bounds().map(DVec3::length);
+            let bounds = body.solid().bounds();
+            let corners = [bounds.low, bounds.high].map(DVec3::length);
             corners[0].max(corners[1]) + pose.translation().length()
         };
         reach(self.moving, &self.moving_pose).max(reach(self.fixed, &self.fixed_pose))

@@ -2,6 +2,7 @@
 //!
 //! Numbers in binary are single precision and little-endian, about the assembly's middle.
 
+use colltrans::Aabb;
 use colltrans_assembly::blocking::Blocking;
 use colltrans_assembly::liaisons::Liaison;
 use colltrans_assembly::map::RemovalMap;
@@ -16,13 +17,13 @@ use serde_json::{Value, json};
 use crate::answer::Answer;
 
 fn middle(assembly: &Assembly) -> DVec3 {
-    let [low, high] = assembly.bounds();
+    let Aabb { low, high } = assembly.bounds();
     (low + high) / 2.0
 }
 
 /// Numbers: for each part its vertices (three `f32` each), then its triangles (three `u32` each).
 pub(crate) fn parts(assembly: &Assembly) -> Answer {
-    let ([low, high], middle) = (assembly.bounds(), middle(assembly));
+    let (Aabb { low, high }, middle) = (assembly.bounds(), middle(assembly));
     let facts: Vec<Value> = assembly
         .parts()
         .iter()

@@ -91,7 +91,7 @@ impl Inertia {
 }
 
 /// Share of the inner radius that is kept: what is lost covers rounding, and rotations that are off
-/// by as much as the door admits.
+/// by as much as is admitted.
 const CERTAIN: f64 = 1.0 - 1e-5;
 
 /// Radius of a ball around `center` inside a closed surface.

@@ -1,6 +1,8 @@
 //! Bodies, checked and indexed once, and where they stand.
 
+mod aabb;
 pub(crate) mod convex;
+pub(crate) mod error;
 mod feature;
 pub(crate) mod inertia;
 pub(crate) mod placed;
@@ -8,6 +10,7 @@ mod pose;
 pub(crate) mod solid;
 pub(crate) mod topology;
 
+pub use aabb::Aabb;
 pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use convex::{LargeFace, greatest_on_cycle};
 pub use feature::Feature;

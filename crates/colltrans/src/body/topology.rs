@@ -4,12 +4,12 @@
 //! counter-clockwise as seen from outside, so `next` needs no link. Half-edge `h` runs from
 //! `origin(h)` to `origin(twin(h))`, with its own face on its left.
 //!
-//! Invariant (checked at the door): every half-edge has exactly one twin, which runs the other way;
+//! Invariant (validated on input): every half-edge has exactly one twin, which runs the other way;
 //! the faces around a vertex form one fan. Of a convex body the surface is one sphere, too.
 //! Bodies of lower dimension fit in: a flat polygon is a front and a back face; a segment is
 //! two vertices that are each other's neighbour, a point one vertex, both without faces.
 
-use crate::error::TopologyError;
+use crate::body::error::TopologyError;
 
 /// A directed edge along the boundary of its face.
 #[derive(Debug, Clone, Copy)]

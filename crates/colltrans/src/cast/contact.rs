@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::Cast;
 use crate::answer::Contact;
+use crate::body::error::PoseError;
 use crate::body::{Feature, Pose, feature};
-use crate::error::PoseError;
 
 /// A contact point on each body, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]

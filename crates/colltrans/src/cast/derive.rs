@@ -7,8 +7,8 @@ use crate::answer::{
     Clearance, Contact, ContactRange, DirectionalDepth, Grazing, Intersection, Outcome,
     OverlapAhead, WhyFree,
 };
-use crate::error::QueryError;
 use crate::number::range::MIN_MAGNITUDE;
+use crate::setting::error::QueryError;
 
 /// The contact range, from the casts along a direction and against it.
 pub(crate) fn range_of<'a>(

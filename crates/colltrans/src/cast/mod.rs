@@ -19,8 +19,8 @@ use crate::answer::{
     Solver,
 };
 use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
-use crate::error::QueryError;
 use crate::setting::Setting;
+use crate::setting::error::QueryError;
 use crate::solve::observe::{Nobody, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{WarmStart, search};
@@ -200,7 +200,7 @@ impl Cast<'_> {
         self.first_contact_observed(&mut Nobody)
     }
 
-    /// The same, with somebody who looks on: a [`Clock`](crate::observe::Clock), a
+    /// The same, with an observer: a [`Clock`](crate::observe::Clock), a
     /// [`Recording`](crate::observe::Recording).
     ///
     /// # Errors
@@ -234,7 +234,7 @@ impl Cast<'_> {
         range_of(self, Self::first_contact)
     }
 
-    /// The same, with somebody who looks on, as for [`Self::first_contact_observed`].
+    /// The same, with an observer, as for [`Self::first_contact_observed`].
     ///
     /// # Errors
     /// As [`Self::first_contact`].
@@ -269,7 +269,7 @@ impl Cast<'_> {
         clearance_of(self, Self::first_contact)
     }
 
-    /// The same, with somebody who looks on, as for [`Self::first_contact_observed`].
+    /// The same, with an observer, as for [`Self::first_contact_observed`].
     ///
     /// # Errors
     /// As [`Self::first_contact`].

@@ -10,8 +10,9 @@ use thiserror::Error;
 
 use super::Cast;
 use crate::answer::Solver;
+use crate::body::error::{BuildError, PoseError};
 use crate::body::{ConvexPolyhedron, Pose};
-use crate::error::{BuildError, PoseError, QueryError};
+use crate::setting::error::QueryError;
 use crate::solve::options::{NarrowFrom, Narrowing, Options};
 
 /// Why a file is no query.

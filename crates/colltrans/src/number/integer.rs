@@ -1,6 +1,6 @@
 //! Whole numbers of fixed capacity, for the signs that rounding cannot tell.
 //!
-//! A number is `limbs 2^(64 base)`: coordinates are dyadic rationals. The door admits magnitudes from
+//! A number is `limbs 2^(64 base)`: coordinates are dyadic rationals. Input has magnitudes from
 //! `2^-200` to `2^200` with 53 significant bits, so a product of two spans `2^-505..2^400`, and with
 //! barycentric weights that are multiples of `1/64`, a coordinate (eight terms) has at most 917 bits. A
 //! determinant of three differences has at most `3 * 918 + 3 = 2757` bits: 46 limbs, wherever limbs

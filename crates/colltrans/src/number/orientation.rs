@@ -10,7 +10,7 @@
 //! numbers of twice the usual precision with a bound on what they lost ([`Double`]; a bound of 0
 //! means nothing was), whole numbers of the usual size, whole numbers of the largest size.
 //!
-//! Capacity. The door admits magnitudes from `2^-200` to `2^200` with 53 significant bits. A
+//! Capacity. Input has magnitudes from `2^-200` to `2^200` with 53 significant bits. A
 //! product of two spans `2^-505..2^400`, a coordinate of `M` (eight terms) stays below `2^404`: 909
 //! bits. A component of a shadow spans `2^-757..2^605`: 1362 bits, 23 limbs. Their products have 46
 //! limbs, but numbers of like size need few: an integer keeps only the limbs it has.

@@ -1,4 +1,4 @@
-//! The range of numbers that is let in at the door.
+//! The range of numbers that are admitted.
 
 use glam::DVec3;
 

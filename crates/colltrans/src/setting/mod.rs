@@ -4,16 +4,17 @@
 //! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both
 //! bodies, however large, costs no accuracy.
 
+pub(crate) mod error;
 pub(crate) mod minkowski;
 
 use glam::{DMat3, DVec3};
 
 use crate::body::{ConvexPolyhedron, Placed};
-use crate::error::QueryError;
 use crate::number::error_free::difference_error;
 use crate::number::noise::Noise;
 use crate::number::orientation::Terms;
 use crate::number::range::in_exact_range;
+use crate::setting::error::QueryError;
 
 /// One vertex of each body, by index into [`ConvexPolyhedron::vertices`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

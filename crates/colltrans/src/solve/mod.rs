@@ -11,17 +11,17 @@
 //! ([`Plane::at`], which is also the proof), and a support point is searched only if it does not.
 
 pub(crate) mod cta;
-pub(crate) mod facets;
 pub mod observe;
 pub(crate) mod options;
 pub(crate) mod portal;
 mod proof;
+pub(crate) mod solid;
 mod warm_start;
 
 use glam::DVec2;
 
 use crate::answer::{Grazing, Outcome, Separated, Separation, Solver, StartedFrom};
-use crate::error::{QueryError, Stalled};
+use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
 use cta::{CtaOptions, Guess, Origin, RegionFocus};

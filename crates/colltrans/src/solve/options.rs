@@ -2,7 +2,7 @@
 
 use crate::answer::{Contact, OverlapAhead, Solver, WhyFree};
 use crate::body::{Body, ConvexPolyhedron};
-use crate::error::QueryError;
+use crate::setting::error::QueryError;
 
 /// Choices of a query; the default is right for most.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -5,8 +5,8 @@ use glam::DVec2;
 use crate::answer::{
     Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_rounding,
 };
-use crate::error::{QueryError, Stalled};
 use crate::number::noise::UNIT_VECTOR;
+use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::WarmStart;
 use crate::solve::portal::{ContactPortal, Plane, Portal};

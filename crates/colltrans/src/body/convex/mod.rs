@@ -1,6 +1,6 @@
-//! Convex polyhedra, checked once at the door.
+//! Convex polyhedra, validated on input.
 //!
-//! The data's way: points, a mesh or two corners -> [`build`] (which vertices, which faces) ->
+//! Data flow: points, a mesh or two corners -> [`build`] (which vertices, which faces) ->
 //! [`topology`](crate::body::topology) (half-edges, no coordinates) -> the indices built on both
 //! ([`support`] points, [`sections`]).
 

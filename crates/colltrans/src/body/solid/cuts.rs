@@ -9,6 +9,7 @@
 //! times an edge and `|n_k|` times a corner. So no facet reaches farther along it than the box, less
 //! the last two times the depths there.
 
+use crate::body::Aabb;
 use glam::{BVec3, DVec3};
 
 /// Eight corners, and four edges along each axis.
@@ -54,12 +55,12 @@ impl Reach {
     }
 
     /// The depths below the corners and edges of a box, as shares.
-    pub(super) fn below(&self, low: DVec3, high: DVec3) -> [u8; CUTS] {
-        let sums = extents(high - low);
+    pub(super) fn below(&self, bounds: &Aabb) -> [u8; CUTS] {
+        let sums = extents(bounds.size());
         let mut ends = Self::NONE;
         for c in 0..8 {
             let lower = BVec3::new(c & 1 != 0, c & 2 != 0, c & 4 != 0);
-            ends.add(DVec3::select(lower, low, high));
+            ends.add(DVec3::select(lower, bounds.low, bounds.high));
         }
         std::array::from_fn(|k| {
             let depth = ends.0[k] - self.0[k];
@@ -163,13 +164,13 @@ mod tests {
                 DVec3::new(3.0 * c, 2.0 * s - c, 0.5 * s + 1.5 * c)
             })
             .collect();
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let bounds = Aabb::of_points(points.iter().copied());
+        let Aabb { low, high } = bounds;
         let mut reach = Reach::NONE;
         for p in &points {
-            (low, high) = (low.min(*p), high.max(*p));
             reach.add(*p);
         }
-        let cuts = reach.below(low, high);
+        let cuts = reach.below(&bounds);
         assert!(cuts.iter().any(|&c| c > 64));
         let depths = depths(&cuts, high - low, 0.0);
         let mut gained = 0.0;

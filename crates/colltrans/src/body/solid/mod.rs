@@ -1,22 +1,22 @@
-//! Solids that need not be convex, checked once at the door.
+//! Solids that need not be convex, validated on input.
 //!
-//! The data's way: facets -> [`door`] (one checked surface of triangles) -> [`shells`] (which parts
+//! Data flow: facets -> [`validate`] (one checked surface of triangles) -> [`shells`] (which parts
 //! there are, which are inside out) -> [`tree`] (what a search goes down). [`shrink`] is made when it
-//! is first asked for; [`passed`] finds the walls that are too thin for it.
+//! is first asked for; [`self_intersection`] finds the walls that are too thin for it.
 
 pub(crate) mod cuts;
-mod door;
 pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
 mod faces;
 mod openness;
-mod passed;
 mod polygon;
 mod report;
+mod self_intersection;
 mod shells;
 mod shrink;
 pub(crate) mod tree;
+mod validate;
 pub(crate) mod wedge;
 mod weld;
 
@@ -24,15 +24,16 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
+use crate::body::Aabb;
 use crate::body::ConvexPolyhedron;
 use crate::body::placed::sealed;
-pub(crate) use door::Surface;
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
 pub use shrink::ShrinkReport;
 pub(crate) use shrink::{Shrinking, displace};
 use tree::Node;
+pub(crate) use validate::Surface;
 
 /// A solid in its own frame, bounded by triangles; it may have holes, cavities and several parts.
 ///
@@ -123,8 +124,7 @@ impl AsSolid for ConvexPolyhedron {
 /// Where a shell is.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Span {
-    pub(crate) low: DVec3,
-    pub(crate) high: DVec3,
+    pub(crate) bounds: Aabb,
     /// One of its triangles.
     pub(crate) triangle: u32,
 }
@@ -145,7 +145,7 @@ impl Solid {
         facets: &[F],
     ) -> Result<Self, SolidError> {
         let mut report = SolidReport::default();
-        let surface = door::surface(vertices, facets, false, &mut report)?;
+        let surface = validate::surface(vertices, facets, false, &mut report)?;
         Ok(Self::assemble(surface, report))
     }
 
@@ -161,7 +161,7 @@ impl Solid {
         facets: &[F],
     ) -> Result<Self, SolidError> {
         let mut report = SolidReport::default();
-        let surface = door::surface(vertices, facets, true, &mut report)?;
+        let surface = validate::surface(vertices, facets, true, &mut report)?;
         Ok(Self::assemble(surface, report))
     }
 
@@ -272,13 +272,10 @@ impl Solid {
         let mut spans: Vec<Span> = Vec::new();
         for (t, &shell) in shell_of.iter().enumerate() {
             if shell as usize == spans.len() {
-                let (low, high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-                spans.push(Span { low, high, triangle: t as u32 });
+                spans.push(Span { bounds: Aabb::EMPTY, triangle: t as u32 });
             }
-            let span = &mut spans[shell as usize];
-            for corner in self.triangles[t].map(|v| self.vertices[v as usize]) {
-                span.low = span.low.min(corner);
-                span.high = span.high.max(corner);
+            for v in self.triangles[t] {
+                spans[shell as usize].bounds.add(self.vertices[v as usize]);
             }
         }
         spans
@@ -346,8 +343,8 @@ impl Solid {
     }
 
     /// Smallest and largest coordinates of all vertices.
-    pub fn bounds(&self) -> [DVec3; 2] {
-        [self.nodes[0].low, self.nodes[0].high]
+    pub fn bounds(&self) -> Aabb {
+        self.nodes[0].bounds
     }
 
     /// Bytes of memory that the solid occupies, on the heap and in itself.

@@ -12,9 +12,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 
-use super::door::Surface;
 use super::report::{Shell, ShellKind};
 use super::tree;
+use super::validate::Surface;
 
 /// How far from a half the winding number on a facet may be.
 const FARTHEST: f64 = 0.1;

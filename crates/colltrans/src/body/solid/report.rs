@@ -1,4 +1,4 @@
-//! What the door noticed.
+//! What was noticed when a mesh was read.
 
 /// What a shell is to others: an inside, a side, or neither.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -8,11 +8,12 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::door::Surface;
 use super::edges::NONE;
 use super::exact;
 use super::openness;
 use super::report::{Shell, ShellKind, SolidReport};
+use super::validate::Surface;
+use crate::body::Aabb;
 
 /// Finds the shells, turns those that are inside out, tells the kinds of open ones apart, and reports.
 pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) {
@@ -147,19 +148,19 @@ struct Nesting<'a> {
     shell_of: &'a [u32],
     /// A point of each shell.
     points: Vec<DVec3>,
-    boxes: Vec<[DVec3; 2]>,
+    boxes: Vec<Aabb>,
 }
 
 impl<'a> Nesting<'a> {
     fn new(surface: &'a Surface, shell_of: &'a [u32], count: usize) -> Self {
         let mut points = vec![DVec3::ZERO; count];
-        let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; count];
+        let mut boxes = vec![Aabb::EMPTY; count];
         for (t, corners) in surface.triangles.iter().enumerate() {
             let s = shell_of[t] as usize;
             for &v in corners {
                 let p = surface.vertices[v as usize];
                 points[s] = p;
-                boxes[s] = [boxes[s][0].min(p), boxes[s][1].max(p)];
+                boxes[s].add(p);
             }
         }
         Self { surface, shell_of, points, boxes }
@@ -168,7 +169,7 @@ impl<'a> Nesting<'a> {
     /// Whether no other shell contains this one.
     fn is_outermost(&self, shell: usize) -> bool {
         let p = self.points[shell];
-        let boxed = |s: usize| p.cmpge(self.boxes[s][0]).all() && p.cmple(self.boxes[s][1]).all();
+        let boxed = |s: usize| self.boxes[s].holds(&Aabb { low: p, high: p });
         let candidates: Vec<bool> = (0..self.boxes.len()).map(|s| s != shell && boxed(s)).collect();
         if !candidates.contains(&true) {
             return true;

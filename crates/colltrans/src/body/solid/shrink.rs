@@ -27,7 +27,8 @@ use super::edges::NONE;
 use super::error::SolidError;
 use super::tree::{self, Node};
 use super::{ShellKind, Solid, Surface};
-use super::{passed, shells};
+use super::{self_intersection, shells};
+use crate::body::Aabb;
 use crate::number::range::{in_exact_range, without_traces};
 
 /// Facets less high than this share of the body's size are noise.
@@ -86,7 +87,7 @@ impl Solid {
     /// An amount that is negative, not finite, or so large that coordinates leave the exact range.
     ///
     /// ```
-    /// use colltrans::{ConvexPolyhedron, Solid};
+    /// use colltrans::{Aabb, ConvexPolyhedron, Solid};
     /// use colltrans::glam::DVec3;
     ///
     /// let corners: Vec<DVec3> = (0..8)
@@ -94,7 +95,7 @@ impl Solid {
     ///     .collect();
     /// let cube = Solid::from_convex(&ConvexPolyhedron::from_points(&corners)?)?;
     /// let (smaller, report) = cube.shrunk(0.25)?;
-    /// assert_eq!(smaller.bounds(), [DVec3::splat(0.25), DVec3::splat(0.75)]);
+    /// assert_eq!(smaller.bounds(), Aabb { low: DVec3::splat(0.25), high: DVec3::splat(0.75) });
     /// assert!((smaller.volume() - 0.125).abs() < 1e-15);
     /// assert!((report.farthest - 0.25 * 3.0_f64.sqrt()).abs() < 1e-15);
     /// assert!(report.stuck.is_empty() && report.inverted.is_empty());
@@ -178,7 +179,7 @@ impl Solid {
         };
         let mut facets: Vec<u32> = (0..self.triangles.len())
             .filter(|t| mirrored(t) || inverted(t))
-            .chain(passed::facets(self, &moved, &shell_of, &before))
+            .chain(self_intersection::facets(self, &moved, &shell_of, &before))
             .map(|t| self.facet_index[t])
             .collect();
         facets.sort_unstable();
@@ -235,14 +236,13 @@ impl Shrinking {
     }
 
     /// What a node's box becomes.
-    pub(crate) fn boxed(&self, [low, high]: [DVec3; 2], amount: f64, node: usize) -> [DVec3; 2] {
+    pub(crate) fn boxed(&self, bounds: Aabb, amount: f64, node: usize) -> Aabb {
         if amount <= self.most {
             let motion = &self.nodes[node];
             let rate = |r: [f32; 3]| DVec3::from_array(r.map(f64::from)) * amount;
-            [low + rate(motion.low), high + rate(motion.high)]
+            Aabb { low: bounds.low + rate(motion.low), high: bounds.high + rate(motion.high) }
         } else {
-            let swell = self.farthest * amount.abs();
-            [low - swell, high + swell]
+            bounds.grown(self.farthest * amount.abs())
         }
     }
 
@@ -384,13 +384,13 @@ fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
 
 fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotion {
     let node: &Node = &solid.nodes[at];
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut bounds = Aabb::EMPTY;
     let mut slab = [f64::INFINITY, f64::NEG_INFINITY];
     let [mut turn, mut rough] = [0.0_f64; 2];
     for t in node.facets() {
         for v in solid.triangles[t].map(|v| v as usize) {
             let moved = displace(solid.vertices[v], field[v], most);
-            (low, high) = (low.min(moved), high.max(moved));
+            bounds.add(moved);
             let level = node.axis.dot(moved);
             slab = [slab[0].min(level), slab[1].max(level)];
         }
@@ -406,8 +406,8 @@ fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotio
     let up = |end: f64, start: f64| ((end - start) / most + slack) as f32;
     let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
     NodeMotion {
-        low: [0, 1, 2].map(|k| down(low[k], node.low[k]).next_down()),
-        high: [0, 1, 2].map(|k| up(high[k], node.high[k]).next_up()),
+        low: [0, 1, 2].map(|k| down(bounds.low[k], node.bounds.low[k]).next_down()),
+        high: [0, 1, 2].map(|k| up(bounds.high[k], node.bounds.high[k]).next_up()),
         slab: [
             finite(down(slab[0], node.slab[0]).next_down()),
             finite(up(slab[1], node.slab[1]).next_up()),

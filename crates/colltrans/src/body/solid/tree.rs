@@ -17,6 +17,7 @@ use std::thread;
 use glam::{DVec3, Vec3Swizzles};
 
 use super::cuts::{CUTS, Reach};
+use crate::body::Aabb;
 
 /// Facets of a leaf, at most.
 pub(crate) const LEAF: usize = 4;
@@ -33,8 +34,7 @@ pub(crate) const OPEN: f32 = f32::INFINITY;
 /// What bounds consecutive facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Node {
-    pub(crate) low: DVec3,
-    pub(crate) high: DVec3,
+    pub(crate) bounds: Aabb,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
     /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on, [`OPEN`] where one
@@ -69,8 +69,7 @@ impl Node {
 #[derive(Clone, Copy)]
 struct Item {
     facet: u32,
-    low: DVec3,
-    high: DVec3,
+    bounds: Aabb,
     /// Unit normal, and twice the area.
     normal: DVec3,
     area: f64,
@@ -80,15 +79,14 @@ struct Item {
 
 impl Item {
     fn new(facet: u32, corners: [DVec3; 3]) -> Self {
-        let [a, b, c] = corners;
         let (normal, doubt) = normal(corners);
         let area = normal.length();
         let normal = if area > 0.0 { normal / area } else { DVec3::ZERO };
-        Self { facet, low: a.min(b).min(c), high: a.max(b).max(c), normal, area, doubt }
+        Self { facet, bounds: Aabb::of_points(corners), normal, area, doubt }
     }
 
     fn center(&self) -> DVec3 {
-        self.low + self.high
+        self.bounds.low + self.bounds.high
     }
 }
 
@@ -174,8 +172,8 @@ impl Builder<'_> {
         } else {
             self.grow_children(items, at, first, threads, nodes)
         };
-        let Node { low, high, cuts, .. } = &mut nodes[at];
-        *cuts = reach.below(*low, *high);
+        let Node { bounds, cuts, .. } = &mut nodes[at];
+        *cuts = reach.below(bounds);
         reach
     }
 
@@ -231,17 +229,15 @@ impl Builder<'_> {
     }
 
     fn node(&self, items: &[Item], first: u32) -> Node {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut bounds = Aabb::EMPTY;
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for item in items {
-            low = low.min(item.low);
-            high = high.max(item.high);
+            bounds = bounds.join(&item.bounds);
             sum += item.normal * item.area;
             total += item.area;
         }
         let mut node = Node {
-            low,
-            high,
+            bounds,
             axis: DVec3::ZERO,
             slab: [f64::NEG_INFINITY, f64::INFINITY],
             spread: ANY as f32,
@@ -307,20 +303,15 @@ fn round_up(x: f64) -> f32 {
 
 /// Puts the items of the first child in front; how many they are.
 fn split(items: &mut [Item]) -> usize {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for item in items.iter() {
-        let center = item.center();
-        low = low.min(center);
-        high = high.max(center);
-    }
-    if let Some((axis, bin)) = cheapest(items, low, high) {
-        let key = Binning::new(low, high, axis, items.len());
+    let centers = Aabb::of_points(items.iter().map(Item::center));
+    if let Some((axis, bin)) = cheapest(items, &centers) {
+        let key = Binning::new(&centers, axis, items.len());
         let middle = partition(items, |item| key.bin(item) <= bin);
         if middle > 0 && middle < items.len() {
             return middle;
         }
     }
-    let axis = (high - low).max_position();
+    let axis = centers.size().max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
         let (x, y) = (a.center()[axis], b.center()[axis]);
@@ -351,34 +342,29 @@ struct Binning {
 
 impl Binning {
     /// For so many items: few need few.
-    fn new(low: DVec3, high: DVec3, axis: usize, items: usize) -> Self {
+    fn new(centers: &Aabb, axis: usize, items: usize) -> Self {
         let bins = items.clamp(4, BINS);
-        let scale = bins as f64 / (high[axis] - low[axis]);
-        Self { axis, low: low[axis], scale, last: bins - 1 }
+        let scale = bins as f64 / centers.size()[axis];
+        Self { axis, low: centers.low[axis], scale, last: bins - 1 }
     }
 
     fn bin(&self, item: &Item) -> usize {
-        // Out of range, or no number where all centres are one, ends at either end.
+        // Out of range, or not a number where all centres are one, ends at either end.
         (((item.center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
     }
 }
 
 #[derive(Clone, Copy)]
 struct Bin {
-    low: DVec3,
-    high: DVec3,
+    bounds: Aabb,
     count: usize,
 }
 
 impl Bin {
-    const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, count: 0 };
+    const EMPTY: Self = Self { bounds: Aabb::EMPTY, count: 0 };
 
     fn join(self, other: Self) -> Self {
-        Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-            count: self.count + other.count,
-        }
+        Self { bounds: self.bounds.join(&other.bounds), count: self.count + other.count }
     }
 
     /// Half the surface of the box times the count.
@@ -386,24 +372,24 @@ impl Bin {
         if self.count == 0 {
             return 0.0;
         }
-        let s = self.high - self.low;
+        let s = self.bounds.size();
         (s.x * s.y + s.y * s.z + s.z * s.x) * self.count as f64
     }
 }
 
 /// The axis and the last bin of the first child for which the surface-area heuristic is least; of many
 /// facets a share is looked at.
-fn cheapest(items: &[Item], low: DVec3, high: DVec3) -> Option<(usize, usize)> {
+fn cheapest(items: &[Item], centers: &Aabb) -> Option<(usize, usize)> {
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in 0..3 {
-        if high[axis] <= low[axis] {
+        if centers.high[axis] <= centers.low[axis] {
             continue;
         }
-        let binning = Binning::new(low, high, axis, items.len());
+        let binning = Binning::new(centers, axis, items.len());
         let mut bins = [Bin::EMPTY; BINS];
         for item in items.iter().step_by(items.len().div_ceil(SAMPLE)) {
             let bin = &mut bins[binning.bin(item)];
-            *bin = bin.join(Bin { low: item.low, high: item.high, count: 1 });
+            *bin = bin.join(Bin { bounds: item.bounds, count: 1 });
         }
         let mut behind = [0.0; BINS];
         let mut all = Bin::EMPTY;

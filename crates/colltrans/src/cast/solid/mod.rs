@@ -15,12 +15,12 @@ use super::Cast;
 use crate::answer::{Bounded, Clearance, Separation};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
-use crate::error::QueryError;
-use crate::solve::facets::contact::{SolidContact, contact};
-use crate::solve::facets::overlap::{self, Overlap};
-use crate::solve::facets::scene::Scene;
-use crate::solve::facets::search::{Aim, Found, Search, Workspace};
-use crate::solve::facets::separate::separation;
+use crate::setting::error::QueryError;
+use crate::solve::solid::contact::{SolidContact, contact};
+use crate::solve::solid::overlap::{self, Overlap};
+use crate::solve::solid::scene::Scene;
+use crate::solve::solid::search::{Aim, Found, Search, Workspace};
+use crate::solve::solid::separate::separation;
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
 pub use verify::SolidProof;
 

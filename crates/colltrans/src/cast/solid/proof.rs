@@ -15,15 +15,14 @@ use super::{SolidOptions, SolidOverlap, StartOverlap};
 use crate::answer::Clearance;
 use crate::body::solid::Solid;
 use crate::cast::Cast;
-use crate::solve::facets::bound::{Profile, Reason, Shade, holds};
-use crate::solve::facets::fan::Fan;
-use crate::solve::facets::leaf::{self, Facet, Gap};
-use crate::solve::facets::overlap::{self, Overlap};
-use crate::solve::facets::rim::{self, Blade};
-use crate::solve::facets::scene::Scene;
-use crate::solve::facets::search::{
-    Aim, Search, Workspace, children, node_rounding, splits_moving,
-};
+use crate::solve::solid::bound::{Profile, Reason, holds};
+use crate::solve::solid::leaf::{self, Facet, Gap};
+use crate::solve::solid::overlap::{self, Overlap};
+use crate::solve::solid::projected::Projected;
+use crate::solve::solid::rim::{self, Upright};
+use crate::solve::solid::scene::Scene;
+use crate::solve::solid::search::{Aim, Search, Workspace, children, node_rounding, splits_moving};
+use crate::solve::solid::separating_axes::SeparatingAxes;
 
 /// A proof of the answer of [`Cast::clearance`] between solids, checked by [`Cast::verify`] without a
 /// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
@@ -289,7 +288,7 @@ pub(crate) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
         }
     }
     if rim::matters(scene, nodes) {
-        let [f, g] = [true, false].map(|m| Blade::of_leaf(scene, m, nodes[usize::from(!m)]));
+        let [f, g] = [true, false].map(|m| Upright::of_leaf(scene, m, nodes[usize::from(!m)]));
         rim::each_gap(scene, (&f, &front), (&g, &back), &mut |_, gap| {
             least = least.min(aim.value(&gap).map_or(f64::INFINITY, |value| value - scene.noise));
         });
@@ -299,16 +298,17 @@ pub(crate) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
 
 /// Whether an entry of the cover that is no pair of leaves holds.
 pub(crate) fn cut_holds(
-    (scene, fan): (&Scene, &Fan),
+    (scene, axes): (&Scene, &SeparatingAxes),
     aim: Aim,
     nodes: [u32; 2],
     reason: Reason,
     lower: f64,
 ) -> bool {
     let [p, q] = [&scene.moving, &scene.fixed];
-    let shades = [Shade::new(scene, p, nodes[0] as usize), Shade::new(scene, q, nodes[1] as usize)];
-    let reaches = [fan.reach(p, &shades[0]), fan.reach(q, &shades[1])];
-    let [a, b] = [0, 1].map(|k| Profile { shade: &shades[k], reach: Some(&reaches[k]) });
+    let projected =
+        [Projected::new(scene, p, nodes[0] as usize), Projected::new(scene, q, nodes[1] as usize)];
+    let reaches = [axes.reach(p, &projected[0]), axes.reach(q, &projected[1])];
+    let [a, b] = [0, 1].map(|k| Profile { projected: &projected[k], reach: Some(&reaches[k]) });
     match reason {
         Reason::NotBefore if lower <= 0.0 => aim != Aim::Least,
         Reason::Disjoint | Reason::FaceToFace | Reason::Examined => false,

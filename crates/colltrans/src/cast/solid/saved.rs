@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::proof::{Cover, SolidCertificate, StartProof, StopProof};
 use crate::cast::CaseError;
-use crate::solve::facets::bound::Reason;
-use crate::solve::facets::overlap::Overlap;
+use crate::solve::solid::bound::Reason;
+use crate::solve::solid::overlap::Overlap;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof of a solid 1";

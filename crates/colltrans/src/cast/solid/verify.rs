@@ -4,13 +4,14 @@ use super::proof::{Cover, SolidCertificate, StartProof, StopProof, cut_holds, le
 use crate::answer::{CertificateError, Separation};
 use crate::body::solid::Solid;
 use crate::cast::Cast;
-use crate::solve::facets::bound::{Reason, Shade, apart};
-use crate::solve::facets::fan::Fan;
-use crate::solve::facets::leaf;
-use crate::solve::facets::overlap::{is_overlap, leaves_apart, nested, never_overlap};
-use crate::solve::facets::scene::Scene;
-use crate::solve::facets::search::{Aim, SLACK, exact_gap, node_rounding};
-use crate::solve::facets::separate;
+use crate::solve::solid::bound::{Reason, apart};
+use crate::solve::solid::leaf;
+use crate::solve::solid::overlap::{is_overlap, leaves_apart, nested, never_overlap};
+use crate::solve::solid::projected::Projected;
+use crate::solve::solid::scene::Scene;
+use crate::solve::solid::search::{Aim, SLACK, exact_gap, node_rounding};
+use crate::solve::solid::separate;
+use crate::solve::solid::separating_axes::SeparatingAxes;
 
 /// A proof between solids: of a clearance, or of a plane between the bodies.
 #[derive(Debug, Clone, Copy)]
@@ -100,12 +101,14 @@ impl Cast<'_, Solid> {
 /// Checks that the interiors are disjoint where the bodies are.
 fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
-    let shade = |moving: bool, at: u32| Shade::new(scene, scene.side(moving), at as usize);
-    let whole = never_overlap(scene, &shade(true, 0), &shade(false, 0));
+    let projected = |moving: bool, at: u32| Projected::new(scene, scene.side(moving), at as usize);
+    let whole = never_overlap(scene, &projected(true, 0), &projected(false, 0));
     let walked = cover.walk(bodies, |_, nodes, reason| match reason {
         Reason::Disjoint if nodes == [0, 0] && whole => true,
-        Reason::Disjoint => apart(scene, &shade(true, nodes[0]), &shade(false, nodes[1])),
-        Reason::FaceToFace => shade(true, nodes[0]).is_face_to_face(&shade(false, nodes[1])),
+        Reason::Disjoint => apart(scene, &projected(true, nodes[0]), &projected(false, nodes[1])),
+        Reason::FaceToFace => {
+            projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
+        }
         Reason::Examined => {
             let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
             a.is_leaf() && b.is_leaf() && leaves_apart(scene, a, b)
@@ -132,10 +135,10 @@ fn verify_cover(
     let bodies = [scene.moving.solid, scene.fixed.solid];
     // One rounding of the division, and one of this product.
     let least = (lower * scene.setting.length) * (1.0 - 2.0 * f64::EPSILON);
-    let fan = Fan::new(scene);
+    let axes = SeparatingAxes::new(scene);
     let walked = cover.walk(bodies, |_, nodes, reason| {
         if reason != Reason::Examined {
-            return cut_holds((scene, &fan), aim, nodes, reason, least);
+            return cut_holds((scene, &axes), aim, nodes, reason, least);
         }
         let leaf = |k: usize| bodies[k].nodes()[nodes[k] as usize].is_leaf();
         leaf(0) && leaf(1) && (least <= 0.0 || least_of_leaves(scene, aim, nodes, least) >= least)

@@ -13,14 +13,12 @@ use glam::DVec2;
 use super::crossing::{Bracket, Crossing, is_horizontal};
 use super::piece::{Affine, contact_motion, unit};
 use super::planar::Planar;
+use super::section::FACE_SIDES;
 use super::side::{Point, Side};
 use crate::number::noise;
 
 /// At most so many half-planes bound a cell: those of a vertex contact.
 const CELL_SIDES: usize = 2 + 2 * (1 + FACE_SIDES);
-
-/// A face with more vertices is replaced by the part between two mesh edges.
-pub(super) const FACE_SIDES: usize = 6;
 
 /// What ends at a side of a cell, for a body by its index.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

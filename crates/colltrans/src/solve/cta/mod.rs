@@ -9,7 +9,7 @@
 //! `phi(x, y) = y/(b.d) - x/(a.d) + psi(x, y)`, `psi` the least `h` common to both sections'
 //! shadows.
 //!
-//! The data's way: [`pair`] (a setting in section coordinates), [`start`] (the first levels) ->
+//! Data flow: [`pair`] (a setting in section coordinates), [`start`] (the first levels) ->
 //! [`side`] and [`section`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) ->
 //! [`piece`] (a linear bound) and [`cell`] (where it is `phi`) -> [`exit`] (whether the cell's best
 //! point solves the problem), else [`region`] (what is left of the levels) and [`bound`] (what the

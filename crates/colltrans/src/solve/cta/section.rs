@@ -5,10 +5,12 @@
 
 use glam::DVec2;
 
-use super::cell::FACE_SIDES;
 use super::crossing::{Bracket, Chain, Crossing, is_horizontal};
 use super::side::Side;
 use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
+
+/// A face with more vertices is replaced by the part between two mesh edges.
+pub(super) const FACE_SIDES: usize = 6;
 
 /// Where a height was found on a chain.
 #[derive(Debug, Clone, Copy)]

@@ -9,9 +9,9 @@ use std::cell::OnceCell;
 use glam::DVec3;
 
 use super::hull::{self, Hull, Locator};
+use crate::body::error::{BuildError, TopologyError};
 use crate::body::topology::Topology;
 use crate::body::{ConvexPolyhedron, Inertia};
-use crate::error::{BuildError, TopologyError};
 use crate::number::plane::polygon_normal;
 
 /// How far a mesh is from convex.

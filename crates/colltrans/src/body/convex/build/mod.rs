@@ -1,4 +1,4 @@
-//! The door: bodies from points, from meshes and from corners.
+//! Construction: bodies from points, from meshes and from corners.
 
 mod hull;
 mod mesh;
@@ -12,9 +12,9 @@ use super::ConvexPolyhedron;
 use super::sections::SectionIndex;
 use super::support::SupportIndex;
 use crate::body::Inertia;
+use crate::body::error::BuildError;
 #[cfg(any(test, feature = "json"))]
 use crate::body::topology::Topology;
-use crate::error::BuildError;
 use hull::Hull;
 pub use mesh::{ConvexityDefect, convexity_defect};
 pub use offset::OffsetReport;
@@ -80,7 +80,7 @@ impl ConvexPolyhedron {
     ///
     /// # Errors
     /// What is wrong with the points, the topology, the orientation, or the convexity (with the
-    /// worst face and its depth); a tolerance that is negative or no number.
+    /// worst face and its depth); a tolerance that is negative or not a number.
     ///
     /// ```
     /// use colltrans::glam::DVec3;

@@ -15,8 +15,8 @@
 use glam::{DMat3, DVec3};
 
 use super::hull::{self, Hull};
+use crate::body::error::BuildError;
 use crate::body::{ConvexPolyhedron, Inertia};
-use crate::error::BuildError;
 use crate::number::plane::polygon_normal;
 use crate::number::range::without_traces;
 

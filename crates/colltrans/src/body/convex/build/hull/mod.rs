@@ -22,8 +22,9 @@ mod violation;
 
 use glam::DVec3;
 
+use crate::body::Aabb;
+use crate::body::error::{BuildError, TopologyError};
 use crate::body::topology::Topology;
-use crate::error::{BuildError, TopologyError};
 use crate::number::noise;
 use crate::number::range::in_exact_range;
 use quickhull::Simplicial;
@@ -248,12 +249,11 @@ const LARGE: usize = 500;
 /// Sorts points along a space-filling curve (Morton's).
 fn sort_by_place(points: &[DVec3], vertices: &mut [u32]) {
     let at = |v: u32| points[v as usize];
-    let low = vertices.iter().map(|&v| at(v)).fold(DVec3::INFINITY, DVec3::min);
-    let high = vertices.iter().map(|&v| at(v)).fold(DVec3::NEG_INFINITY, DVec3::max);
-    let scale = f64::from(1 << 20) / (high - low);
+    let bounds = Aabb::of_points(vertices.iter().map(|&v| at(v)));
+    let scale = f64::from(1 << 20) / bounds.size();
     // Casts saturate: an axis without extent is all zeros.
     let key = |&v: &u32| {
-        let cell = (at(v) - low) * scale;
+        let cell = (at(v) - bounds.low) * scale;
         spread(cell.x as u32) | spread(cell.y as u32) << 1 | spread(cell.z as u32) << 2
     };
     vertices.sort_by_cached_key(key);

@@ -15,6 +15,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
+use crate::body::Aabb;
 use crate::number::plane::triangle_normal;
 use crate::work;
 
@@ -172,17 +173,12 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     fn new(points: &'a [DVec3], kept: &[u32], forced: &'a [u32], tolerance: f64) -> Self {
-        let (low, high) = kept
-            .iter()
-            .map(|&i| points[i as usize])
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-                (low.min(p), high.max(p))
-            });
+        let bounds = Aabb::of_points(kept.iter().map(|&i| points[i as usize]));
         Self {
             points,
             forced,
             tolerance,
-            extent: (high - low).length(),
+            extent: bounds.size().length(),
             triangles: Vec::new(),
             pending: VecDeque::new(),
             next: vec![NONE; points.len()],

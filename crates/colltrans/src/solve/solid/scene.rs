@@ -176,7 +176,7 @@ pub(crate) struct Corner {
 }
 
 /// Something that has a place: a vertex, or a point within a facet.
-pub(crate) trait Spot {
+pub(crate) trait ExactPoint {
     /// In the query frame, rounded.
     fn at(&self) -> DVec3;
     /// Whether that is exact.
@@ -187,7 +187,7 @@ pub(crate) trait Spot {
     fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3];
 }
 
-impl Spot for Corner {
+impl ExactPoint for Corner {
     fn at(&self) -> DVec3 {
         self.at
     }

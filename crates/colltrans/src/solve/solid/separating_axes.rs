@@ -21,8 +21,9 @@
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-use super::bound::Shade;
+use super::projected::Projected;
 use super::scene::{Scene, Side};
+use crate::body::Aabb;
 use crate::body::solid::cuts::{Depths, Parts, depths};
 
 /// Normals orthogonal to an axis of each box, the direction, and the axes of the moving and the fixed
@@ -41,7 +42,7 @@ const STEEP: f64 = 1.0 / 1024.0;
 const PARALLEL: f64 = 1e-6;
 
 /// The directions of a query, as the moving body and the fixed one see them.
-pub(crate) struct Fan([View; 2]);
+pub(crate) struct SeparatingAxes([View; 2]);
 
 /// Directions in a body's frame, by coordinates.
 struct View {
@@ -111,7 +112,7 @@ impl View {
     }
 }
 
-impl Fan {
+impl SeparatingAxes {
     pub(crate) fn new(scene: &Scene) -> Self {
         let axes = |side: &Side| [side.view.x_axis, side.view.y_axis, side.view.z_axis];
         let (p, q) = (axes(&scene.moving), axes(&scene.fixed));
@@ -132,13 +133,13 @@ impl Fan {
 
     /// How far a node reaches along the directions.
     #[inline]
-    pub(crate) fn reach(&self, side: &Side, shade: &Shade) -> Reach {
-        let [low, high] = shade.local;
+    pub(crate) fn reach(&self, side: &Side, projected: &Projected) -> Reach {
+        let Aabb { low, high } = projected.local;
         let view = &self.0[usize::from(!side.moving)];
         let mut reach = [0.0; ALL];
         view.box_reach((low + high) * 0.5, (high - low) * 0.5, &mut reach);
-        let node = &side.solid.nodes()[shade.node as usize];
-        view.cut(&depths(&node.cuts, node.high - node.low, side.moved()), &mut reach);
+        let node = &side.solid.nodes()[projected.node as usize];
+        view.cut(&depths(&node.cuts, node.bounds.size(), side.moved()), &mut reach);
         Reach(reach)
     }
 }

@@ -10,10 +10,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::bound::Shade;
-use super::overlap::{Plate, lies_on};
-use super::scene::{Corner, Scene, Side, Spot, place_exactly};
+use super::projected::Projected;
+use super::scene::{Corner, ExactPoint, Scene, Side, place_exactly};
 use super::search::children;
+use super::triangle::{Triangle, lies_on};
 use crate::body::solid::edges::NONE;
 use crate::number::integer::Integer;
 
@@ -30,9 +30,9 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
     if !other.solid.has_inside() {
         return None;
     }
-    let room = Shade::new(scene, other, 0);
+    let room = Projected::new(scene, other, 0);
     for span in own.solid.spans() {
-        let (middle, half) = ((span.low + span.high) * 0.5, (span.high - span.low) * 0.5);
+        let (middle, half) = (span.bounds.center(), span.bounds.size() * 0.5);
         let at = own.view * middle + own.view_offset;
         let rows = own.view.transpose();
         let swell = own.shrinking.map_or(0.0, |s| s.farthest * own.amount);
@@ -100,7 +100,7 @@ impl Mean {
     }
 }
 
-impl Spot for Mean {
+impl ExactPoint for Mean {
     fn at(&self) -> DVec3 {
         self.at
     }
@@ -119,33 +119,34 @@ impl Spot for Mean {
 }
 
 /// How many closed shells of a solid a point lies in; `None` if it lies on one.
-fn winding(scene: &Scene, side: &Side, spot: &impl Spot) -> Option<i32> {
-    winding_below(scene, side, spot, 0)
+fn winding(scene: &Scene, side: &Side, point: &impl ExactPoint) -> Option<i32> {
+    winding_below(scene, side, point, 0)
 }
 
 /// The part of it from the facets of one node.
-fn winding_below(scene: &Scene, side: &Side, spot: &impl Spot, at: u32) -> Option<i32> {
-    let (p, noise) = (spot.at(), 4.0 * scene.noise);
+fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -> Option<i32> {
+    let (p, noise) = (point.at(), 4.0 * scene.noise);
     let node = &side.solid.nodes()[at as usize];
-    let shade = Shade::new(scene, side, at as usize);
-    let beside = (0..2).any(|k| p[k] < shade.low[k] - noise || p[k] > shade.high[k] + noise);
-    if beside || p.z > shade.high.z + noise {
+    let projected = Projected::new(scene, side, at as usize);
+    let beside =
+        (0..2).any(|k| p[k] < projected.low[k] - noise || p[k] > projected.high[k] + noise);
+    if beside || p.z > projected.high.z + noise {
         return Some(0);
     }
     if !node.is_leaf() {
         let [first, second] = children(node, at);
         return Some(
-            winding_below(scene, side, spot, first)? + winding_below(scene, side, spot, second)?,
+            winding_below(scene, side, point, first)? + winding_below(scene, side, point, second)?,
         );
     }
     let axes = sideways(scene);
     let mut winding = 0;
     // Sheets enclose nothing.
     for t in node.facets().filter(|&t| !side.solid.is_open(t)) {
-        if lies_on(scene, spot, &Plate::new(side, t)) {
+        if lies_on(scene, point, &Triangle::new(side, t)) {
             return None;
         }
-        winding += crossing(scene, side.corners(t), spot, axes);
+        winding += crossing(scene, side.corners(t), point, axes);
     }
     Some(winding)
 }
@@ -156,20 +157,25 @@ fn sideways(scene: &Scene) -> [usize; 2] {
     [(main + 1) % 3, (main + 2) % 3]
 }
 
-/// 1 if the line from the spot leaves through the triangle, -1 if it enters, 0 if it passes it.
-fn crossing(scene: &Scene, [a, b, c]: [Corner; 3], spot: &impl Spot, axes: [usize; 2]) -> i32 {
+/// 1 if the line from the point leaves through the triangle, -1 if it enters, 0 if it passes it.
+fn crossing(
+    scene: &Scene,
+    [a, b, c]: [Corner; 3],
+    point: &impl ExactPoint,
+    axes: [usize; 2],
+) -> i32 {
     let facing = scene.turn(&a, &b, &c);
     if facing == Ordering::Equal {
         return 0;
     }
     let beside = |u: &Corner, v: &Corner| {
         scene
-            .turn(u, v, spot)
+            .turn(u, v, point)
             .then_with(|| scene.drift(axes[0], u, v))
             .then_with(|| scene.drift(axes[1], u, v))
     };
     let passes = beside(&a, &b) == facing && beside(&b, &c) == facing && beside(&c, &a) == facing;
-    if !passes || scene.outside(&a, &b, &c, spot) != facing.reverse() {
+    if !passes || scene.outside(&a, &b, &c, point) != facing.reverse() {
         return 0;
     }
     if facing == Ordering::Greater { 1 } else { -1 }

@@ -23,10 +23,8 @@ const ROUNDING: f64 = 4.0;
 /// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one; not
 /// always where large faces are apart by no more than they were shrunk.
 pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
-    let middle = |side: &Side| {
-        let [low, high] = side.solid.bounds();
-        (side.view * ((low + high) * 0.5) + side.view_offset).truncate()
-    };
+    let middle =
+        |side: &Side| (side.view * side.solid.bounds().center() + side.view_offset).truncate();
     let mut v = middle(&scene.fixed) - middle(&scene.moving);
     let mut simplex: Simplex = (0, [DVec2::ZERO; 3]);
     for _ in 0..MOST_ROUNDS {
@@ -141,11 +139,11 @@ impl<'s, 'a> Farthest<'s, 'a> {
         }
         let bound = |k: u32| {
             let node = &nodes[k as usize];
-            let mut ends = [node.low, node.high];
+            let mut ends = node.bounds;
             if let Some(shrinking) = self.side.shrinking {
                 ends = shrinking.boxed(ends, self.side.amount, k as usize);
             }
-            self.local.dot(DVec3::select(self.local.cmpgt(DVec3::ZERO), ends[1], ends[0]))
+            self.local.dot(DVec3::select(self.local.cmpgt(DVec3::ZERO), ends.high, ends.low))
         };
         let mut parts = children(node, at).map(|k| (bound(k), k));
         if parts[1].0 > parts[0].0 {

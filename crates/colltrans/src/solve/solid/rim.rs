@@ -1,7 +1,7 @@
 //! What is on edge: facets of open shells that the direction runs along.
 //!
 //! Their shadows are segments, so no interiors of shadows overlap; but a sheet cannot pass, edge on,
-//! through a solid or through another sheet. Such a facet `F` is a *blade*. Moved by `t d` with `t > 0`,
+//! through a solid or through another sheet. Such a facet `F` is *upright*. Moved by `t d` with `t > 0`,
 //!
 //! 1. it enters the open inside of a solid if and only if the plane strip ahead of its *leading* sides
 //!    (those that the rest of it is behind) does, and that is so over an open part of a leading side's
@@ -11,9 +11,9 @@
 //! 2. it crosses a facet of an open shell that is not on edge where the shadow of a leading side meets
 //!    the interior of the facet's. It crosses two facets that meet at an edge along the strip if they are
 //!    on different sides of it; to brush a fold, or a rim, is not to cross it;
-//! 3. it meets a blade of the other body in its own plane where the interiors of the two do;
-//! 4. it crosses a blade of another plane over the one point that their shadows have in common, if it lies
-//!    inside both. At an end of a shadow an upright side may join the blade to the next one: then the two
+//! 3. it meets an upright facet of the other body in its own plane where the interiors of the two do;
+//! 4. it crosses an upright facet of another plane over the one point that their shadows have in common, if it lies
+//!    inside both. At an end of a shadow an upright side may join the facet to the next one: then the two
 //!    are looked at as a bend, and bends cross if each has an arm on either side of the other.
 //!
 //! With bodies that do not overlap at the start, the gap of 1 and 2 counts as that of two facets does:
@@ -31,11 +31,11 @@ use crate::body::solid::edges::NONE;
 use crate::number::integer::{Integer, LARGE, SMALL};
 
 /// A facet of an open shell, on edge.
-pub(crate) struct Blade {
+pub(crate) struct Upright {
     triangle: u32,
     corners: [Corner; 3],
     moving: bool,
-    /// How each side `k`, from corner `k` to the next, lies: `Greater` if the rest of the blade is
+    /// How each side `k`, from corner `k` to the next, lies: `Greater` if the rest of the facet is
     /// behind it, `Less` if ahead, `Equal` if it is upright.
     leads: [Ordering; 3],
     /// The corners at the ends of the shadow.
@@ -52,7 +52,7 @@ pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
         .any(|(moving, node)| scene.side(moving).solid.nodes()[node as usize].is_open())
 }
 
-/// The least gap of two triangles of which one is a blade, the moving body's first, where they block
+/// The least gap of two triangles of which one is an upright facet, the moving body's first, where they block
 /// each other, and its error.
 pub(crate) fn least_gap_of(
     scene: &Scene,
@@ -68,32 +68,32 @@ pub(crate) fn least_gap_of(
     least
 }
 
-/// The gaps of two triangles of which one is a blade.
+/// The gaps of two triangles of which one is an upright facet.
 pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
-    let blade = |moving, t: u32| {
+    let upright = |moving, t: u32| {
         let open = scene.side(moving).solid.is_open(t as usize);
-        open.then(|| Blade::new(scene, moving, t as usize)).flatten()
+        open.then(|| Upright::new(scene, moving, t as usize)).flatten()
     };
-    let (f, g) = (blade(true, s), blade(false, t));
+    let (f, g) = (upright(true, s), upright(false, t));
     let front = Facet::facing(scene, true, s as usize, Greater);
     let back = Facet::facing(scene, false, t as usize, Less);
     each_gap(scene, (f.as_slice(), front.as_slice()), (g.as_slice(), back.as_slice()), take);
 }
 
-/// Each gap that a blade of one leaf makes with what is in another leaf: the leaves' blades, and their
+/// Each gap that an upright facet of one leaf makes with what is in another leaf: the leaves' upright facets, and their
 /// facets that look the right way.
 pub(crate) fn each_gap(
     scene: &Scene,
-    (blades, front): (&[Blade], &[Facet]),
-    (others, back): (&[Blade], &[Facet]),
+    (uprights, front): (&[Upright], &[Facet]),
+    (others, back): (&[Upright], &[Facet]),
     take: &mut dyn FnMut([u32; 2], Gap),
 ) {
-    for f in blades {
+    for f in uprights {
         for g in back {
             f.with_facet(scene, g, &mut |gap| take([f.triangle, g.triangle], gap));
         }
         for g in others {
-            if let Some(gap) = with_blade(scene, f, g) {
+            if let Some(gap) = with_upright(scene, f, g) {
                 take([f.triangle, g.triangle], gap);
             }
         }
@@ -105,8 +105,8 @@ pub(crate) fn each_gap(
     }
 }
 
-impl Blade {
-    /// The blades of a leaf.
+impl Upright {
+    /// The upright facets of a leaf.
     pub(crate) fn of_leaf(scene: &Scene, moving: bool, node: u32) -> Vec<Self> {
         let solid = scene.side(moving).solid;
         let open = solid.nodes()[node as usize].facets().filter(|&t| solid.is_open(t));
@@ -122,7 +122,7 @@ impl Blade {
         }
         let [p, q, r] = corners.map(|c| c.at);
         let (low, high) = (p.min(q).min(r), p.max(q).max(r));
-        let mut blade = Self {
+        let mut upright = Self {
             triangle: triangle as u32,
             corners,
             moving,
@@ -131,13 +131,14 @@ impl Blade {
             low,
             high,
         };
-        blade.leads = [0, 1, 2].map(|k| blade.lead(scene, k));
+        upright.leads = [0, 1, 2].map(|k| upright.lead(scene, k));
         // The two corners that are farthest apart along the shadow.
-        let axis = blade.axis(scene);
-        let order = |i: usize, j: usize| scene.drift(axis, &blade.corners[i], &blade.corners[j]);
+        let axis = upright.axis(scene);
+        let order =
+            |i: usize, j: usize| scene.drift(axis, &upright.corners[i], &upright.corners[j]);
         let extreme = |way| (0..3).find(|&i| (0..3).all(|j| order(i, j) != way)).unwrap_or(0);
-        blade.ends = [extreme(Less), extreme(Greater)];
-        Some(blade)
+        upright.ends = [extreme(Less), extreme(Greater)];
+        Some(upright)
     }
 
     fn side(&self, k: usize) -> [&Corner; 2] {
@@ -238,7 +239,7 @@ impl Blade {
         Some(gap)
     }
 
-    /// The gap where the blade is so far above the other body.
+    /// The gap where the facet is so far above the other body.
     fn ahead(&self, above: Above) -> Above {
         if self.moving { above.reversed() } else { above }
     }
@@ -252,15 +253,15 @@ impl Blade {
         }
     }
 
-    /// The gap along the common shadow of a side of this blade and one of the other body.
+    /// The gap along the common shadow of a side of this facet and one of the other body.
     fn oriented(&self, scene: &Scene, own: Named, other: Named) -> Option<Gap> {
         let [moving, fixed] = if self.moving { [own, other] } else { [other, own] };
         along(scene, moving, fixed)
     }
 
-    /// What of the blade is over a point of its shadow: the two arms, as corners or, at an end with an
-    /// upright side, as the blade's other end and the one of the blade across the side. `None` if the
-    /// blade only ends there.
+    /// What of the facet is over a point of its shadow: the two arms, as corners or, at an end with an
+    /// upright side, as the facet's other end and the one of the facet across the side. `None` if the
+    /// upright only ends there.
     fn arms(&self, scene: &Scene, end: Option<usize>) -> Option<[Corner; 2]> {
         let Some(end) = end else { return Some([*self.end(0), *self.end(1)]) };
         let upright = (0..3).find(|&k| self.leads[k] == Equal)?;
@@ -273,7 +274,7 @@ impl Blade {
         Some([*self.end(1 - end), apex])
     }
 
-    /// The leading side whose shadow reaches to or across the line of another blade's shadow.
+    /// The leading side whose shadow reaches to or across the line of another upright facet's shadow.
     fn leading_at(&self, scene: &Scene, other: &Self) -> Option<usize> {
         self.leading().find(|&k| {
             let [p, q] = self.side(k).map(|c| scene.turn(other.end(0), other.end(1), c));
@@ -298,9 +299,9 @@ fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
     (n != NONE).then(|| apex(n)).flatten().map(|v| side.corner(v))
 }
 
-/// Whether a blade enters the other body at side `j` of a facet, along which it runs.
-fn enters(scene: &Scene, blade: &Blade, facet: &Facet, j: usize) -> bool {
-    let side = scene.side(!blade.moving);
+/// Whether an upright facet enters the other body at side `j` of a facet, along which it runs.
+fn enters(scene: &Scene, upright: &Upright, facet: &Facet, j: usize) -> bool {
+    let side = scene.side(!upright.moving);
     let t = facet.triangle as usize;
     let (solid, listed) = (side.solid, facet.side(j).map(|c| c.local));
     let own = side.corners(t);
@@ -319,8 +320,8 @@ fn enters(scene: &Scene, blade: &Blade, facet: &Facet, j: usize) -> bool {
     scene.turn(&x, &y, &z) == entered || scene.outside(&own[0], &own[1], &own[2], &apex) == Greater
 }
 
-/// The gap of a moving and a fixed blade.
-fn with_blade(scene: &Scene, f: &Blade, g: &Blade) -> Option<Gap> {
+/// The gap of a moving and a fixed upright facet.
+fn with_upright(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
     if f.is_beside(scene, g.low, g.high) {
         return None;
     }
@@ -329,8 +330,8 @@ fn with_blade(scene: &Scene, f: &Blade, g: &Blade) -> Option<Gap> {
 }
 
 /// Case 3: the least gap of the leading sides, and the sign of the largest one of those behind.
-fn in_one_plane(scene: &Scene, f: &Blade, g: &Blade) -> Option<Gap> {
-    let sides = |blade: &Blade, k: usize| -> [Corner; 2] { blade.side(k).map(|c| *c) };
+fn in_one_plane(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
+    let sides = |upright: &Upright, k: usize| -> [Corner; 2] { upright.side(k).map(|c| *c) };
     let mut gap: Option<Gap> = None;
     let (mut least, mut largest) = (Greater, Less);
     for wanted in [Greater, Less] {
@@ -357,7 +358,7 @@ fn in_one_plane(scene: &Scene, f: &Blade, g: &Blade) -> Option<Gap> {
 }
 
 /// Case 4.
-fn crossing(scene: &Scene, f: &Blade, g: &Blade, of_f: [Ordering; 2]) -> Option<Gap> {
+fn crossing(scene: &Scene, f: &Upright, g: &Upright, of_f: [Ordering; 2]) -> Option<Gap> {
     let of_g = [0, 1].map(|k| scene.turn(g.end(0), g.end(1), f.end(k)));
     let apart = |t: [Ordering; 2]| t[0] == t[1];
     if apart(of_f) || apart(of_g) {

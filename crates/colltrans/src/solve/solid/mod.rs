@@ -8,15 +8,17 @@
 
 pub(crate) mod bound;
 pub(crate) mod contact;
-pub(crate) mod fan;
 mod inside;
 pub(crate) mod leaf;
 pub(crate) mod overlap;
+pub(crate) mod projected;
 pub(crate) mod rim;
 pub(crate) mod scene;
 pub(crate) mod search;
 pub(crate) mod separate;
+pub(crate) mod separating_axes;
 mod sign;
+mod triangle;
 
 pub use bound::Reason;
 pub use contact::SolidContact;

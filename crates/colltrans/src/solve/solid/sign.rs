@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-use super::scene::{Scene, Spot};
+use super::scene::{ExactPoint, Scene};
 use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
 use crate::number::predicates::{orient2d, orient3d, sign};
 
@@ -34,7 +34,12 @@ pub(crate) fn rough_turn(scene: &Scene, a: DVec3, b: DVec3, c: DVec3) -> (f64, f
 
 impl Scene<'_> {
     /// Sign of `det[b - a, c - a, d]`: which way the shadows turn.
-    pub(crate) fn turn(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Ordering {
+    pub(crate) fn turn(
+        &self,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
+    ) -> Ordering {
         let (value, error) = rough_turn(self, a.at(), b.at(), c.at());
         if value.abs() > error {
             return sign(value);
@@ -49,10 +54,10 @@ impl Scene<'_> {
     /// Sign of `det[b - a, c - a, e - a]`: whether `e` is on the outer side of the facet `a b c`.
     pub(crate) fn outside(
         &self,
-        a: &impl Spot,
-        b: &impl Spot,
-        c: &impl Spot,
-        e: &impl Spot,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
+        e: &impl ExactPoint,
     ) -> Ordering {
         let noise = 2.0 * self.noise;
         let p = a.at();
@@ -79,8 +84,8 @@ impl Scene<'_> {
     /// Points as seen from another, itself.
     pub(crate) fn spans_wide<const N: usize>(
         &self,
-        from: &impl Spot,
-        points: [&impl Spot; 3],
+        from: &impl ExactPoint,
+        points: [&impl ExactPoint; 3],
     ) -> [[Integer<N>; 3]; 3] {
         let p = from.wide(self);
         points.map(|q| difference(&q.wide(self), &p))
@@ -89,10 +94,10 @@ impl Scene<'_> {
     /// `det[b - a, c - a, e - a]` itself.
     fn outside_wide<const N: usize>(
         &self,
-        a: &impl Spot,
-        b: &impl Spot,
-        c: &impl Spot,
-        e: &impl Spot,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
+        e: &impl ExactPoint,
     ) -> Integer<N> {
         let p = a.wide(self);
         let [x, y, z] = [b.wide(self), c.wide(self), e.wide(self)].map(|q| difference(&q, &p));
@@ -100,7 +105,12 @@ impl Scene<'_> {
     }
 
     /// `det[b - a, c - a, d]` itself.
-    fn turn_wide<const N: usize>(&self, a: &impl Spot, b: &impl Spot, c: &impl Spot) -> Integer<N> {
+    fn turn_wide<const N: usize>(
+        &self,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
+    ) -> Integer<N> {
         let (p, d) = (a.wide(self), self.setting.direction.to_array().map(Integer::number));
         let (x, y) = (difference(&b.wide(self), &p), difference(&c.wide(self), &p));
         determinant(&x, &y, &d)
@@ -110,9 +120,9 @@ impl Scene<'_> {
     pub(crate) fn turn_about(
         &self,
         axis: usize,
-        a: &impl Spot,
-        b: &impl Spot,
-        c: &impl Spot,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
     ) -> Ordering {
         if let (Some(a), Some(b), Some(c)) = (a.world(self), b.world(self), c.world(self)) {
             let drop = |p: DVec3| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
@@ -139,9 +149,9 @@ impl Scene<'_> {
     fn turn_about_wide<const N: usize>(
         &self,
         axis: usize,
-        a: &impl Spot,
-        b: &impl Spot,
-        c: &impl Spot,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
     ) -> Integer<N> {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let p = a.wide(self);
@@ -151,7 +161,7 @@ impl Scene<'_> {
 
     /// Sign of `(b - a).(e x d)` with `e` the unit vector of an axis of the world: how
     /// `det[b - a, c - a, d]` changes when `c` moves along that axis.
-    pub(crate) fn drift(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
+    pub(crate) fn drift(&self, axis: usize, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let x = difference::<LARGE>(&b.wide(self), &a.wide(self));
         let d = self.setting.direction.to_array().map(Integer::number);
@@ -160,7 +170,7 @@ impl Scene<'_> {
     }
 
     /// How `a` and `b` are ordered along an axis of the world.
-    pub(crate) fn order(&self, axis: usize, a: &impl Spot, b: &impl Spot) -> Ordering {
+    pub(crate) fn order(&self, axis: usize, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
         if let (Some(a), Some(b)) = (a.world(self), b.world(self)) {
             return sign(a[axis] - b[axis]);
         }

@@ -23,13 +23,12 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
-
-use super::bound::{Reason, Shade, apart, beyond};
+use super::bound::{Reason, apart, beyond};
 use super::inside;
-use super::scene::{Corner, Scene, Side, Spot};
+use super::projected::Projected;
+use super::scene::{Corner, Scene, Side};
 use super::search::{children, splits_moving};
-use crate::body::solid::edges::NONE;
+use super::triangle::Triangle;
 use crate::body::solid::tree::Node;
 use crate::body::solid::wedge::{Axis, Ray, Wedge};
 
@@ -53,7 +52,7 @@ pub(crate) fn find(scene: &Scene) -> Option<Overlap> {
 /// The same, telling of every pair of nodes in the order of the descent whether it was split (`None`)
 /// or why it was not.
 pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
-    let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
+    let (a, b) = (Projected::new(scene, &scene.moving, 0), Projected::new(scene, &scene.fixed, 0));
     if never_overlap(scene, &a, &b) {
         return None;
     }
@@ -64,7 +63,7 @@ pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> 
 }
 
 /// Whether the interiors of two whole bodies are disjoint by their boxes and slabs alone.
-pub(crate) fn never_overlap(scene: &Scene, a: &Shade, b: &Shade) -> bool {
+pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
     beyond(scene, (p, a), (q, b))
         || beyond(scene, (q, b), (p, a))
@@ -83,8 +82,8 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
     match overlap {
         Overlap::Facets(f, g) => {
             f < count(&scene.moving) && g < count(&scene.fixed) && {
-                let f = Plate::new(&scene.moving, f as usize);
-                meet(scene, &f, &Plate::new(&scene.fixed, g as usize))
+                let f = Triangle::new(&scene.moving, f as usize);
+                meet(scene, &f, &Triangle::new(&scene.fixed, g as usize))
             }
         }
         Overlap::MovingInside(t) => t < count(&scene.moving) && inside::is_inside(scene, true, t),
@@ -99,7 +98,7 @@ pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
 
 /// Whether the solids, as closed sets, have a point in common.
 pub(crate) fn touches(scene: &Scene) -> bool {
-    let (a, b) = (Shade::new(scene, &scene.moving, 0), Shade::new(scene, &scene.fixed, 0));
+    let (a, b) = (Projected::new(scene, &scene.moving, 0), Projected::new(scene, &scene.fixed, 0));
     if apart(scene, &a, &b) {
         return false;
     }
@@ -112,7 +111,7 @@ pub(crate) fn touches(scene: &Scene) -> bool {
 /// What is asked of two triangles, and whether nodes that lie face to face are of interest.
 #[derive(Clone, Copy)]
 struct Judge {
-    holds: fn(&Scene, &Plate, &Plate) -> bool,
+    holds: fn(&Scene, &Triangle, &Triangle) -> bool,
     faces: bool,
 }
 
@@ -123,7 +122,7 @@ impl Judge {
     /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show
     /// no overlap: at their edges one half-space of material touches another, or else the wedge's
     /// other facet is in a node of its own, and shows it.
-    fn dismisses(self, scene: &Scene, a: &Shade, b: &Shade) -> Option<Reason> {
+    fn dismisses(self, scene: &Scene, a: &Projected, b: &Projected) -> Option<Reason> {
         if apart(scene, a, b) {
             return Some(Reason::Disjoint);
         }
@@ -135,8 +134,8 @@ impl Judge {
 fn descend(
     scene: &Scene,
     nodes: [usize; 2],
-    a: &Shade,
-    b: &Shade,
+    a: &Projected,
+    b: &Projected,
     judge: Judge,
     cut: &mut impl FnMut(Option<Reason>),
 ) -> Option<(u32, u32)> {
@@ -148,24 +147,24 @@ fn descend(
     cut(None);
     if splits_moving(m, n) {
         for part in children(m, nodes[0] as u32).map(|c| c as usize) {
-            let shade = Shade::new(scene, &scene.moving, part);
-            if let Some(reason) = judge.dismisses(scene, &shade, b) {
+            let projected = Projected::new(scene, &scene.moving, part);
+            if let Some(reason) = judge.dismisses(scene, &projected, b) {
                 cut(Some(reason));
                 continue;
             }
-            let found = descend(scene, [part, nodes[1]], &shade, b, judge, cut);
+            let found = descend(scene, [part, nodes[1]], &projected, b, judge, cut);
             if found.is_some() {
                 return found;
             }
         }
     } else {
         for part in children(n, nodes[1] as u32).map(|c| c as usize) {
-            let shade = Shade::new(scene, &scene.fixed, part);
-            if let Some(reason) = judge.dismisses(scene, a, &shade) {
+            let projected = Projected::new(scene, &scene.fixed, part);
+            if let Some(reason) = judge.dismisses(scene, a, &projected) {
                 cut(Some(reason));
                 continue;
             }
-            let found = descend(scene, [nodes[0], part], a, &shade, judge, cut);
+            let found = descend(scene, [nodes[0], part], a, &projected, judge, cut);
             if found.is_some() {
                 return found;
             }
@@ -176,9 +175,9 @@ fn descend(
 
 fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)> {
     for t in b.facets() {
-        let g = Plate::new(&scene.fixed, t);
+        let g = Triangle::new(&scene.fixed, t);
         for s in a.facets() {
-            let f = Plate::new(&scene.moving, s);
+            let f = Triangle::new(&scene.moving, s);
             if (judge.holds)(scene, &f, &g) {
                 return Some((s as u32, t as u32));
             }
@@ -187,60 +186,8 @@ fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)>
     None
 }
 
-/// A triangle of one body.
-pub(crate) struct Plate<'s, 'a> {
-    side: &'s Side<'a>,
-    triangle: usize,
-    corners: [Corner; 3],
-    low: DVec3,
-    high: DVec3,
-}
-
-impl<'s, 'a> Plate<'s, 'a> {
-    pub(crate) fn new(side: &'s Side<'a>, triangle: usize) -> Self {
-        let corners = side.corners(triangle);
-        let [a, b, c] = corners.map(|c| c.at);
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        Self { side, triangle, corners, low, high }
-    }
-
-    /// On which side of the plane the corners of another triangle are.
-    fn sides(&self, scene: &Scene, other: &Self) -> [Ordering; 3] {
-        let [a, b, c] = &self.corners;
-        std::array::from_fn(|k| scene.outside(a, b, c, &other.corners[k]))
-    }
-
-    /// An axis of the world along which the triangle has an area.
-    fn open_axis(&self, scene: &Scene) -> (usize, Ordering) {
-        let [a, b, c] = &self.corners;
-        let normal = (b.at - a.at).cross(c.at - a.at);
-        let normal = scene.frame.transpose() * normal;
-        let mut axes = [0, 1, 2];
-        axes.sort_by(|&i, &j| normal[j].abs().total_cmp(&normal[i].abs()));
-        let about = |k| (k, scene.turn_about(k, a, b, c));
-        axes.into_iter().map(about).find(|x| x.1 != Ordering::Equal).unwrap_or((0, Ordering::Equal))
-    }
-
-    fn is_open(&self) -> bool {
-        self.side.solid.is_open(self.triangle)
-    }
-
-    /// The corner of the neighbour across edge `k` that is not on the edge.
-    fn across(&self, k: usize) -> Option<Corner> {
-        let solid = self.side.solid;
-        let n = solid.neighbours()[self.triangle][k];
-        if n == NONE {
-            return None;
-        }
-        let own = solid.triangles()[self.triangle];
-        let ends = [own[k], own[(k + 1) % 3]];
-        let apex = solid.triangles()[n as usize].into_iter().find(|v| !ends.contains(v))?;
-        Some(self.side.corner(apex))
-    }
-}
-
 /// Whether two triangles show that the solids overlap: cases 1 to 3.
-fn meet(scene: &Scene, f: &Plate, g: &Plate) -> bool {
+fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let noise = 4.0 * scene.noise;
     if (0..3).any(|k| f.high[k] + noise < g.low[k] || g.high[k] + noise < f.low[k]) {
         return false;
@@ -267,13 +214,13 @@ fn meet(scene: &Scene, f: &Plate, g: &Plate) -> bool {
 
 /// Whether two triangles, as closed sets, have a point in common: if so, an edge of one meets the
 /// other.
-fn share_a_point(scene: &Scene, f: &Plate, g: &Plate) -> bool {
-    let pierces = |f: &Plate, g: &Plate| (0..3).any(|k| edge_reaches(scene, f, k, g));
+fn share_a_point(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
+    let pierces = |f: &Triangle, g: &Triangle| (0..3).any(|k| edge_reaches(scene, f, k, g));
     pierces(f, g) || pierces(g, f)
 }
 
 /// Whether edge `k` of `f` has a point in common with `g`, ends and rim included.
-fn edge_reaches(scene: &Scene, f: &Plate, k: usize, g: &Plate) -> bool {
+fn edge_reaches(scene: &Scene, f: &Triangle, k: usize, g: &Triangle) -> bool {
     let (p, q) = (&f.corners[k], &f.corners[(k + 1) % 3]);
     let [a, b, c] = &g.corners;
     let ends = (scene.outside(a, b, c, p), scene.outside(a, b, c, q));
@@ -309,7 +256,13 @@ fn straddles(signs: [Ordering; 3]) -> bool {
 /// Case 1, for triangles with corners on both sides of each other's planes: the segments in which
 /// they meet the common line overlap. With `a` alone on the upper side of `g`, and `b` alone on the
 /// upper side of `f`, that is told by two sides' order along the line.
-fn cross(scene: &Scene, f: &Plate, of_f: [Ordering; 3], g: &Plate, of_g: [Ordering; 3]) -> bool {
+fn cross(
+    scene: &Scene,
+    f: &Triangle,
+    of_f: [Ordering; 3],
+    g: &Triangle,
+    of_g: [Ordering; 3],
+) -> bool {
     let (mut p, p_up) = alone_first(f, of_f);
     let (mut q, q_up) = alone_first(g, of_g);
     // Turning one triangle over turns the sides of its plane.
@@ -325,25 +278,25 @@ fn cross(scene: &Scene, f: &Plate, of_f: [Ordering; 3], g: &Plate, of_g: [Orderi
 
 /// The corners in their order, beginning with the one that is alone on its side of the other plane,
 /// and whether that is the upper side.
-fn alone_first<'c>(plate: &'c Plate, signs: [Ordering; 3]) -> ([&'c Corner; 3], bool) {
+fn alone_first<'c>(triangle: &'c Triangle, signs: [Ordering; 3]) -> ([&'c Corner; 3], bool) {
     let alone = |k: usize| {
         signs[k] != Ordering::Equal
             && signs[(k + 1) % 3] != signs[k]
             && signs[(k + 2) % 3] != signs[k]
     };
     let first = (0..3).find(|&k| alone(k)).unwrap_or(0);
-    let corners = [0, 1, 2].map(|k| &plate.corners[(first + k) % 3]);
+    let corners = [0, 1, 2].map(|k| &triangle.corners[(first + k) % 3]);
     (corners, signs[first] == Ordering::Greater)
 }
 
 /// Case 2, for triangles in one plane.
-fn share_a_side(scene: &Scene, f: &Plate, g: &Plate) -> bool {
+fn share_a_side(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let (axis, facing) = f.open_axis(scene);
     let [a, b, c] = &g.corners;
     if scene.turn_about(axis, a, b, c) != facing {
         return false;
     }
-    let separates = |f: &Plate, g: &Plate| {
+    let separates = |f: &Triangle, g: &Triangle| {
         (0..3).any(|k| {
             let (a, b) = (&f.corners[k], &f.corners[(k + 1) % 3]);
             g.corners.iter().all(|c| scene.turn_about(axis, a, b, c) != facing)
@@ -355,10 +308,10 @@ fn share_a_side(scene: &Scene, f: &Plate, g: &Plate) -> bool {
 /// Case 3 for edge `k` of `f`.
 fn edge_meets(
     scene: &Scene,
-    f: &Plate,
+    f: &Triangle,
     k: usize,
     of_f: [Ordering; 3],
-    g: &Plate,
+    g: &Triangle,
     of_g: [Ordering; 3],
 ) -> bool {
     let next = (k + 1) % 3;
@@ -455,7 +408,7 @@ impl Stuff {
 }
 
 /// Whether a segment in the plane of a triangle has points inside it.
-fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Plate) -> bool {
+fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Triangle) -> bool {
     let (axis, facing) = g.open_axis(scene);
     let of_corners = g.corners.map(|c| scene.turn_about(axis, p, q, &c));
     if !straddles(of_corners) {
@@ -501,19 +454,4 @@ impl Axis for Around<'_, '_, '_> {
         let axis = (0..3).find(|&axis| turn(x, axis) != Ordering::Equal).unwrap_or(0);
         turn(x, axis) == turn(y, axis)
     }
-}
-
-/// Whether a spot lies on a triangle, its rim included.
-pub(crate) fn lies_on(scene: &Scene, spot: &impl Spot, plate: &Plate) -> bool {
-    let [a, b, c] = &plate.corners;
-    let (at, noise) = (spot.at(), 4.0 * scene.noise);
-    let boxed = (0..3).all(|k| at[k] >= plate.low[k] - noise && at[k] <= plate.high[k] + noise);
-    if !boxed || scene.outside(a, b, c, spot) != Ordering::Equal {
-        return false;
-    }
-    let (axis, facing) = plate.open_axis(scene);
-    (0..3).all(|k| {
-        let (a, b) = (&plate.corners[k], &plate.corners[(k + 1) % 3]);
-        scene.turn_about(axis, a, b, spot) != facing.reverse()
-    })
 }

@@ -1,9 +1,7 @@
-//! The typed errors of the crate: each says what is wrong, where, and by how much.
+//! Why bodies and poses are refused: each error says what is wrong, where, and by how much.
 
 use glam::DVec3;
 use thiserror::Error;
-
-use crate::body::solid::SolidError;
 
 /// Why no [`ConvexPolyhedron`](crate::ConvexPolyhedron) could be built.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -94,8 +92,8 @@ pub enum BuildError {
         /// Its dimension.
         dimension: u8,
     },
-    /// The depth to be tolerated is negative or no number.
-    #[error("the tolerance {tolerance} is negative or no number")]
+    /// The depth to be tolerated is negative or not a number.
+    #[error("the tolerance {tolerance} is negative or not a number")]
     Tolerance {
         /// The tolerance as given.
         tolerance: f64,
@@ -239,89 +237,5 @@ pub enum PoseError {
     Translation {
         /// The translation as given.
         translation: DVec3,
-    },
-}
-
-/// Why a query has no answer.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum QueryError {
-    /// The direction is zero, not finite, or beyond the exact range.
-    #[error(
-        "the direction {:?} is zero, not finite or has a component outside the exact range \
-         (0, or a magnitude from 2^-200 to 2^200)",
-        .direction.to_array()
-    )]
-    Direction {
-        /// The direction as given.
-        direction: DVec3,
-    },
-    /// The graze tolerance is negative or not finite.
-    #[error("the graze tolerance {tolerance} is negative or not finite")]
-    GrazeTolerance {
-        /// The tolerance as given.
-        tolerance: f64,
-    },
-    /// The tolerance by which solids are shrunk is negative or not finite.
-    #[error("the tolerance {tolerance} is negative or not finite")]
-    Tolerance {
-        /// The tolerance as given.
-        tolerance: f64,
-    },
-    /// A graze tolerance was set on a query between solids.
-    #[error(
-        "a graze tolerance ({tolerance}) on a solid would depend on how finely it is meshed; \
-         `with_tolerance` shrinks both bodies instead"
-    )]
-    GrazeOnSolid {
-        /// The tolerance as given.
-        tolerance: f64,
-    },
-    /// A convex body that is no solid.
-    #[error("a convex body is no solid: {0}")]
-    NoSolid(#[from] SolidError),
-    /// The gap at which narrowing ends is negative or not a number.
-    #[error("the gap {gap} at which narrowing ends is negative or not a number")]
-    NarrowingGap {
-        /// The gap as given.
-        gap: f64,
-    },
-    /// The half-side of a region focus is negative or not a number.
-    #[error("the half-side {half_side} of the region focus is negative or not a number")]
-    RegionFocus {
-        /// The half-side as given.
-        half_side: f64,
-    },
-    /// The search ended without an answer. Known only where one body is thinner than the rounding
-    /// error at the size of the configuration (ratios beyond 1e11): please report another case (it can
-    /// be saved as a file).
-    #[error("the search ended without an answer: {reason}; please report this case")]
-    NotConverged {
-        /// What went wrong.
-        reason: Stalled,
-    },
-}
-
-/// Why a search ended without an answer.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[non_exhaustive]
-pub enum Stalled {
-    /// No triangle of points of the Minkowski difference around the line was found, and no
-    /// direction that separates.
-    #[error("no portal was found")]
-    NoPortal,
-    /// Portals followed each other without an end.
-    #[error("portals followed each other in a circle")]
-    Cycle,
-    /// The proven bounds are farther apart than rounding explains. All in multiples of the
-    /// direction.
-    #[error("the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}")]
-    Gap {
-        /// Lower bound of the collision translation.
-        lower: f64,
-        /// Upper bound.
-        upper: f64,
-        /// The gap that would have been accepted.
-        tolerance: f64,
     },
 }

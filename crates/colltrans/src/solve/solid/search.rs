@@ -10,11 +10,12 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use super::bound::{Profile, Reason, Shade, dismissed, least_gap};
-use super::fan::{Fan, Reach};
+use super::bound::{Profile, Reason, dismissed, least_gap};
 use super::leaf::{self, Facet, Gap, Meeting, Wanted};
-use super::rim::{self, Blade};
+use super::projected::Projected;
+use super::rim::{self, Upright};
 use super::scene::{Scene, Side};
+use super::separating_axes::{Reach, SeparatingAxes};
 use crate::body::solid::tree::Node;
 
 /// An answer may be larger than the least gap by so many times the noise of coordinates: bounds of
@@ -97,7 +98,7 @@ pub struct Workspace {
 struct Query<'s, 'a> {
     scene: &'s Scene<'a>,
     /// `None` where boxes say all that it could.
-    fan: Option<Fan>,
+    axes: Option<SeparatingAxes>,
 }
 
 /// The nodes of a body that a search has come to, and the facets of leaves: each is in many pairs.
@@ -112,7 +113,7 @@ struct Seen {
 /// A node in the query frame.
 #[derive(Debug, Clone, Copy)]
 struct View {
-    shade: Shade,
+    projected: Projected,
     leaf: bool,
     size: f64,
     /// Where its children are among the views, or those of its facets that matter among the facets,
@@ -132,21 +133,21 @@ impl Seen {
         let side = query.scene.side(moving);
         let node = &side.solid.nodes()[at as usize];
         let (leaf, size) = (node.is_leaf(), size(node));
-        let shade = Shade::new(query.scene, side, at as usize);
-        if let Some(fan) = &query.fan {
-            self.reaches.push(fan.reach(side, &shade));
+        let projected = Projected::new(query.scene, side, at as usize);
+        if let Some(axes) = &query.axes {
+            self.reaches.push(axes.reach(side, &projected));
         }
-        self.views.push(View { shade, leaf, size, parts: None });
+        self.views.push(View { projected, leaf, size, parts: None });
     }
 
     fn profile(&self, view: u32) -> Profile<'_> {
         let at = view as usize;
-        Profile { shade: &self.views[at].shade, reach: self.reaches.get(at) }
+        Profile { projected: &self.views[at].projected, reach: self.reaches.get(at) }
     }
 
     /// The first of the two children of a view.
     fn children(&mut self, query: &Query, moving: bool, view: u32) -> u32 {
-        let &View { shade: Shade { node, .. }, parts, .. } = &self.views[view as usize];
+        let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         if let Some([first, _]) = parts {
             return first;
         }
@@ -161,7 +162,7 @@ impl Seen {
 
     /// The facets of a leaf that look the right way.
     fn leaf(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
-        let &View { shade: Shade { node, .. }, parts, .. } = &self.views[view as usize];
+        let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         let [first, count] = parts.unwrap_or_else(|| {
             let wanted = if side.moving { Ordering::Greater } else { Ordering::Less };
             let facing = |t| Facet::facing(scene, side.moving, t, wanted);
@@ -209,7 +210,7 @@ pub(crate) fn splits_moving(a: &Node, b: &Node) -> bool {
 }
 
 fn size(node: &Node) -> f64 {
-    (node.high - node.low).length_squared()
+    node.bounds.size().length_squared()
 }
 
 /// The children of a node.
@@ -254,14 +255,15 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
         let scene = self.scene;
-        let [p, q] = [&scene.moving, &scene.fixed].map(|side| Shade::new(scene, side, 0));
+        let [p, q] = [&scene.moving, &scene.fixed].map(|side| Projected::new(scene, side, 0));
         if let Some(reason) = dismissed(&p, &q, self.limit, self.aim != Aim::Least) {
             // Most pairs of parts: no need for the directions of the query.
             self.steps[0] += 1;
             (self.cut)([0, 0], reason);
             return None;
         }
-        let query = Query { scene, fan: (!scene.is_aligned()).then(|| Fan::new(scene)) };
+        let query =
+            Query { scene, axes: (!scene.is_aligned()).then(|| SeparatingAxes::new(scene)) };
         seen[0].start(&query, true);
         seen[1].start(&query, false);
         let mut next = self.judge(seen, [0, 0], 0);
@@ -343,9 +345,9 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         if rim::matters(scene, nodes) {
             let [f, g] = [(front, true), (back, false)].map(|(facets, moving)| {
                 let k = usize::from(!moving);
-                (Blade::of_leaf(scene, moving, nodes[k]), facets, k)
+                (Upright::of_leaf(scene, moving, nodes[k]), facets, k)
             });
-            let [f, g] = [f, g].map(|(blades, facets, k)| (blades, &seen[k].facets[facets]));
+            let [f, g] = [f, g].map(|(uprights, facets, k)| (uprights, &seen[k].facets[facets]));
             rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| self.take(pair, &gap));
         }
     }
@@ -405,7 +407,7 @@ pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64,
 
 /// The nodes of a pair.
 fn nodes(seen: &[Seen; 2], views: [u32; 2]) -> [u32; 2] {
-    [0, 1].map(|k| seen[k].views[views[k] as usize].shade.node)
+    [0, 1].map(|k| seen[k].views[views[k] as usize].projected.node)
 }
 
 /// The two pairs that a pair is split into.

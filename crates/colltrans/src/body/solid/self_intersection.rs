@@ -20,6 +20,7 @@ use glam::DVec3;
 use super::exact::side;
 use super::tree::{self, Node};
 use super::{Solid, shells};
+use crate::body::Aabb;
 use crate::work;
 
 /// Facets within so many roundings of the largest coordinate of a plane lie in it.
@@ -99,9 +100,8 @@ impl Shells<'_> {
             return Vec::new();
         }
         let [old, new] = [before, after].map(|placing| self.boxes(placing));
-        let within = |boxes: &[[DVec3; 2]], inner: u32, outer: u32| {
-            let [[low, high], [least, most]] = [inner, outer].map(|s| boxes[s as usize]);
-            low.cmpge(least).all() && high.cmple(most).all()
+        let within = |boxes: &[Aabb], inner: u32, outer: u32| {
+            boxes[outer as usize].holds(&boxes[inner as usize])
         };
         let mut found = BTreeSet::new();
         for &cavity in &cavities {
@@ -117,13 +117,10 @@ impl Shells<'_> {
         (0..self.shell_of.len()).filter(belongs).collect()
     }
 
-    fn boxes(&self, placing: &Placing) -> Vec<[DVec3; 2]> {
-        let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; self.volumes.len()];
+    fn boxes(&self, placing: &Placing) -> Vec<Aabb> {
+        let mut boxes = vec![Aabb::EMPTY; self.volumes.len()];
         for (t, &shell) in self.shell_of.iter().enumerate() {
-            let [low, high] = &mut boxes[shell as usize];
-            for corner in placing.corners(t) {
-                (*low, *high) = (low.min(corner), high.max(corner));
-            }
+            placing.corners(t).into_iter().for_each(|p| boxes[shell as usize].add(p));
         }
         boxes
     }
@@ -146,7 +143,7 @@ struct Placing<'a> {
 /// What tells of pairs of nodes that no facets of theirs pass through each other.
 struct Fences {
     /// Around the facets of each node.
-    boxes: Vec<[DVec3; 2]>,
+    boxes: Vec<Aabb>,
     /// Of nodes whose facets lie in a plane and look the same way.
     flats: Vec<Option<Flat>>,
 }
@@ -215,15 +212,14 @@ impl Flat {
 impl Fences {
     fn new(placing: &Placing) -> Self {
         let nodes = &placing.solid.nodes;
-        let mut boxes = vec![[DVec3::INFINITY, DVec3::NEG_INFINITY]; nodes.len()];
+        let mut boxes = vec![Aabb::EMPTY; nodes.len()];
         // Children come after their node.
         for (k, node) in nodes.iter().enumerate().rev() {
             boxes[k] = if node.is_leaf() {
-                let corners = node.facets().flat_map(|t| placing.corners(t));
-                corners.fold(boxes[k], |[low, high], p| [low.min(p), high.max(p)])
+                Aabb::of_points(node.facets().flat_map(|t| placing.corners(t)))
             } else {
-                let [[a, b], [c, d]] = [0, 1].map(|n| boxes[k + node.skip as usize + n]);
-                [a.min(c), b.max(d)]
+                let [a, b] = [0, 1].map(|n| boxes[k + node.skip as usize + n]);
+                a.join(&b)
             };
         }
         let tolerance = FLAT * placing.solid.reach;
@@ -232,8 +228,7 @@ impl Fences {
     }
 
     fn part(&self, a: usize, b: usize) -> bool {
-        let ([low, high], [least, most]) = (self.boxes[a], self.boxes[b]);
-        let touch = low.cmple(most).all() && high.cmpge(least).all();
+        let touch = self.boxes[a].meets(&self.boxes[b]);
         let one_plane = match (&self.flats[a], &self.flats[b]) {
             (Some(f), Some(g)) => a == b || f.is_one_with(g),
             _ => false,
@@ -304,9 +299,7 @@ impl Placing<'_> {
             return false;
         }
         let (f, g) = (self.corners(s), self.corners(t));
-        let span = |[a, b, c]: [DVec3; 3]| (a.min(b).min(c), a.max(b).max(c));
-        let ((low, high), (least, most)) = (span(f), span(g));
-        if !(low.cmple(most).all() && high.cmpge(least).all()) {
+        if !Aabb::of_points(f).meets(&Aabb::of_points(g)) {
             return false;
         }
         let pierces = |f: [DVec3; 3], [a, b, c]: [DVec3; 3]| {

@@ -1,6 +1,6 @@
 //! From a list of polygons to a checked surface.
 //!
-//! The data's way: equal vertices become one; polygons become triangles; triangles without an area
+//! Data flow: equal vertices become one; polygons become triangles; triangles without an area
 //! are taken out; slits that they, or vertices on an edge, leave are closed by exact subdivision;
 //! facets are joined across their edges; shells are found, and turned where inside out.
 //!

@@ -1,0 +1,76 @@
+//! A triangle of one of the bodies, in exact arithmetic.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::scene::{Corner, ExactPoint, Scene, Side};
+use crate::body::solid::edges::NONE;
+
+/// A triangle of one body.
+pub(crate) struct Triangle<'s, 'a> {
+    pub(crate) side: &'s Side<'a>,
+    pub(crate) index: usize,
+    pub(crate) corners: [Corner; 3],
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+}
+
+impl<'s, 'a> Triangle<'s, 'a> {
+    pub(crate) fn new(side: &'s Side<'a>, index: usize) -> Self {
+        let corners = side.corners(index);
+        let [a, b, c] = corners.map(|c| c.at);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        Self { side, index, corners, low, high }
+    }
+
+    /// On which side of the plane the corners of another triangle are.
+    pub(crate) fn sides(&self, scene: &Scene, other: &Self) -> [Ordering; 3] {
+        let [a, b, c] = &self.corners;
+        std::array::from_fn(|k| scene.outside(a, b, c, &other.corners[k]))
+    }
+
+    /// An axis of the world along which the triangle has an area.
+    pub(crate) fn open_axis(&self, scene: &Scene) -> (usize, Ordering) {
+        let [a, b, c] = &self.corners;
+        let normal = (b.at - a.at).cross(c.at - a.at);
+        let normal = scene.frame.transpose() * normal;
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&i, &j| normal[j].abs().total_cmp(&normal[i].abs()));
+        let about = |k| (k, scene.turn_about(k, a, b, c));
+        axes.into_iter().map(about).find(|x| x.1 != Ordering::Equal).unwrap_or((0, Ordering::Equal))
+    }
+
+    pub(crate) fn is_open(&self) -> bool {
+        self.side.solid.is_open(self.index)
+    }
+
+    /// The corner of the neighbour across edge `k` that is not on the edge.
+    pub(crate) fn across(&self, k: usize) -> Option<Corner> {
+        let solid = self.side.solid;
+        let n = solid.neighbours()[self.index][k];
+        if n == NONE {
+            return None;
+        }
+        let own = solid.triangles()[self.index];
+        let ends = [own[k], own[(k + 1) % 3]];
+        let apex = solid.triangles()[n as usize].into_iter().find(|v| !ends.contains(v))?;
+        Some(self.side.corner(apex))
+    }
+}
+
+/// Whether a point lies on a triangle, its rim included.
+pub(crate) fn lies_on(scene: &Scene, point: &impl ExactPoint, triangle: &Triangle) -> bool {
+    let [a, b, c] = &triangle.corners;
+    let (at, noise) = (point.at(), 4.0 * scene.noise);
+    let boxed =
+        (0..3).all(|k| at[k] >= triangle.low[k] - noise && at[k] <= triangle.high[k] + noise);
+    if !boxed || scene.outside(a, b, c, point) != Ordering::Equal {
+        return false;
+    }
+    let (axis, facing) = triangle.open_axis(scene);
+    (0..3).all(|k| {
+        let (a, b) = (&triangle.corners[k], &triangle.corners[(k + 1) % 3]);
+        scene.turn_about(axis, a, b, point) != facing.reverse()
+    })
+}

@@ -34,6 +34,8 @@ def test_the_plan_is_the_command_lines(cli: Path, gearbox: Assembly) -> None:
     for step, its in zip(plan.steps, known["plan"], strict=True):
         assert list(step.direction) == its["direction"]
         assert step.travel == its["travel"]
+        assert list(step.travel_bounds) == its["travel_bounds"]
+        assert its["travel_bounds"][0] <= step.travel <= its["travel_bounds"][1]
     assert plan.left == known["left"]
 
 

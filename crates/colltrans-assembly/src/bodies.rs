@@ -53,10 +53,9 @@ impl Fit {
 /// What stops a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// How far it is safe to move: up to here the bodies, shrunk or grown, do not overlap, which is
-    /// proven, and what stops them has not met in its true place, before it was shrunk or grown.
-    /// Never negative: 7 for a head that stops at 7, and what a length to keep leaves of it.
-    pub distance: f64,
+    /// Where the facets that stop the shrunk bodies meet in their true place, before they were shrunk,
+    /// with bounds: [`SolidContact::translation`]. With a length to keep, the same as `displaced`.
+    pub translation: Bounded,
     /// How far the bodies, shrunk or grown, can move; never negative.
     pub displaced: Bounded,
     /// Unit contact normal in the world, from the moving part to the other one.
@@ -65,6 +64,15 @@ pub struct Stop {
     pub point: DVec3,
     /// The triangles of both bodies that meet.
     pub(crate) triangles: [u32; 2],
+}
+
+impl Stop {
+    /// How far it is safe to move: up to here the bodies, shrunk or grown, do not overlap, and what stops
+    /// them has not met in its true place. Both are proven. Never negative, and less than 7 by rounding
+    /// alone for a head that stops at 7.
+    pub const fn distance(&self) -> f64 {
+        self.translation.lower.max(0.0)
+    }
 }
 
 /// How far one part can move before another stops it.
@@ -84,7 +92,9 @@ pub struct Bodies<'a> {
     fit: Fit,
     /// The bodies, shrunk or grown.
     solids: Vec<Solid>,
-    /// What that could not do as it should.
+    /// For each triangle of these the one of the part as given.
+    given: Vec<Vec<u32>>,
+    /// What shrinking or growing could not do as it should.
     displaced: Vec<ShrinkReport>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
@@ -94,10 +104,11 @@ pub struct Bodies<'a> {
     /// one: beyond, it would be deeper.
     passing: BTreeMap<[usize; 2], f64>,
     noise: f64,
+    /// How often two parts were asked about.
+    #[cfg(test)]
+    pub(crate) asked: std::sync::atomic::AtomicUsize,
 }
 
-/// Roundings of a coordinate that putting a contact point back takes, over the slope of the contact plane.
-const ROUNDINGS: f64 = 64.0;
 /// How deep an overlap that is ignored may become, in multiples of its depth at the start: so much more
 /// that rounding does not decide.
 const DEEPER: f64 = 1.05;
@@ -126,12 +137,26 @@ impl<'a> Bodies<'a> {
         let both: Result<Vec<(Solid, ShrinkReport)>, AssemblyError> =
             assembly.parts().par_iter().map(displaced).collect();
         let (solids, displaced): (Vec<Solid>, Vec<ShrinkReport>) = both?.into_iter().unzip();
+        let both = assembly.parts().par_iter().zip(&solids);
+        let given = both.map(|(part, solid)| same_triangles(solid, part.solid())).collect();
         let boxes: Vec<Aabb> = solids.iter().map(Solid::bounds).collect();
         let tree = BoxTree::new(boxes.iter().copied());
         let noise = 4.0 * Fit::default_for(assembly).tolerance();
         let (overlapping, passing) = (Vec::new(), BTreeMap::new());
-        let mut bodies =
-            Self { assembly, fit, solids, displaced, boxes, tree, overlapping, passing, noise };
+        let mut bodies = Self {
+            assembly,
+            fit,
+            solids,
+            given,
+            displaced,
+            boxes,
+            tree,
+            overlapping,
+            passing,
+            noise,
+            #[cfg(test)]
+            asked: std::sync::atomic::AtomicUsize::default(),
+        };
         let pairs = bodies.neighbours(0.0)?;
         let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
         bodies.overlapping = overlapping.collect();
@@ -269,6 +294,8 @@ impl<'a> Bodies<'a> {
         start: StartOverlap,
         workspace: &mut Workspace,
     ) -> Room {
+        #[cfg(test)]
+        self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let (overlapping, start) = (self.overlaps(a, b), self.start_of(a, b, start));
         if overlapping && start == StartOverlap::Refuse {
             return Room::Overlapping;
@@ -322,27 +349,27 @@ impl<'a> Bodies<'a> {
         contact: &SolidContact,
     ) -> Stop {
         let SolidContact { normal, point_on_fixed: point, translation: displaced, .. } = *contact;
-        let slope = contact.normal.dot(d);
-        let rounding = ROUNDINGS * f64::EPSILON * self.assembly.size() / slope;
-        let place = displaced.value + self.moved_back(pair, d, triangles, contact) - rounding;
-        // Moved back by a length that is not finite, it says nothing.
-        let distance = if place.is_finite() { displaced.lower.min(place) } else { displaced.lower };
-        Stop { distance: distance.max(0.0), displaced, normal, point, triangles }
+        let place = self.true_place(pair, d, triangles, contact);
+        Stop { translation: place.unwrap_or(displaced), displaced, normal, point, triangles }
     }
 
-    /// How much farther the contact points, put back to where they are on the parts as they were given,
-    /// have to go.
-    fn moved_back(
+    /// Where facets that stop shrunk bodies meet on the parts as they were given.
+    fn true_place(
         &self,
         [a, b]: [usize; 2],
         d: DVec3,
-        triangles: [u32; 2],
+        [moving, fixed]: [u32; 2],
         contact: &SolidContact,
-    ) -> f64 {
-        let [moving, fixed] = triangles.map(|t| t as usize);
-        let moved = self.displacement(a, moving, contact.point_on_moving)
-            - self.displacement(b, fixed, contact.point_on_fixed);
-        contact.normal.dot(moved) / contact.normal.dot(d)
+    ) -> Option<Bounded> {
+        if self.fit.tolerance() <= 0.0 {
+            return None;
+        }
+        let shift = self.displacement(a, moving as usize, contact.point_on_moving)
+            - self.displacement(b, fixed as usize, contact.point_on_fixed);
+        let triangles = [self.given[a][moving as usize], self.given[b][fixed as usize]];
+        let parts = [a, b].map(|k| self.assembly.parts()[k].solid());
+        let cast = placed(parts, d, SolidOptions::default())?;
+        cast.true_place(triangles, contact.translation, contact.normal, shift)
     }
 
     /// How far a point of a triangle was displaced when the part was shrunk or grown: its corners
@@ -380,27 +407,62 @@ impl<'a> Bodies<'a> {
         cast.overlaps().then(|| cast.depth())
     }
 
-    /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, if their
-    /// shadows' boxes meet; 0 if it is there already, or they do not.
-    pub fn past(&self, a: usize, b: usize, d: DVec3) -> f64 {
+    /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, as they were
+    /// given, if their shadows' boxes meet or are apart by no more than rounding; 0 if it is there
+    /// already, or they do not.
+    ///
+    /// A product `p . d` is off by `3 u` of its terms' absolute sum `s`, so a difference of two by `4 u` of both
+    /// sums; in multiples of a direction whose length is 1 up to `4 u`, it is off by `8 u` of itself more.
+    pub fn past(&self, a: usize, b: usize, d: DVec3) -> Bounded {
+        const U: f64 = f64::EPSILON / 2.0;
         let (u, v) = d.any_orthonormal_pair();
-        let around = |part: usize| {
+        let (mut terms, mut reach) = (0.0_f64, 0.0_f64);
+        let mut around = |part: usize| {
             let vertices = self.assembly.parts()[part].solid().vertices().iter();
-            Aabb::of_points(vertices.map(|p| DVec3::new(p.dot(u), p.dot(v), p.dot(d))))
+            Aabb::of_points(vertices.map(|p| {
+                terms = terms.max(p.abs().dot(d.abs()));
+                reach = reach.max(p.abs().max_element());
+                DVec3::new(p.dot(u), p.dot(v), p.dot(d))
+            }))
         };
         let (moving, fixed) = (around(a), around(b));
-        let beside = (0..2).any(|k| fixed.low[k] > moving.high[k] || fixed.high[k] < moving.low[k]);
-        if beside { 0.0 } else { (fixed.high.z - moving.low.z).max(0.0) }
+        // Three terms of at most this each, and axes that are rounded.
+        let flush = 32.0 * U * reach;
+        let apart = |k: usize| (fixed.low[k] - moving.high[k]).max(moving.low[k] - fixed.high[k]);
+        if (0..2).any(|k| apart(k) > flush) {
+            return Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
+        }
+        let way = fixed.high.z - moving.low.z;
+        let error = U * (9.0 * terms + 9.0 * way.abs());
+        let [value, lower, upper] = [way, way - error, way + error].map(|x| x.max(0.0));
+        Bounded { value, lower, upper }
     }
 
     /// Whether part `a`, displaced by `by`, and part `b` overlap, by more than rounding.
     pub fn overlaps_displaced(&self, a: usize, by: DVec3, b: usize) -> bool {
+        #[cfg(test)]
+        self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let Ok(pose) = Pose::from_translation(by) else { return false };
         let moving = self.solids[a].at(pose);
         let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
         let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
+}
+
+/// For each triangle of a solid the one with the same corners of another, whose vertices have the same
+/// numbers: trees order triangles by where they are.
+fn same_triangles(solid: &Solid, other: &Solid) -> Vec<u32> {
+    let sorted = |solid: &Solid| {
+        let mut order: Vec<u32> = (0..solid.triangles().len() as u32).collect();
+        order.sort_unstable_by_key(|&t| solid.triangles()[t as usize]);
+        order
+    };
+    let mut same = vec![0; solid.triangles().len()];
+    for (t, o) in sorted(solid).into_iter().zip(sorted(other)) {
+        same[t as usize] = o;
+    }
+    same
 }
 
 /// The volume that the triangles enclose; negative if they are inside out.

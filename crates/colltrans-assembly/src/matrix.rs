@@ -16,7 +16,7 @@ use crate::error::AssemblyError;
 use crate::rooms::PartRoom;
 use crate::watch::{Stage, Watch};
 
-/// Meetings that are kept, 100 bytes each.
+/// Meetings that are kept, 130 bytes each.
 const MOST_MEETINGS: usize = 1 << 24;
 
 /// The bits of a direction, to find it again by; both zeros are one.
@@ -38,7 +38,7 @@ pub struct Meeting {
 impl Meeting {
     /// How far it is safe to move; 0 if they overlap where they are.
     pub fn distance(&self) -> f64 {
-        self.stop.map_or(0.0, |stop| stop.distance)
+        self.stop.map_or(0.0, |stop| stop.distance())
     }
 
     /// How far the bodies go that were shrunk, or grown: what decides who comes first.

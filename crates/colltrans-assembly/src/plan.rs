@@ -17,7 +17,7 @@ mod single;
 
 use std::collections::{BTreeMap, HashSet};
 
-use colltrans::StartOverlap;
+use colltrans::{Bounded, StartOverlap};
 use glam::DVec3;
 use petgraph::unionfind::UnionFind;
 
@@ -41,8 +41,9 @@ pub struct Step {
     pub parts: Vec<usize>,
     /// Where to, of length 1.
     pub direction: DVec3,
-    /// How far until it never meets what is left again; 0 if nothing is ahead.
-    pub travel: f64,
+    /// How far until it lies wholly beyond what is left; 0 if nothing is ahead. What the boxes of their
+    /// shadows miss by more than rounding is not ahead.
+    pub travel: Bounded,
     /// For a step that takes a group apart: the step that took the group out.
     pub within: Option<usize>,
     /// What the step does not speak of: of each pair the first part moves and the second stays, and
@@ -258,7 +259,8 @@ impl Planner<'_> {
         if within.is_none() {
             let direction = matrix.directions().first().copied().unwrap_or(DVec3::Z);
             let (parts, ignored, surfaces) = (left.to_vec(), Vec::new(), Vec::new());
-            let step = Step { parts, direction, travel: 0.0, within, ignored, surfaces };
+            let travel = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
+            let step = Step { parts, direction, travel, within, ignored, surfaces };
             self.plan.steps.push(step);
         }
     }

@@ -55,7 +55,7 @@ impl PartRoom {
     pub const fn distance(&self) -> f64 {
         match self {
             Self::Free => f64::INFINITY,
-            Self::Blocked { stop, .. } => stop.distance,
+            Self::Blocked { stop, .. } => stop.distance(),
             Self::Overlapping { .. } => 0.0,
         }
     }

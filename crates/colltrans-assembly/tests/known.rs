@@ -66,7 +66,7 @@ fn linked_rings_leave_a_well_as_one() {
     assert_eq!(steps(&assembly, &plan), [["a", "b"]]);
     assert_eq!(plan.steps[0].direction, DVec3::Z);
     // The lowest point is at -2.5, the rim at 5.
-    assert!((plan.steps[0].travel - 7.5).abs() < 1e-9);
+    assert!((plan.steps[0].travel.value - 7.5).abs() < 1e-9);
     assert_eq!(plan.left, [2]);
     assert_eq!(plan.stuck.len(), 1, "the rings themselves");
 }
@@ -83,7 +83,7 @@ fn a_tight_peg_finds_its_only_direction_in_any_rotation() {
         assert_eq!(steps(&assembly, &plan), [vec!["peg"], vec!["block"]]);
         let axis = turn.transform_vector3(DVec3::Z);
         assert!(angle(plan.steps[0].direction, axis) < 1e-6);
-        assert!((plan.steps[0].travel - 5.0).abs() < 1e-6);
+        assert!((plan.steps[0].travel.value - 5.0).abs() < 1e-6);
     }
 }
 
@@ -116,7 +116,7 @@ fn no_parts_one_part_and_parts_far_apart() {
     assert_eq!(planned(&none), Plan::default());
     let one = Assembly::new(vec![part("one", &[cuboid([0.0; 3], [1.0; 3])])]).unwrap();
     let plan = planned(&one);
-    assert_eq!((plan.steps.len(), plan.steps[0].travel), (1, 0.0));
+    assert_eq!((plan.steps.len(), plan.steps[0].travel.value), (1, 0.0));
     let at = |k: usize| {
         let low = 1e4 * k as f64;
         part(&format!("p{k}"), &[cuboid([low; 3], [low + 1.0; 3])])
@@ -124,7 +124,7 @@ fn no_parts_one_part_and_parts_far_apart() {
     let far = Assembly::new((0..5).map(at).collect()).unwrap();
     let plan = planned(&far);
     assert_eq!(plan.steps.len(), 5);
-    assert!(plan.steps.iter().all(|s| s.travel == 0.0));
+    assert!(plan.steps.iter().all(|s| s.travel.value == 0.0));
 }
 
 #[test]
@@ -360,7 +360,7 @@ fn an_overlap_that_is_ignored_lets_pass_what_begins_later_does_not() {
     };
     // Asked with the depth of the overlap, 0.05, and a twentieth more as a tolerance; said of the true
     // place.
-    assert!((stop.distance - 1.0).abs() < 1e-9, "{stop:?}");
+    assert!((stop.distance() - 1.0).abs() < 1e-9, "{stop:?}");
     let plan = planned(&ignored);
     assert_eq!(steps(&ignored, &plan), [["pin"], ["block"]]);
     assert_eq!((plan.steps[0].direction, &plan.steps[0].ignored[..]), (DVec3::Z, &[[0, 1]][..]));
@@ -387,7 +387,7 @@ fn an_overlap_that_is_ignored_does_not_become_deeper() {
     // In their true place the faces that stop it are past each other by the depth, 0.25; a twentieth
     // deeper is let pass as rounding.
     let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::X) else { panic!("deeper") };
-    assert_eq!(stop.distance, 0.0);
+    assert_eq!(stop.distance(), 0.0);
     assert!((stop.displaced.value + 0.25).abs() < 1e-9, "{stop:?}");
     let away = steps(&ignored, &planned(&ignored));
     assert_eq!(away, [["cube"], ["long"]]);

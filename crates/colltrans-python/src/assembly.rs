@@ -32,9 +32,9 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// A vector, and the distance and the part (-1 for none) of rooms along it.
 type RoomRow = (Vec<f64>, Vec<i64>);
-/// Parts, direction, travel, the step that took the group out, the pairs that are ignored, and the
+/// Parts, direction, travel and its bounds, the step that took the group out, the pairs that are ignored, and the
 /// surfaces it rests on.
-type StepRow = (Vec<usize>, [f64; 3], f64, Option<usize>, Vec<[usize; 2]>, Vec<usize>);
+type StepRow = (Vec<usize>, [f64; 3], f64, [f64; 2], Option<usize>, Vec<[usize; 2]>, Vec<usize>);
 /// Parts, and for each of some parts the sets that hold it.
 type StuckRow = (Vec<usize>, usize, Vec<(usize, Vec<Vec<usize>>)>);
 
@@ -234,8 +234,10 @@ impl Assembly {
             disassemble(bodies, &matrix, &found.finer, options, watch)
         })?;
         let steps = plan.steps.into_iter();
-        let row =
-            |s: Step| (s.parts, s.direction.to_array(), s.travel, s.within, s.ignored, s.surfaces);
+        let row = |s: Step| {
+            let (direction, travel) = (s.direction.to_array(), s.travel);
+            (s.parts, direction, travel.value, travel.bounds(), s.within, s.ignored, s.surfaces)
+        };
         let steps = steps.map(row).collect();
         let stuck = plan.stuck.into_iter().map(|stuck| {
             let sets = |by: Vec<(Vec<usize>, DVec3)>| by.into_iter().map(|(set, _)| set).collect();

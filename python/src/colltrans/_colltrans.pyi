@@ -169,7 +169,17 @@ class Assembly:
         tolerance: float | None,
         ignore_overlaps: bool,
     ) -> tuple[
-        list[tuple[list[int], list[float], float, int | None, list[list[int]], list[int]]],
+        list[
+            tuple[
+                list[int],
+                list[float],
+                float,
+                list[float],
+                int | None,
+                list[list[int]],
+                list[int],
+            ]
+        ],
         list[int],
         list[tuple[list[int], int, list[tuple[int, list[list[int]]]]]],
     ]: ...

@@ -27,7 +27,8 @@ class Rooms:
     parts : tuple of str
     directions : ndarray of shape (D, 3)
     distance : ndarray of shape (P, D)
-        Lengths: infinite where nothing is in the way, 0 where parts overlap.
+        Lengths that are safe to move by, which is proven: infinite where nothing is in the way, 0
+        where parts overlap.
     by : ndarray of int, shape (P, D)
         The position of the part that is in the way, -1 for none.
     """
@@ -71,7 +72,9 @@ class Step:
     direction : tuple of float
         Of length 1.
     travel : float
-        How far, a length, until it never meets what is left again; 0 if nothing is ahead.
+        How far, a length, until it lies wholly beyond what is left; 0 if nothing is ahead.
+    travel_bounds : tuple of float
+        At least and at most the travel, proven.
     within : int or None
         For a step that takes a group apart, the position of the step that took the group out.
     ignored : list of tuple of (str, str)
@@ -84,6 +87,7 @@ class Step:
     parts: list[str]
     direction: tuple[float, ...]
     travel: float
+    travel_bounds: tuple[float, ...]
     within: int | None
     ignored: list[tuple[str, str]]
     surfaces: list[str]
@@ -136,7 +140,7 @@ class RemovalMap:
     parts : list of str
     directions : ndarray of shape (N, 3)
     distance : ndarray of shape (N,)
-        Lengths, infinite where nothing is in the way.
+        Lengths that are safe to move by, which is proven; infinite where nothing is in the way.
     by : ndarray of int, shape (N,)
         The position of the part that is in the way, -1 for none.
     regions : list of tuple of (float, tuple of float)
@@ -351,11 +355,12 @@ class Assembly:
                     self._names(parts),
                     tuple(d),
                     travel,
+                    tuple(travel_bounds),
                     within,
                     [(names[a], names[b]) for a, b in ignored],
                     self._names(surfaces),
                 )
-                for parts, d, travel, within, ignored, surfaces in steps
+                for parts, d, travel, travel_bounds, within, ignored, surfaces in steps
             ],
             self._names(left),
             [

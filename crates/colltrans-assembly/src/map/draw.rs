@@ -61,7 +61,7 @@ impl RemovalMap {
         match self.rooms[corners[nearest] as usize] {
             PartRoom::Free => 8,
             PartRoom::Overlapping { .. } => 9,
-            PartRoom::Blocked { stop, .. } => step(stop.distance / self.size),
+            PartRoom::Blocked { stop, .. } => step(stop.distance() / self.size),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A step, checked once more before it is reported.
 
-use colltrans::{StartOverlap, Workspace};
+use colltrans::{Bounded, StartOverlap, Workspace};
 use glam::DVec3;
 
 use super::Way;
@@ -19,10 +19,10 @@ pub(super) fn checked(
     way: &Way,
     others: &[usize],
     start: StartOverlap,
-) -> Result<f64, AssemblyError> {
+) -> Result<Bounded, AssemblyError> {
     let d = way.direction;
     let mut workspace = Workspace::default();
-    let mut travel = 0.0_f64;
+    let mut travel = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
     let mut there = vec![false; bodies.len()];
     for &part in others {
         there[part] = true;
@@ -40,18 +40,27 @@ pub(super) fn checked(
     }
     for &a in &way.parts {
         for &b in others {
-            travel = travel.max(bodies.past(a, b, d));
+            travel = larger(travel, bodies.past(a, b, d));
         }
     }
     for &[a, b] in &ahead {
         let overlapping = bodies.lets_pass(a, b, start);
-        let place = PLACES.iter().map(|share| share * travel);
+        let place = PLACES.iter().map(|share| share * travel.value);
         let met = |t: &f64| bodies.overlaps_displaced(a, d * *t, b);
         if let Some(t) = place.filter(|t| *t > 0.0).find(met).filter(|_| !overlapping) {
             return Err(refused(bodies, [a, b], d, t));
         }
     }
     Ok(travel)
+}
+
+/// The larger one of two numbers.
+fn larger(a: Bounded, b: Bounded) -> Bounded {
+    Bounded {
+        value: a.value.max(b.value),
+        lower: a.lower.max(b.lower),
+        upper: a.upper.max(b.upper),
+    }
 }
 
 fn refused(bodies: &Bodies, pair: [usize; 2], d: DVec3, t: f64) -> AssemblyError {

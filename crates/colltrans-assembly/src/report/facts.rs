@@ -19,6 +19,7 @@ pub fn json(f: &Findings) -> Value {
         .map(|(k, p)| {
             let mut part =
                 json!({ "name": p.name(), "facets": p.facets(), "volume": p.solid().volume() });
+            part["volume_bounds"] = json!(p.solid().volume_bounds());
             if p.is_surface() {
                 let count =
                     |kind: ShellKind| (kind.name().to_owned(), p.solid().report().count(kind));
@@ -44,7 +45,8 @@ pub fn json(f: &Findings) -> Value {
         .iter()
         .map(|l| {
             let center = l.center().to_array();
-            json!({ "parts": l.parts.map(name), "area": l.area(), "center": center })
+            let (area, bounds) = (l.area(), l.area_bounds());
+            json!({ "parts": l.parts.map(name), "area": area, "area_bounds": bounds, "center": center })
         })
         .collect();
     let (fit, length) = match f.bodies.fit() {
@@ -91,7 +93,11 @@ fn room(f: &Findings, part: usize, d: DVec3, room: &PartRoom) -> Value {
     });
     if let PartRoom::Blocked { stop, .. } = room {
         let name = match f.bodies.fit() {
-            Fit::Tolerance(_) => "shrunk_distance",
+            Fit::Tolerance(_) => {
+                entry["translation"] = json!(stop.translation.value);
+                entry["translation_bounds"] = json!(stop.translation.bounds());
+                "shrunk_distance"
+            }
             Fit::Apart(_) => "grown_distance",
         };
         entry[name] = json!(stop.displaced.value);
@@ -107,7 +113,8 @@ fn steps(f: &Findings) -> Vec<Value> {
         let mut step = json!({
             "parts": f.bodies.assembly().names(&s.parts),
             "direction": s.direction.to_array(),
-            "travel": s.travel,
+            "travel": s.travel.value,
+            "travel_bounds": s.travel.bounds(),
         });
         if !s.ignored.is_empty() {
             let pairs: Vec<_> = s.ignored.iter().map(|p| f.bodies.assembly().names(p)).collect();

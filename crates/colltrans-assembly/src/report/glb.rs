@@ -82,7 +82,8 @@ fn channels(
         let (mut at, mut times, mut places) = (DVec3::ZERO, vec![0.0], vec![DVec3::ZERO]);
         for (k, step) in plan.steps.iter().enumerate() {
             // The last part stays where it is: there is nothing to take it out of.
-            if !step.parts.contains(&part) || k + 1 == plan.steps.len() && step.travel == 0.0 {
+            if !step.parts.contains(&part) || k + 1 == plan.steps.len() && step.travel.value == 0.0
+            {
                 continue;
             }
             let start = k as f64 * (STEP + PAUSE) + PAUSE;
@@ -113,7 +114,7 @@ fn parked(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
     let mut taken: Vec<Aabb> = Vec::new();
     // What comes out last stays nearest, so that nothing passes it.
     for (k, step) in plan.steps.iter().enumerate().rev() {
-        distances[k] = step.travel + NEAREST * size;
+        distances[k] = step.travel.value + NEAREST * size;
         let boxes = step.parts.iter().map(|&p| assembly.parts()[p].bounds());
         let Some(group) = boxes.reduce(|a, b| a.join(&b)).filter(|_| step.within.is_none()) else {
             continue;

@@ -164,7 +164,7 @@ fn step_figure(f: &Findings, k: usize, gone: &[bool]) -> Markup {
                 b { (k + 1) "." } " " (f.bodies.assembly().names(&step.parts).join(", "))
                 @if let Some(w) = step.within { " (of the group of step " (w + 1) ")" }
                 ": " (arrow(step.direction))
-                @if step.travel > 0.0 { ", " (short(step.travel)) }
+                @if step.travel.value > 0.0 { ", " (short(step.travel.value)) }
                 @if !step.surfaces.is_empty() {
                     "; rests on an open surface: "
                     (f.bodies.assembly().names(&step.surfaces).join(", "))
@@ -183,8 +183,9 @@ fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     let parts = f.bodies.assembly().parts();
     let Aabb { low, high } = f.bodies.assembly().bounds();
     let by = step.direction
-        * (step.travel * 0.5).clamp(0.12 * (high - low).length(), 0.5 * (high - low).length());
-    let last = step.travel == 0.0 && step.within.is_none() && k + 1 == f.plan.steps.len();
+        * (step.travel.value * 0.5)
+            .clamp(0.12 * (high - low).length(), 0.5 * (high - low).length());
+    let last = step.travel.value == 0.0 && step.within.is_none() && k + 1 == f.plan.steps.len();
     let by = if last { DVec3::ZERO } else { by };
     let group = step.within.map(|w| &f.plan.steps[w].parts);
     let there = |p: usize| match group {
@@ -265,7 +266,7 @@ fn rooms(f: &Findings) -> Markup {
         PartRoom::Free => "free".into(),
         PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(*by)),
         PartRoom::Blocked { by, stop, .. } => {
-            format!("{} {}", short(tidy(stop.distance, size)), name(*by))
+            format!("{} {}", short(tidy(stop.distance(), size)), name(*by))
         }
     };
     html! {

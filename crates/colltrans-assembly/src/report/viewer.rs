@@ -54,13 +54,13 @@ fn data(f: &Findings) -> Value {
     let count = f.plan.steps.len();
     let steps = f.plan.steps.iter().enumerate().map(|(k, step)| {
         // As in the animation: the last part stays, for there is nothing to take it out of.
-        let stays = k + 1 == count && step.travel == 0.0;
-        let way = if stays { 0.0 } else { step.travel + 0.35 * size };
+        let stays = k + 1 == count && step.travel.value == 0.0;
+        let way = if stays { 0.0 } else { step.travel.value + 0.35 * size };
         json!({
             "parts": step.parts,
             "way": (step.direction * way).to_array(),
             "along": arrow(step.direction),
-            "travel": step.travel,
+            "travel": step.travel.value,
         })
     });
     json!({

@@ -231,19 +231,19 @@ A manifest, in TOML (JSON has the same fields):
   fixed = true                               # never moved
 
 With --json:
-  {"parts": [{"name", "facets", "volume"}], "unit", "tolerance" (or "keep_apart"),
+  {"parts": [{"name", "facets", "volume", "volume_bounds"}], "unit", "tolerance" (or "keep_apart"),
    "overlaps": [{"parts": [a, b], "depth"}], "suggested_tolerance",
-   "liaisons": [{"parts": [a, b], "area", "center"}],
+   "liaisons": [{"parts": [a, b], "area", "area_bounds", "center"}],
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
-     "shrunk_distance", "shrunk_distance_bounds" (or "grown_distance", "grown_distance_bounds")}],
-   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "within", "ignored",
-     "surfaces"}],
+     "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "grown_distance", "grown_distance_bounds")}],
+   "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
+     "within", "ignored", "surfaces"}],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
    "maps": [...]}
-  Directions have length 1, so distances are lengths; distance is safe to move by: what stops the part
-  has not met in its true place, and the parts, shrunk by half the tolerance each or grown by half
-  the length to keep, do not overlap, which they do from grown_ or shrunk_distance on. The two of
-  _bounds enclose that one, proven. outcome is "free", "blocked" or
+  Directions have length 1, so distances are lengths; distance is safe to move by, proven: what stops
+  the part has not met in its true place (translation), and the parts, shrunk by half the tolerance
+  each or grown by half the length to keep, do not overlap, which they do from grown_ or
+  shrunk_distance on. The two of _bounds enclose the number, proven. outcome is "free", "blocked" or
   "overlapping". A step with "within" takes apart the group that step (from 0) took out.
 
 With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each

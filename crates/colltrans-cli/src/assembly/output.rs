@@ -100,7 +100,7 @@ fn summary(f: &Findings) -> String {
         let within =
             step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
         let [x, y, z] = step.direction.to_array();
-        let way = format!("{} along {x},{y},{z}", step.travel);
+        let way = format!("{} along {x},{y},{z}", step.travel.value);
         let _ = writeln!(text, "  {}. {}{within}: {way}", k + 1, names(&step.parts));
         if let Some(ignored) = step.ignores(assembly) {
             let _ = writeln!(text, "     {}", shown(ignored));

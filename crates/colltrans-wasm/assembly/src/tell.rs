@@ -75,7 +75,7 @@ pub(crate) fn along(matrix: &Matrix, bodies: &Bodies) -> Answer {
             "moving": meeting.moving,
             "fixed": meeting.fixed,
             // None where they overlap.
-            "distance": meeting.stop.map(|stop| stop.distance),
+            "distance": meeting.stop.map(|stop| stop.distance()),
             "point": meeting.stop.map(|stop| (stop.point - middle).to_array()),
         })
     });
@@ -83,7 +83,7 @@ pub(crate) fn along(matrix: &Matrix, bodies: &Bodies) -> Answer {
         PartRoom::Free => json!({ "outcome": "free" }),
         PartRoom::Overlapping { by, .. } => json!({ "outcome": "overlapping", "by": by }),
         PartRoom::Blocked { by, stop, .. } => {
-            json!({ "outcome": "blocked", "by": by, "distance": stop.distance })
+            json!({ "outcome": "blocked", "by": by, "distance": stop.distance() })
         }
     };
     let graph = Blocking::new(matrix, 0, &vec![true; bodies.len()]);
@@ -129,7 +129,7 @@ pub(crate) fn plan(plan: &Plan, directions: usize) -> Answer {
         json!({
             "parts": step.parts,
             "direction": step.direction.to_array(),
-            "travel": step.travel,
+            "travel": step.travel.value,
             "within": step.within,
             "surfaces": step.surfaces,
         })

@@ -16,7 +16,7 @@ use crate::answer::{Bounded, Clearance, Separation};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
 use crate::setting::error::QueryError;
-use crate::solve::solid::contact::{SolidContact, contact};
+use crate::solve::solid::contact::{SolidContact, contact, true_place};
 use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::search::{Aim, Found, Search, Workspace};
@@ -200,8 +200,7 @@ impl<'a> Cast<'a, Solid> {
     /// blocks along one direction often does so along others too: then [`Self::clearance`] is no
     /// larger. Bodies count as overlapping only where [`SolidOptions::overlapping`] says so.
     pub fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact> {
-        let counts = [self.moving(), self.fixed()].map(|solid| solid.triangles().len());
-        if triangles.into_iter().zip(counts).any(|(t, count)| t as usize >= count) {
+        if !self.has(triangles) {
             return None;
         }
         let scene = self.asked();
@@ -211,6 +210,26 @@ impl<'a> Cast<'a, Solid> {
         let search = Search::new(&scene, aim, self.limit(&scene), |_, _| ());
         let found = search.of_pair(triangles)?;
         Some(contact(&scene, &found, self.moving_pose().translation()))
+    }
+
+    /// Where two triangles of these bodies, as they are, meet that stop them after
+    /// [`Solid::shrunk`]: what [`SolidContact::translation`] is to
+    /// [`SolidContact::shrunk_distance`]. `shrunk` is how far the shrunk bodies go, `normal` that of
+    /// their contact, and `shift` how far the contact point of the moving body was moved by shrinking,
+    /// less that of the fixed body. `None` if there are no such triangles.
+    pub fn true_place(
+        &self,
+        triangles: [u32; 2],
+        shrunk: Bounded,
+        normal: DVec3,
+        shift: DVec3,
+    ) -> Option<Bounded> {
+        self.has(triangles).then(|| true_place(&self.scene(0.0), triangles, shrunk, normal, shift))
+    }
+
+    fn has(&self, triangles: [u32; 2]) -> bool {
+        let counts = [self.moving(), self.fixed()].map(|solid| solid.triangles().len());
+        triangles.into_iter().zip(counts).all(|(t, count)| (t as usize) < count)
     }
 
     /// Gaps from here on are of no interest, a length.

@@ -102,12 +102,16 @@ impl Foot {
 impl Found {
     /// The gap as a translation with its bounds; see the module's head.
     pub(crate) fn bounded(&self, scene: &Scene) -> Bounded {
-        let lower = self.others.min(self.gap - self.error) - scene.noise;
-        let upper = self.gap + self.error + scene.noise;
-        let [value, lower, upper] =
-            [self.gap, lower, upper].map(|length| length / scene.setting.length);
-        Bounded { value, lower, upper }
+        bounded(scene, (self.gap, self.error), self.others)
     }
+}
+
+/// A gap up to its error, all others being at least `others`, as a translation.
+fn bounded(scene: &Scene, (gap, error): (f64, f64), others: f64) -> Bounded {
+    let lower = others.min(gap - error) - scene.noise;
+    let upper = gap + error + scene.noise;
+    let [value, lower, upper] = [gap, lower, upper].map(|length| length / scene.setting.length);
+    Bounded { value, lower, upper }
 }
 
 /// The contact of a search with the bodies as `scene` has them.
@@ -157,7 +161,8 @@ pub(crate) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidConta
         shrunk_distance
     } else {
         let shift = on_f.displacement(moving) - on_g.displacement(fixed);
-        true_place(scene, found, shrunk_distance, normal, shift)
+        let pair = [found.moving, found.fixed];
+        true_place(&scene.shrunk(0.0, 0.0), pair, shrunk_distance, normal, shift)
     };
     SolidContact {
         translation,
@@ -176,35 +181,33 @@ const ENOUGH: f64 = 64.0;
 /// Slope, of a contact plane against the direction, up to which it is not moved back.
 const STEEPEST: f64 = 1e-3;
 
-/// Where the facets of a contact of shrunk bodies meet as they are; `shift` is what shrinking has moved
-/// the one contact point against the other.
-fn true_place(
-    scene: &Scene,
-    found: &Found,
+/// Where the facets of a contact of shrunk bodies meet as they are, in `bare`; `shift` is what shrinking
+/// has moved the one contact point against the other.
+pub(crate) fn true_place(
+    bare: &Scene,
+    pair: [u32; 2],
     shrunk: Bounded,
     normal: DVec3,
     shift: DVec3,
 ) -> Bounded {
-    let bare = scene.shrunk(0.0, 0.0);
-    let pair = [found.moving, found.fixed];
-    let known = |(gap, error): (f64, f64)| {
-        let place = Found { gap, error, others: gap, ..*found }.bounded(&bare);
+    let known = |gap: (f64, f64)| {
+        let place = bounded(bare, gap, gap.0);
         Bounded { lower: place.lower.min(shrunk.lower), ..place }
     };
-    let exact = leaf::gap_of(&bare, pair).or_else(|| rim::least_gap_of(&bare, &Gap::counts, pair));
+    let exact = leaf::gap_of(bare, pair).or_else(|| rim::least_gap_of(bare, &Gap::counts, pair));
     if let Some(gap) = exact {
         return known(gap);
     }
-    let slope = normal.dot(scene.setting.direction);
+    let slope = normal.dot(bare.setting.direction);
     // Along planes that are all but on edge their meeting says nothing of the bodies.
-    let steep = slope <= STEEPEST * scene.setting.length;
-    let noise = scene.noise / scene.setting.length;
+    let steep = slope <= STEEPEST * bare.setting.length;
+    let noise = bare.noise / bare.setting.length;
     let [back, error] =
-        if steep { [0.0, noise] } else { [normal.dot(shift), scene.noise].map(|x| x / slope) };
+        if steep { [0.0, noise] } else { [normal.dot(shift), bare.noise].map(|x| x / slope) };
     let value = (shrunk.value + back).min(shrunk.value);
-    let mut least = leaf::least_in_doubt(&bare, pair) / scene.setting.length;
+    let mut least = leaf::least_in_doubt(bare, pair) / bare.setting.length;
     if least < value - ENOUGH * noise {
-        if let Some(gap) = exact_gap(&bare, Aim::Stop, pair) {
+        if let Some(gap) = exact_gap(bare, Aim::Stop, pair) {
             return known(gap);
         }
         // They do not meet as they are.

@@ -305,6 +305,78 @@ fn objects_in_other_files_of_a_3mf_package_are_read() {
 }
 
 #[test]
+fn paths_of_a_3mf_package_may_have_blanks() {
+    let start = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+    let rels = |target: &str| {
+        let relation = format!("<Relationship Target=\"{target}\" Id=\"r\" Type=\"{start}\"/>");
+        ("_rels/.rels", format!("<Relationships>{relation}</Relationships>"))
+    };
+    let far = |path: &str| {
+        let component = format!("<component p:path=\"{path}\" objectid=\"1\"/>");
+        let object = format!("<object id=\"3\"><components>{component}</components></object>");
+        model(PRODUCTION, &object, "<item objectid=\"3\"/>")
+    };
+    let cube = || model("", &object(1, [1, 2, 3]), "");
+    // Written out in neither, either or both; `%C3%A9` is one letter.
+    for (target, root) in [
+        ("/3D/my%20model.model", "3D/my model.model"),
+        ("/3D/my%20model.model", "3D/my%20model.model"),
+        ("/3D/my model.model", "3D/my%20model.model"),
+    ] {
+        for (path, name) in [
+            ("/3D/a%20b%C3%A9.model", "3D/a bé.model"),
+            ("/3D/a%20b%C3%A9.model", "3D/A%20b%c3%a9.model"),
+            ("/3D/a bé.model", "3D/a%20b%C3%A9.model"),
+            ("/3D/100%.model", "3D/100%.model"),
+        ] {
+            let files = package(&[rels(target), (name, cube()), (root, far(path))]);
+            let read = from_memory("a.3mf", &[("a.3mf", files)]).unwrap();
+            assert_eq!(read.parts().len(), 1, "{target} {root} {path} {name}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_part_of_a_3mf_model_is_left_out_and_said() {
+    let of = |kind: &str, id: u32| {
+        object(id, [id, 1, 1])
+            .replace("type=\"model\"", &format!("type=\"{kind}\" name=\"{kind}\""))
+    };
+    let kinds = ["model", "surface", "support", "solidsupport", "other"];
+    let mut resources: String = (1..).zip(kinds).map(|(id, kind)| of(kind, id)).collect();
+    // Of components, too, and with all that is below.
+    resources += "<object id=\"6\" type=\"support\" name=\"tree\"><components>\
+        <component objectid=\"1\"/></components></object>";
+    resources += "<object id=\"7\"><components><component objectid=\"1\"/><component objectid=\"6\"/>\
+        </components></object>";
+    let items = [1, 2, 3, 4, 5, 7].map(|id| {
+        let printable = if id == 2 || id == 7 { " printable=\"0\"" } else { "" };
+        format!("<item objectid=\"{id}\"{printable}/>")
+    });
+    let read = |resources: &str, items: &str| {
+        let files = package(&[("3D/3dmodel.model", model("", resources, items))]);
+        from_memory("a.3mf", &[("a.3mf", files)])
+    };
+    let found = read(&resources, &items.concat()).unwrap();
+    let names: Vec<&str> = found.parts().iter().map(colltrans_assembly::Part::name).collect();
+    assert_eq!(names[..2], ["model", "surface"]);
+    assert!(names.len() == 3 && names[2].starts_with("model"), "{names:?}");
+    let [left_out, unprinted] = found.notes() else { panic!("{:?}", found.notes()) };
+    let told = "left out, as they are no parts of the model: support (support), solidsupport \
+        (solidsupport), other (other), tree (support)";
+    assert_eq!(left_out, told);
+    let told = "read all the same, though not to be printed (printable=\"0\"): build item 2, 6";
+    assert_eq!(unprinted, told);
+    let none = read(&resources, &items[2]).unwrap_err().to_string();
+    says(&none, &["its build places no mesh", "no parts of the model: support (support)"]);
+    let wrong = read(&of("modell", 1), &items[0]).unwrap_err().to_string();
+    says(&wrong, &["the type modell is none of model, surface, support"]);
+    // A surface may be open.
+    let open = of("surface", 2).replace("<triangle v1=\"0\" v2=\"2\" v3=\"3\"/>", "");
+    assert!(read(&open, &items[1]).unwrap().parts()[0].is_surface());
+}
+
+#[test]
 fn a_3mf_file_that_is_none_or_needs_more_is_refused_by_name() {
     let refused = |files: &[(&str, String)]| refusal("a.3mf", &[("a.3mf", package(files))]);
     let of = |text: String| refused(&[("3D/3dmodel.model", text)]);

@@ -197,6 +197,32 @@ fn leaves(name: &str) -> bool {
     false
 }
 
+/// A name as a URI writes it: `%20` is a blank.
+pub(super) fn unescaped(uri: &str) -> Result<String, String> {
+    let name = String::from_utf8(percent_decoded(uri)?);
+    name.map_err(|_| format!("{uri} is not text in UTF-8"))
+}
+
+pub(super) fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
+    let mut rest = text.as_bytes();
+    let mut bytes = Vec::with_capacity(rest.len());
+    while let [first, tail @ ..] = rest {
+        rest = tail;
+        if *first != b'%' {
+            bytes.push(*first);
+            continue;
+        }
+        let digit = |b: &u8| char::from(*b).to_digit(16);
+        let [high, low, tail @ ..] = rest else { return Err(format!("{text} ends in a %")) };
+        let (Some(high), Some(low)) = (digit(high), digit(low)) else {
+            return Err(format!("{text} has a % without two digits"));
+        };
+        bytes.push((high * 16 + low) as u8);
+        rest = tail;
+    }
+    Ok(bytes)
+}
+
 #[cfg(test)]
 mod tests {
     use super::leaves;

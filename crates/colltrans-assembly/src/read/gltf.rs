@@ -15,7 +15,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
-use super::files::Source;
+use super::files::{Source, percent_decoded, unescaped};
 use super::{Budget, Names, assembled, contents, in_file, plain};
 use crate::error::ReadError;
 use crate::part::{Assembly, Part, Piece};
@@ -276,32 +276,6 @@ fn embedded(data: &str) -> Result<Vec<u8>, String> {
         return STANDARD.decode(text).map_err(|_| "its data are not base64".into());
     }
     percent_decoded(text)
-}
-
-/// A name as a URI writes it: `%20` is a blank.
-fn unescaped(uri: &str) -> Result<String, String> {
-    let name = String::from_utf8(percent_decoded(uri)?);
-    name.map_err(|_| format!("{uri} is not text in UTF-8"))
-}
-
-fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
-    let mut rest = text.as_bytes();
-    let mut bytes = Vec::with_capacity(rest.len());
-    while let [first, tail @ ..] = rest {
-        rest = tail;
-        if *first != b'%' {
-            bytes.push(*first);
-            continue;
-        }
-        let digit = |b: &u8| char::from(*b).to_digit(16);
-        let [high, low, tail @ ..] = rest else { return Err(format!("{text} ends in a %")) };
-        let (Some(high), Some(low)) = (digit(high), digit(low)) else {
-            return Err(format!("{text} has a % without two digits"));
-        };
-        bytes.push((high * 16 + low) as u8);
-        rest = tail;
-    }
-    Ok(bytes)
 }
 
 struct Reader<'a> {

@@ -3,7 +3,10 @@
 //! An object of components becomes one part for each mesh below it. A transform is twelve numbers,
 //! the rows of a matrix by which a row vector is multiplied from the right (3MF core specification,
 //! 3.3). Objects may lie in other model files of the package (`p:path` of the production extension), as
-//! slicers write them: an object is known by its file and its number there. What a file says a reader
+//! slicers write them: an object is known by its file and its number there. Paths may have characters as
+//! `%20`, in the archive as well. Objects that are supports, or of another kind that is never built
+//! (3.4: `support`, `solidsupport`, `other`), are left out, with a note; surfaces are parts that may be
+//! open. Whether an item is to be printed (`printable`, which slicers write) is noted, not obeyed. What a file says a reader
 //! must know (`requiredextensions`) and this one does not is refused, for the shapes may be in it.
 
 use std::collections::{HashMap, VecDeque};
@@ -16,7 +19,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::NamespaceResolver;
 use zip::ZipArchive;
 
-use super::files::Source;
+use super::files::{Source, unescaped};
 use super::xml::{self, Element, Lines};
 use super::{Budget, Names, assembled, contents};
 use crate::error::ReadError;
@@ -51,17 +54,22 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let mut package = Package::open(&source, bytes)?;
     let root = package.root()?;
     let models = models(&source, &mut package, &root)?;
+    let mut left_out = Vec::new();
     // All are counted before the first part is built.
     let mut placed = Vec::new();
     for (k, item) in models.root.items.iter().enumerate() {
         let place = format!("build item {}", k + 1);
         let mut call = |name: &str, object: &Rc<Object>, at| {
             budget.place()?;
+            if let Kind::Left(kind) = object.kind {
+                left_out.push(format!("{name} ({kind})"));
+                return Ok(false);
+            }
             budget.facets(object.faces.len().max(object.vertices.len()))?;
             if !object.faces.is_empty() {
                 placed.push((k, name.to_owned(), Rc::clone(object), at));
             }
-            Ok(())
+            Ok(true)
         };
         let refused = |reason: String| contents(source.path, &place, reason);
         models.collect(&root, item, DAffine3::IDENTITY, 0, &mut call).map_err(refused)?;
@@ -73,9 +81,40 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         let place = format!("build item {}", k + 1);
         parts.push(part.map_err(|e| contents(source.path, place, e))?);
     }
-    let (unit, holds) = (models.root.unit.clone(), package.holds());
+    let notes = notes(&models.root.items, &left_out);
+    let (unit, mut holds) = (models.root.unit.clone(), package.holds());
     drop(package);
-    Ok(assembled(source, parts, &holds)?.with_unit(unit))
+    if let Some(note) = notes.first().filter(|_| !left_out.is_empty()) {
+        holds = format!("{holds}; {note}");
+    }
+    let assembly = assembled(source, parts, &holds)?.with_unit(unit);
+    Ok(notes.into_iter().fold(assembly, Assembly::with_note))
+}
+
+/// Names that a note lists.
+const MOST_NAMED: usize = 4;
+
+/// What was left out, and what is not to be printed.
+fn notes(items: &[Placed], left_out: &[String]) -> Vec<String> {
+    let mut notes = Vec::new();
+    if !left_out.is_empty() {
+        let named = left_out[..left_out.len().min(MOST_NAMED)].join(", ");
+        let more = match left_out.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        notes.push(format!("left out, as they are no parts of the model: {named}{more}"));
+    }
+    let printed = |item: &(usize, &Placed)| item.1.unprinted;
+    let unprinted: Vec<String> =
+        items.iter().enumerate().filter(printed).map(|(k, _)| (k + 1).to_string()).collect();
+    if !unprinted.is_empty() {
+        let listed = unprinted.join(", ");
+        notes.push(format!(
+            "read all the same, though not to be printed (printable=\"0\"): build item {listed}"
+        ));
+    }
+    notes
 }
 
 /// The zip archive around the models.
@@ -109,9 +148,8 @@ impl<'a> Package<'a> {
 
     /// The name of the file of a path in the package, whose letters may be of either case.
     fn find(&self, path: &str) -> Option<String> {
-        let plain = |name: &str| name.trim_start_matches('/').to_ascii_lowercase();
-        let wanted = plain(path);
-        self.names().into_iter().find(|name| plain(name) == wanted)
+        let wanted = key(path);
+        self.names().into_iter().find(|name| key(name) == wanted)
     }
 
     /// The path of the model that the package begins with.
@@ -165,9 +203,35 @@ impl<'a> Package<'a> {
     }
 }
 
+/// What an object is for.
+#[derive(Default, Clone, Copy)]
+enum Kind {
+    /// A body, or a surface: a part of the model.
+    #[default]
+    Model,
+    /// It is never built, or not the model.
+    Left(&'static str),
+}
+
+impl Kind {
+    /// The types of the core specification, 3.4.
+    fn of(kind: Option<&str>) -> Result<Self, String> {
+        match kind {
+            None | Some("model" | "surface") => Ok(Self::Model),
+            Some("support") => Ok(Self::Left("support")),
+            Some("solidsupport") => Ok(Self::Left("solidsupport")),
+            Some("other") => Ok(Self::Left("other")),
+            Some(kind) => Err(format!(
+                "the type {kind} is none of model, surface, support, solidsupport, other"
+            )),
+        }
+    }
+}
+
 #[derive(Default)]
 struct Object {
     name: Option<String>,
+    kind: Kind,
     vertices: Vec<DVec3>,
     faces: Vec<Vec<u32>>,
     components: Vec<Placed>,
@@ -181,6 +245,8 @@ struct Placed {
     path: Option<String>,
     id: String,
     transform: DAffine3,
+    /// A slicer would not print it.
+    unprinted: bool,
 }
 
 /// One model file.
@@ -197,7 +263,9 @@ struct Models {
     by_path: HashMap<String, Rc<Model>>,
 }
 
+/// A path in a package without what may differ: the first `/`, letters of either case, `%20`.
 fn key(path: &str) -> String {
+    let path = unescaped(path).unwrap_or_else(|_| path.to_owned());
     path.trim_start_matches('/').to_ascii_lowercase()
 }
 
@@ -231,8 +299,8 @@ fn models(source: &Source, package: &mut Package, root: &str) -> Result<Models, 
     Ok(Models { root: model, by_path })
 }
 
-/// Told of an object, by its name, and where it is.
-type Call<'a> = dyn FnMut(&str, &Rc<Object>, DAffine3) -> Result<(), String> + 'a;
+/// Told of an object, by its name, and where it is; says whether what is below it counts.
+type Call<'a> = dyn FnMut(&str, &Rc<Object>, DAffine3) -> Result<bool, String> + 'a;
 
 impl Models {
     /// Calls with every object below one that the model `from` places.
@@ -259,7 +327,9 @@ impl Models {
         }
         let name = object.name.clone().unwrap_or_else(|| format!("object_{id}"));
         let at = above * placed.transform;
-        call(&name, object, at)?;
+        if !call(&name, object, at)? {
+            return Ok(());
+        }
         for child in &object.components {
             self.collect(path, child, at, depth + 1, call)?;
         }
@@ -335,7 +405,8 @@ impl Parser {
             "object" => {
                 let id = attributes.need("id")?.to_owned();
                 let name = attributes.get("name").map(str::to_owned);
-                self.current = Some((id, Object { name, ..Object::default() }));
+                let kind = Kind::of(attributes.get("type"))?;
+                self.current = Some((id, Object { name, kind, ..Object::default() }));
             }
             "item" => self.items.push(attributes.placed()?),
             _ => {
@@ -445,7 +516,9 @@ impl Attributes {
 
     fn placed(&self) -> Result<Placed, String> {
         let id = self.need("objectid")?.to_owned();
-        Ok(Placed { path: self.path.clone(), id, transform: transform(self.get("transform"))? })
+        let (path, transform) = (self.path.clone(), transform(self.get("transform"))?);
+        let unprinted = matches!(self.get("printable"), Some("0" | "false"));
+        Ok(Placed { path, id, transform, unprinted })
     }
 }
 

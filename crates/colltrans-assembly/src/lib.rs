@@ -23,6 +23,8 @@ mod orient;
 mod part;
 mod watch;
 mod witness;
+#[cfg(all(test, feature = "files"))]
+mod work;
 
 pub mod blocking;
 pub mod candidates;

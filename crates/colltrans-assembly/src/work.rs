@@ -1,0 +1,93 @@
+//! How what is asked grows with the number of parts: counted, not timed, so that no machine disturbs it.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering::Relaxed;
+
+use colltrans::StartOverlap;
+use glam::DVec3;
+
+use crate::bodies::{Bodies, Fit};
+use crate::boxes::Aabb;
+use crate::liaisons::liaisons;
+use crate::matrix::Matrix;
+use crate::part::Assembly;
+use crate::read::{ReadOptions, read_from};
+use crate::rooms::rooms;
+use crate::start::Start;
+use crate::watch::Watch;
+
+/// Along each axis.
+const GRID: [usize; 3] = [20, 15, 10];
+const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
+    4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+
+/// 3,000 cubes two apart, in one manifest.
+fn grid() -> Assembly {
+    let mut manifest = String::new();
+    for k in 0..GRID.iter().product() {
+        let [i, j, l] = [k % GRID[0], k / GRID[0] % GRID[1], k / GRID[0] / GRID[1]];
+        let place = format!("[{}, {}, {}]", 2 * i, 2 * j, 2 * l);
+        manifest += &format!("[[part]]\nfile = 'c.off'\nname = 'p{k}'\ntranslation = {place}\n");
+    }
+    let files = [("m.toml", manifest.as_str()), ("c.off", CUBE)];
+    let files: BTreeMap<PathBuf, Vec<u8>> =
+        files.map(|(name, text)| (name.into(), text.into())).into();
+    read_from("m.toml", &files, &ReadOptions::default()).unwrap()
+}
+
+/// Ordered pairs of boxes of which the first meets the second along a direction, one by one.
+fn pairs_ahead(boxes: &[Aabb], d: DVec3) -> usize {
+    let meets = |a: &Aabb, b: &Aabb| {
+        let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
+        for k in 0..3 {
+            let (low, high) = (b.low[k] - a.high[k], b.high[k] - a.low[k]);
+            if d[k] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (x, y) = (low / d[k], high / d[k]);
+            enter = enter.max(x.min(y));
+            exit = exit.min(x.max(y));
+        }
+        enter <= exit
+    };
+    let of = |a: &Aabb| boxes.iter().filter(|b| !std::ptr::eq(a, *b) && meets(a, b)).count();
+    boxes.iter().map(of).sum()
+}
+
+#[test]
+fn of_3_000_parts_only_those_in_each_others_way_are_asked_about() {
+    let (assembly, watch) = (grid(), Watch::default());
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let asked = || bodies.asked.swap(0, Relaxed);
+    assert_eq!(bodies.len(), 3_000);
+    // Nobody is near: nothing is asked of overlaps and contacts.
+    assert!(bodies.neighbours(0.5).unwrap().is_empty());
+    assert!(Start::new(&bodies, watch).unwrap().overlaps.is_empty());
+    assert!(liaisons(&bodies, watch).unwrap().is_empty());
+    assert_eq!(asked(), 0);
+    // The matrix asks each pair in a row once, for both directions.
+    let axes: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&d| [d, -d]).collect();
+    let all = vec![true; 3_000];
+    let start = StartOverlap::Refuse;
+    let matrix = Matrix::new(&bodies, &axes, &all, start, watch).unwrap();
+    let in_rows: usize = GRID.iter().map(|n| 3_000 / n * (n * (n - 1) / 2)).sum();
+    assert_eq!(asked(), in_rows);
+    let met: usize = (0..6).map(|k| matrix.meetings(k).len()).sum();
+    assert_eq!(met, 2 * in_rows);
+    // Rooms ask the nearest, and what its box may be as near as.
+    rooms(&bodies, &axes, start, watch).unwrap();
+    let nearest = asked();
+    let blocked: usize = GRID.iter().map(|n| 2 * 3_000 / n * (n - 1)).sum();
+    assert!((blocked..=blocked + blocked / 10).contains(&nearest), "{nearest} of {blocked}");
+    // Aslant no more than have boxes that meet on the way.
+    let boxes: Vec<Aabb> = (0..3_000).map(|k| bodies.bounds(k)).collect();
+    for d in [DVec3::new(0.6, 0.0, -0.8), DVec3::new(2.0, -3.0, 6.0) / 7.0] {
+        rooms(&bodies, &[d], start, watch).unwrap();
+        let (count, most) = (asked(), pairs_ahead(&boxes, d));
+        assert!(count > 1_000 && count <= most && most < 100_000, "{count} of {most}");
+    }
+}

@@ -5,6 +5,8 @@
 //! Before anything is read, the header's counts are compared with the bytes that are there, and
 //! bytes that are left in the end are refused, unless they are blank.
 
+mod why;
+
 use std::borrow::Cow;
 use std::io::ErrorKind;
 
@@ -23,16 +25,24 @@ use crate::text::{quoted, without_mark};
 pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let bytes = with_line_feeds(without_mark(bytes)?);
     let mut reader = Reader::new(&*bytes);
-    let header = Parser::<Row>::new().read_header(&mut reader).map_err(|e| fault(&e, true))?;
+    let header = Parser::<Row>::new().read_header(&mut reader);
+    let header = header.map_err(|e| why::header(&bytes).unwrap_or_else(|| fault(&e, true)))?;
     let text = header.encoding == Encoding::Ascii;
-    let fault = |e| fault(&e, text);
     check_counts(&header, reader.get_ref().len())?;
     let precision = check_properties(&header)?;
     let mut mesh = Mesh::default();
     let mut faces = Vec::new();
     for (name, element) in &header.elements {
         let rows = Parser::<Row>::new().read_payload_for_element(&mut reader, element, &header);
-        let rows = rows.map_err(fault)?;
+        let rows = rows.map_err(|e| {
+            let line = e.line().filter(|_| text);
+            let told = line.and_then(|line| {
+                let row = bytes.split(|b| *b == b'\n').nth(line - 1)?;
+                let what = why::row(std::str::from_utf8(row).ok()?, element)?;
+                Some(Fault::new(Place::Line(line), what))
+            });
+            told.unwrap_or_else(|| fault(&e, text))
+        })?;
         match name.as_str() {
             "vertex" => mesh.vertices = rows.into_iter().map(|row| row.point).collect(),
             "face" => faces = rows,

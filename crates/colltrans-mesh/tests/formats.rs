@@ -23,7 +23,7 @@ fn place(format: Format, text: impl AsRef<[u8]>) -> Place {
 #[test]
 fn words_in_a_ply_file_are_told_as_such() {
     let error = read(Format::Ply, "ply-like words\n").unwrap_err().to_string();
-    assert_eq!(error, "part: line 1: Expected magic number 'ply'.");
+    assert_eq!(error, "part: line 1: the first line of a PLY file is `ply`, not `ply-like words`");
 }
 
 fn tetrahedron() -> Mesh {
@@ -199,6 +199,79 @@ fn ply_in_all_three_encodings() {
         assert_eq!(mesh.vertices[2], DVec3::new(0.0, 1e-17, 0.0));
         assert_eq!(mesh.faces, [[0, 1, 2]]);
     }
+}
+
+#[test]
+fn broken_ply_files_are_told_in_plain_words() {
+    let good = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    assert!(read(Format::Ply, good).is_ok());
+    let types = "char, uchar, short, ushort, int, uint, float, double";
+    for (from, to, told) in [
+        ("ply\n", "plx\n", "line 1: the first line of a PLY file is `ply`, not `plx`"),
+        (
+            "element face",
+            "elephant face",
+            "line 7: `elephant` is no word that a header's line begins \
+            with: format, comment, obj_info, element, property, end_header",
+        ),
+        ("float y", "flot y", &format!("line 5: the type `flot` is none of {types}")),
+        ("uchar int", "uchar integer", &format!("line 8: the type `integer` is none of {types}")),
+        (
+            "float z",
+            "float",
+            "line 6: not the type of a property and its name, as in `property float \
+            x` or `property list uchar int vertex_indices`",
+        ),
+        ("vertex 3", "vertex three", "line 3: `three` is no number of elements `vertex`"),
+        ("element vertex 3\n", "", "line 3: a property before the first `element`"),
+        (
+            "end_header\n",
+            "",
+            "line 9: a row of numbers within the header: `end_header` is missing \
+            before it",
+        ),
+        (
+            "ascii 1.0",
+            "asci 1.0",
+            "line 2: the format `asci` is none of ascii, binary_little_endian, \
+            binary_big_endian",
+        ),
+        (
+            "ascii 1.0",
+            "ascii",
+            "line 2: not the name of a format and its version, as in `format ascii \
+            1.0`",
+        ),
+        ("format ascii 1.0\n", "", "line 8: the header ends without a line `format`"),
+        ("\n1 0 0", "\n1 zero 0", "line 11: `zero` is no number"),
+        ("\n0 1 0", "\n0 1", "line 12: the line ends before the number of `z`"),
+        (
+            "3 0 1 2",
+            "3 0 one 2",
+            "line 13: `one` is no whole number from -2147483648 to 2147483647",
+        ),
+        ("3 0 1 2", "-3 0 1 2", "line 13: `-3` is no whole number from 0 to 255"),
+        (
+            "3 0 1 2",
+            "30 0 1 2",
+            "line 13: the line ends before number 4 of the 30 of `vertex_indices`",
+        ),
+    ] {
+        let text = good.replacen(from, to, 1);
+        for end in ["\n", "\r\n", "\r"] {
+            let error = read(Format::Ply, text.replace('\n', end)).unwrap_err().to_string();
+            assert_eq!(error, format!("part: {told}"), "{end:?}");
+        }
+    }
+    for cut in [5, 40, 60, 100] {
+        let error = read(Format::Ply, &good[..cut]).unwrap_err().to_string();
+        assert!(error.starts_with("part: line ") && !error.contains("Couldn't"), "{error}");
+    }
+    let error = read(Format::Ply, &good[..good.find("property float z").unwrap()]).unwrap_err();
+    let told = "part: line 6: the file ends within the header, before `end_header`";
+    assert_eq!(error.to_string(), told);
 }
 
 #[test]

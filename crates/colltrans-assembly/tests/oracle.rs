@@ -133,7 +133,10 @@ fn rooms_of_boxes_are_intervals() {
                         );
                         near += usize::from(distance - place.max(0.0) < 1e-9);
                         // Beyond the upper bound the boxes as given overlap.
-                        let as_given = [a, by].map(|k| assembly.parts()[k].solid().bounds());
+                        let as_given = [a, by].map(|k| {
+                            let bounds = assembly.parts()[k].solid().bounds();
+                            [bounds.low, bounds.high]
+                        });
                         let given = room_of_boxes(as_given[0], as_given[1], d).unwrap();
                         assert!(given <= stop.translation.upper, "{given}, {stop:?}");
                     }

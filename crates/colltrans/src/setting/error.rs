@@ -55,9 +55,9 @@ pub enum QueryError {
         /// The half-side as given.
         half_side: f64,
     },
-    /// The search ended without an answer. Known only where one body is thinner than the rounding
-    /// error at the size of the configuration (ratios beyond 1e11): please report another case (it can
-    /// be saved as a file).
+    /// The search ended without an answer, and nothing is proven by it. Known only where one body is
+    /// thinner than the rounding error at the size of the configuration (ratios beyond 1e11): please
+    /// report another case (it can be saved as a file).
     #[error("the search ended without an answer: {reason}; please report this case")]
     NotConverged {
         /// What went wrong.
@@ -76,13 +76,13 @@ pub enum Stalled {
     /// Portals followed each other without an end.
     #[error("portals followed each other in a circle")]
     Cycle,
-    /// The proven bounds are farther apart than rounding explains. All in multiples of the
-    /// direction.
+    /// The lowest plane found and the portal are farther apart than rounding explains. All in multiples
+    /// of the direction, and as computed: neither number is a proven bound.
     #[error("the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}")]
     Gap {
-        /// Lower bound of the collision translation.
+        /// Where the line meets the plane.
         lower: f64,
-        /// Upper bound.
+        /// Where it meets the portal.
         upper: f64,
         /// The gap that would have been accepted.
         tolerance: f64,

@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
 
 fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     let mut text = format!("{}\n", shown(path.display()));
-    line(&mut text, "vertices", &mesh.vertices.len().to_string());
+    line(&mut text, "vertices", &vertices(mesh));
     line(&mut text, "faces", &faces(mesh));
     let not_finite = mesh.vertices.iter().position(|v| !v.is_finite());
     let no_number = not_finite.map(|vertex| format!("none: vertex {vertex} is not finite"));
@@ -52,10 +52,11 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         line(&mut text, "surface", &surface(mesh));
     }
     let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
+    let signed = mesh.signed_volume();
     let volume = match no_number {
-        Some(why) => why,
-        None if is_closed => computed(mesh.signed_volume()),
-        None => "none: the faces do not enclose a body".into(),
+        Some(why) if !(is_closed && signed.is_finite()) => why,
+        _ if is_closed => computed(signed),
+        _ => "none: the faces do not enclose a body".into(),
     };
     line(&mut text, "volume", &volume);
     for (name, what) in solid::describe(mesh) {
@@ -71,7 +72,8 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     }
     match ConvexPolyhedron::from_points(&mesh.vertices) {
         Ok(hull) => {
-            line(&mut text, "hull", &counts(&hull));
+            let all = if unused(mesh) > 0 { " (of all vertices, as --hull takes it)" } else { "" };
+            line(&mut text, "hull", &format!("{}{all}", counts(&hull)));
             line(&mut text, "hull volume", &computed(hull.volume()));
             let excess = Excess::of(mesh, &hull);
             let tolerance = body::tolerance(mesh, asked_tolerance);
@@ -88,6 +90,21 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         Err(error) => line(&mut text, "hull", &format!("none: {error}")),
     }
     text
+}
+
+/// Vertices of a surface that no face uses, but for those that were merged with others.
+fn unused(mesh: &Mesh) -> usize {
+    let unused = mesh.unused_vertices().saturating_sub(mesh.merged.vertices);
+    if mesh.faces.is_empty() { 0 } else { unused }
+}
+
+fn vertices(mesh: &Mesh) -> String {
+    match unused(mesh) {
+        0 => mesh.vertices.len().to_string(),
+        unused => {
+            format!("{}, {unused} of them used by no face", mesh.vertices.len())
+        }
+    }
 }
 
 fn faces(mesh: &Mesh) -> String {

@@ -48,10 +48,21 @@ impl Mesh {
         self.bounds().map_or(0.0, |[low, high]| (high - low).max_element())
     }
 
+    /// How many vertices no face uses.
+    pub fn unused_vertices(&self) -> usize {
+        let mut is_used = vec![false; self.vertices.len()];
+        for &v in self.faces.iter().flatten() {
+            is_used[v as usize] = true;
+        }
+        is_used.iter().filter(|used| !**used).count()
+    }
+
     /// The signed volume that a closed surface encloses: positive if the faces run
     /// counter-clockwise as seen from outside. Meaningless for an open one.
     pub fn signed_volume(&self) -> f64 {
-        let Some(&origin) = self.vertices.first() else { return 0.0 };
+        // One that is used: another one may be anywhere, or nowhere.
+        let Some(&first) = self.faces.iter().flatten().next() else { return 0.0 };
+        let origin = self.vertices[first as usize];
         let corner = |v: u32| self.vertices[v as usize] - origin;
         let six_volumes = self.faces.iter().filter(|face| face.len() >= 3).flat_map(|face| {
             face[1..]
@@ -75,6 +86,9 @@ mod tests {
         );
         assert!((mesh.signed_volume() - 1.0 / 6.0).abs() < 1e-15);
         assert_eq!(mesh.extent(), 1.0);
+        let mut more = mesh.clone();
+        more.vertices.push(DVec3::NAN);
+        assert_eq!((more.signed_volume(), more.unused_vertices()), (mesh.signed_volume(), 1));
         assert_eq!(Mesh::default().bounds(), None);
     }
 }

@@ -237,6 +237,28 @@ fn info_says_what_is_there_and_what_is_wrong() {
         ],
     );
     contains("points.ply", &["faces        0 (a cloud of points)", "no faces", "hull volume  1\n"]);
+    // A vertex that no face uses is none of the part, wherever it is.
+    let cube = std::fs::read_to_string(folder.path().join("cube.off")).unwrap();
+    for place in ["5 5 5", "1e9 0 0", "nan 0 0"] {
+        let more =
+            cube.replace("8 6 12", "9 6 12").replace("0 1 1\n", &format!("0 1 1\n{place}\n"));
+        std::fs::write(folder.path().join("more.off"), more).unwrap();
+        contains(
+            "more.off",
+            &[
+                "vertices     9, 1 of them used by no face\n",
+                "surface      closed\n",
+                "volume       1\n",
+            ],
+        );
+    }
+    std::fs::write(
+        folder.path().join("more.off"),
+        cube.replace("8 6 12", "9 6 12").replace("0 1 1\n", "0 1 1\n5 5 5\n"),
+    )
+    .unwrap();
+    let told = "hull         8 vertices, 15 edges, 9 faces (of all vertices, as --hull takes it)\n";
+    contains("more.off", &["convex       yes, to rounding error\n", told]);
     let both = colltrans(folder.path()).args(["info", "none.stl", "cube.off"]).output().unwrap();
     assert_eq!(both.status.code(), Some(3));
     assert!(stderr(&both).contains("none.stl") && stdout(&both).contains("cube.off"));

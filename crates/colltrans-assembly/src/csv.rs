@@ -1,9 +1,12 @@
 //! CSV: cells that are text cannot leave their cell, nor be taken for formulas.
 //!
 //! Programs that show tables compute a cell that begins with `=`, `+`, `-` or `@`, also behind a tab or
-//! a line's end. Such a text gets an apostrophe before it, which they take for "text follows".
+//! a line's end. Such a text gets an apostrophe before it, which they take for "text follows". What
+//! [steers](colltrans_mesh::plain) is written out.
 
 use std::fmt::Write;
+
+use colltrans_mesh::plain::shown;
 
 /// What a cell holds.
 #[derive(Debug, Clone, Copy)]
@@ -41,9 +44,10 @@ impl Table {
     }
 
     fn cell(&mut self, text: &str) {
-        let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n', '\0']);
+        let text = shown(text);
+        let is_formula = text.starts_with(['=', '+', '-', '@']);
         let mark = if is_formula { "'" } else { "" };
-        if text.contains([',', '"', '\n', '\r', ';', '\t']) {
+        if text.contains([',', '"', ';']) {
             let _ = write!(self.text, "\"{mark}{}\"", text.replace('"', "\"\""));
         } else {
             let _ = write!(self.text, "{mark}{text}");
@@ -64,8 +68,9 @@ mod tests {
         let mut table = Table::new(&["a", "b"]);
         table.row(&[Cell::Text("=1+1"), Cell::Number(-0.5)]);
         table.row(&[Cell::Text("a,\"b\"\r\nc"), Cell::Text("\t@x")]);
+        table.row(&[Cell::Text("\u{1b}[31m\u{9b}\u{7f}"), Cell::Text("@\u{200b}")]);
         table.row(&[Cell::Text("plain"), Cell::Text("-x")]);
-        let wanted = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\r\nc\",\"'\t@x\"\nplain,'-x\n";
+        let wanted = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n";
         assert_eq!(table.finish(), wanted);
     }
 }

@@ -67,6 +67,22 @@ impl Output {
         Ok(())
     }
 
+    /// The same if there is no such file yet: a second name for it, of which there can be one only, then
+    /// the first is given up.
+    fn finish_new(self) -> io::Result<()> {
+        let Some(partial) = &self.partial else { return Err(ErrorKind::AlreadyExists.into()) };
+        self.file.sync_all()?;
+        if let Err(error) = fs::hard_link(&partial.written, &partial.target) {
+            // Some file systems have one name for each file.
+            if error.kind() == ErrorKind::AlreadyExists || partial.target.symlink_metadata().is_ok()
+            {
+                return Err(ErrorKind::AlreadyExists.into());
+            }
+            return self.finish();
+        }
+        Ok(())
+    }
+
     /// Leaves the file under its other name, which is returned.
     pub(crate) fn leave(mut self) -> Option<PathBuf> {
         self.partial.take().map(|partial| partial.written)
@@ -129,6 +145,17 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     one.finish()
 }
 
+/// Writes a file that is not there yet; what is there, also by then, is left as it is.
+pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // Nothing is written where it would be in vain.
+    if path.symlink_metadata().is_ok() {
+        return Err(ErrorKind::AlreadyExists.into());
+    }
+    let mut output = Output::create(path)?;
+    output.file.write_all(bytes)?;
+    output.finish_new()
+}
+
 /// Names of files for names of anything: letters, digits and `-_.` stay; two names that would be one
 /// file, also where large and small letters are the same, get two.
 #[derive(Default)]
@@ -172,6 +199,20 @@ mod tests {
         assert_eq!((fs::read(&path).unwrap(), names()), (b"other".to_vec(), 1));
         // As long as names may be.
         write(&folder.path().join("ä".repeat(127)), b"").unwrap();
+    }
+
+    #[test]
+    fn what_is_there_is_not_written_over_by_what_is_new() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("case.json");
+        let names = || fs::read_dir(folder.path()).unwrap().count();
+        let mut late = Output::create(&path).unwrap();
+        late.file.write_all(b"late").unwrap();
+        write_new(&path, b"first").unwrap();
+        assert_eq!(names(), 2, "the one, and what is being written");
+        assert_eq!(write_new(&path, b"second").unwrap_err().kind(), ErrorKind::AlreadyExists);
+        assert_eq!(late.finish_new().unwrap_err().kind(), ErrorKind::AlreadyExists);
+        assert_eq!((fs::read(&path).unwrap(), names()), (b"first".to_vec(), 1));
     }
 
     #[cfg(target_os = "linux")]

@@ -1,13 +1,13 @@
 //! `colltrans replay`: a saved query once more; and the file that a query without an answer leaves.
 
-use std::fs::{self, File};
-use std::io::Write;
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use colltrans::{Case, Cast, QueryError};
 
 use crate::args::ReplayArguments;
 use crate::failure::{Code, Failure, print};
+use crate::outputs;
 use crate::record::Record;
 use crate::report;
 
@@ -41,15 +41,12 @@ pub(crate) fn failure(error: QueryError, cast: &Cast<'_>) -> Failure {
 
 /// Writes the query to a file of the working directory that does not exist yet.
 fn save(cast: &Cast<'_>) -> Option<PathBuf> {
+    let json = cast.to_json();
     for number in 1..1000 {
         let path = PathBuf::from(format!("colltrans-case-{number}.json"));
-        if let Ok(mut file) = File::create_new(&path) {
-            let written = file.write_all(cast.to_json().as_bytes()).and_then(|()| file.sync_all());
-            if written.is_err() {
-                // Half a case is none.
-                let _ = fs::remove_file(&path);
-            }
-            return written.ok().map(|()| path);
+        match outputs::write_new(&path, json.as_bytes()) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            written => return written.ok().map(|()| path),
         }
     }
     None

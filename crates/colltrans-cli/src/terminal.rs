@@ -1,23 +1,16 @@
 //! Text from outside on a terminal: names of parts and files say nothing to it.
 //!
-//! A name may hold codes that move the cursor, set the title or answer for the user, and marks that turn
-//! the order of letters round. Everything that is printed goes through [`plain`] or [`plain_json`];
+//! Names may hold [what steers](colltrans_mesh::plain). Everything that is printed goes through [`plain`] or [`plain_json`];
 //! names within lines go through [`shown`], so that they cannot end their line either.
 
 use std::borrow::Cow;
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 
-/// Whether a character does something instead of being seen.
-fn steers(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}')
-        || matches!(c, '\u{2066}'..='\u{2069}' | '\u{feff}')
-}
+use colltrans_mesh::plain::{self, steers, written_out};
 
 /// A name, or a message of one line, with all that steers written out: `\u{1b}`, `\n`.
 pub(crate) fn shown(text: impl Display) -> String {
-    let text = text.to_string();
-    written_out(&text, steers, |c| c.escape_default().to_string()).into_owned()
+    plain::shown(&text.to_string()).into_owned()
 }
 
 /// Lines, with all that steers written out but the ends of lines.
@@ -27,39 +20,24 @@ pub(crate) fn plain(text: &str) -> Cow<'_, str> {
 
 /// JSON, with all that steers as escapes of JSON: it means what it did.
 pub(crate) fn plain_json(text: &str) -> Cow<'_, str> {
-    // All of these characters are below 2^16, where JSON has an escape for each.
-    written_out(text, |c| steers(c) && c != '\n', |c| format!("\\u{:04x}", c as u32))
-}
-
-fn written_out(
-    text: &str,
-    wanted: impl Fn(char) -> bool,
-    escape: impl Fn(char) -> String,
-) -> Cow<'_, str> {
-    if !text.contains(&wanted) {
-        return Cow::Borrowed(text);
-    }
-    let mut out = String::with_capacity(text.len() + 16);
-    for c in text.chars() {
-        if wanted(c) {
-            out.push_str(&escape(c));
-        } else {
-            let _ = out.write_char(c);
-        }
-    }
-    Cow::Owned(out)
+    // JSON writes what is beyond 2^16 as UTF-16 does, as two.
+    let escape = |c: char| {
+        let units = c.encode_utf16(&mut [0; 2]).to_vec();
+        units.iter().map(|unit| format!("\\u{unit:04x}")).collect()
+    };
+    written_out(text, |c| steers(c) && c != '\n', escape)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const HOSTILE: &str = "a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}";
+    const HOSTILE: &str = "a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}\u{200b}\u{e0041}";
 
     #[test]
     fn nothing_steers_a_terminal() {
-        assert_eq!(shown(HOSTILE), r"a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}");
-        assert_eq!(plain(HOSTILE), "a\\u{1b}[31m\\u{9b}2J\\u{202e}b\\r\n\\u{7}");
+        assert_eq!(shown(HOSTILE), r"a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}\u{200b}\u{e0041}");
+        assert_eq!(plain(HOSTILE), "a\\u{1b}[31m\\u{9b}2J\\u{202e}b\\r\n\\u{7}\\u{200b}\\u{e0041}");
         assert_eq!(shown("größer ≥ 3 µm"), "größer ≥ 3 µm");
     }
 

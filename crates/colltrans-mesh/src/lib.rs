@@ -16,6 +16,7 @@ mod merge;
 mod mesh;
 mod obj;
 mod off;
+pub mod plain;
 mod ply;
 mod sniff;
 mod stl;

@@ -11,7 +11,7 @@ use crate::args::AssemblyArguments;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::refuse_overwriting;
 use crate::outputs::{FileNames, Outputs};
-use crate::terminal::shown;
+use crate::terminal::{plain_json, shown};
 
 pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), Failure> {
     for text in f.bodies.assembly().notes() {
@@ -40,14 +40,14 @@ fn files(
     let title = source.file_stem().map_or("assembly".into(), |s| s.to_string_lossy().into_owned());
     put("report.html", html::page(f, &title).as_bytes())?;
     put("disassembly.glb", &glb::animation(f.bodies.assembly(), f.plan))?;
-    put("assembly.json", json.to_string().as_bytes())?;
+    put("assembly.json", plain_json(&json.to_string()).as_bytes())?;
     put("matrix.csv", f.matrix.to_csv(f.bodies).as_bytes())?;
     let names = map_names(f.maps.iter().map(|(name, _)| name));
     for ((name, map), [svg, png, json]) in f.maps.iter().zip(names) {
         let title = format!("Room of {name} in all directions");
         put(&svg, map::svg(map, &title).as_bytes())?;
         put(&png, &map::png(map, 1_200))?;
-        put(&json, map.to_json(f.bodies).to_string().as_bytes())?;
+        put(&json, plain_json(&map.to_json(f.bodies).to_string()).as_bytes())?;
     }
     outputs.finish()
 }

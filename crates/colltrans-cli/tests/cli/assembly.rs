@@ -96,6 +96,17 @@ fn rooms_say_how_far_and_who() {
     let bounds: Vec<f64> = serde_json::from_value(down["shrunk_distance_bounds"].clone()).unwrap();
     let shrunk = down["shrunk_distance"].as_f64().unwrap();
     assert!(bounds[0] <= shrunk && shrunk <= bounds[1] && bounds[1] < 1e-4, "{down}");
+    let encloses = |of: &serde_json::Value, name: &str, slack: f64| {
+        let bounds: Vec<f64> =
+            serde_json::from_value(of[format!("{name}_bounds")].clone()).unwrap();
+        let value = of[name].as_f64().unwrap();
+        assert!(bounds[0] <= value && value <= bounds[1] && bounds[1] - bounds[0] < slack, "{of}");
+        bounds[0]
+    };
+    assert!(encloses(&down, "translation", 1e-4) <= 0.0);
+    encloses(&found["parts"][0], "volume", 1e-12);
+    encloses(&found["liaisons"][0], "area", 1e-10);
+    encloses(&found["plan"][0], "travel", 1e-12);
     assert_eq!(room("high", 1.0)["outcome"], "free");
     assert_eq!(room("low", 1.0)["by"], "high");
     // Grown to keep apart they overlap.
@@ -363,7 +374,7 @@ fn pipes_and_devices_are_never_opened() {
 fn names_that_steer_a_terminal_are_written_out() {
     let folder = stacked();
     let place = folder.path();
-    let name = "=low\u{1b}[2J\u{9b}31m\nstep\u{202e}<script>";
+    let name = "=low\u{1b}[2J\u{9b}31m\nstep\u{202e}\u{200b}\u{e0041}<script>";
     let manifest = serde_json::json!({"unit": "<script>alert(1)</script>", "parts": [
         {"file": "cube.off", "name": name},
         {"file": "cube.off", "name": "high", "translation": [0, 0, 0.5]},
@@ -371,7 +382,9 @@ fn names_that_steer_a_terminal_are_written_out() {
     std::fs::write(place.join("m.json"), manifest.to_string()).unwrap();
     let clean = |text: &str| {
         assert!(
-            !text.contains(|c: char| c.is_control() && c != '\n' || c == '\u{202e}'),
+            !text
+                .contains(|c: char| c.is_control() && c != '\n'
+                    || "\u{202e}\u{200b}\u{e0041}".contains(c)),
             "{text:?}"
         );
     };
@@ -382,12 +395,20 @@ fn names_that_steer_a_terminal_are_written_out() {
         clean(&stderr(&output));
     }
     let told = answered(place, &["m.json"]);
-    assert!(told.contains(r"=low\u{1b}[2J\u{9b}31m\nstep\u{202e}<script>"), "{told}");
+    assert!(
+        told.contains(r"=low\u{1b}[2J\u{9b}31m\nstep\u{202e}\u{200b}\u{e0041}<script>"),
+        "{told}"
+    );
     assert_eq!(facts(place, &["m.json"])["parts"][0]["name"], name);
     let page = std::fs::read_to_string(place.join("out/report.html")).unwrap();
     assert!(!page.contains("<script>alert"));
     let table = std::fs::read_to_string(place.join("out/matrix.csv")).unwrap();
-    assert!(table.contains("\"'=low") && !table.contains(",=low"), "{table}");
+    assert!(table.contains(",'=low") && !table.contains(",=low"), "{table}");
+    clean(&table);
+    let written = std::fs::read_to_string(place.join("out/assembly.json")).unwrap();
+    clean(&written);
+    let written: serde_json::Value = serde_json::from_str(&written).unwrap();
+    assert_eq!(written["parts"][0]["name"], name);
     let output = run(place, &["m.json", "--map", "\u{1b}[31m"]);
     assert_eq!(output.status.code(), Some(2));
     clean(&stderr(&output));

@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn groups_and_closures_are_those_of_all_subsets() {
-        let mut random = Random::new(11, &[]);
+        let mut random = Random::new(11);
         for _ in 0..500 {
             let n = 1 + random.index(8);
             let arcs = random_arcs(n, &mut random);

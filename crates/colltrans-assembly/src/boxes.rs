@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn the_tree_finds_what_a_list_finds() {
-        let mut random = Random::new(7, &[]);
+        let mut random = Random::new(7);
         for round in 0..200 {
             let snapped = round % 2 == 0;
             let boxes: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, snapped)).collect();
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_box_enters_another_where_small_steps_first_meet_it() {
-        let mut random = Random::new(8, &[]);
+        let mut random = Random::new(8);
         for round in 0..400 {
             let snapped = round % 2 == 0;
             let (a, b) = (random_box(&mut random, snapped), random_box(&mut random, snapped));

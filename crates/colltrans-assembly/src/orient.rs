@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn facets_turned_at_random_agree_again() {
-        let mut random = Random::new(6, &[]);
+        let mut random = Random::new(6);
         let mesh = ring_sphere(9, 5);
         for _ in 0..50 {
             let mut faces = mesh.faces.clone();

@@ -169,7 +169,7 @@ mod tests {
         let mut sphere = Sphere::new(2);
         let t = sphere.locate(DVec3::new(0.3, 0.2, 0.9).normalize()).0;
         sphere.cut(t);
-        let mut random = colltrans_testkit::random::Random::new(3, &[]);
+        let mut random = colltrans_testkit::random::Random::new(3);
         for _ in 0..1_000 {
             let d = random.direction();
             let (t, weights) = sphere.locate(d);

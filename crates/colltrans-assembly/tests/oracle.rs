@@ -90,7 +90,7 @@ fn room_of_boxes(a: [DVec3; 2], b: [DVec3; 2], d: DVec3) -> Option<f64> {
 
 #[test]
 fn rooms_of_boxes_are_intervals() {
-    let mut random = Random::new(77, &[]);
+    let mut random = Random::new(77);
     let (mut free, mut blocked, mut overlapping, mut near) = (0, 0, 0, 0);
     for round in 0..40 {
         let snapped = round % 2 == 0;
@@ -155,7 +155,7 @@ fn rooms_of_boxes_are_intervals() {
 
 #[test]
 fn plans_of_boxes_can_be_walked() {
-    let mut random = Random::new(31, &[]);
+    let mut random = Random::new(31);
     let mut steps = 0;
     for round in 0..12 {
         let assembly = scattered(&mut random, 10, round % 2 == 0);
@@ -290,7 +290,7 @@ fn a_way_between_the_samples_is_found_for_what_is_loose() {
     ];
     let cube = [cuboid([-0.2, -0.2, -0.2], [0.2, 0.2, 0.2])];
     let samples = Sphere::with_directions(PlanOptions::default().samples).directions;
-    let mut random = Random::new(5, &[]);
+    let mut random = Random::new(5);
     let mut missed = 0;
     for _ in 0..8 {
         let turn = DAffine3::from_rotation_translation(random.rotation(), DVec3::ZERO);

@@ -174,6 +174,7 @@ fn samples<'a>(mesh: &'a Mesh, face: &'a [u32]) -> impl Iterator<Item = DVec3> +
 #[cfg(test)]
 mod tests {
     use super::*;
+    use colltrans_testkit::random::Random;
 
     /// A square tube along x: 3 x 3 outside, 1 x 1 inside, 4 long.
     fn tube() -> Mesh {
@@ -218,14 +219,9 @@ mod tests {
     /// Against all planes for all points.
     #[test]
     fn the_deepest_point_is_the_deepest() {
-        let mut state = 3_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut random = Random::new(3);
         for _ in 0..20 {
-            let vertices: Vec<DVec3> =
-                (0..40).map(|_| DVec3::new(random(), random(), random())).collect();
+            let vertices: Vec<DVec3> = (0..40).map(|_| random.vector()).collect();
             let faces = (0..38).map(|i| vec![i, i + 1, i + 2]).collect();
             let mesh = Mesh::new(vertices, faces);
             let hull = ConvexPolyhedron::from_points(&mesh.vertices).unwrap();

@@ -312,6 +312,8 @@ fn largest_magnitude(vertices: &[DVec3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use colltrans_testkit::random::Random;
+
     use super::*;
 
     #[test]
@@ -398,17 +400,9 @@ mod tests {
     /// A grid with tolerance, against all pairs.
     #[test]
     fn the_grid_finds_what_all_pairs_find() {
-        let mut state = 1_u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 40) as f64 / f64::from(1 << 24)
-        };
+        let mut random = Random::new(1);
         for scale in [1.0, 1e-9, 1e9] {
-            let vertices: Vec<DVec3> = (0..600)
-                .map(|_| (DVec3::new(random(), random(), random()) - 0.5) * scale)
-                .collect();
+            let vertices: Vec<DVec3> = (0..600).map(|_| random.vector() * (0.5 * scale)).collect();
             let tolerance = 0.07 * scale;
             let mut grid = Grid::new(tolerance, &vertices);
             let mut representatives: Vec<u32> = Vec::new();

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use colltrans_mesh::{Error, Format, Mesh, ReadOptions, parse, parse_with};
 use colltrans_mesh::{to_obj, to_off, to_stl};
+use colltrans_testkit::random::Random;
 use glam::DVec3;
 
 fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Mesh, Error> {
@@ -324,11 +325,10 @@ fn torus(around: usize, along: usize) -> Mesh {
         let (sin_j, cos_j) = angle(j, along).sin_cos();
         DVec3::new((3.0 + cos_j) * cos_i, (3.0 + cos_j) * sin_i, sin_j)
     };
-    let mut state = 7_u64;
+    let mut random = Random::new(7);
     let mut rounded = |x: f64| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let x = x as f32;
-        f64::from(if state >> 63 == 1 { x.next_up() } else { x })
+        f64::from(if random.one_in(2) { x.next_up() } else { x })
     };
     let mut soup = Mesh::default();
     for i in 0..around {
@@ -375,12 +375,8 @@ fn mangled_files_give_sound_meshes_or_errors() {
     let mut files: Vec<(Format, Vec<u8>)> =
         texts().into_iter().map(|(format, text)| (format, text.into_bytes())).collect();
     files.push((Format::Stl, to_stl(&cube(true)).unwrap()));
-    let mut state = 11_u64;
-    let mut random = |below: usize| {
-        state =
-            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let mut random = Random::new(11);
+    let mut random = |below: usize| random.index(below);
     let pieces: [&[u8]; 10] =
         [b"\r", b"\n", b" 0 ", b"-1", b"1e300", b"nan", b"\xef\xbb\xbf", b"\0", b"#", b"\\\n"];
     let mut read_well = 0;

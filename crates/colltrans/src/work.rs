@@ -63,13 +63,13 @@ mod tests {
     }
 
     fn rotation() -> DQuat {
-        Random::new(5, &[]).rotation()
+        Random::new(5).rotation()
     }
 
     #[test]
     fn hulls_of_spheres() {
         let random = |count: usize| {
-            let mut random = Random::new(7, &[]);
+            let mut random = Random::new(7);
             (0..count).map(|_| random.direction()).collect::<Vec<_>>()
         };
         let in_rings = |count: usize| {
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn bodies_that_shrink_and_grow() {
         assert_growth("offset", 2_000, |count| {
-            let body = hull(&random_hull(count, &mut Random::new(9, &[])).vertices);
+            let body = hull(&random_hull(count, &mut Random::new(9)).vertices);
             body.shrunk(0.1).expect("it fits");
             body.grown(0.1).expect("an amount");
         });

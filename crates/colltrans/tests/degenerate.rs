@@ -3,7 +3,8 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_testkit::oracle::check::Judge;
-use colltrans_testkit::oracle::settings::{Rng, cuboid};
+use colltrans_testkit::oracle::settings::cuboid;
+use colltrans_testkit::random::Random;
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(points).expect("a body")
@@ -125,7 +126,7 @@ fn triangles_edge_on_and_face_on() {
 /// Slabs that become thinner and thinner until they are flat.
 #[test]
 fn thin_slabs() {
-    let mut rng = Rng::new(5);
+    let mut rng = Random::new(5);
     for thickness in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-18, 1e-30, 0.0] {
         for _ in 0..20 {
             let rotation = rng.rotation();
@@ -143,7 +144,7 @@ fn thin_slabs() {
 #[test]
 fn shadows_as_wide_as_rounding() {
     for seed in 0..30_000 {
-        let mut rng = Rng::new(seed);
+        let mut rng = Random::new(seed);
         let mut needle = [0; 4].map(|_| rng.vector());
         needle[0].z = -10.0_f64.powf(rng.range(10.0, 16.0));
         let block = [0; 5].map(|_| rng.vector());
@@ -168,7 +169,7 @@ fn shadows_as_wide_as_rounding() {
 #[test]
 fn lines_in_upright_planes() {
     for seed in 0..20_000 {
-        let mut rng = Rng::new(seed);
+        let mut rng = Random::new(seed);
         let turn = rng.rotation();
         let mut fan: Vec<DVec3> = (0..rng.int(6, 40))
             .map(|_| rng.range(0.0, std::f64::consts::TAU))
@@ -236,7 +237,7 @@ fn portals_turned_over() {
 /// The contact of a body with itself, moved by nothing.
 #[test]
 fn a_body_and_itself() {
-    let mut rng = Rng::new(6);
+    let mut rng = Random::new(6);
     for _ in 0..20 {
         let points: Vec<DVec3> = (0..10).map(|_| rng.vector()).collect();
         let direction = rng.direction();
@@ -259,7 +260,7 @@ fn magnitudes_at_the_limits() {
 }
 
 /// A polygon with corners on a circle, or anywhere on an ellipse, as the ends of a prism.
-fn prism(corners: u32, radii: [f64; 2], rng: Option<&mut Rng>) -> Vec<DVec3> {
+fn prism(corners: u32, radii: [f64; 2], rng: Option<&mut Random>) -> Vec<DVec3> {
     let mut angles_rad: Vec<f64> =
         (0..corners).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(corners)).collect();
     if let Some(rng) = rng {
@@ -273,7 +274,7 @@ fn prism(corners: u32, radii: [f64; 2], rng: Option<&mut Rng>) -> Vec<DVec3> {
 
 #[test]
 fn prisms_stand_on_prisms() {
-    let mut rng = Rng::new(5);
+    let mut rng = Random::new(5);
     let mut at_once = 0;
     for case in 0..400 {
         let ends = [9, 12, 24, 25, 31].map(|n| n + (case % 3));
@@ -284,7 +285,7 @@ fn prisms_stand_on_prisms() {
         };
         let (below, above) = (body(&any(0)), body(&any(case % 5)));
         // Centred, by quarters, and anywhere.
-        let place = |rng: &mut Rng| match case % 3 {
+        let place = |rng: &mut Random| match case % 3 {
             0 => 0.0,
             1 => 0.25 * (rng.range(-4.0, 4.0)).round(),
             _ => rng.range(-1.0, 1.0),

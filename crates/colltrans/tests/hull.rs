@@ -1,31 +1,13 @@
 //! The hull against brute force, on what other hulls get wrong.
 
-use colltrans::glam::{DQuat, DVec3};
+use colltrans::glam::DVec3;
 use colltrans::{BuildError, ConvexPolyhedron, TopologyError, convexity_defect};
 use colltrans::{Cast, Outcome, Pose};
 use colltrans_testkit::oracle::input;
-use colltrans_testkit::oracle::settings::{NEARLY_FLAT, Rng, narrow_rings, setting};
+use colltrans_testkit::oracle::settings::{NEARLY_FLAT, narrow_rings, setting};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::of_bits;
 use proptest::prelude::*;
-
-/// A small generator of numbers in `[0, 1)` with a fixed seed.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5)
-    }
-
-    fn rotation(&mut self) -> DQuat {
-        let v = self.vector();
-        DQuat::from_xyzw(v.x, v.y, v.z, self.unit() - 0.5).normalize()
-    }
-}
 
 fn grid(counts: [usize; 3], spacing: DVec3) -> Vec<DVec3> {
     let mut points = Vec::new();
@@ -80,7 +62,7 @@ fn check(body: &ConvexPolyhedron, points: &[DVec3]) {
 
 #[test]
 fn rotated_grids_are_boxes() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for round in 0..200 {
         let rotation = random.rotation();
         let points: Vec<DVec3> =
@@ -93,7 +75,7 @@ fn rotated_grids_are_boxes() {
 
 #[test]
 fn slabs_needles_and_offsets_stay_solid() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for spacing in [
         DVec3::new(1.0, 1.0, 1e-3),
         DVec3::new(1.0, 1.0, 1e-6),
@@ -119,7 +101,7 @@ fn slabs_needles_and_offsets_stay_solid() {
 
 #[test]
 fn lower_dimensions_are_bodies_too() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for _ in 0..50 {
         let rotation = random.rotation();
         let place = |p: DVec3| rotation * p + DVec3::new(1.0, 2.0, 3.0);
@@ -141,7 +123,7 @@ fn lower_dimensions_are_bodies_too() {
 
 #[test]
 fn caps_with_many_corners_are_one_face() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     for sides in [3, 7, 64, 1000] {
         let rotation = random.rotation();
         let ring = |z: f64| {
@@ -178,7 +160,7 @@ fn rings(count: usize, per_ring: usize, axes: DVec3) -> Vec<DVec3> {
 
 #[test]
 fn ring_ellipsoids_have_trapezoids() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for (count, per_ring) in [(5, 8), (20, 30), (60, 61)] {
         let rotation = random.rotation();
         let axes = DVec3::new(0.7, 1.3, 1.0);
@@ -195,7 +177,7 @@ fn ring_ellipsoids_have_trapezoids() {
 
 #[test]
 fn duplicates_and_interior_points_change_nothing() {
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     let mut points: Vec<DVec3> = (0..300).map(|_| random.vector()).collect();
     let alone = ConvexPolyhedron::from_points(&points).unwrap();
     check(&alone, &points);
@@ -302,7 +284,7 @@ proptest! {
         cloud in prop::collection::vec((-3_i32..=3, -3_i32..=3, -3_i32..=3), 1..40),
         seed in any::<u64>(),
     ) {
-        let rotation = Random(seed).rotation();
+        let rotation = Random::new(seed).rotation();
         let exact: Vec<DVec3> =
             cloud.iter().map(|&(x, y, z)| DVec3::new(x.into(), y.into(), z.into())).collect();
         let rotated: Vec<DVec3> = exact.iter().map(|p| rotation * *p).collect();
@@ -324,18 +306,9 @@ proptest! {
 
 #[test]
 fn a_large_sphere_and_its_mesh() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let count: usize = if cfg!(debug_assertions) { 5_000 } else { 200_000 };
-    let points: Vec<DVec3> = (0..count)
-        .map(|_| {
-            loop {
-                let v = random.vector();
-                if (0.01..0.25).contains(&v.length_squared()) {
-                    break v.normalize();
-                }
-            }
-        })
-        .collect();
+    let points: Vec<DVec3> = (0..count).map(|_| random.direction()).collect();
     let in_rings =
         rings(count.isqrt() * 7 / 10, count.isqrt() * 14 / 10, DVec3::new(0.7, 1.0, 1.3));
     for points in [points, in_rings] {
@@ -381,7 +354,7 @@ fn single_precision_meshes_are_nearly_convex() {
 #[test]
 fn many_points_on_a_flat_circle() {
     let count = 100_000;
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     let rotation = random.rotation();
     let points: Vec<DVec3> = (0..count)
         .map(|k| {
@@ -396,12 +369,12 @@ fn many_points_on_a_flat_circle() {
 
 /// A cloud with noise, stretched along its axes and turned.
 fn stretched(cloud: &[(i32, i32, i32)], exponents: [i32; 3], noise: i32, seed: u64) -> Vec<DVec3> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let rotation = random.rotation();
     let scale = DVec3::from_array(exponents.map(|e| 2.0_f64.powi(e)));
     let mut point = |&(x, y, z): &(i32, i32, i32)| {
         let exact = DVec3::new(x.into(), y.into(), z.into());
-        rotation * ((exact + random.vector() * 2.0_f64.powi(noise)) * scale)
+        rotation * ((exact + random.vector() * 2.0_f64.powi(noise - 1)) * scale)
     };
     cloud.iter().map(&mut point).collect()
 }
@@ -409,8 +382,14 @@ fn stretched(cloud: &[(i32, i32, i32)], exponents: [i32; 3], noise: i32, seed: u
 /// Two faces meet as on a knife: a point in both planes, up to rounding, is far beyond their edge.
 #[test]
 fn a_point_beyond_a_sharp_edge_is_a_vertex() {
-    let cloud = [(-3, 1, -3), (1, 0, -3), (0, 0, 0), (0, 0, -3), (3, -1, -3), (0, -1, 0)];
-    let points = stretched(&cloud, [-41, -54, -35], -26, 7_512_252_205_779_326_864);
+    let points = of_bits(&[
+        [0xbdd4_eed9_42e7_2831, 0x3db4_ab68_0975_f09a, 0xbdc5_1847_b9af_6d50],
+        [0xbdd4_ccb3_9352_ec70, 0x3db6_98b9_5528_c534, 0xbdc5_1de0_5cc2_2b32],
+        [0xbc08_9276_17e4_3a44, 0x3be8_79a0_bc67_b368, 0xbbf8_c73c_1b30_6f39],
+        [0xbdd4_d53c_e4cc_db94, 0x3db6_1d64_dfbe_6572, 0xbdc5_1c7a_a74b_fc88],
+        [0xbdd4_bba0_8533_ed41, 0x3db7_8f61_b493_a992, 0xbdc5_20ad_9367_7562],
+        [0x3c7a_e77f_c439_fbd3, 0xbc61_7efe_1207_b5fb, 0xbc8c_b42f_e794_d909],
+    ]);
     let body = ConvexPolyhedron::from_points(&points).unwrap();
     let size = points.iter().map(|p| p.length()).fold(0.0, f64::max);
     assert!(body.input_indices().contains(&3));
@@ -432,6 +411,34 @@ proptest! {
         let body = ConvexPolyhedron::from_points(&points).unwrap();
         let kept = input::judge(&points, &body);
         prop_assert!(kept.is_ok(), "{kept:?}");
+    }
+}
+
+/// Clouds whose hulls were wrong once.
+#[test]
+fn saved_clouds_have_hulls() {
+    let wide = of_bits(&[
+        [0x405d_d29c_0ac0_d119, 0x4047_0fd1_f351_4aa1, 0xc019_71bf_6771_85be],
+        [0xc31a_d5ba_cf7a_42e5, 0xc30d_61d0_5f5b_5b2a, 0xc357_ec78_62fa_c466],
+        [0xc31a_d5b8_a4d5_5946, 0xc30d_61db_8fe7_52e4, 0xc357_ec78_61f9_5e7f],
+        [0xc31a_d5ba_cf7a_3d60, 0xc30d_61d0_5f5b_56eb, 0xc357_ec78_62fa_c47a],
+        [0xc1e1_5527_4d0a_7aa2, 0x41f6_6117_ef70_082d, 0xc190_165e_918c_6004],
+        [0x4301_e3cd_8a5c_fc9d, 0x42f3_96a1_4b54_d12f, 0x433f_e5f5_d548_c3b9],
+    ]);
+    let long = of_bits(&[
+        [0x4265_bf3f_b28c_b01c, 0x429b_7c53_3b7b_395b, 0xc290_28fe_1a94_f8c0],
+        [0xc270_4f6f_c4a4_9d14, 0xc2a4_9d3e_6b01_ddde, 0x4298_3d7d_25fc_a3e7],
+        [0xc033_2f8a_7443_2668, 0xc068_3f97_0b6a_9608, 0x405c_837a_a2fb_8ff9],
+        [0x4086_56f4_cd65_e084, 0x40bc_3c10_9b84_adb5, 0xc0b0_99b9_bf45_6b9c],
+        [0xc093_9205_798a_5814, 0xc0c8_b4bd_1353_2e86, 0x40bd_11a3_e7de_16a9],
+        [0xc090_19b1_5b31_5684, 0xc0c4_5951_7598_d938, 0x40b7_ed9d_8b7e_c80a],
+        [0x4255_bf3f_b2b0_68f4, 0x428b_7c53_3ba8_b72a, 0xc280_28fe_1aaf_9d70],
+        [0x4073_0144_9806_7470, 0x40a8_2261_d8b9_cbcc, 0xc09c_4f81_c2ef_ffcf],
+    ]);
+    for points in [wide, long] {
+        let body = ConvexPolyhedron::from_points(&points).unwrap();
+        let kept = input::judge(&points, &body);
+        assert!(kept.is_ok(), "{kept:?}");
     }
 }
 
@@ -471,9 +478,9 @@ fn a_star_that_goes_round_twice_is_refused() {
 /// A mesh that is its own hull is taken as it is; what comes out is what its points alone give.
 #[test]
 fn convex_meshes_give_the_hull_of_their_vertices() {
-    let mut random = Random(21);
+    let mut random = Random::new(21);
     for count in [4, 9, 40, 400] {
-        let points: Vec<DVec3> = (0..count).map(|_| random.vector().normalize()).collect();
+        let points: Vec<DVec3> = (0..count).map(|_| random.direction()).collect();
         let hull = ConvexPolyhedron::from_points(&points).unwrap();
         let faces: Vec<Vec<u32>> =
             (0..hull.face_count() as u32).map(|f| hull.face_vertices(f).collect()).collect();
@@ -498,9 +505,9 @@ fn convex_meshes_give_the_hull_of_their_vertices() {
 /// A corner of a face that points inwards ends a climb, for the edges that lead on are inside the face.
 #[test]
 fn faces_have_no_corner_that_points_inwards() {
-    let mut rng = Rng::new(5);
+    let mut random = Random::new(5);
     for case in 0..2_000 {
-        let Ok(body) = ConvexPolyhedron::from_points(&narrow_rings(&mut rng)) else { continue };
+        let Ok(body) = ConvexPolyhedron::from_points(&narrow_rings(&mut random)) else { continue };
         let reach = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
         for face in 0..body.face_count() as u32 {
             let at: Vec<DVec3> =
@@ -524,7 +531,7 @@ fn faces_have_no_corner_that_points_inwards() {
 
 /// A disc of 24 corners, a few roundings thick because it was modelled 300 away from where it is.
 fn recentred_disc(random: &mut Random) -> Vec<DVec3> {
-    let (rotation, far) = (random.rotation(), random.vector().normalize() * 300.0);
+    let (rotation, far) = (random.rotation(), random.direction() * 300.0);
     let corner = |k: i32| {
         let angle = std::f64::consts::TAU * f64::from(k) / 24.0;
         rotation * DVec3::new(angle.cos(), angle.sin(), 0.0)
@@ -534,7 +541,7 @@ fn recentred_disc(random: &mut Random) -> Vec<DVec3> {
 
 #[test]
 fn nearly_flat_discs_keep_their_corners() {
-    let mut random = Random(300);
+    let mut random = Random::new(300);
     for case in 0..200 {
         let points = recentred_disc(&mut random);
         let body = ConvexPolyhedron::from_points(&points).unwrap();
@@ -547,13 +554,13 @@ fn nearly_flat_discs_keep_their_corners() {
 /// Casts past the corners that are left out are not stopped by them.
 #[test]
 fn nearly_flat_discs_are_met_at_every_corner() {
-    let mut random = Random(301);
+    let mut random = Random::new(301);
     let point = ConvexPolyhedron::from_points(&[DVec3::ZERO]).unwrap();
     for case in 0..50 {
         let points = recentred_disc(&mut random);
         let disc = ConvexPolyhedron::from_points(&points).unwrap();
         for (k, &corner) in points.iter().enumerate() {
-            let direction = random.vector().normalize();
+            let direction = random.direction();
             let start = Pose::from_translation(corner * 0.999 - direction * 5.0).unwrap();
             let cast = Cast::new(point.at(start), disc.at(Pose::IDENTITY), direction).unwrap();
             let Ok(Outcome::Contact(contact)) = cast.first_contact() else {

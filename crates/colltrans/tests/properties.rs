@@ -7,9 +7,10 @@ use colltrans::{
     Clearance, ConvexPolyhedron, Outcome, OverlapAhead, Pose, QueryError, Solver, WhyFree,
 };
 use colltrans_testkit::oracle::scene::Scene;
-use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Rng, Setting, setting};
+use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
 use colltrans_testkit::oracle::simplex::collision_translation;
+use colltrans_testkit::random::Random;
 use proptest::prelude::*;
 
 /// Any setting of any family.
@@ -104,7 +105,7 @@ proptest! {
     #[test]
     fn a_rigid_motion_changes_nothing(setting in any_setting(), seed in any::<u64>()) {
         let bodies = setting.bodies().unwrap();
-        let mut rng = Rng::new(seed);
+        let mut rng = Random::new(seed);
         let by = Pose::new(rng.rotation(), rng.vector() * 10.0).unwrap();
         let other = moved(&setting, &by);
         let (a, b) = (scene(&setting, &bodies), scene(&other, &bodies));

@@ -3,7 +3,8 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver, WhyFree};
 use colltrans_testkit::oracle::check::Judge;
-use colltrans_testkit::oracle::settings::{Rng, cuboid};
+use colltrans_testkit::oracle::settings::cuboid;
+use colltrans_testkit::random::Random;
 
 /// Cubes one above the other along x with a gap beside them, turned as a whole by `rotation`.
 fn slide(gap: f64, rotation: DQuat, start: DVec3, origin: DVec3) {
@@ -42,7 +43,7 @@ fn aligned_cubes() {
 
 #[test]
 fn turned_cubes() {
-    let mut rng = Rng::new(2);
+    let mut rng = Random::new(2);
     for gap in GAPS {
         for _ in 0..300 {
             let start = DVec3::new(rng.range(-20.0, 20.0), 0.0, rng.range(-1.0, 1.0));
@@ -54,7 +55,7 @@ fn turned_cubes() {
 /// Away from the origin of the world a gap must be larger than what its coordinates can express.
 #[test]
 fn turned_cubes_far_from_the_origin() {
-    let mut rng = Rng::new(3);
+    let mut rng = Random::new(3);
     for gap in &GAPS[..5] {
         for _ in 0..100 {
             let start = DVec3::new(rng.range(-20.0, 20.0), 0.0, rng.range(-1.0, 1.0));

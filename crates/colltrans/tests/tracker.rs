@@ -7,9 +7,10 @@ use colltrans::{
 };
 use colltrans_testkit::oracle::check::same;
 use colltrans_testkit::oracle::sequences::Walk;
-use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Rng, Setting, cuboid};
+use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, cuboid};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
 use colltrans_testkit::oracle::tracked::{Lanes, track, without_steps};
+use colltrans_testkit::random::Random;
 use proptest::prelude::*;
 
 /// Walks of every family, each asked of every lane; one step in so many is solved by the oracle.
@@ -199,7 +200,7 @@ fn above(moving: Vec<DVec3>, fixed: Vec<DVec3>) -> Setting {
 }
 
 /// A step of the moving body: `10^-exponent` of its size.
-fn step(setting: &mut Setting, rng: &mut Rng, exponent: f64) {
+fn step(setting: &mut Setting, rng: &mut Random, exponent: f64) {
     let size = 10.0_f64.powf(-exponent);
     let turn = DQuat::from_axis_angle(rng.direction(), size);
     let pose = &setting.moving_pose;
@@ -222,7 +223,7 @@ proptest! {
     ) {
         let mut setting = above(moving, fixed);
         let Ok(bodies) = setting.bodies() else { return Ok(()) };
-        let mut rng = Rng::new(seed);
+        let mut rng = Random::new(seed);
         let mut lanes = Lanes::new(&bodies);
         for (index, exponent) in exponents.into_iter().enumerate() {
             for finding in lanes.ask(&setting, index % 16 == 0) {
@@ -243,7 +244,7 @@ fn cone_apex_with_many_neighbours() {
         let down = DQuat::from_rotation_x(std::f64::consts::PI);
         let bodies = setting.bodies().expect("bodies");
         let mut tracker = Tracker::new();
-        let mut rng = Rng::new(sides.into());
+        let mut rng = Random::new(sides.into());
         for apex in [0, 1].repeat(60) {
             // The apex leads, or the base.
             let rotation = if apex == 1 { down } else { DQuat::IDENTITY };
@@ -275,7 +276,7 @@ fn a_clone_follows_another_future() {
     check(&mut here, &setting, &bodies);
     let mut there = here.clone();
     let mut other = setting.clone();
-    let (mut first, mut second) = (Rng::new(1), Rng::new(2));
+    let (mut first, mut second) = (Random::new(1), Random::new(2));
     for _ in 0..100 {
         step(&mut setting, &mut first, 1.5);
         step(&mut other, &mut second, 1.5);
@@ -285,7 +286,7 @@ fn a_clone_follows_another_future() {
     // And neither has touched the other: the first alone has the same bits.
     let mut setting = above(cone(12), cuboid(DVec3::ONE));
     let mut alone = Tracker::new();
-    let mut rng = Rng::new(1);
+    let mut rng = Random::new(1);
     check(&mut alone, &setting, &bodies);
     for _ in 0..100 {
         step(&mut setting, &mut rng, 1.5);
@@ -444,7 +445,7 @@ fn a_tracker_is_small() {
 
 #[test]
 fn a_slide_from_contact_to_separation_is_followed() {
-    let mut rng = Rng::new(5);
+    let mut rng = Random::new(5);
     let (mut switches, mut followed) = (0, 0);
     for _ in 0..100 {
         let mut body = || {

@@ -15,7 +15,7 @@ fn ellipsoid(axes: DVec3) -> ConvexPolyhedron {
 
 /// Mean number of support points for a contact of a body with itself, in random poses.
 fn supports(body: &ConvexPolyhedron) -> f64 {
-    let mut random = Random::new(7, &[]);
+    let mut random = Random::new(7);
     let (mut contacts, mut sum) = (0, 0);
     for _ in 0..CASTS {
         let direction = random.direction();

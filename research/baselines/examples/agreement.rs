@@ -13,7 +13,7 @@ use colltrans_baselines::egjk::Egjk;
 use colltrans_baselines::hwalk::{HWalk, Hierarchy};
 use colltrans_baselines::pqp::{Pqp, Soup};
 use colltrans_baselines::vclip::{Shell, VClip};
-use colltrans_testkit::oracle::settings::Rng;
+use colltrans_testkit::random::Random;
 use glam::DVec3;
 
 /// Pairs of places for one pair of bodies.
@@ -36,7 +36,7 @@ fn main() -> ExitCode {
     let mut counts = [0_u64; KINDS.len()];
     let mut gave_up = 0;
     for round in 0..pairs.div_ceil(PLACES) {
-        let mut rng = Rng::new(seed.wrapping_mul(1_000_003) + round);
+        let mut rng = Random::new(seed.wrapping_mul(1_000_003) + round);
         let bodies = [solid(&mut rng), solid(&mut rng)];
         let mut contest = Contest::new(&bodies);
         contest.place(&mut rng, |kind, size, answers, unproven| {
@@ -59,7 +59,7 @@ fn main() -> ExitCode {
 }
 
 /// Points on an ellipsoid, round or stretched; some in rings, with many parallel edges.
-fn solid(rng: &mut Rng) -> ConvexPolyhedron {
+fn solid(rng: &mut Random) -> ConvexPolyhedron {
     let axes = DVec3::from_array([0; 3].map(|_| 10.0_f64.powf(rng.range(-1.0, 0.3))));
     let count = rng.int(4, 60);
     let rings = rng.one_in(3);
@@ -98,7 +98,7 @@ impl<'a> Contest<'a> {
     }
 
     /// Lets all algorithms measure some places, each keeping what it keeps from query to query.
-    fn place(&mut self, rng: &mut Rng, mut note: impl FnMut(usize, f64, &[f64], bool)) {
+    fn place(&mut self, rng: &mut Random, mut note: impl FnMut(usize, f64, &[f64], bool)) {
         let [p, q] = self.bodies;
         let (mut egjk, mut vclip) = (Egjk::new(p, q), VClip::new(&self.shells[0], &self.shells[1]));
         let mut hwalk = HWalk::new(&self.hierarchies[0], &self.hierarchies[1]).with_patience(5);

@@ -276,11 +276,11 @@ fn pair_twins(half_edges: &mut [HalfEdge], vertex_start: &[u32], outgoing: &[u32
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colltrans_testkit::oracle::settings::Rng;
+    use colltrans_testkit::random::Random;
 
     #[test]
     fn every_link_leads_where_the_coordinates_say() {
-        let mut rng = Rng::new(1);
+        let mut rng = Random::new(1);
         for n in [4, 8, 20, 300] {
             let points: Vec<DVec3> = (0..n).map(|_| rng.direction()).collect();
             let body = ConvexPolyhedron::from_points(&points).unwrap();

@@ -11,7 +11,8 @@ use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_baselines::Proximity;
 use colltrans_baselines::egjk::{Egjk, Steps, SupportSearch};
 use colltrans_testkit::oracle::distance::{Distance, distance_of_bodies, distance_of_point};
-use colltrans_testkit::oracle::settings::{FAMILIES, Rng, cuboid, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, cuboid, setting};
+use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec3};
 
 type Placed<'a> = (&'a ConvexPolyhedron, &'a Pose);
@@ -58,7 +59,7 @@ fn body(points: &[DVec3]) -> ConvexPolyhedron {
 }
 
 /// From 4 to 20 points, in a box or on an ellipsoid, stretched by up to `stretch`.
-fn cloud(rng: &mut Rng, stretch: f64) -> ConvexPolyhedron {
+fn cloud(rng: &mut Random, stretch: f64) -> ConvexPolyhedron {
     let axes = DVec3::from_array([0; 3].map(|_| rng.range(0.3, 1.3) * rng.pick(&[1.0, stretch])));
     let (n, round) = (rng.int(4, 20), rng.one_in(2));
     let points: Vec<DVec3> =
@@ -66,7 +67,7 @@ fn cloud(rng: &mut Rng, stretch: f64) -> ConvexPolyhedron {
     body(&points)
 }
 
-fn pose(rng: &mut Rng, away: f64) -> Pose {
+fn pose(rng: &mut Random, away: f64) -> Pose {
     Pose::new(rng.rotation(), rng.direction() * away).unwrap()
 }
 
@@ -109,7 +110,7 @@ fn every_family_of_settings() {
 /// Every support point costs a look at all vertices.
 #[test]
 fn linear_search_looks_at_all_vertices() {
-    let mut rng = Rng::new(9);
+    let mut rng = Random::new(9);
     for count in [5, 40] {
         let (p, q) = (rings(count, DVec3::ONE), rings(count, DVec3::ONE));
         let (at, world) = (pose(&mut rng, 3.0), pose(&mut rng, 0.0));
@@ -123,7 +124,7 @@ fn linear_search_looks_at_all_vertices() {
 
 #[test]
 fn random_bodies_apart_near_touching_and_overlapping() {
-    let mut rng = Rng::new(1);
+    let mut rng = Random::new(1);
     let (mut apart, mut near, mut met) = (0, 0, 0);
     for case in 0..1000 {
         let stretch = rng.pick(&[1.0, 1.0, 30.0, 1000.0]);
@@ -148,7 +149,7 @@ fn random_bodies_apart_near_touching_and_overlapping() {
 
 #[test]
 fn one_inside_the_other() {
-    let mut rng = Rng::new(2);
+    let mut rng = Random::new(2);
     for case in 0..200 {
         let stretch = rng.pick(&[1.0, 100.0]);
         let q = cloud(&mut rng, stretch);
@@ -167,10 +168,10 @@ fn one_inside_the_other() {
 /// Faces, edges and corners on each other, exactly.
 #[test]
 fn boxes_on_a_grid() {
-    let mut rng = Rng::new(3);
+    let mut rng = Random::new(3);
     for case in 0..600 {
         let (p, q) = (body(&cuboid(rng.grid(1, 3))), body(&cuboid(rng.grid(1, 3))));
-        let place = |rng: &mut Rng| {
+        let place = |rng: &mut Random| {
             let turn = DQuat::from_rotation_z(TAU / 8.0 * rng.pick(&[0.0, 0.0, 1.0, 2.0]));
             Pose::new(turn, rng.grid(-5, 5)).unwrap()
         };
@@ -181,7 +182,7 @@ fn boxes_on_a_grid() {
 
 #[test]
 fn points_segments_and_polygons() {
-    let mut rng = Rng::new(4);
+    let mut rng = Random::new(4);
     for case in 0..600 {
         let mut flat = || {
             let n = rng.int(1, 6);
@@ -206,7 +207,7 @@ fn points_segments_and_polygons() {
 /// A common displacement costs the distance nothing.
 #[test]
 fn far_from_the_origin_of_the_world() {
-    let mut rng = Rng::new(5);
+    let mut rng = Random::new(5);
     for case in 0..100 {
         let (p, q) = (cloud(&mut rng, 1.0), cloud(&mut rng, 1.0));
         let far = rng.grid(-9, 9) * 2.0_f64.powi(20);
@@ -219,7 +220,7 @@ fn far_from_the_origin_of_the_world() {
 /// What a query leaves behind may save time, not change the answer.
 #[test]
 fn coherent_sequences() {
-    let mut rng = Rng::new(6);
+    let mut rng = Random::new(6);
     for case in 0..60 {
         let stretch = rng.pick(&[1.0, 1000.0]);
         let (p, q) = (cloud(&mut rng, stretch), cloud(&mut rng, stretch));
@@ -256,7 +257,7 @@ fn the_same_query_again_takes_one_iteration_and_reset_forgets() {
 
 #[test]
 fn large_bodies() {
-    let mut rng = Rng::new(7);
+    let mut rng = Random::new(7);
     for axes in [DVec3::new(1.2, 0.7, 1.0), DVec3::new(1e-3, 1e-3, 1.0), DVec3::new(1.0, 1.0, 1e-3)]
     {
         let (p, q) = (rings(45, axes), rings(45, axes));

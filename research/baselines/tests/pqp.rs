@@ -7,7 +7,8 @@ use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_baselines::pqp::{Pqp, Soup, SoupError};
 use colltrans_testkit::oracle::distance::{distance, distance_of_bodies};
 use colltrans_testkit::oracle::exact::{Vector, place};
-use colltrans_testkit::oracle::settings::{FAMILIES, Rng, cuboid, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, cuboid, setting};
+use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
@@ -88,7 +89,7 @@ fn check(name: &str, pqp: &mut Pqp, at: &Pose, fixed_at: &Pose, truth: f64, size
     assert!((truth - tolerance..=most).contains(&rough.distance), "{rough:?} {report}");
 }
 
-fn random_mesh(rng: &mut Rng) -> Mesh {
+fn random_mesh(rng: &mut Random) -> Mesh {
     let count = rng.int(1, 12) as u32;
     let vertices: Vec<DVec3> = match rng.int(0, 2) {
         0 => (0..3 * count).map(|_| rng.grid(-2, 2)).collect(),
@@ -98,13 +99,13 @@ fn random_mesh(rng: &mut Rng) -> Mesh {
             (0..3 * count).map(|_| rng.vector() * thin).collect()
         }
     };
-    let any = |rng: &mut Rng| rng.int(0, vertices.len() as i64 - 1) as u32;
+    let any = |rng: &mut Random| rng.int(0, vertices.len() as i64 - 1) as u32;
     // Shared vertices, repeated triangles and degenerate ones included.
     let triangles = (0..count).map(|_| [0; 3].map(|_| any(rng))).collect();
     Mesh { vertices, triangles }
 }
 
-fn any_pose(rng: &mut Rng, away: f64) -> Pose {
+fn any_pose(rng: &mut Random, away: f64) -> Pose {
     let turn = if rng.one_in(2) { rng.rotation() } else { DQuat::IDENTITY };
     let at = if rng.one_in(2) { rng.grid(-2, 2) } else { rng.vector() };
     Pose::new(turn, at * away).unwrap()
@@ -112,7 +113,7 @@ fn any_pose(rng: &mut Rng, away: f64) -> Pose {
 
 #[test]
 fn soups_are_as_far_apart_as_their_nearest_triangles() {
-    let mut rng = Rng::new(11);
+    let mut rng = Random::new(11);
     let mut touching = 0;
     for case in 0..400 {
         let moving = random_mesh(&mut rng);
@@ -135,13 +136,13 @@ fn soups_are_as_far_apart_as_their_nearest_triangles() {
 
 #[test]
 fn a_tree_finds_what_all_pairs_of_single_triangles_find() {
-    let mut rng = Rng::new(12);
+    let mut rng = Random::new(12);
     for case in 0..4 {
         let mut mesh = || {
             let vertices: Vec<DVec3> = (0..150).map(|_| rng.direction()).collect();
-            let any = |rng: &mut Rng| rng.int(0, 149) as u32;
-            let near = |v: u32, rng: &mut Rng| (v + rng.int(0, 9) as u32) % 150;
-            let triangle = |rng: &mut Rng| {
+            let any = |rng: &mut Random| rng.int(0, 149) as u32;
+            let near = |v: u32, rng: &mut Random| (v + rng.int(0, 9) as u32) % 150;
+            let triangle = |rng: &mut Random| {
                 let first = any(rng);
                 [first, near(first, rng), near(first, rng)]
             };
@@ -204,7 +205,7 @@ fn prism(sides: u32, axes: DVec3) -> ConvexPolyhedron {
 
 #[test]
 fn needles_and_plates() {
-    let mut rng = Rng::new(13);
+    let mut rng = Random::new(13);
     let thin = [DVec3::new(1e-3, 1e-3, 1.0), DVec3::new(1.0, 1.0, 1e-3)];
     for case in 0..120 {
         let sides = rng.pick(&[3, 8, 24]);
@@ -229,7 +230,7 @@ fn needles_and_plates() {
 fn parallel_faces_take_few_steps() {
     for sides in [16, 128, 1024] {
         let soup = Soup::of_polyhedron(&prism(sides, DVec3::ONE));
-        let mut rng = Rng::new(14);
+        let mut rng = Random::new(14);
         for gap in [0.5, 1e-3, 1e-6, 1e-9, 0.0] {
             let turn = rng.rotation();
             let at = Pose::new(turn, turn * DVec3::new(0.1, 0.2, 2.0 + gap)).unwrap();
@@ -251,7 +252,7 @@ fn large_faces_take_few_steps() {
     for sides in [64, 512, 4096] {
         let soup = Soup::of_polyhedron(&prism(sides, DVec3::ONE));
         assert_eq!(soup.triangle_count(), 4 * sides as usize - 4);
-        let mut rng = Rng::new(16);
+        let mut rng = Random::new(16);
         let mut tests = 0;
         for _ in 0..20 {
             let at = Pose::new(rng.rotation(), rng.direction() * 3.0).unwrap();
@@ -264,8 +265,8 @@ fn large_faces_take_few_steps() {
 
 #[test]
 fn a_sequence_gives_what_single_queries_give() {
-    let mut rng = Rng::new(15);
-    let cloud = |rng: &mut Rng, n| body(&(0..n).map(|_| rng.direction()).collect::<Vec<_>>());
+    let mut rng = Random::new(15);
+    let cloud = |rng: &mut Random, n| body(&(0..n).map(|_| rng.direction()).collect::<Vec<_>>());
     for case in 0..20 {
         let (moving, fixed) = (cloud(&mut rng, 60), cloud(&mut rng, 90));
         let soups = [&moving, &fixed].map(Soup::of_polyhedron);
@@ -344,7 +345,7 @@ fn wrong_soups_are_refused() {
 
 #[test]
 fn queries_allocate_nothing() {
-    let mut rng = Rng::new(16);
+    let mut rng = Random::new(16);
     let soups = [700, 900].map(|n| {
         let points: Vec<DVec3> = (0..n).map(|_| rng.direction()).collect();
         Soup::of_polyhedron(&body(&points))

@@ -13,9 +13,10 @@ use colltrans::{Cast, ConvexPolyhedron, Feature, Outcome, Pose, Solver};
 use colltrans_baselines::raycast::{Options, RayCast, RayCastAnswer};
 use colltrans_testkit::oracle::distance::{distance_of_bodies, distance_of_point};
 use colltrans_testkit::oracle::exact::Ratio;
-use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Rng, Setting, cuboid, setting};
+use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, cuboid, setting};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
 use colltrans_testkit::oracle::simplex::collision_translation;
+use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec3};
 
 /// How an answer compares with the truth.
@@ -152,7 +153,7 @@ fn rings(count: u32, semi_axes: DVec3) -> ConvexPolyhedron {
 /// only, and the ray cast's is that of its last plane.
 #[test]
 fn large_bodies() {
-    let mut rng = Rng::new(1);
+    let mut rng = Random::new(1);
     let tolerance = Options::default().tolerance;
     let (mut hits, mut misses, mut exhausted) = (0, 0, 0);
     let mut worst_normal_rad: f64 = 0.0;
@@ -252,7 +253,7 @@ fn running_out_of_iterations_is_no_hit() {
 #[test]
 fn carried_seeds_do_not_change_the_answer() {
     let (p, q) = (rings(20, DVec3::ONE), rings(20, DVec3::new(1.0, 0.7, 1.3)));
-    let mut rng = Rng::new(3);
+    let mut rng = Random::new(3);
     let mut coherent = RayCast::new(&p, &q);
     for _ in 0..50 {
         let at = Pose::new(rng.rotation(), DVec3::new(-5.0, rng.unit(), rng.unit())).unwrap();

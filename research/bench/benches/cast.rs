@@ -22,7 +22,7 @@ fn cast(criterion: &mut Criterion) {
         (Shape::Ellipsoid, 2_000, Meeting::PassingWithin(0.2), "separated"),
         (Shape::Needle(100.0), 2_000, Meeting::Colliding, "colliding"),
     ] {
-        let mut random = Random::new(1, &[n as u64]);
+        let mut random = Random::stream(1, &[n as u64]);
         let bodies = pair(shape, n, &mut random);
         let [moving, fixed] = &bodies.pair;
         let settings: Vec<_> =
@@ -54,7 +54,7 @@ fn cast(criterion: &mut Criterion) {
 /// A sequence over and over, from scratch and tracked.
 fn track(criterion: &mut Criterion) {
     for (n, delta) in [(200, 0.01), (2_000, 0.01), (2_000, 0.0013), (20_000, 0.0013)] {
-        let mut random = Random::new(1, &[n as u64]);
+        let mut random = Random::stream(1, &[n as u64]);
         let bodies = pair(Shape::Ellipsoid, n, &mut random);
         let [moving, fixed] = &bodies.pair;
         let settings = Setting::sequence(&bodies, Meeting::Colliding, delta, 1_000, &mut random);

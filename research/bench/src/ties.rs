@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn tied_settings_meet_as_their_names_say() {
-        let mut random = Random::new(1, &[]);
+        let mut random = Random::new(1);
         for tie in Tie::ALL {
             for placement in [Placement::Identity, Placement::QuarterTurns] {
                 for _ in 0..50 {

@@ -224,7 +224,7 @@ mod tests {
     fn bodies_meet_or_pass_as_asked() {
         for kind in [Kind::Balanced, Kind::Thin] {
             let bodies = bodies(5, kind, 200, 0);
-            let mut random = Random::new(5, &[]);
+            let mut random = Random::new(5);
             for meeting in [Meeting::Colliding, Meeting::Passing(0.005), Meeting::Passing(1.5)] {
                 for _ in 0..100 {
                     let s = Setting::draw(&bodies, meeting, &mut random);
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn orbits_collide() {
         let bodies = bodies(5, Kind::Spheres, 200, 0);
-        let mut random = Random::new(7, &[]);
+        let mut random = Random::new(7);
         for alpha_deg in [0.1, 30.0, 180.0] {
             for _ in 0..20 {
                 let orbit = Setting::orbit(&bodies, alpha_deg, 20, &mut random);
@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn steps_of_sequences_move_points_by_delta() {
         let bodies = bodies(5, Kind::Spheres, 200, 0);
-        let mut random = Random::new(6, &[]);
+        let mut random = Random::new(6);
         for _ in 0..30 {
             let settings = Setting::sequence(&bodies, Meeting::Colliding, 0.01, 5, &mut random);
             for pair in settings.windows(2) {

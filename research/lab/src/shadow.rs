@@ -165,7 +165,7 @@ mod tests {
     /// The rim is the hull of all projected vertices: nothing sticks out, and it is convex.
     #[test]
     fn shadows_are_hulls_of_all_vertices() {
-        let mut random = Random::new(3, &[]);
+        let mut random = Random::new(3);
         for kind in [Kind::Balanced, Kind::Thin, Kind::Prism, Kind::HalfEllipsoid, Kind::RandomHull]
         {
             let bodies = bodies(3, kind, 200, 0);
@@ -189,7 +189,7 @@ mod tests {
     /// Displaced as it says, the shadows are as far apart as asked, by brute force.
     #[test]
     fn displaced_shadows_are_that_far_apart() {
-        let mut random = Random::new(4, &[]);
+        let mut random = Random::new(4);
         for kind in [Kind::Balanced, Kind::Thin, Kind::Prism, Kind::RandomHull] {
             let bodies = bodies(4, kind, 200, 0);
             for case in 0..40 {

@@ -174,7 +174,7 @@ pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies>
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let build = || {
         let pair = both(|i| {
-            let mut random = Random::new(seed, &[kind as u64, n as u64, which, i as u64]);
+            let mut random = Random::stream(seed, &[kind as u64, n as u64, which, i as u64]);
             kind.build(n, &mut random)
         });
         Arc::new(Bodies::new(pair))

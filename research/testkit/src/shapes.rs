@@ -34,6 +34,11 @@ impl Mesh {
     }
 }
 
+/// Points by the bits of their coordinates: cases that were found once, to the last digit.
+pub fn of_bits(bits: &[[u64; 3]]) -> Vec<DVec3> {
+    bits.iter().map(|point| DVec3::from_array(point.map(f64::from_bits))).collect()
+}
+
 /// A unit sphere in rings, its inner faces trapezoids.
 pub fn ring_sphere(around: u32, rings: u32) -> Mesh {
     let vertices = ring_points(around, rings, 0.0);

@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn a_turned_cylinder_has_one_axis_and_a_cube_none() {
-        let mut random = Random::new(5, &[]);
+        let mut random = Random::new(5);
         for sides in [8, 12, 33] {
             let rotation = random.rotation();
             let mesh = prism(sides, 2.0).mapped(|v| rotation * v);

@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn a_turned_block_has_the_axes_it_was_turned_to() {
-        let mut random = Random::new(9, &[]);
+        let mut random = Random::new(9);
         for _ in 0..50 {
             let rotation = random.rotation();
             let at = DVec3::new(3.0, -2.0, 7.0);

@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn places_and_directions_are_inverse() {
-        let mut random = colltrans_testkit::random::Random::new(2, &[]);
+        let mut random = colltrans_testkit::random::Random::new(2);
         for _ in 0..1_000 {
             let d = random.direction();
             let back = direction(place(d)).expect("inside");

@@ -180,26 +180,11 @@ impl Cast {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colltrans::glam::DQuat;
     use colltrans::{ConvexPolyhedron, Pose};
+    use colltrans_testkit::random::Random;
 
-    /// Numbers from -1 to 1.
-    fn random(state: &mut u64) -> f64 {
-        *state =
-            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn random_vector(state: &mut u64) -> DVec3 {
-        DVec3::new(random(state), random(state), random(state))
-    }
-
-    fn random_pose(state: &mut u64, distance: f64) -> Pose {
-        let rotation = DQuat::from_axis_angle(
-            random_vector(state).normalize_or(DVec3::X),
-            3.0 * random(state),
-        );
-        Pose::new(rotation, distance * random_vector(state)).unwrap()
+    fn any_pose(random: &mut Random, distance: f64) -> Pose {
+        Pose::new(random.rotation(), distance * random.vector()).unwrap()
     }
 
     /// How near a solid comes to the viewer on the line of sight through a point.
@@ -221,18 +206,18 @@ mod tests {
     /// Against the slow way, ray by ray: what is drawn later is nearer wherever both are seen.
     #[test]
     fn what_is_drawn_later_is_nearer() {
-        let state = &mut 1;
+        let random = &mut Random::new(1);
         let mut compared = [0, 0];
         for round in 0..300 {
-            let body = |state: &mut u64| {
-                let points: Vec<DVec3> = (0..9).map(|_| random_vector(state)).collect();
+            let body = |random: &mut Random| {
+                let points: Vec<DVec3> = (0..9).map(|_| random.vector()).collect();
                 ConvexPolyhedron::from_points(&points).unwrap()
             };
-            let (moving, fixed) = (body(state), body(state));
-            let moving_pose = random_pose(state, 3.0);
-            let fixed_pose = random_pose(state, 1.0);
+            let (moving, fixed) = (body(random), body(random));
+            let moving_pose = any_pose(random, 3.0);
+            let fixed_pose = any_pose(random, 1.0);
             let towards = fixed_pose.translation() - moving_pose.translation();
-            let direction = towards + 0.7 * random_vector(state);
+            let direction = towards + 0.7 * random.vector();
             let (moving, fixed) = (moving.at(moving_pose), fixed.at(fixed_pose));
             let question = colltrans::Cast::new(moving, fixed, direction).unwrap();
             let answer = question.contact_range().unwrap();
@@ -250,7 +235,7 @@ mod tests {
             let fixed_is_nearer = fixed_is_nearer(&story, &view);
             for solid in [Some(&cast.stop), cast.start.as_ref()].into_iter().flatten() {
                 for _ in 0..400 {
-                    let point = 0.8 * random_vector(state);
+                    let point = 0.8 * random.vector();
                     let depths = [solid, &cast.fixed].map(|s| nearest(s, &view, point));
                     let [Some(p), Some(q)] = depths else { continue };
                     compared[usize::from(fixed_is_nearer)] += 1;

@@ -159,25 +159,21 @@ impl Raster {
 
 #[cfg(test)]
 mod tests {
+    use colltrans_testkit::random::Random;
+
     use super::*;
 
     fn window() -> Frame {
         Frame { low: DVec2::ZERO, high: DVec2::new(40.0, 30.0) }
     }
 
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     /// Against each triangle at each sample.
     #[test]
     fn the_nearest_triangle_is_seen() {
-        let state = &mut 7;
+        let mut random = Random::new(7);
         for _ in 0..20 {
-            let mut point = || {
-                DVec3::new(random(state) * 50.0 - 5.0, random(state) * 40.0 - 5.0, random(state))
-            };
+            let mut point =
+                || DVec3::new(random.range(-5.0, 45.0), random.range(-5.0, 35.0), random.unit());
             let triangles: Vec<[DVec3; 3]> = (0..12).map(|_| [point(), point(), point()]).collect();
             let mut raster = Raster::new(window());
             for (k, &triangle) in triangles.iter().enumerate() {

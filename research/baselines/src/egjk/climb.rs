@@ -67,7 +67,8 @@ pub(crate) fn scan(body: &ConvexPolyhedron, direction: DVec3, looked_at: &mut u3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, Rng, setting};
+    use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
+    use colltrans_testkit::random::Random;
 
     /// Whether faces are flat only nearly.
     fn is_uneven(family: &str) -> bool {
@@ -81,7 +82,7 @@ mod tests {
             for seed in 0..20 {
                 let setting = setting(family, seed);
                 let body = setting.bodies().unwrap().fixed;
-                let mut rng = Rng::new(seed);
+                let mut rng = Random::new(seed);
                 let normals = (0..body.face_count() as u32).map(|f| body.face_normal(f));
                 let random = (0..20).map(|_| rng.direction());
                 for d in normals.chain(random).chain(DVec3::AXES).collect::<Vec<_>>() {

@@ -247,11 +247,11 @@ mod tests {
     use super::*;
     use colltrans_testkit::oracle::distance::distance;
     use colltrans_testkit::oracle::exact::Vector;
-    use colltrans_testkit::oracle::settings::Rng;
+    use colltrans_testkit::random::Random;
 
     /// Up to four points: in general position, on a grid (so often in a plane, on a line or equal),
     /// nearly in a plane, or far away and close to each other.
-    fn corners(rng: &mut Rng) -> Vec<DVec3> {
+    fn corners(rng: &mut Random) -> Vec<DVec3> {
         let n = rng.int(1, 4);
         let thin = rng.pick(&[1e-3, 1e-9, 1e-15, 1e-18]);
         let (shift, turn) = (rng.vector(), rng.rotation());
@@ -268,7 +268,7 @@ mod tests {
 
     #[test]
     fn nearest_points_of_simplices_in_every_position() {
-        let mut rng = Rng::new(1);
+        let mut rng = Random::new(1);
         let mut inside = 0;
         for case in 0..20_000 {
             let points = corners(&mut rng);

@@ -143,7 +143,8 @@ mod tests {
     use super::*;
     use crate::features::Feature;
     use colltrans::glam::DVec3;
-    use colltrans_testkit::oracle::settings::{Rng, cuboid};
+    use colltrans_testkit::oracle::settings::cuboid;
+    use colltrans_testkit::random::Random;
 
     fn hierarchy(points: &[DVec3]) -> Hierarchy {
         Hierarchy::new(&ConvexPolyhedron::from_points(points).unwrap()).unwrap()
@@ -151,7 +152,7 @@ mod tests {
 
     #[test]
     fn layers_shrink_and_links_lead_to_the_same_points() {
-        let mut rng = Rng::new(3);
+        let mut rng = Random::new(3);
         for n in [13, 50, 400, 3_000] {
             let points: Vec<DVec3> = (0..n).map(|_| rng.direction()).collect();
             let hierarchy = hierarchy(&points);

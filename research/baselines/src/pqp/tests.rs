@@ -2,7 +2,7 @@
 
 use colltrans_testkit::oracle::distance::distance;
 use colltrans_testkit::oracle::exact::Vector;
-use colltrans_testkit::oracle::settings::Rng;
+use colltrans_testkit::random::Random;
 use glam::{DMat3, DVec3};
 
 use super::obb::Obb;
@@ -21,12 +21,12 @@ fn scale(a: &[DVec3], b: &[DVec3]) -> Scale {
     Scale::new(reach(a) + reach(b))
 }
 
-fn random(rng: &mut Rng) -> Triangle {
+fn random(rng: &mut Random) -> Triangle {
     [0; 3].map(|_| rng.vector())
 }
 
 /// A triangle that is a needle: along an edge, at a corner, or a segment up to rounding.
-fn sliver(rng: &mut Rng) -> Triangle {
+fn sliver(rng: &mut Random) -> Triangle {
     let (start, end) = (rng.vector(), rng.vector());
     let at = rng.pick(&[0.0, 0.3, 0.5, 1.0]);
     let width = rng.pick(&[0.0, 1e-3, 1e-6, 1e-8, 1e-10, 1e-12, 1e-15]);
@@ -34,7 +34,7 @@ fn sliver(rng: &mut Rng) -> Triangle {
 }
 
 /// Two triangles that are hard together.
-fn pair(rng: &mut Rng) -> (Triangle, Triangle) {
+fn pair(rng: &mut Random) -> (Triangle, Triangle) {
     let (mut a, mut b) = match rng.int(0, 3) {
         0 => (random(rng), random(rng)),
         1 => (sliver(rng), sliver(rng)),
@@ -74,7 +74,7 @@ fn pair(rng: &mut Rng) -> (Triangle, Triangle) {
 
 #[test]
 fn triangles_are_as_far_apart_as_exactly() {
-    let mut rng = Rng::new(1);
+    let mut rng = Random::new(1);
     for case in 0..20_000 {
         let (a, b) = pair(&mut rng);
         let scale = scale(&a, &b);
@@ -96,7 +96,7 @@ fn triangles_are_as_far_apart_as_exactly() {
 
 #[test]
 fn triangles_intersect_if_they_do_exactly() {
-    let mut rng = Rng::new(2);
+    let mut rng = Random::new(2);
     let mut counts = [0; 2];
     for case in 0..20_000 {
         let (a, b) = pair(&mut rng);
@@ -111,7 +111,7 @@ fn triangles_intersect_if_they_do_exactly() {
     assert!(counts.iter().all(|n| *n > 2_000), "{counts:?}");
 }
 
-fn cloud(rng: &mut Rng) -> Vec<Triangle> {
+fn cloud(rng: &mut Random) -> Vec<Triangle> {
     let stretch = DVec3::from_array([0; 3].map(|_| rng.pick(&[1.0, 1.0, 0.3, 1e-3, 0.0])));
     let turn = DMat3::from_quat(rng.rotation());
     let at = rng.vector() * rng.pick(&[0.0, 1.0, 3.0]);
@@ -147,7 +147,7 @@ fn corners(rss: &Rss) -> [DVec3; 4] {
 
 #[test]
 fn axes_are_orthonormal_and_sorted() {
-    let mut rng = Rng::new(3);
+    let mut rng = Random::new(3);
     for _ in 0..5_000 {
         let triangles = cloud(&mut rng);
         let axes = axes(&triangles);
@@ -168,7 +168,7 @@ fn axes_are_orthonormal_and_sorted() {
 
 #[test]
 fn swept_spheres_contain_their_triangles_and_bound_distances_from_below() {
-    let mut rng = Rng::new(4);
+    let mut rng = Random::new(4);
     let (mut tight, mut apart) = (0, 0);
     for case in 0..4_000 {
         let sets = [cloud(&mut rng), cloud(&mut rng)];
@@ -194,7 +194,7 @@ fn swept_spheres_contain_their_triangles_and_bound_distances_from_below() {
 }
 
 /// Rectangles, also degenerate ones, at random and aligned.
-fn rectangles(rng: &mut Rng) -> [Rss; 2] {
+fn rectangles(rng: &mut Random) -> [Rss; 2] {
     let aligned = rng.one_in(3);
     let first = DMat3::from_quat(rng.rotation());
     [0, 1].map(|_| {
@@ -206,7 +206,7 @@ fn rectangles(rng: &mut Rng) -> [Rss; 2] {
 
 #[test]
 fn rectangles_are_as_far_apart_as_exactly() {
-    let mut rng = Rng::new(5);
+    let mut rng = Random::new(5);
     for case in 0..20_000 {
         let [a, b] = rectangles(&mut rng);
         let (p, q) = (corners(&a), corners(&b));
@@ -221,7 +221,7 @@ fn rectangles_are_as_far_apart_as_exactly() {
 
 #[test]
 fn boxes_contain_their_triangles_and_are_clear_only_if_apart() {
-    let mut rng = Rng::new(6);
+    let mut rng = Random::new(6);
     let mut counts = [0; 2];
     for case in 0..10_000 {
         let sets = [cloud(&mut rng), cloud(&mut rng)];
@@ -251,7 +251,7 @@ fn boxes_contain_their_triangles_and_are_clear_only_if_apart() {
 /// Sizes that grow by a constant factor leave one triangle on one side of every mean.
 #[test]
 fn trees_are_shallow_and_complete_for_every_input() {
-    let mut rng = Rng::new(7);
+    let mut rng = Random::new(7);
     let mut random = || rng.vector();
     let (even, same) = (random(), random());
     let at = |i: u32| DVec3::X * 2_f64.powi(i as i32 % 300 - 150);

@@ -6,7 +6,8 @@ use std::f64::consts::TAU;
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_testkit::oracle::distance::{distance_of_bodies, distance_of_point};
-use colltrans_testkit::oracle::settings::{FAMILIES, Rng, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec2, DVec3};
 
 /// Two solids in place.
@@ -64,7 +65,7 @@ impl Placed {
 /// Random solids of 4 to 20 vertices: apart, at gaps down to nothing, overlapping, nested.
 pub fn random_settings(count: u64) -> impl Iterator<Item = Placed> {
     (0..count).map(|seed| {
-        let mut rng = Rng::new(seed);
+        let mut rng = Random::new(seed);
         let mut solid = || {
             let (n, axes) =
                 (rng.int(4, 20), DVec3::from_array([0; 3].map(|_| rng.range(0.3, 1.5))));
@@ -165,7 +166,7 @@ pub fn wide_settings() -> impl Iterator<Item = Placed> {
 /// Ellipsoids with `n` vertices at random, semi-axes from 0.6 to 1.4, about as far apart as they
 /// are large.
 pub fn large(n: usize, seed: u64) -> Placed {
-    let mut rng = Rng::new(seed);
+    let mut rng = Random::new(seed);
     let mut ellipsoid = || {
         let axes = DVec3::from_array([0; 3].map(|_| rng.range(0.6, 1.4)));
         let points: Vec<DVec3> = (0..n).map(|_| rng.direction() * axes).collect();
@@ -180,7 +181,7 @@ pub fn large(n: usize, seed: u64) -> Placed {
 
 /// The moving body turned about a fixed axis and moved past the other, `share` of its size a step.
 pub fn coherent(placed: &Placed, share: f64, steps: u32, seed: u64) -> Vec<Pose> {
-    let mut rng = Rng::new(seed);
+    let mut rng = Random::new(seed);
     let (axis, along) = (rng.direction(), rng.direction());
     let reach = placed.moving.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
     let poses = (0..steps).map(|k| {

@@ -89,7 +89,7 @@ fn measure_size(
     arguments: &Arguments,
     rows: &mut Vec<Value>,
 ) -> Result<(), colltrans::BuildError> {
-    let mut random = Random::new(arguments.seed, &[n as u64]);
+    let mut random = Random::stream(arguments.seed, &[n as u64]);
     let mut pair = |n| -> Result<Bodies, colltrans::BuildError> {
         let mut one = || Shape::Ellipsoid.draw(n, &mut random);
         Ok(Bodies::new([one()?, one()?]))

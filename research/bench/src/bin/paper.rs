@@ -120,7 +120,7 @@ fn measure_size(
     focus: bool,
     rows: &mut Vec<Value>,
 ) -> Result<(), BuildError> {
-    let mut random = Random::new(arguments.seed, &[n as u64]);
+    let mut random = Random::stream(arguments.seed, &[n as u64]);
     let mut one = || Shape::Ellipsoid.draw(8, &mut random);
     let small = Bodies::new([one()?, one()?]);
     let scale = Scale::new(&small, BLOCK, &mut random);

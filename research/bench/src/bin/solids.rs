@@ -230,7 +230,7 @@ impl Pair {
         let radii = [radius(&self.bodies[0]), radius(&self.bodies[1])];
         let reach = radii[0] + radii[1];
         let facets = bodies[0].triangles().len();
-        let mut random = Random::new(seed, &[self.name.len() as u64, facets as u64]);
+        let mut random = Random::stream(seed, &[self.name.len() as u64, facets as u64]);
         let mut workspace = Workspace::default();
         let mut draw = || {
             let placement = Placement::draw(radii, &mut random);
@@ -321,7 +321,7 @@ fn growth(arguments: &Arguments) -> Vec<Value> {
         let mesh = bumpy_ball(size);
         let (body, build) = stopwatch.time(|| solid(&mesh));
         let Some(body) = body else { continue };
-        let mut random = Random::new(arguments.seed, &[7]);
+        let mut random = Random::stream(arguments.seed, &[7]);
         let mut workspace = Workspace::default();
         let mut times = Times::default();
         for _ in 0..if arguments.quick { 300 } else { 2_000 } {

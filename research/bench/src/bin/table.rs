@@ -117,7 +117,7 @@ struct Cases {
 
 /// Both rows of a shape and a size.
 fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], BuildError> {
-    let mut random = Random::new(arguments.seed, &[n as u64]);
+    let mut random = Random::stream(arguments.seed, &[n as u64]);
     let count = if n >= 50_000 { 2 } else { 4 };
     let started = Instant::now();
     let mut pair = || -> Result<Bodies, BuildError> {
@@ -132,7 +132,7 @@ fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], Bu
         (false, false) => 1000,
     };
     Ok(["colliding", "separated"].map(|meeting| {
-        let mut random = Random::new(arguments.seed, &[n as u64, meeting.len() as u64, 1]);
+        let mut random = Random::stream(arguments.seed, &[n as u64, meeting.len() as u64, 1]);
         let draw = |k: usize| {
             let bodies = &cases.pairs[k % cases.pairs.len()];
             let meeting = match meeting {
@@ -148,7 +148,7 @@ fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], Bu
 
 /// A row of tied settings.
 fn tied(tie: Tie, placement: Placement, arguments: &Arguments) -> Row {
-    let mut random = Random::new(arguments.seed, &[tie as u64, placement as u64, 2]);
+    let mut random = Random::stream(arguments.seed, &[tie as u64, placement as u64, 2]);
     let started = Instant::now();
     let pairs: Vec<_> = (0..8).map(|_| tie.bodies(&mut random)).collect();
     let build = started.elapsed() / 16;

@@ -111,7 +111,8 @@ impl Grown {
 /// Asks every query of CTA twice and times the second.
 fn ask_again(race: &Race) -> Point {
     let bodies = race.bodies(0);
-    let mut random = Random::new(race.plan.seed, &[race.figure, race.kind as u64, race.n as u64]);
+    let mut random =
+        Random::stream(race.plan.seed, &[race.figure, race.kind as u64, race.n as u64]);
     let mut cta = WHO[CTA].enter(&bodies);
     let stopwatch = Stopwatch::new();
     let times: Vec<_> = (0..race.length * race.blocks / 4)

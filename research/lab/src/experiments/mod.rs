@@ -151,7 +151,7 @@ impl Race<'_> {
         for which in 0..pairs {
             let bodies = self.bodies(which);
             let labels = [self.figure, self.kind as u64, self.n as u64, which, purpose];
-            let mut random = Random::new(self.plan.seed, &labels);
+            let mut random = Random::stream(self.plan.seed, &labels);
             let mut field: Vec<_> = self.who.iter().map(|who| who.enter(&bodies)).collect();
             for results in &mut all {
                 results.vertices += bodies.vertices() / pairs as f64;

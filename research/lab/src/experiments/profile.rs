@@ -45,7 +45,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 /// Profiles casts by the paper's algorithm.
 fn measure(plan: &Plan, n: usize) -> Profiled {
     let bodies = bodies(plan.seed, Kind::Balanced, n, 0);
-    let mut random = Random::new(plan.seed, &[1, n as u64]);
+    let mut random = Random::stream(plan.seed, &[1, n as u64]);
     let queries: usize = plan.by_scale(20, 1_500, 10_000);
     let settings: Vec<_> =
         (0..queries).map(|_| Setting::draw(&bodies, Meeting::Colliding, &mut random)).collect();

@@ -11,7 +11,8 @@ use std::fmt;
 use colltrans::{MIN_MAGNITUDE, Pose};
 use glam::{DQuat, DVec3};
 
-use crate::oracle::settings::{Rng, Setting, setting};
+use crate::oracle::settings::{Setting, setting};
+use crate::random::Random;
 
 /// Times at most that a change is repeated.
 const LONGEST_RUN: i64 = 8;
@@ -66,7 +67,7 @@ pub struct Walk {
     change: Change,
     /// How often the change is still to be repeated.
     left: i64,
-    rng: Rng,
+    rng: Random,
 }
 
 impl fmt::Display for Walk {
@@ -83,7 +84,7 @@ impl Walk {
     pub fn new(family: &str, seed: u64) -> Self {
         let setting = setting(family, seed);
         let other = Configuration::of(&setting);
-        let rng = Rng::new(!seed);
+        let rng = Random::new(!seed);
         Self { setting, step: 0, other, change: Change::Repeat, left: 0, rng }
     }
 
@@ -218,16 +219,16 @@ impl Configuration {
 }
 
 /// Ten to a power between two exponents.
-fn ten_to(rng: &mut Rng, [low, high]: [f64; 2]) -> f64 {
+fn ten_to(rng: &mut Random, [low, high]: [f64; 2]) -> f64 {
     10.0_f64.powf(rng.range(low, high))
 }
 
-fn turn(rng: &mut Rng, exponents: [f64; 2]) -> DQuat {
+fn turn(rng: &mut Random, exponents: [f64; 2]) -> DQuat {
     DQuat::from_axis_angle(rng.direction(), ten_to(rng, exponents))
 }
 
 /// An axis, a diagonal of the grid, or any direction.
-fn any_direction(rng: &mut Rng) -> DVec3 {
+fn any_direction(rng: &mut Random) -> DVec3 {
     let grid = rng.grid(-1, 1);
     let grid = if grid == DVec3::ZERO { DVec3::Z } else { grid };
     let any = rng.direction();
@@ -235,7 +236,7 @@ fn any_direction(rng: &mut Rng) -> DVec3 {
 }
 
 /// Shares of a body's size by which shadows overlap: nothing, rounding error, a little, more.
-fn overlap(rng: &mut Rng) -> f64 {
+fn overlap(rng: &mut Random) -> f64 {
     let sign = rng.pick(&[1.0, -1.0]);
     let digits = ten_to(rng, [-16.0, -12.0]);
     let little = ten_to(rng, [-12.0, -1.0]);
@@ -313,7 +314,7 @@ mod tests {
     fn a_step_to_the_rim_ends_there() {
         for seed in 0..200 {
             let mut setting = setting(["random", "boxes", "prisms"][seed as usize % 3], seed);
-            let mut rng = Rng::new(seed);
+            let mut rng = Random::new(seed);
             let wanted = rng.range(-0.1, 0.0);
             let displacement = rim_displacement(&setting, rng.direction(), 0.5, wanted);
             setting.moving_pose = setting.moving_pose.translated(displacement).expect("in range");

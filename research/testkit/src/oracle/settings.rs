@@ -12,87 +12,7 @@ use glam::{DQuat, DVec3};
 
 use crate::oracle::check::{Judge, Objection};
 use crate::oracle::input::{self, Kept};
-
-/// Splitmix64: small, and good enough to draw test cases.
-#[derive(Debug, Clone)]
-pub struct Rng(u64);
-
-impl Rng {
-    /// A generator for a seed.
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// 64 random bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A number in `[0, 1)`.
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 * f64::EPSILON / 2.0
-    }
-
-    /// A number in `[low, high)`.
-    pub fn range(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// An integer in `low..=high`.
-    pub fn int(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.bits() % (high - low + 1) as u64) as i64
-    }
-
-    /// An integer in `low..=high`, as a coordinate.
-    pub fn whole(&mut self, low: i64, high: i64) -> f64 {
-        self.int(low, high) as f64
-    }
-
-    /// `true` once in `n` times.
-    pub fn one_in(&mut self, n: u64) -> bool {
-        self.bits().is_multiple_of(n)
-    }
-
-    /// One of several values.
-    pub fn pick<T: Copy>(&mut self, values: &[T]) -> T {
-        values[self.int(0, values.len() as i64 - 1) as usize]
-    }
-
-    /// A vector in a cube of half side 1.
-    pub fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0))
-    }
-
-    /// A vector of whole numbers.
-    pub fn grid(&mut self, low: i64, high: i64) -> DVec3 {
-        DVec3::new(self.whole(low, high), self.whole(low, high), self.whole(low, high))
-    }
-
-    /// A unit vector, evenly distributed.
-    pub fn direction(&mut self) -> DVec3 {
-        loop {
-            let v = self.vector();
-            if (0.01..=1.0).contains(&v.length_squared()) {
-                return v.normalize();
-            }
-        }
-    }
-
-    /// A rotation, evenly distributed.
-    pub fn rotation(&mut self) -> DQuat {
-        loop {
-            let v = [0; 4].map(|_| self.range(-1.0, 1.0));
-            let q = DQuat::from_array(v);
-            if (0.01..=1.0).contains(&q.length_squared()) {
-                return q.normalize();
-            }
-        }
-    }
-}
+use crate::random::Random;
 
 /// Two bodies by their points, where they are, and where one is going.
 #[derive(Debug, Clone)]
@@ -187,7 +107,7 @@ impl Setting {
 }
 
 /// A family: its name, and how to draw one of its settings.
-pub type Family = (&'static str, fn(&mut Rng) -> Draft);
+pub type Family = (&'static str, fn(&mut Random) -> Draft);
 
 /// All families.
 pub const FAMILIES: &[Family] = &[
@@ -279,7 +199,7 @@ impl Draft {
 pub fn setting(family: &str, seed: u64) -> Setting {
     let &(family, draw) = FAMILIES.iter().find(|f| f.0 == family).expect("a known family");
     let salt = family.bytes().fold(0, |h: u64, b| h.wrapping_mul(31).wrapping_add(b.into()));
-    let mut rng = Rng::new(seed ^ salt.rotate_left(32));
+    let mut rng = Random::new(seed ^ salt.rotate_left(32));
     let mut draft = draw(&mut rng);
     if rng.one_in(2) {
         draft.turn(rng.rotation());
@@ -303,7 +223,7 @@ pub fn setting(family: &str, seed: u64) -> Setting {
     }
 }
 
-fn cloud(rng: &mut Rng) -> Vec<DVec3> {
+fn cloud(rng: &mut Random) -> Vec<DVec3> {
     let n = rng.int(4, 12);
     let axes = DVec3::new(rng.range(0.4, 1.4), rng.range(0.4, 1.4), rng.range(0.4, 1.4));
     if rng.one_in(2) {
@@ -319,7 +239,7 @@ pub fn cuboid(half: DVec3) -> Vec<DVec3> {
     (0..8).map(|i| half * DVec3::new(side(i, 0), side(i, 1), side(i, 2))).collect()
 }
 
-fn whole_box(rng: &mut Rng) -> Vec<DVec3> {
+fn whole_box(rng: &mut Random) -> Vec<DVec3> {
     cuboid(rng.grid(1, 4))
 }
 
@@ -337,21 +257,21 @@ fn octahedron(radius: f64) -> Vec<DVec3> {
     DVec3::AXES.into_iter().flat_map(|e| [e * radius, -e * radius]).collect()
 }
 
-fn axis(rng: &mut Rng) -> DVec3 {
+fn axis(rng: &mut Random) -> DVec3 {
     rng.pick(&DVec3::AXES) * rng.pick(&[1.0, -1.0])
 }
 
 /// An axis, or any direction.
-fn axis_or_any(rng: &mut Rng) -> DVec3 {
+fn axis_or_any(rng: &mut Random) -> DVec3 {
     if rng.one_in(2) { axis(rng) } else { rng.direction() }
 }
 
 /// Where a body has to be to be met, more or less, along a direction.
-fn ahead(rng: &mut Rng, direction: DVec3, distance: f64, miss: f64) -> DVec3 {
+fn ahead(rng: &mut Random, direction: DVec3, distance: f64, miss: f64) -> DVec3 {
     direction * distance + rng.direction().cross(direction) * rng.range(0.0, miss)
 }
 
-fn random(rng: &mut Rng) -> Draft {
+fn random(rng: &mut Random) -> Draft {
     let direction = axis_or_any(rng);
     let distance = rng.range(-3.0, 6.0);
     let at = ahead(rng, direction, distance, 2.0);
@@ -359,7 +279,7 @@ fn random(rng: &mut Rng) -> Draft {
     draft.turned(rng.rotation(), rng.rotation())
 }
 
-fn boxes(rng: &mut Rng) -> Draft {
+fn boxes(rng: &mut Random) -> Draft {
     let direction = if rng.one_in(4) { rng.grid(-1, 1) } else { axis(rng) };
     let direction = if direction == DVec3::ZERO { DVec3::Z } else { direction };
     let at = rng.grid(-3, 3) + direction * rng.whole(-4, 12);
@@ -367,14 +287,14 @@ fn boxes(rng: &mut Rng) -> Draft {
 }
 
 /// Boxes turned by multiples of a right angle, or of half of one.
-fn turned_boxes(rng: &mut Rng) -> Draft {
+fn turned_boxes(rng: &mut Random) -> Draft {
     let step = rng.pick(&[TAU / 4.0, TAU / 8.0]);
     let mut turn = || DQuat::from_axis_angle(axis(rng), step * rng.whole(0, 7));
     let (moving, fixed) = (turn(), turn());
     boxes(rng).turned(moving, fixed)
 }
 
-fn prisms(rng: &mut Rng) -> Draft {
+fn prisms(rng: &mut Random) -> Draft {
     let sides = rng.int(3, 6) as u32;
     let first_rad = rng.pick(&[0.0, TAU / 12.0, 0.3]);
     let mut one = || prism(sides, rng.whole(1, 3), rng.whole(1, 3), first_rad);
@@ -384,7 +304,7 @@ fn prisms(rng: &mut Rng) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
-fn grid(rng: &mut Rng) -> Draft {
+fn grid(rng: &mut Random) -> Draft {
     let mut body = || {
         let n = rng.int(1, 12);
         (0..n).map(|_| rng.grid(0, 3)).collect()
@@ -397,7 +317,7 @@ fn grid(rng: &mut Rng) -> Draft {
 }
 
 /// A face of one body parallel to a face of the other, touching or apart.
-fn face_face(rng: &mut Rng) -> Draft {
+fn face_face(rng: &mut Random) -> Draft {
     let half = rng.grid(1, 3) * 0.25;
     let mut moving = cuboid(half);
     moving.truncate(rng.pick(&[8, 8, 7, 6]));
@@ -411,7 +331,7 @@ fn face_face(rng: &mut Rng) -> Draft {
 }
 
 /// Two roofs, ridge over ridge.
-fn edge_edge_parallel(rng: &mut Rng) -> Draft {
+fn edge_edge_parallel(rng: &mut Random) -> Draft {
     let mut roof = |up: f64| {
         let (length, width, height) = (rng.whole(1, 3), rng.whole(1, 3), up * rng.whole(1, 2));
         let ridge = [DVec3::new(-length, 0.0, height), DVec3::new(length, 0.0, height)];
@@ -426,7 +346,7 @@ fn edge_edge_parallel(rng: &mut Rng) -> Draft {
     Draft::new(moving, fixed, at, direction)
 }
 
-fn vertex_over_vertex(rng: &mut Rng) -> Draft {
+fn vertex_over_vertex(rng: &mut Random) -> Draft {
     let moving = octahedron(rng.whole(1, 3));
     let fixed = if rng.one_in(3) {
         cuboid(DVec3::splat(rng.whole(1, 2)))
@@ -440,7 +360,7 @@ fn vertex_over_vertex(rng: &mut Rng) -> Draft {
 }
 
 /// A vertex or an edge that comes down exactly on the rim of a face, or just inside or outside it.
-fn rim(rng: &mut Rng) -> Draft {
+fn rim(rng: &mut Random) -> Draft {
     let half = rng.grid(1, 3);
     let fixed = cuboid(half);
     let moving = match rng.int(0, 2) {
@@ -457,7 +377,7 @@ fn rim(rng: &mut Rng) -> Draft {
     Draft::new(moving, fixed, at, DVec3::Z)
 }
 
-fn identical(rng: &mut Rng) -> Draft {
+fn identical(rng: &mut Random) -> Draft {
     let body = if rng.one_in(2) { cloud(rng) } else { whole_box(rng) };
     let direction = axis_or_any(rng);
     let at = match rng.int(0, 3) {
@@ -471,7 +391,7 @@ fn identical(rng: &mut Rng) -> Draft {
 }
 
 /// A peg that slides along a wall with no clearance, or with a little, or with a little too much.
-fn peg(rng: &mut Rng) -> Draft {
+fn peg(rng: &mut Random) -> Draft {
     let (peg, wall) = (rng.grid(1, 4) * 0.1, rng.grid(1, 9) * 0.1);
     let clearance = rng.pick(&[0.0, 0.0, 0.0, 1e-6, -1e-6, 1e-13, -1e-13]);
     let lateral = peg.x + wall.x + clearance;
@@ -483,7 +403,7 @@ fn peg(rng: &mut Rng) -> Draft {
     Draft { graze_tolerance: rng.pick(&[0.0, 0.0, 1e-9, 1e-5, 1e-3]), ..draft }
 }
 
-fn needle_plate(rng: &mut Rng) -> Draft {
+fn needle_plate(rng: &mut Random) -> Draft {
     let mut body = || {
         let long = rng.pick(&[100.0, 1000.0]);
         let axes =
@@ -498,7 +418,7 @@ fn needle_plate(rng: &mut Rng) -> Draft {
     if rng.one_in(3) { draft } else { draft.turned(rng.rotation(), rng.rotation()) }
 }
 
-fn size_ratio(rng: &mut Rng) -> Draft {
+fn size_ratio(rng: &mut Random) -> Draft {
     let mut draft = if rng.one_in(3) { boxes(rng) } else { random(rng) };
     let factor = rng.pick(&[1e6, 1e-6, 1e3]);
     draft.fixed.iter_mut().for_each(|v| *v *= factor);
@@ -511,7 +431,7 @@ fn size_ratio(rng: &mut Rng) -> Draft {
 }
 
 /// Bodies far from the origin of their frame, or of the world, or of both.
-fn offset(rng: &mut Rng) -> Draft {
+fn offset(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 2) {
         0 => boxes(rng),
         1 => grid(rng),
@@ -533,7 +453,7 @@ fn offset(rng: &mut Rng) -> Draft {
     draft
 }
 
-fn far(rng: &mut Rng) -> Draft {
+fn far(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 2) {
         0 => boxes(rng),
         1 => prisms(rng),
@@ -543,7 +463,7 @@ fn far(rng: &mut Rng) -> Draft {
     draft
 }
 
-fn flat_body(rng: &mut Rng) -> Vec<DVec3> {
+fn flat_body(rng: &mut Random) -> Vec<DVec3> {
     let (n, whole) = (rng.int(3, 7), rng.one_in(2));
     (0..n)
         .map(|_| {
@@ -553,7 +473,7 @@ fn flat_body(rng: &mut Rng) -> Vec<DVec3> {
         .collect()
 }
 
-fn flat(rng: &mut Rng) -> Draft {
+fn flat(rng: &mut Random) -> Draft {
     let moving = flat_body(rng);
     let fixed = if rng.one_in(2) { flat_body(rng) } else { whole_box(rng) };
     let any = rng.direction();
@@ -567,7 +487,7 @@ fn flat(rng: &mut Rng) -> Draft {
     }
 }
 
-fn segment_point(rng: &mut Rng) -> Draft {
+fn segment_point(rng: &mut Random) -> Draft {
     let mut small = || match rng.int(0, 2) {
         0 => vec![rng.grid(-1, 1)],
         1 => vec![rng.grid(-1, 1), rng.grid(-1, 1)],
@@ -588,7 +508,7 @@ fn segment_point(rng: &mut Rng) -> Draft {
 }
 
 /// Tied settings whose ties are broken in the last digits.
-fn nearly(rng: &mut Rng) -> Draft {
+fn nearly(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 4) {
         0 => boxes(rng),
         1 => prisms(rng),
@@ -604,7 +524,7 @@ fn nearly(rng: &mut Rng) -> Draft {
 
 /// A block that glides over a slab, a little downwards: the contact normal is almost orthogonal to
 /// the direction.
-fn shallow(rng: &mut Rng) -> Draft {
+fn shallow(rng: &mut Random) -> Draft {
     let slab = cuboid(DVec3::new(rng.whole(2, 9), rng.whole(1, 3), rng.pick(&[0.0, 0.5, 1.0])));
     let block = match rng.int(0, 3) {
         0 => octahedron(0.5),
@@ -623,7 +543,7 @@ fn shallow(rng: &mut Rng) -> Draft {
 }
 
 /// Slabs from a thousandth of their width down to nothing.
-fn thin(rng: &mut Rng) -> Draft {
+fn thin(rng: &mut Random) -> Draft {
     let mut slab = || {
         let thickness = rng.pick(&[1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-17, 0.0]);
         let half = DVec3::new(rng.whole(1, 2), rng.whole(1, 2), thickness);
@@ -638,7 +558,7 @@ fn thin(rng: &mut Rng) -> Draft {
 }
 
 /// Prisms of many sides, side by side or one over the other, on the same axis or tangent.
-fn cylinders(rng: &mut Rng) -> Draft {
+fn cylinders(rng: &mut Random) -> Draft {
     let sides = rng.pick(&[8, 12]);
     let (r, s) = (rng.whole(1, 3), rng.whole(1, 3));
     let moving = prism(sides, r, rng.whole(1, 2), 0.0);
@@ -650,7 +570,7 @@ fn cylinders(rng: &mut Rng) -> Draft {
 }
 
 /// Very small and very large scenes.
-fn magnitude(rng: &mut Rng) -> Draft {
+fn magnitude(rng: &mut Random) -> Draft {
     let mut draft = match rng.int(0, 3) {
         0 => boxes(rng),
         1 => grid(rng),
@@ -665,7 +585,7 @@ fn magnitude(rng: &mut Rng) -> Draft {
 }
 
 /// Corners on an ellipse, each a share of the thickness off its plane.
-fn disc(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+fn disc(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let (sides, width) = (rng.int(5, 24), rng.pick(&[1.0, 1.0, 0.3, 1e-3]));
     let first_rad = rng.pick(&[0.0, 0.3]);
     (0..sides)
@@ -674,12 +594,12 @@ fn disc(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
         .collect()
 }
 
-fn flat_prism(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+fn flat_prism(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     prism(rng.int(3, 16) as u32, 1.0, 0.5 * thickness, rng.pick(&[0.0, 0.3]))
 }
 
 /// A box, or points in one, dense or in a wedge.
-fn plate(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+fn plate(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let half = DVec3::new(1.0, rng.pick(&[1.0, 0.5, 1e-2]), 0.5 * thickness);
     match rng.int(0, 2) {
         0 => cuboid(half),
@@ -692,7 +612,7 @@ fn plate(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
 }
 
 /// Points of a grid in a plane, each a share of the thickness off it.
-fn lattice(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+fn lattice(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let [columns, rows] = [0; 2].map(|_| rng.int(2, 5));
     let mut points = Vec::new();
     for i in 0..columns {
@@ -704,14 +624,14 @@ fn lattice(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
 }
 
 /// Points along an axis, each a share of the thickness off it.
-fn needle(rng: &mut Rng, thickness: f64) -> Vec<DVec3> {
+fn needle(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let across = DVec3::new(0.0, thickness, thickness * rng.pick(&[1.0, 1.0, 1e-2, 1e2]));
     (0..rng.int(4, 16)).map(|_| rng.vector() * across + DVec3::X * rng.range(-1.0, 1.0)).collect()
 }
 
 /// A nearly flat body of a shape: `1e-16` to `1e-11` thick, most turned in its frame, some modelled far
 /// from the origin and brought back, or left there.
-fn nearly_flat(rng: &mut Rng, shape: fn(&mut Rng, f64) -> Vec<DVec3>) -> Vec<DVec3> {
+fn nearly_flat(rng: &mut Random, shape: fn(&mut Random, f64) -> Vec<DVec3>) -> Vec<DVec3> {
     let some = 10_f64.powf(rng.range(-16.0, -11.0));
     let thickness = if rng.one_in(5) { 0.0 } else { some };
     let mut points = shape(rng, thickness);
@@ -737,7 +657,7 @@ fn nearly_flat(rng: &mut Rng, shape: fn(&mut Rng, f64) -> Vec<DVec3>) -> Vec<DVe
 
 /// A point, a cloud or another such body onto one of the points that a nearly flat body is made of, or
 /// next to it.
-fn onto_nearly_flat(rng: &mut Rng, shape: fn(&mut Rng, f64) -> Vec<DVec3>) -> Draft {
+fn onto_nearly_flat(rng: &mut Random, shape: fn(&mut Random, f64) -> Vec<DVec3>) -> Draft {
     let fixed = nearly_flat(rng, shape);
     let moving = match rng.int(0, 3) {
         0 => cloud(rng),
@@ -760,8 +680,8 @@ fn onto_nearly_flat(rng: &mut Rng, shape: fn(&mut Rng, f64) -> Vec<DVec3>) -> Dr
 
 /// Rings of a narrow ellipse, the upper ones with corners a few roundings off their plane, above a
 /// chamfer and a base: faces with many corners that are flat only nearly, beside edges of any length.
-pub fn narrow_rings(rng: &mut Rng) -> Vec<DVec3> {
-    let ten = |rng: &mut Rng, low, high| 10_f64.powf(rng.range(low, high));
+pub fn narrow_rings(rng: &mut Random) -> Vec<DVec3> {
+    let ten = |rng: &mut Random, low, high| 10_f64.powf(rng.range(low, high));
     let corners = rng.int(9, 12) as u32;
     let turn = TAU / f64::from(corners);
     let angles: Vec<f64> =
@@ -786,8 +706,8 @@ pub fn narrow_rings(rng: &mut Rng) -> Vec<DVec3> {
 }
 
 /// Narrow rings whose tops face each other, or that of one a cloud, tilted a little.
-fn nearly_flat_faces(rng: &mut Rng) -> Draft {
-    let tilt = |rng: &mut Rng| {
+fn nearly_flat_faces(rng: &mut Random) -> Draft {
+    let tilt = |rng: &mut Random| {
         let angle = 10_f64.powf(rng.range(-17.0, -1.0));
         let axis = DVec3::new(rng.range(-1.0, 1.0), rng.range(-1.0, 1.0), 0.0);
         DQuat::from_scaled_axis(axis * angle)

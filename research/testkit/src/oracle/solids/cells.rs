@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DMat3, DVec3};
 
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
-use crate::oracle::settings::Rng;
+use crate::random::Random;
 
 /// A body of unit cubes, by their lower corners.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub struct Motion {
 
 impl Cells {
     /// A connected body of so many cubes, not far from the origin.
-    pub fn random(count: usize, rng: &mut Rng) -> Self {
+    pub fn random(count: usize, rng: &mut Random) -> Self {
         let mut cells = BTreeSet::from([[0; 3]]);
         while cells.len() < count {
             let all: Vec<[i32; 3]> = cells.iter().copied().collect();
@@ -67,7 +67,7 @@ impl Cells {
 
     /// The surface: vertices in the grid under a linear map, and triangles. The diagonals, and whether
     /// a square gets a vertex inside, are drawn.
-    pub fn surface(&self, map: DMat3, rng: &mut Rng) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+    pub fn surface(&self, map: DMat3, rng: &mut Random) -> (Vec<DVec3>, Vec<Vec<u32>>) {
         let mut vertices = Vec::new();
         let mut index: BTreeMap<[i32; 3], u32> = BTreeMap::new();
         let mut facets = Vec::new();
@@ -126,7 +126,7 @@ pub(super) fn cut(
     vertices: &mut Vec<DVec3>,
     facets: &mut Vec<Vec<u32>>,
     [a, b, c, d]: [u32; 4],
-    rng: &mut Rng,
+    rng: &mut Random,
 ) {
     match rng.int(0, 3) {
         0 => facets.push(vec![a, b, c, d]),

@@ -7,7 +7,7 @@ use super::cells::{Cells, Motion, motion};
 use super::proof::{MOST_PAIRS, approve};
 use super::{encloses, exactly};
 use crate::oracle::exact::{Ratio, Vector};
-use crate::oracle::settings::Rng;
+use crate::random::Random;
 
 /// The families, by name.
 pub const FAMILIES: [&str; 6] = ["grid", "sheared", "quarter", "rotated", "mould", "halves"];
@@ -51,9 +51,9 @@ impl Setting {
     /// # Panics
     /// Never: the poses are rotations.
     pub fn draw(family: &str, seed: u64) -> Option<Self> {
-        let mut rng = Rng::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x51);
+        let mut rng = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x51);
         let rng = &mut rng;
-        let count = |rng: &mut Rng| rng.int(1, 7) as usize;
+        let count = |rng: &mut Random| rng.int(1, 7) as usize;
         let mut cells = [Cells::random(count(rng), rng), Cells::random(count(rng), rng)];
         let mut shear = DMat3::IDENTITY;
         let mut turns = [DMat3::IDENTITY; 2];
@@ -185,12 +185,12 @@ impl Setting {
     }
 }
 
-pub(super) fn whole(most: i64, rng: &mut Rng) -> DVec3 {
+pub(super) fn whole(most: i64, rng: &mut Random) -> DVec3 {
     DVec3::new(rng.whole(-most, most), rng.whole(-most, most), rng.whole(-most, most))
 }
 
 /// A direction along an axis or a diagonal, or of small whole numbers.
-pub(super) fn way(rng: &mut Rng) -> DVec3 {
+pub(super) fn way(rng: &mut Random) -> DVec3 {
     loop {
         let most = [1, 1, 3][rng.int(0, 2) as usize];
         let mut d = whole(most, rng);
@@ -203,7 +203,7 @@ pub(super) fn way(rng: &mut Rng) -> DVec3 {
     }
 }
 
-pub(super) fn sheared(rng: &mut Rng) -> DMat3 {
+pub(super) fn sheared(rng: &mut Random) -> DMat3 {
     loop {
         let m = DMat3::from_cols(whole(2, rng), whole(2, rng), whole(2, rng));
         if m.determinant() != 0.0 {
@@ -213,11 +213,12 @@ pub(super) fn sheared(rng: &mut Rng) -> DMat3 {
 }
 
 /// A rotation that permutes axes.
-fn quarter(rng: &mut Rng) -> DMat3 {
+fn quarter(rng: &mut Random) -> DMat3 {
     loop {
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-        let pick =
-            |rng: &mut Rng| axes[rng.int(0, 2) as usize] * if rng.one_in(2) { 1.0 } else { -1.0 };
+        let pick = |rng: &mut Random| {
+            axes[rng.int(0, 2) as usize] * if rng.one_in(2) { 1.0 } else { -1.0 }
+        };
         let (x, y) = (pick(rng), pick(rng));
         if x.dot(y) == 0.0 {
             return DMat3::from_cols(x, y, x.cross(y));
@@ -225,7 +226,7 @@ fn quarter(rng: &mut Rng) -> DMat3 {
     }
 }
 
-pub(super) fn any_rotation(rng: &mut Rng) -> DQuat {
+pub(super) fn any_rotation(rng: &mut Random) -> DQuat {
     loop {
         let q = [0; 4].map(|_| rng.range(-1.0, 1.0));
         let q = DQuat::from_array(q);

@@ -8,7 +8,7 @@ use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way, whole};
 use super::squares::{Crossing, Mixed, Squares};
 use super::{encloses, exactly};
 use crate::oracle::exact::{Ratio, Vector};
-use crate::oracle::settings::Rng;
+use crate::random::Random;
 
 /// The families, by name.
 pub const FAMILIES: [&str; 3] = ["sheets", "sheets-sheared", "sheets-rotated"];
@@ -33,7 +33,7 @@ impl Setting {
     /// # Errors
     /// An unknown family; a body that the library refuses.
     pub fn draw(family: &str, seed: u64) -> Result<Self, String> {
-        let mut rng = Rng::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x5ee7);
+        let mut rng = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x5ee7);
         let rng = &mut rng;
         // Which of the two has cubes, and which has squares: not cubes alone on both sides.
         let mut kinds = [rng.int(0, 2), rng.int(0, 2)];

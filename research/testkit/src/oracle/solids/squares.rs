@@ -18,7 +18,7 @@ use glam::{DMat3, DVec3};
 
 use super::cells::{Cells, InGrid, cut};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
-use crate::oracle::settings::Rng;
+use crate::random::Random;
 
 /// A product of open unit intervals and points of the grid, by its lower corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -47,7 +47,7 @@ pub struct Squares(Vec<[[i32; 3]; 4]>);
 
 impl Squares {
     /// A connected surface of so many squares at most, not far from the origin.
-    pub fn random(count: usize, rng: &mut Rng) -> Self {
+    pub fn random(count: usize, rng: &mut Random) -> Self {
         let axis = rng.int(0, 2) as usize;
         let mut squares = Self(vec![corners([0; 3], axis)]);
         for _ in 0..4 * count {
@@ -122,7 +122,7 @@ impl Squares {
         around.into_iter().filter_map(straight).collect()
     }
 
-    fn surface(&self, map: DMat3, rng: &mut Rng) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+    fn surface(&self, map: DMat3, rng: &mut Random) -> (Vec<DVec3>, Vec<Vec<u32>>) {
         let (mut vertices, mut facets) = (Vec::new(), Vec::new());
         let mut index: BTreeMap<[i32; 3], u32> = BTreeMap::new();
         for square in &self.0 {
@@ -168,7 +168,7 @@ impl Mixed {
     ///
     /// # Errors
     /// As the door of the library has them.
-    pub fn solid(&self, map: DMat3, rng: &mut Rng) -> Result<Solid, SolidError> {
+    pub fn solid(&self, map: DMat3, rng: &mut Random) -> Result<Solid, SolidError> {
         let mut pieces = Vec::new();
         if let Some(cubes) = &self.cubes {
             let (vertices, facets) = cubes.surface(map, rng);

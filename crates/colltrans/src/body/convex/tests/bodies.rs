@@ -2,44 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use crate::body::ConvexPolyhedron;
-
-/// A small generator of reproducible numbers.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    /// In `[-1, 1)`.
-    pub(crate) fn signed(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * 0.5 * (self.signed() + 1.0)
-    }
-
-    pub(crate) fn index(&mut self, count: usize) -> usize {
-        (self.within(0.0, count as f64) as usize).min(count - 1)
-    }
-
-    pub(crate) fn unit(&mut self) -> DVec3 {
-        loop {
-            let v = DVec3::new(self.signed(), self.signed(), self.signed());
-            if (0.01..1.0).contains(&v.length()) {
-                return v.normalize();
-            }
-        }
-    }
-
-    pub(crate) fn rotation(&mut self) -> DQuat {
-        DQuat::from_axis_angle(self.unit(), self.within(0.0, TAU))
-    }
-}
 
 /// About `count` vertices (at least 8) on an ellipsoid: two poles and rings between them.
 pub(crate) fn ellipsoid(count: usize, semi_axes: DVec3) -> ConvexPolyhedron {

@@ -425,6 +425,7 @@ impl Planner<'_> {
 
 #[cfg(test)]
 mod tests {
+    use colltrans_testkit::shapes::{Mesh, block};
     use glam::DAffine3;
 
     use super::*;
@@ -432,15 +433,8 @@ mod tests {
     use crate::part::{Assembly, Part, Piece};
 
     fn cube(name: usize, at: DVec3) -> Part {
-        let vertices =
-            (0..8).map(|k| DVec3::new((k & 1).into(), (k >> 1 & 1).into(), (k >> 2).into()));
-        let faces =
-            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let piece = Piece {
-            vertices: vertices.collect(),
-            faces: faces.iter().map(|f| f.to_vec()).collect(),
-            world_from_piece: DAffine3::from_translation(at),
-        };
+        let Mesh { vertices, faces } = block(DVec3::ZERO, DVec3::ONE);
+        let piece = Piece { vertices, faces, world_from_piece: DAffine3::from_translation(at) };
         Part::new(name.to_string(), &[piece]).unwrap()
     }
 

@@ -2,14 +2,18 @@
 
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
+mod common;
+
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use allocation_counter::measure;
 use base64::Engine;
 use colltrans_assembly::read::{ReadOptions, read, read_from};
 use colltrans_assembly::{Assembly, Bodies, Fit, ReadError};
+use colltrans_testkit::shapes::block;
+use common::{mesh_of_3mf, package};
+use glam::DVec3;
 use serde_json::{Value, json};
 
 const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
@@ -34,17 +38,10 @@ fn says(message: &str, words: &[&str]) {
 
 /// A cube in glTF: 96 bytes of positions, 72 of indices.
 fn cube_bytes() -> Vec<u8> {
-    let mut bytes = Vec::new();
-    for k in 0..8 {
-        for x in [k & 1, k >> 1 & 1, k >> 2] {
-            bytes.extend((x as f32).to_le_bytes());
-        }
-    }
-    for f in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
-        for v in [f[0], f[1], f[2], f[0], f[2], f[3]] {
-            bytes.extend((v as u16).to_le_bytes());
-        }
-    }
+    let mesh = block(DVec3::ZERO, DVec3::ONE);
+    let positions = mesh.vertices.iter().flat_map(DVec3::to_array);
+    let mut bytes: Vec<u8> = positions.flat_map(|c| (c as f32).to_le_bytes()).collect();
+    bytes.extend(mesh.triangles().flatten().flat_map(|v| (v as u16).to_le_bytes()));
     bytes
 }
 
@@ -219,31 +216,9 @@ fn shapes_are_not_placed_without_end() {
     assert!(memory.bytes_max < 400 << 20, "{}", memory.bytes_max);
 }
 
-fn package(files: &[(&str, String)]) -> Vec<u8> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let mut zip = zip::ZipWriter::new(&mut bytes);
-    for (name, text) in files {
-        zip.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
-        zip.write_all(text.as_bytes()).unwrap();
-    }
-    zip.finish().unwrap();
-    bytes.into_inner()
-}
-
 /// A box of these sides, as an object of a 3MF model.
-fn object(id: u32, size: [u32; 3]) -> String {
-    let mut text = format!("<object id=\"{id}\" type=\"model\"><mesh><vertices>");
-    for k in 0..8 {
-        let [x, y, z] = [(k & 1) * size[0], (k >> 1 & 1) * size[1], (k >> 2) * size[2]];
-        text += &format!("<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>");
-    }
-    text += "</vertices><triangles>";
-    for f in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
-        for [a, b, c] in [[f[0], f[1], f[2]], [f[0], f[2], f[3]]] {
-            text += &format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>");
-        }
-    }
-    text + "</triangles></mesh></object>"
+fn object(id: u32, size: [f64; 3]) -> String {
+    format!("<object id=\"{id}\" type=\"model\">{}</object>", mesh_of_3mf(size))
 }
 
 const CORE: &str = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
@@ -273,10 +248,10 @@ fn slicer(target: &str) -> Vec<u8> {
             ),
         ),
         // The same number in each file.
-        ("3D/Objects/object_1.model", model("", &object(1, [1, 2, 3]), "")),
-        ("3D/Objects/object_2.model", model("", &object(1, [4, 5, 6]), "")),
+        ("3D/Objects/object_1.model", model("", &object(1, [1.0, 2.0, 3.0]), "")),
+        ("3D/Objects/object_2.model", model("", &object(1, [4.0, 5.0, 6.0]), "")),
         // In the way of whoever takes the model that is not deepest.
-        ("a.model", model("", &object(3, [9, 9, 9]), "<item objectid=\"3\"/>")),
+        ("a.model", model("", &object(3, [9.0, 9.0, 9.0]), "<item objectid=\"3\"/>")),
         (
             "3D/3dmodel.model",
             model(
@@ -386,7 +361,7 @@ fn a_3mf_file_that_is_none_or_needs_more_is_refused_by_name() {
     says(&of("no xml".into()), &["3D/3dmodel.model", "no XML element"]);
     let lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\" requiredextensions=\"b\"";
     let item = "<item objectid=\"1\"/>";
-    let cube = object(1, [1, 1, 1]);
+    let cube = object(1, [1.0, 1.0, 1.0]);
     says(&of(model(lattice, &cube, item)), &["extension b", "beamlattice/2017/02", "not known"]);
     says(&of(model("requiredextensions=\"q\"", &cube, item)), &["extension q (q)"]);
     let shapeless = "<object id=\"1\" type=\"model\"><other/></object>";

@@ -6,8 +6,9 @@
     reason = "small files, written for people to read"
 )]
 
+mod common;
+
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use colltrans::StartOverlap;
@@ -20,6 +21,7 @@ use colltrans_assembly::read::{ReadOptions, read_from};
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
+use common::{mesh_of_3mf, package};
 use quick_xml::events::Event;
 use serde_json::{Value, json};
 
@@ -232,31 +234,14 @@ fn robots() {
 
 #[test]
 fn packages() {
-    let corners: String = (0..8)
-        .map(|k| format!("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", k & 1, k >> 1 & 1, k >> 2))
-        .collect();
-    let facets: String =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
-            .iter()
-            .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]])
-            .map(|[a, b, c]| format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>"))
-            .collect();
+    let mesh = mesh_of_3mf([1.0; 3]);
     let (mut objects, mut items) = (String::new(), String::new());
     for (k, name) in HOSTILE.iter().enumerate() {
-        objects += &format!(
-            "<object id=\"{k}\" name=\"{}\"><mesh><vertices>{corners}</vertices><triangles>{facets}\
-             </triangles></mesh></object>",
-            xml(name)
-        );
+        objects += &format!("<object id=\"{k}\" name=\"{}\">{mesh}</object>", xml(name));
         items += &format!("<item objectid=\"{k}\"/>");
     }
     let model = format!("<model><resources>{objects}</resources><build>{items}</build></model>");
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let mut zip = zip::ZipWriter::new(&mut bytes);
-    zip.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
-    zip.write_all(model.as_bytes()).unwrap();
-    zip.finish().unwrap();
-    let assembly = open("p.3mf", &[("p.3mf", bytes.into_inner())]);
+    let assembly = open("p.3mf", &[("p.3mf", package(&[("3D/3dmodel.model", &model)]))]);
     assert_eq!(assembly.parts().len(), 6);
     check(&assembly, HOSTILE[2]);
 }

@@ -4,7 +4,6 @@
 
 mod common;
 
-use std::io::Write;
 use std::path::Path;
 
 use base64::Engine;
@@ -161,28 +160,13 @@ fn what_is_written_as_glb_is_read_back() {
 fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
     let mut model = String::from(
         r#"<?xml version="1.0"?><model unit="inch" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
-        <resources><object id="1" name="cube" type="model"><mesh><vertices>"#,
+        <resources><object id="1" name="cube" type="model">"#,
     );
-    for k in 0..8 {
-        model += &format!(r#"<vertex x="{}" y="{}" z="{}"/>"#, k & 1, k >> 1 & 1, k >> 2);
-    }
-    model += "</vertices><triangles>";
-    for f in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
-        for [a, b, c] in [[f[0], f[1], f[2]], [f[0], f[2], f[3]]] {
-            model += &format!(r#"<triangle v1="{a}" v2="{b}" v3="{c}"/>"#);
-        }
-    }
-    model += r#"</triangles></mesh></object><object id="2"><components>
+    model += &mesh_of_3mf([1.0; 3]);
+    model += r#"</object><object id="2"><components>
         <component objectid="1" transform="0 1 0 -1 0 0 0 0 1 0 0 0"/></components></object></resources>
         <build><item objectid="1" transform="2 0 0 0 2 0 0 0 2 10 0 0"/><item objectid="2"/></build></model>"#;
-    let package = |model: &str| {
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        let mut zip = zip::ZipWriter::new(&mut bytes);
-        zip.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
-        zip.write_all(model.as_bytes()).unwrap();
-        zip.finish().unwrap();
-        bytes.into_inner()
-    };
+    let package = |model: &str| package(&[("3D/3dmodel.model", model)]);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.3mf");
     std::fs::write(&file, package(&model)).unwrap();

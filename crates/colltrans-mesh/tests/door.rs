@@ -7,6 +7,7 @@ use std::path::Path;
 use colltrans_mesh::{Error, Format, Mesh, ReadOptions, parse, parse_with};
 use colltrans_mesh::{to_obj, to_off, to_stl};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::block;
 use glam::DVec3;
 
 fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Mesh, Error> {
@@ -19,12 +20,9 @@ fn message(format: Format, bytes: impl AsRef<[u8]>) -> String {
 
 /// A cube of triangles or of squares.
 fn cube(triangles: bool) -> Mesh {
-    let corner = |i: u32| DVec3::new((i & 1).into(), (i >> 1 & 1).into(), (i >> 2).into());
-    let sides: [[u32; 4]; 6] =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let split = |s: [u32; 4]| vec![vec![s[0], s[1], s[2]], vec![s[0], s[2], s[3]]];
-    let faces = sides.into_iter().flat_map(|s| if triangles { split(s) } else { vec![s.to_vec()] });
-    Mesh::new((0..8).map(corner).collect(), faces.collect())
+    let cube = block(DVec3::ZERO, DVec3::ONE);
+    let cube = if triangles { cube.triangulated() } else { cube };
+    Mesh::new(cube.vertices, cube.faces)
 }
 
 /// The cube as text STL; `corner` may write each corner of each facet in its own way.

@@ -15,10 +15,9 @@ pub(crate) fn count(looks: usize) {
 #[cfg(test)]
 mod tests {
     use std::cell::Cell;
-    use std::f64::consts::TAU;
 
     use colltrans_testkit::random::Random;
-    use colltrans_testkit::shapes::{Mesh, even_rings, random_hull, ring_points};
+    use colltrans_testkit::shapes::{Mesh, even_rings, extruded, random_hull, ring, ring_points};
     use colltrans_testkit::solids::washer;
     use glam::{DQuat, DVec3};
 
@@ -53,13 +52,6 @@ mod tests {
 
     fn faces(body: &ConvexPolyhedron) -> Vec<Vec<u32>> {
         (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect()
-    }
-
-    fn ring(sides: usize, radius: f64, z: f64) -> impl Iterator<Item = DVec3> + Clone {
-        (0..sides).map(move |k| {
-            let (sine, cosine) = (TAU * k as f64 / sides as f64).sin_cos();
-            DVec3::new(radius * cosine, radius * sine, z)
-        })
     }
 
     fn rotation() -> DQuat {
@@ -157,15 +149,9 @@ mod tests {
     fn solids_with_faces_of_many_corners() {
         for (what, radii) in [("round", [1.0, 1.0]), ("jagged", [1.0, 0.6])] {
             assert_growth(what, 2_000, |sides| {
-                let jagged = |z: f64| {
-                    ring(sides, 1.0, z)
-                        .enumerate()
-                        .map(move |(k, p)| (p.with_z(0.0) * radii[k % 2]).with_z(z))
-                };
-                let vertices: Vec<DVec3> = jagged(0.0).chain(jagged(1.0)).collect();
-                let n = sides as u32;
-                let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
-                faces.extend((0..n).map(|k| vec![k, (k + 1) % n, n + (k + 1) % n, n + k]));
+                let outline = ring(sides, 1.0, 0.0).enumerate().map(|(k, p)| p * radii[k % 2]);
+                let outline: Vec<DVec3> = outline.collect();
+                let Mesh { vertices, faces } = extruded(&outline, [0.0, 1.0]);
                 let prism = Solid::from_mesh(&vertices, &faces).expect("a prism");
                 assert_eq!(prism.triangles().len(), 4 * sides - 4);
             });

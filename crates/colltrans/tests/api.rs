@@ -7,14 +7,15 @@ use colltrans::{
     QueryError, Separation, TopologyError, WhyFree, cast,
 };
 use colltrans_testkit::oracle::exact::Vector;
-use colltrans_testkit::oracle::settings::{FAMILIES, Setting, cuboid, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
+use colltrans_testkit::shapes::{Mesh, block, cuboid};
+
+use self::common::{at, body};
+
+mod common;
 
 fn cube() -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5))).expect("a body")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
+    body(&cuboid(DVec3::splat(0.5)).vertices)
 }
 
 #[test]
@@ -36,13 +37,13 @@ fn types_cross_threads() {
 fn points_are_checked() {
     assert_eq!(ConvexPolyhedron::from_points(&[]).unwrap_err(), BuildError::NoPoints);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let mut points = cuboid(DVec3::ONE);
+        let mut points = cuboid(DVec3::ONE).vertices;
         points[5].y = bad;
         let error = ConvexPolyhedron::from_points(&points).unwrap_err();
         assert!(matches!(error, BuildError::NotFinite { index: 5, .. }), "{error}");
     }
     for bad in [MAX_MAGNITUDE * 2.0, -MAX_MAGNITUDE * 2.0, MIN_MAGNITUDE / 2.0, 5e-324] {
-        let mut points = cuboid(DVec3::ONE);
+        let mut points = cuboid(DVec3::ONE).vertices;
         points[3].z = bad;
         let error = ConvexPolyhedron::from_points(&points).unwrap_err();
         let expected = BuildError::OutOfRange { index: 3, point: points[3] };
@@ -53,13 +54,9 @@ fn points_are_checked() {
     assert!(ConvexPolyhedron::from_points(&edge).is_ok());
 }
 
-const BOX_FACES: [[u32; 4]; 6] =
-    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-
 #[test]
 fn meshes_are_checked() {
-    let vertices = cuboid(DVec3::ONE);
-    let faces: Vec<Vec<u32>> = BOX_FACES.map(|f| f.to_vec()).to_vec();
+    let Mesh { vertices, faces } = cuboid(DVec3::ONE);
     let build =
         |vertices: &[DVec3], faces: &[Vec<u32>]| ConvexPolyhedron::from_mesh(vertices, faces, 0.0);
     let body = build(&vertices, &faces).expect("a box");
@@ -131,7 +128,7 @@ fn poses_compose() {
 
 #[test]
 fn directions_are_checked() {
-    let (cube, world, pose) = (cube(), Pose::IDENTITY, at(3.0, 0.0, 0.0));
+    let (cube, world, pose) = (cube(), Pose::IDENTITY, at([3.0, 0.0, 0.0]));
     for direction in [
         DVec3::ZERO,
         DVec3::new(f64::NAN, 1.0, 0.0),
@@ -159,7 +156,7 @@ fn directions_are_checked() {
 
 /// A cube in the world, and another one moved by `offset`.
 fn cubes(cube: &ConvexPolyhedron, offset: DVec3, direction: DVec3) -> Cast<'_> {
-    let pose = at(offset.x, offset.y, offset.z);
+    let pose = at([offset.x, offset.y, offset.z]);
     Cast::new(cube.at(Pose::IDENTITY), cube.at(pose), direction).expect("a query")
 }
 
@@ -275,10 +272,7 @@ fn matrices_are_taken_as_they_are() {
 
 #[test]
 fn tampered_certificates_are_refused() {
-    let corners: Vec<DVec3> = (0..8)
-        .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
-        .collect();
-    let cube = ConvexPolyhedron::from_points(&corners).unwrap();
+    let cube = body(&block(DVec3::ZERO, DVec3::ONE).vertices);
     let start = Pose::from_translation(DVec3::new(-3.0, 0.25, 0.125)).unwrap();
     let world = Pose::IDENTITY;
     let Outcome::Contact(contact) = cast(&cube, &start, &cube, &world, DVec3::X).unwrap() else {

@@ -1,14 +1,14 @@
 //! Bodies of lower dimension, and bodies that are almost so.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solver};
+use colltrans::{Cast, Outcome, Pose, Solver};
 use colltrans_testkit::oracle::check::Judge;
-use colltrans_testkit::oracle::settings::cuboid;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::cuboid;
 
-fn body(points: &[DVec3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(points).expect("a body")
-}
+use self::common::body;
+
+mod common;
 
 /// The outcome, the same from all solvers and approved by the oracle.
 fn cast(moving: &[DVec3], fixed: &[DVec3], offset: DVec3, direction: DVec3) -> Outcome {
@@ -54,14 +54,14 @@ const TRIANGLE: [DVec3; 3] = [DVec3::NEG_X, DVec3::X, DVec3::Y];
 #[test]
 fn dimensions_are_recognised() {
     let line = [DVec3::ZERO, DVec3::ONE, DVec3::ONE * 3.0, DVec3::ONE * 2.0];
-    let square = cuboid(DVec3::new(1.0, 2.0, 0.0));
+    let square = cuboid(DVec3::new(1.0, 2.0, 0.0)).vertices;
     let expected: [(&[DVec3], u8, usize, usize); 6] = [
         (&POINT, 0, 1, 0),
         (&[DVec3::ONE; 5], 0, 1, 0),
         (&line, 1, 2, 0),
         (&TRIANGLE, 2, 3, 2),
         (&square, 2, 4, 2),
-        (&cuboid(DVec3::ONE), 3, 8, 6),
+        (&cuboid(DVec3::ONE).vertices, 3, 8, 6),
     ];
     for (points, dimension, vertices, faces) in expected {
         let body = body(points);
@@ -81,7 +81,7 @@ fn point_onto_point() {
 
 #[test]
 fn point_onto_solid() {
-    let cube = cuboid(DVec3::ONE);
+    let cube = cuboid(DVec3::ONE).vertices;
     let hit = cast(&POINT, &cube, DVec3::new(0.25, 0.5, 4.0), DVec3::Z);
     let Outcome::Contact(contact) = hit else { panic!("{hit:?}") };
     assert!((contact.translation - 3.0).abs() <= contact.certificate.rounding);
@@ -118,7 +118,7 @@ fn triangles_edge_on_and_face_on() {
     assert!((contact.translation - 2.0).abs() <= contact.certificate.rounding);
     let edge_on = cast(&TRIANGLE, &TRIANGLE, DVec3::new(0.0, 4.0, 0.0), DVec3::Y);
     assert!(matches!(edge_on, Outcome::Grazing(_)), "{edge_on:?}");
-    let knife = cast(&TRIANGLE, &cuboid(DVec3::ONE), DVec3::new(0.0, 4.0, 0.0), DVec3::Y);
+    let knife = cast(&TRIANGLE, &cuboid(DVec3::ONE).vertices, DVec3::new(0.0, 4.0, 0.0), DVec3::Y);
     let Outcome::Contact(contact) = knife else { panic!("{knife:?}") };
     assert!((contact.translation - 2.0).abs() <= contact.certificate.rounding);
 }
@@ -130,10 +130,13 @@ fn thin_slabs() {
     for thickness in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-18, 1e-30, 0.0] {
         for _ in 0..20 {
             let rotation = rng.rotation();
-            let slab: Vec<DVec3> =
-                cuboid(DVec3::new(1.0, 1.0, thickness)).into_iter().map(|v| rotation * v).collect();
+            let slab: Vec<DVec3> = cuboid(DVec3::new(1.0, 1.0, thickness))
+                .vertices
+                .into_iter()
+                .map(|v| rotation * v)
+                .collect();
             let offset = rng.vector() * 0.2 + DVec3::Z * 5.0;
-            let outcome = cast(&slab, &cuboid(DVec3::ONE), offset, DVec3::Z);
+            let outcome = cast(&slab, &cuboid(DVec3::ONE).vertices, offset, DVec3::Z);
             assert!(matches!(outcome, Outcome::Contact(_)), "{thickness:e}: {outcome:?}");
         }
     }
@@ -252,7 +255,8 @@ fn magnitudes_at_the_limits() {
     let turn = DQuat::from_xyzw(0.5, 0.5, 0.5, 0.5);
     for exponent in [-190, -100, 0, 100, 190] {
         let size = 2.0_f64.powi(exponent);
-        let cube: Vec<DVec3> = cuboid(DVec3::splat(size)).into_iter().map(|v| turn * v).collect();
+        let cube: Vec<DVec3> =
+            cuboid(DVec3::splat(size)).vertices.into_iter().map(|v| turn * v).collect();
         let outcome = cast(&cube, &cube, DVec3::new(0.25, 0.5, 5.0) * size, DVec3::Z * size);
         let error = (translation(&outcome) - 3.0).abs();
         assert!(error < 1e-13, "2^{exponent}: {error:e}");

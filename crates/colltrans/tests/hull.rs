@@ -6,24 +6,15 @@ use colltrans::{Cast, Outcome, Pose};
 use colltrans_testkit::oracle::input;
 use colltrans_testkit::oracle::settings::{NEARLY_FLAT, narrow_rings, setting};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::of_bits;
+use colltrans_testkit::shapes::{Mesh, block, cone, grid, of_bits, prism, ring, ring_points};
 use proptest::prelude::*;
 
-fn grid(counts: [usize; 3], spacing: DVec3) -> Vec<DVec3> {
-    let mut points = Vec::new();
-    for i in 0..counts[0] {
-        for j in 0..counts[1] {
-            for k in 0..counts[2] {
-                points.push(DVec3::new(i as f64, j as f64, k as f64) * spacing);
-            }
-        }
-    }
-    points
-}
+use self::common::faces;
+
+mod common;
 
 fn face_sizes(body: &ConvexPolyhedron) -> Vec<usize> {
-    let mut sizes: Vec<usize> =
-        (0..body.face_count() as u32).map(|f| body.face_vertices(f).len()).collect();
+    let mut sizes: Vec<usize> = faces(body).iter().map(Vec::len).collect();
     sizes.sort_unstable();
     sizes
 }
@@ -126,36 +117,22 @@ fn caps_with_many_corners_are_one_face() {
     let mut random = Random::new(4);
     for sides in [3, 7, 64, 1000] {
         let rotation = random.rotation();
-        let ring = |z: f64| {
-            (0..sides).map(move |k| {
-                let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
-                DVec3::new(angle.cos(), angle.sin(), z)
-            })
-        };
-        let prism: Vec<DVec3> = ring(0.0).chain(ring(0.7)).map(|p| rotation * p).collect();
+        let prism: Vec<DVec3> =
+            ring(sides, 1.0, 0.0).chain(ring(sides, 1.0, 0.7)).map(|p| rotation * p).collect();
         let body = ConvexPolyhedron::from_points(&prism).unwrap();
-        assert_eq!(body.face_count(), sides as usize + 2);
-        assert_eq!(face_sizes(&body)[sides as usize + 1], (sides as usize).max(4));
+        assert_eq!(body.face_count(), sides + 2);
+        assert_eq!(face_sizes(&body)[sides + 1], sides.max(4));
         check(&body, &prism);
-        let cone: Vec<DVec3> = ring(0.0).chain([DVec3::Z]).map(|p| rotation * p).collect();
+        let cone = cone(sides, [0.0, 1.0]).mapped(|p| rotation * p).vertices;
         let body = ConvexPolyhedron::from_points(&cone).unwrap();
-        assert_eq!(body.face_count(), sides as usize + 1);
+        assert_eq!(body.face_count(), sides + 1);
         check(&body, &cone);
     }
 }
 
 /// Vertices on an ellipsoid in rings: all faces but those at the poles are trapezoids.
-fn rings(count: usize, per_ring: usize, axes: DVec3) -> Vec<DVec3> {
-    let mut points = vec![DVec3::Z * axes.z, DVec3::NEG_Z * axes.z];
-    for i in 1..=count {
-        let polar = std::f64::consts::PI * i as f64 / (count + 1) as f64;
-        for j in 0..per_ring {
-            let angle = std::f64::consts::TAU * j as f64 / per_ring as f64;
-            let around = DVec3::new(angle.cos(), angle.sin(), 0.0) * polar.sin();
-            points.push((around + DVec3::Z * polar.cos()) * axes);
-        }
-    }
-    points
+fn rings(count: u32, per_ring: u32, axes: DVec3) -> Vec<DVec3> {
+    ring_points(per_ring, count, 0.0).into_iter().map(|v| v * axes).collect()
 }
 
 #[test]
@@ -170,7 +147,10 @@ fn ring_ellipsoids_have_trapezoids() {
         assert_eq!(body.vertices().len(), points.len());
         let sizes = face_sizes(&body);
         let triangles = sizes.iter().filter(|&&s| s == 3).count();
-        assert_eq!((triangles, sizes.len()), (2 * per_ring, per_ring * (count + 1)));
+        assert_eq!(
+            (triangles, sizes.len()),
+            (2 * per_ring as usize, (per_ring * (count + 1)) as usize)
+        );
         check(&body, &points);
     }
 }
@@ -207,35 +187,28 @@ fn bad_points_are_named() {
     assert_eq!(ConvexPolyhedron::from_points(&[]).unwrap_err(), BuildError::NoPoints);
 }
 
-const CUBE_FACES: [[u32; 4]; 6] =
-    [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
-
-fn cube() -> Vec<DVec3> {
-    grid([2, 2, 2], DVec3::ONE)
+fn cube() -> Mesh {
+    block(DVec3::ZERO, DVec3::ONE)
 }
 
 #[test]
 fn meshes_are_checked() {
-    let body = ConvexPolyhedron::from_mesh(&cube(), &CUBE_FACES, 0.0).unwrap();
+    let Mesh { vertices, faces } = cube();
+    let body = ConvexPolyhedron::from_mesh(&vertices, &faces, 0.0).unwrap();
     assert_eq!((body.vertices().len(), body.face_count()), (8, 6));
     assert!((body.volume() - 1.0).abs() < 1e-15);
-    let open = &CUBE_FACES[..5];
     assert!(matches!(
-        ConvexPolyhedron::from_mesh(&cube(), open, 0.0),
+        ConvexPolyhedron::from_mesh(&vertices, &faces[..5], 0.0),
         Err(BuildError::Topology(TopologyError::OpenEdge { .. }))
     ));
-    let inverted = CUBE_FACES.map(|mut f| {
-        f.reverse();
-        f
-    });
     assert!(matches!(
-        ConvexPolyhedron::from_mesh(&cube(), &inverted, 0.0),
+        ConvexPolyhedron::from_mesh(&vertices, &cube().reversed().faces, 0.0),
         Err(BuildError::InsideOut { signed_volume }) if (signed_volume + 1.0).abs() < 1e-12
     ));
-    let mut far = CUBE_FACES;
+    let mut far = faces;
     far[0][0] = 99;
     assert!(matches!(
-        ConvexPolyhedron::from_mesh(&cube(), &far, 0.0),
+        ConvexPolyhedron::from_mesh(&vertices, &far, 0.0),
         Err(BuildError::Topology(TopologyError::UnknownVertex {
             face: 0,
             vertex: 99,
@@ -247,11 +220,9 @@ fn meshes_are_checked() {
 #[test]
 fn a_dent_is_measured() {
     // The lid is a fan around its centre, pushed in by 0.1.
-    let mut points = cube();
+    let Mesh { vertices: mut points, mut faces } = cube();
     points.push(DVec3::new(0.5, 0.5, 0.9));
-    let mut faces: Vec<Vec<u32>> =
-        CUBE_FACES.iter().filter(|f| **f != CUBE_FACES[5]).map(|f| f.to_vec()).collect();
-    let lid = CUBE_FACES[5];
+    let lid = faces.remove(1);
     for k in 0..4 {
         faces.push(vec![lid[k], lid[(k + 1) % 4], 8]);
     }
@@ -269,10 +240,9 @@ fn a_dent_is_measured() {
 
 #[test]
 fn unused_vertices_are_ignored_and_indices_kept() {
-    let mut points = vec![DVec3::splat(9.0)];
-    points.extend(cube());
-    let faces = CUBE_FACES.map(|f| f.map(|v| v + 1));
-    let body = ConvexPolyhedron::from_mesh(&points, &faces, 0.0).unwrap();
+    let first = Mesh::of_points(vec![DVec3::splat(9.0)]);
+    let Mesh { vertices, faces } = first.joined(&cube());
+    let body = ConvexPolyhedron::from_mesh(&vertices, &faces, 0.0).unwrap();
     assert_eq!(body.input_indices(), [1, 2, 3, 4, 5, 6, 7, 8]);
 }
 
@@ -307,15 +277,14 @@ proptest! {
 #[test]
 fn a_large_sphere_and_its_mesh() {
     let mut random = Random::new(7);
-    let count: usize = if cfg!(debug_assertions) { 5_000 } else { 200_000 };
+    let count: u32 = if cfg!(debug_assertions) { 5_000 } else { 200_000 };
     let points: Vec<DVec3> = (0..count).map(|_| random.direction()).collect();
     let in_rings =
         rings(count.isqrt() * 7 / 10, count.isqrt() * 14 / 10, DVec3::new(0.7, 1.0, 1.3));
     for points in [points, in_rings] {
         let body = ConvexPolyhedron::from_points(&points).unwrap();
         assert!(body.vertices().len() > points.len() * 999 / 1000);
-        let faces: Vec<Vec<u32>> =
-            (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
+        let faces = faces(&body);
         let again = ConvexPolyhedron::from_mesh(body.vertices(), &faces, 0.0).unwrap();
         assert_eq!(again.vertices().len(), body.vertices().len());
     }
@@ -339,8 +308,7 @@ fn single_precision_meshes_are_nearly_convex() {
     let (count, per_ring) = if cfg!(debug_assertions) { (20, 40) } else { (100, 200) };
     let exact = rings(count, per_ring, DVec3::new(0.7, 1.3, 1.0));
     let body = ConvexPolyhedron::from_points(&exact).unwrap();
-    let faces: Vec<Vec<u32>> =
-        (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
+    let faces = faces(&body);
     let rounded: Vec<DVec3> = body
         .vertices()
         .iter()
@@ -356,12 +324,7 @@ fn many_points_on_a_flat_circle() {
     let count = 100_000;
     let mut random = Random::new(9);
     let rotation = random.rotation();
-    let points: Vec<DVec3> = (0..count)
-        .map(|k| {
-            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(count);
-            rotation * DVec3::new(angle.cos(), angle.sin(), 0.0)
-        })
-        .collect();
+    let points: Vec<DVec3> = ring(count, 1.0, 0.0).map(|corner| rotation * corner).collect();
     let body = ConvexPolyhedron::from_points(&points).unwrap();
     assert_eq!((body.dimension(), body.vertices().len()), (2, points.len()));
     assert!(body.hull_error() < 1e-13);
@@ -445,15 +408,9 @@ fn saved_clouds_have_hulls() {
 #[test]
 fn exactly_planar_caps_are_one_face() {
     let sides = 8_000;
-    let ring = |z: f64| {
-        (0..sides).map(move |k| {
-            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
-            DVec3::new(angle.cos(), angle.sin(), z)
-        })
-    };
-    let prism: Vec<DVec3> = ring(0.0).chain(ring(1.0)).collect();
+    let prism = prism(sides, 0.5).vertices;
     let body = ConvexPolyhedron::from_points(&prism).unwrap();
-    assert_eq!(body.face_count(), sides as usize + 2);
+    assert_eq!(body.face_count(), sides + 2);
 }
 
 /// Bent outwards at every edge and every face away from its middle, and yet not convex: it goes
@@ -482,8 +439,7 @@ fn convex_meshes_give_the_hull_of_their_vertices() {
     for count in [4, 9, 40, 400] {
         let points: Vec<DVec3> = (0..count).map(|_| random.direction()).collect();
         let hull = ConvexPolyhedron::from_points(&points).unwrap();
-        let faces: Vec<Vec<u32>> =
-            (0..hull.face_count() as u32).map(|f| hull.face_vertices(f).collect()).collect();
+        let faces = faces(&hull);
         let again = ConvexPolyhedron::from_mesh(hull.vertices(), &faces, 0.0).unwrap();
         let faces_of = |body: &ConvexPolyhedron| {
             let name = |v: u32| body.vertices()[v as usize].to_array().map(f64::to_bits);
@@ -532,11 +488,7 @@ fn faces_have_no_corner_that_points_inwards() {
 /// A disc of 24 corners, a few roundings thick because it was modelled 300 away from where it is.
 fn recentred_disc(random: &mut Random) -> Vec<DVec3> {
     let (rotation, far) = (random.rotation(), random.direction() * 300.0);
-    let corner = |k: i32| {
-        let angle = std::f64::consts::TAU * f64::from(k) / 24.0;
-        rotation * DVec3::new(angle.cos(), angle.sin(), 0.0)
-    };
-    (0..24).map(|k| corner(k) + far - far).collect()
+    ring(24, 1.0, 0.0).map(|corner| rotation * corner + far - far).collect()
 }
 
 #[test]

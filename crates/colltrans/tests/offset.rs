@@ -10,12 +10,12 @@ use colltrans_testkit::shapes::{
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 
+use self::common::body;
+
+mod common;
+
 /// What is promised of planes, as a share of the largest coordinate.
 const PROMISED: f64 = 1.0 / (1_u64 << 40) as f64;
-
-fn hull(points: &[DVec3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(points).expect("points")
-}
 
 fn size(body: &ConvexPolyhedron) -> f64 {
     body.vertices().iter().map(|v| v.abs().max_element()).fold(0.0, f64::max)
@@ -78,7 +78,7 @@ fn leaning_box(random: &mut Random) -> ConvexPolyhedron {
         let [a, b, c] = [k & 1, 2 + (k >> 1 & 1), 4 + (k >> 2)].map(|p| planes[p]);
         DMat3::from_cols(a.0, b.0, c.0).transpose().inverse() * DVec3::new(a.1, b.1, c.1)
     };
-    hull(&(0..8).map(corner).collect::<Vec<_>>())
+    body(&(0..8).map(corner).collect::<Vec<_>>())
 }
 
 /// Every vertex lies `inwards` deep below all planes, and faces that did not vanish are as far out as
@@ -146,7 +146,7 @@ fn planes_move_by_the_amount_and_no_farther() {
         for (stretch, turn, by) in placings(&mut random) {
             let placed: Vec<DVec3> =
                 mesh.vertices.iter().map(|v| turn * (*v * stretch) + by).collect();
-            let body = hull(&placed);
+            let body = body(&placed);
             let room = fits(&body);
             for share in [1e-6, 0.01, 0.3, 0.9] {
                 check(&body, share * room);
@@ -198,14 +198,14 @@ proptest! {
         seed in any::<u64>(),
         share in -2.0..0.95_f64,
     ) {
-        let body = hull(&random_hull(n, &mut Random::new(seed)).vertices);
+        let body = body(&random_hull(n, &mut Random::new(seed)).vertices);
         check_by_triples(&body, share * fits(&body));
     }
 
     /// Near the largest amount there is; what a body that is refused holds is said to half.
     #[test]
     fn the_largest_ball_decides(n in 4_usize..40, seed in any::<u64>()) {
-        let body = hull(&random_hull(n, &mut Random::new(seed)).vertices);
+        let body = body(&random_hull(n, &mut Random::new(seed)).vertices);
         let (mut low, mut high) = (fits(&body), 2.001 * fits(&body));
         prop_assert!(body.shrunk(low * 0.999).is_ok() && body.shrunk(high).is_err());
         for _ in 0..30 {
@@ -246,8 +246,8 @@ proptest! {
         share in 1e-6..0.01_f64,
         grows in any::<bool>(),
     ) {
-        let rough = hull(&random_hull(n, &mut Random::new(seed)).vertices);
-        let body = hull(rough.grown(0.5).expect("an amount").0.vertices());
+        let rough = body(&random_hull(n, &mut Random::new(seed)).vertices);
+        let body = body(rough.grown(0.5).expect("an amount").0.vertices());
         prop_assume!(body.input_indices().iter().copied().eq(0..body.vertices().len() as u32));
         let amount = share * fits(&body);
         let solid = Solid::from_convex(&body).expect("a body");
@@ -345,7 +345,7 @@ fn a_saved_cast_of_shrunk_bodies_is_a_clearance_with_a_tolerance() {
         [0xc023_855f_2f52_60b0, 0x401e_6e4e_93f7_a16a, 0xc02f_6c5a_fdc3_d27b],
         [0x3fd8_e209_7841_6c6a, 0xbfd0_967f_372e_a4b4, 0x3fed_1e33_5fc0_41c3],
     ]);
-    let bodies = [hull(&moving), hull(&fixed)];
+    let bodies = [body(&moving), body(&fixed)];
     assert_eq!(compare_shrunk(&bodies, placed[0], placed[1], 1e-6), Ok(true));
 }
 
@@ -356,7 +356,7 @@ fn boxes_prisms_and_the_solids_of_them() {
         [cuboid(DVec3::ONE), cuboid(DVec3::new(1.0, 2.0, 30.0)), prism(3, 1.0), prism(9, 0.5)]
     {
         let turn = DQuat::from_rotation_arc(DVec3::Z, random.direction());
-        let body = hull(&mesh.vertices.iter().map(|v| turn * *v).collect::<Vec<_>>());
+        let body = body(&mesh.vertices.iter().map(|v| turn * *v).collect::<Vec<_>>());
         let solid = Solid::from_convex(&body).expect("a body");
         for amount in [1e-3, 0.1, 0.24] {
             let pairs = [
@@ -388,7 +388,7 @@ fn faces_too_small_to_stay_vanish() {
     let mut corners = cuboid(DVec3::ONE).vertices;
     corners.retain(|v| *v != DVec3::ONE);
     corners.extend([DVec3::X, DVec3::Y, DVec3::Z].map(|e| DVec3::ONE - e * 0.1));
-    let cut = hull(&corners);
+    let cut = body(&corners);
     assert_eq!(cut.face_count(), 7);
     for amount in [0.01, 0.1, 0.5] {
         assert_eq!(cut.grown(amount).expect("an amount").0.face_count(), 7);
@@ -430,9 +430,9 @@ fn bodies_too_thin_are_refused_and_say_what_would_fit() {
 
 #[test]
 fn bodies_of_lower_dimension() {
-    let point = hull(&[DVec3::ONE]);
-    let segment = hull(&[DVec3::ZERO, DVec3::X]);
-    let square = hull(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y]);
+    let point = body(&[DVec3::ONE]);
+    let segment = body(&[DVec3::ZERO, DVec3::X]);
+    let square = body(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y]);
     for body in [&point, &segment, &square] {
         assert!(matches!(body.shrunk(0.1), Err(BuildError::TooThin { fits: 0.0, .. })));
         assert_eq!(body.shrunk(0.0).expect("itself").0.vertices(), body.vertices());
@@ -445,7 +445,7 @@ fn bodies_of_lower_dimension() {
     let mut random = Random::new(3);
     for amount in [1e-6, 0.25, 50.0] {
         let turn = DQuat::from_rotation_arc(DVec3::Z, random.direction());
-        let turned = hull(&square.vertices().iter().map(|v| turn * *v).collect::<Vec<_>>());
+        let turned = body(&square.vertices().iter().map(|v| turn * *v).collect::<Vec<_>>());
         let plate = turned.grown(amount).expect("an amount").0;
         let side = 1.0 + 2.0 * amount;
         assert!((plate.volume() / (side * side * 2.0 * amount) - 1.0).abs() < 1e-9);
@@ -460,7 +460,7 @@ fn bodies_of_lower_dimension() {
 
 #[test]
 fn large_bodies_shrink_and_grow() {
-    let body = hull(&random_hull(100_000, &mut Random::new(9)).vertices);
+    let body = body(&random_hull(100_000, &mut Random::new(9)).vertices);
     let made = [body.shrunk(0.1).expect("it fits"), body.grown(0.1).expect("an amount")];
     assert!(made[0].0.volume() < body.volume() && body.volume() < made[1].0.volume());
     // Grown, all vertices of more than three faces are split.

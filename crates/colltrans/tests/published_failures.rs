@@ -5,15 +5,11 @@ use std::collections::HashMap;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Contact, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_testkit::oracle::check::Judge;
-use colltrans_testkit::oracle::settings::cuboid;
+use colltrans_testkit::shapes::{cone, cuboid};
 
-fn body(points: &[DVec3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(points).expect("a body")
-}
+use self::common::{at, body};
 
-fn at(translation: DVec3) -> Pose {
-    Pose::from_translation(translation).expect("a pose")
-}
+mod common;
 
 /// The contact of both solvers, checked against the exact one.
 fn contact(
@@ -89,7 +85,7 @@ fn ball_onto_large_floors() {
     assert_eq!(ball.vertices().len(), 162);
     let lowest = points.iter().map(|v| v.y).fold(f64::INFINITY, f64::min);
     for half in [5.0, 50.0, 500.0, 5000.0] {
-        let floor = body(&cuboid(DVec3::new(half, 0.5, half)));
+        let floor = body(&cuboid(DVec3::new(half, 0.5, half)).vertices);
         let floor_pose = at(DVec3::NEG_Y * 0.5);
         for i in 0..400 {
             let height = 1.177 + f64::from(i) * 5e-5;
@@ -106,8 +102,8 @@ fn ball_onto_large_floors() {
 /// f32 parry 0.31.1 gives 1.16031.
 #[test]
 fn turned_box_onto_a_wide_floor() {
-    let moving = body(&cuboid(DVec3::new(0.3, 0.5, 0.4)));
-    let floor = body(&cuboid(DVec3::new(500.0, 1.0, 500.0)));
+    let moving = body(&cuboid(DVec3::new(0.3, 0.5, 0.4)).vertices);
+    let floor = body(&cuboid(DVec3::new(500.0, 1.0, 500.0)).vertices);
     let rotation = DQuat::from_xyzw(0.867_532_25, 0.490_253_03, 0.0, -0.083_903_54);
     let pose = Pose::new(rotation, DVec3::new(121.51959, 3.0, 133.5186)).expect("a pose");
     let found = contact(&moving, &pose, &floor, &Pose::IDENTITY, DVec3::NEG_Y, true);
@@ -117,7 +113,7 @@ fn turned_box_onto_a_wide_floor() {
 /// `PhysX` issue 610 reports 2.9975.
 #[test]
 fn box_falls_three_units_on_a_box() {
-    let cube = body(&cuboid(DVec3::splat(0.5)));
+    let cube = body(&cuboid(DVec3::splat(0.5)).vertices);
     let pose = at(DVec3::Y * 4.0);
     let found = contact(&cube, &pose, &cube, &Pose::IDENTITY, DVec3::NEG_Y, true);
     assert!((found.translation - 3.0).abs() <= found.certificate.rounding);
@@ -126,13 +122,11 @@ fn box_falls_three_units_on_a_box() {
 /// FCL with its default settings says 0.444.
 #[test]
 fn box_travels_onto_a_cone() {
-    let moving = body(&cuboid(DVec3::new(0.5, 1.0, 1.5)));
+    let moving = body(&cuboid(DVec3::new(0.5, 1.0, 1.5)).vertices);
     for sides in [8, 32, 128] {
-        let rim = (0..sides).map(|k| {
-            let angle_rad = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
-            DVec3::new(-angle_rad.cos(), angle_rad.sin(), -1.0)
-        });
-        let cone = body(&rim.chain([DVec3::Z]).collect::<Vec<_>>());
+        // A corner ahead, at exactly -1.
+        let cone = cone(sides, [-1.0, 1.0]).mapped(|v| v * DVec3::new(-1.0, 1.0, 1.0));
+        let cone = body(&cone.vertices);
         let pose = at(DVec3::X * -10.0);
         let found = contact(&moving, &pose, &cone, &Pose::IDENTITY, DVec3::X * 20.0, sides < 100);
         let error = (found.translation - 0.425).abs();

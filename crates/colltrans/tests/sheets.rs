@@ -1,26 +1,15 @@
 //! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{
-    Aabb, Bounded, Cast, Clearance, Pose, ShellKind, Solid, SolidOptions, StartOverlap,
-};
+use colltrans::{Aabb, Bounded, Cast, Clearance, Pose, ShellKind, Solid, SolidOptions, StartOverlap};
+use colltrans_testkit::shapes::{self, Mesh};
+
+use self::common::cuboid;
+
+mod common;
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
-}
-
-/// A box; with one of its sides left out, an open one.
-fn mesh(low: [f64; 3], high: [f64; 3]) -> (Vec<DVec3>, Vec<[u32; 4]>) {
-    let end = |i: usize, k: usize| if i >> k & 1 == 0 { low[k] } else { high[k] };
-    let vertices = (0..8).map(|i| v(end(i, 0), end(i, 1), end(i, 2))).collect();
-    let facets =
-        vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    (vertices, facets)
-}
-
-fn block(low: [f64; 3], high: [f64; 3]) -> Solid {
-    let (vertices, facets) = mesh(low, high);
-    Solid::from_mesh(&vertices, &facets).expect("a box")
 }
 
 /// A grid of `n` by `n` squares between four corners, each cut into two triangles.
@@ -65,7 +54,7 @@ fn scenes() -> Vec<Scene> {
         scenes.push(Scene { name, bodies: [moving.clone(), fixed.clone()], direction, wanted });
     };
     let (up, down) = ([0, 0, 1], [0, 0, -1]);
-    let cube = block([0.0; 3], [4.0; 3]);
+    let cube = cuboid([0.0; 3], [4.0; 3]);
     for (x, wanted) in
         [(2.0, At(2.0)), (1.3, At(2.0)), (0.0, Free), (4.0, Free), (-1e-9, Free), (1e-9, At(2.0))]
     {
@@ -243,7 +232,7 @@ fn scenes_with_names_turned() {
 #[test]
 fn classes_of_shells() {
     let count = |solid: &Solid| ShellKind::ALL.map(|kind| solid.report().count(kind));
-    let (vertices, facets) = mesh([0.0; 3], [2.0; 3]);
+    let Mesh { vertices, faces: facets } = shapes::block([0.0; 3], [2.0; 3]);
     let closed = Solid::from_open_mesh(&vertices, &facets).expect("a box");
     assert_eq!(count(&closed), [1, 0, 0]);
     assert!(closed.is_closed());
@@ -274,10 +263,10 @@ fn classes_of_shells() {
 
 #[test]
 fn closed_shells_keep_their_inside_beside_open_ones() {
-    let cube = block([0.0; 3], [4.0; 3]);
+    let cube = cuboid([0.0; 3], [4.0; 3]);
     let flag = sheet([[4.0, 2.0, 2.0], [8.0, 2.0, 2.0], [8.0, 2.0, 6.0], [4.0, 2.0, 6.0]], 1);
     let body = Solid::from_pieces([&cube, &flag]).expect("both");
-    let small = block([1.0; 3], [3.0; 3]);
+    let small = cuboid([1.0; 3], [3.0; 3]);
     let world = Pose::IDENTITY;
     let ask = |solid: &Solid, d| {
         let cast = Cast::new(solid.at(world), body.at(world), d).expect("a cast");
@@ -285,19 +274,19 @@ fn closed_shells_keep_their_inside_beside_open_ones() {
     };
     let (overlaps, depth, _) = ask(&small, DVec3::X);
     assert!(overlaps && depth.is_none());
-    let beside = block([5.0, 0.0, 0.0], [6.0, 1.0, 1.0]);
+    let beside = cuboid([5.0, 0.0, 0.0], [6.0, 1.0, 1.0]);
     let (overlaps, depth, found) = ask(&beside, DVec3::NEG_X);
     assert!(!overlaps && depth == Some(0.0) && matches(&found, At(1.0), 0.0), "{found:?}");
     // The flag stops it, from either side.
-    let ahead = block([5.0, 0.0, 3.0], [6.0, 1.0, 4.0]);
+    let ahead = cuboid([5.0, 0.0, 3.0], [6.0, 1.0, 4.0]);
     assert!(matches(&ask(&ahead, DVec3::Y).2, At(1.0), 0.0));
-    let behind = block([5.0, 3.0, 3.0], [6.0, 4.0, 4.0]);
+    let behind = cuboid([5.0, 3.0, 3.0], [6.0, 4.0, 4.0]);
     assert!(matches(&ask(&behind, DVec3::NEG_Y).2, At(1.0), 0.0));
 }
 
 #[test]
 fn sheets_are_neither_shrunk_nor_grown() {
-    let cube = block([0.0; 3], [4.0; 3]);
+    let cube = cuboid([0.0; 3], [4.0; 3]);
     let flag = sheet([[4.0, 4.0, 4.0], [8.0, 4.0, 4.0], [8.0, 4.0, 8.0], [4.0, 4.0, 8.0]], 2);
     let body = Solid::from_pieces([&cube, &flag]).expect("both");
     let (smaller, report) = body.shrunk(0.25).expect("an amount");
@@ -306,9 +295,8 @@ fn sheets_are_neither_shrunk_nor_grown() {
     let (larger, _) = flag.grown(0.25).expect("an amount");
     assert_eq!(larger.bounds(), flag.bounds());
     // In one mesh they have corners in common, which part.
-    let (mut vertices, facets) = mesh([0.0; 3], [4.0; 3]);
+    let Mesh { mut vertices, faces: mut facets } = shapes::block([0.0; 3], [4.0; 3]);
     vertices.extend([v(8.0, 0.0, 0.0), v(8.0, 0.0, 8.0)]);
-    let mut facets: Vec<Vec<u32>> = facets.iter().map(|f| f.to_vec()).collect();
     facets.push(vec![1, 8, 9]);
     let both = Solid::from_open_mesh(&vertices, &facets).expect("a cube with a flag");
     assert_eq!(both.report().count(ShellKind::Closed), 1);
@@ -334,7 +322,7 @@ fn sheets_are_neither_shrunk_nor_grown() {
 
 #[test]
 fn what_is_ignored_at_the_start_blocks_later() {
-    let (low, high) = (block([0.0; 3], [4.0, 4.0, 2.0]), block([0.0, 0.0, 6.0], [4.0, 4.0, 8.0]));
+    let (low, high) = (cuboid([0.0; 3], [4.0, 4.0, 2.0]), cuboid([0.0, 0.0, 6.0], [4.0, 4.0, 8.0]));
     let blocks = Solid::from_pieces([&low, &high]).expect("both");
     let stuck = sheet([[2.0, 1.0, 1.0], [2.0, 3.0, 1.0], [2.0, 3.0, 4.0], [2.0, 1.0, 4.0]], 2);
     let ask = |d| {
@@ -351,11 +339,10 @@ fn what_is_ignored_at_the_start_blocks_later() {
 #[test]
 fn a_cube_leaves_a_tray_upwards_only() {
     // A tray of sheets with a floor at 0 and walls up to 5, a cube of 2 in the middle of it.
-    let (vertices, facets) = mesh([-4.0, -4.0, 0.0], [4.0, 4.0, 5.0]);
-    let tray: Vec<[u32; 4]> =
-        facets.into_iter().enumerate().filter(|f| f.0 != 1).map(|f| f.1).collect();
+    let Mesh { vertices, faces: mut tray } = shapes::block([-4.0, -4.0, 0.0], [4.0, 4.0, 5.0]);
+    tray.remove(1);
     let tray = Solid::from_open_mesh(&vertices, &tray).expect("a tray");
-    let cube = block([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
+    let cube = cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
     let ask = |d: DVec3, back: bool| {
         let [a, b] = if back { [&tray, &cube] } else { [&cube, &tray] };
         let d = if back { -d } else { d };

@@ -3,12 +3,12 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver, WhyFree};
 use colltrans_testkit::oracle::check::Judge;
-use colltrans_testkit::oracle::settings::cuboid;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::cuboid;
 
 /// Cubes one above the other along x with a gap beside them, turned as a whole by `rotation`.
 fn slide(gap: f64, rotation: DQuat, start: DVec3, origin: DVec3) {
-    let cube = ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5))).expect("a body");
+    let cube = ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5)).vertices).expect("a body");
     let pose = |v: DVec3| Pose::new(rotation, origin + rotation * v).expect("a pose");
     let (fixed_pose, moving_pose) = (pose(DVec3::ZERO), pose(start + DVec3::Y * (1.0 + gap)));
     let direction = rotation * DVec3::X;
@@ -67,7 +67,7 @@ fn turned_cubes_far_from_the_origin() {
 /// No gap at all: the cubes touch all the way, and still nothing blocks.
 #[test]
 fn cubes_without_a_gap_graze() {
-    let cube = ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5))).expect("a body");
+    let cube = ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5)).vertices).expect("a body");
     let pose = Pose::from_translation(DVec3::new(-3.0, 1.0, 0.25)).expect("a pose");
     let world = Pose::IDENTITY;
     let outcome = colltrans::cast(&cube, &pose, &cube, &world, DVec3::X).expect("an answer");

@@ -4,17 +4,13 @@ use colltrans::{
     Bounded, Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
     SolidOverlap, StartOverlap,
 };
-use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DQuat, DVec3};
 
-fn solid(mesh: &Mesh) -> Solid {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a closed mesh")
-}
+use self::common::{cuboid, solid};
 
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
-    solid(&slab(DVec3::from_array(low), DVec3::from_array(high), [1; 3]))
-}
+mod common;
 
 /// In place, along a direction.
 fn cast<'a>(a: &'a Solid, b: &'a Solid, direction: DVec3) -> Cast<'a, Solid> {
@@ -304,17 +300,8 @@ fn thin_triangles_of_large_faces_are_told_apart() {
 fn a_prism_of_20_000_sides_round_and_jagged() {
     let sides = 20_000;
     for radii in [[1.0, 1.0], [1.0, 0.6]] {
-        let ring = |z: f64| {
-            (0..sides).map(move |k| {
-                let (sine, cosine) = (std::f64::consts::TAU * k as f64 / sides as f64).sin_cos();
-                (DVec3::new(cosine, sine, 0.0) * radii[k % 2]).with_z(z)
-            })
-        };
-        let vertices: Vec<DVec3> = ring(0.0).chain(ring(1.0)).collect();
-        let n = sides as u32;
-        let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
-        faces.extend((0..n).map(|k| vec![k, (k + 1) % n, n + (k + 1) % n, n + k]));
-        let prism = Solid::from_mesh(&vertices, &faces).expect("a prism");
+        let outline = ring(sides, 1.0, 0.0).enumerate().map(|(k, p)| p * radii[k % 2]);
+        let prism = solid(&extruded(&outline.collect::<Vec<_>>(), [0.0, 1.0]));
         assert_eq!(prism.triangles().len(), 4 * sides - 4);
         let area =
             0.5 * sides as f64 * radii[0] * radii[1] * (std::f64::consts::TAU / sides as f64).sin();

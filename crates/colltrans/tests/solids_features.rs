@@ -2,21 +2,13 @@
 //! triangulation, by the numbers of the input.
 
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Feature, Outcome, Pose, Solid, SolidContact};
-use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::shapes;
 use colltrans_testkit::solids::{bolt, pin, slab, washer};
 use glam::{DQuat, DVec3};
 
-fn solid(mesh: &Mesh) -> Solid {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a closed mesh")
-}
+use self::common::{at, cuboid, solid};
 
-fn cuboid(low: [f64; 3], high: [f64; 3], cells: [usize; 3]) -> Solid {
-    solid(&slab(DVec3::from_array(low), DVec3::from_array(high), cells))
-}
-
-fn at(translation: [f64; 3]) -> Pose {
-    Pose::from_translation(DVec3::from_array(translation)).expect("in range")
-}
+mod common;
 
 fn stopped(a: (&Solid, Pose), b: (&Solid, Pose), direction: DVec3) -> SolidContact {
     let cast = Cast::new(a.0.at(a.1), b.0.at(b.1), direction).expect("a direction");
@@ -34,7 +26,7 @@ fn places(feature: Feature, body: &Solid) -> Vec<DVec3> {
 
 /// A block, its bottom at 0, finely cut.
 fn table() -> Solid {
-    cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0], [5, 7, 2])
+    solid(&slab(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0), [5, 7, 2]))
 }
 
 /// A square pyramid on its tip, and the numbers of its tip and its base.
@@ -141,7 +133,7 @@ fn faces_on_faces_are_faces_with_their_holes() {
 #[test]
 fn facets_of_a_fine_cylinder_stay_facets() {
     let round = solid(&pin(1.0, [0.0, 1.0], 720));
-    let table = cuboid([3.0, -4.0, -4.0], [4.0, 4.0, 4.0], [1; 3]);
+    let table = cuboid([3.0, -4.0, -4.0], [4.0, 4.0, 4.0]);
     let turned = Pose::new(DQuat::from_rotation_z(0.001), DVec3::ZERO).expect("a rotation");
     let contact = stopped((&round, turned), (&table, Pose::IDENTITY), DVec3::X);
     let Feature::Edge(_) = contact.moving_feature else { panic!("{contact:?}") };
@@ -217,9 +209,7 @@ fn numbers_are_those_of_the_input() {
 fn convex_bodies_are_named_by_their_input_too() {
     // Points inside come first, so that own numbers are not those of the input.
     let mut points = vec![DVec3::splat(0.5); 3];
-    points.extend(
-        (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))),
-    );
+    points.extend(shapes::block(DVec3::ZERO, DVec3::ONE).vertices);
     let cube = ConvexPolyhedron::from_points(&points).expect("a cube");
     let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))
         .expect("a table");

@@ -5,13 +5,12 @@ use colltrans::{
     SolidOptions, StartOverlap, StartProof,
 };
 use colltrans_testkit::oracle::solids::proof::approve;
-use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::{bolt, bumpy_ball, slab, washer};
 use glam::{DQuat, DVec3};
 
-fn solid(mesh: &Mesh) -> Solid {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a closed mesh")
-}
+use self::common::solid;
+
+mod common;
 
 fn cast<'a>(a: &'a Solid, b: &'a Solid, from: DVec3, direction: DVec3) -> Cast<'a, Solid> {
     let pose = Pose::from_translation(from).expect("in range");

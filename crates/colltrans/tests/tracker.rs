@@ -7,10 +7,11 @@ use colltrans::{
 };
 use colltrans_testkit::oracle::check::same;
 use colltrans_testkit::oracle::sequences::Walk;
-use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, cuboid};
+use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
 use colltrans_testkit::oracle::tracked::{Lanes, track, without_steps};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{self, cuboid};
 use proptest::prelude::*;
 
 /// Walks of every family, each asked of every lane; one step in so many is solved by the oracle.
@@ -171,18 +172,14 @@ fn any_body() -> impl Strategy<Value = Vec<DVec3>> {
         4 => prop::collection::vec(vector.clone(), 4..14),
         1 => prop::collection::vec(vector.clone().prop_map(|v| v.with_z(0.0)), 3..8),
         1 => prop::collection::vec(vector.clone(), 1..3),
-        2 => vector.prop_map(|v| cuboid(v.abs() + 0.1)),
-        1 => (3..40_u32).prop_map(cone),
+        2 => vector.prop_map(|v| cuboid(v.abs() + 0.1).vertices),
+        1 => (3..40_usize).prop_map(cone),
     ]
 }
 
 /// A cone over a regular polygon: its apex has as many neighbours.
-fn cone(sides: u32) -> Vec<DVec3> {
-    let corner = |k: u32| {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
-        DVec3::new(cos, sin, 0.0)
-    };
-    (0..sides).map(corner).chain([DVec3::Z]).collect()
+fn cone(sides: usize) -> Vec<DVec3> {
+    shapes::cone(sides, [0.0, 1.0]).vertices
 }
 
 /// A setting with these bodies, one above the other.
@@ -244,7 +241,7 @@ fn cone_apex_with_many_neighbours() {
         let down = DQuat::from_rotation_x(std::f64::consts::PI);
         let bodies = setting.bodies().expect("bodies");
         let mut tracker = Tracker::new();
-        let mut rng = Random::new(sides.into());
+        let mut rng = Random::new(sides as u64);
         for apex in [0, 1].repeat(60) {
             // The apex leads, or the base.
             let rotation = if apex == 1 { down } else { DQuat::IDENTITY };
@@ -270,7 +267,7 @@ fn check<'a>(tracker: &mut Tracker<'a>, setting: &Setting, bodies: &'a Bodies) -
 
 #[test]
 fn a_clone_follows_another_future() {
-    let mut setting = above(cone(12), cuboid(DVec3::ONE));
+    let mut setting = above(cone(12), cuboid(DVec3::ONE).vertices);
     let bodies = setting.bodies().expect("bodies");
     let mut here = Tracker::new();
     check(&mut here, &setting, &bodies);
@@ -284,7 +281,7 @@ fn a_clone_follows_another_future() {
         check(&mut there, &other, &bodies);
     }
     // And neither has touched the other: the first alone has the same bits.
-    let mut setting = above(cone(12), cuboid(DVec3::ONE));
+    let mut setting = above(cone(12), cuboid(DVec3::ONE).vertices);
     let mut alone = Tracker::new();
     let mut rng = Random::new(1);
     check(&mut alone, &setting, &bodies);
@@ -297,7 +294,7 @@ fn a_clone_follows_another_future() {
 
 #[test]
 fn reset_forgets() {
-    let setting = above(cone(12), cuboid(DVec3::ONE));
+    let setting = above(cone(12), cuboid(DVec3::ONE).vertices);
     let bodies = setting.bodies().expect("bodies");
     let mut tracker = Tracker::new();
     let first = check(&mut tracker, &setting, &bodies);
@@ -320,8 +317,8 @@ fn a_focus_is_checked() {
 #[test]
 fn other_bodies_are_other_bodies() {
     let settings = [
-        above(cone(40), cuboid(DVec3::ONE)),
-        above(cuboid(DVec3::ONE), cone(40)),
+        above(cone(40), cuboid(DVec3::ONE).vertices),
+        above(cuboid(DVec3::ONE).vertices, cone(40)),
         above(cone(3), cone(5)),
     ];
     let bodies = settings.each_ref().map(|s| s.bodies().expect("bodies"));
@@ -376,7 +373,7 @@ fn the_same_sequence_gives_the_same_bits() {
 /// Asked again, a tracker finds the value again in the last digits, and needs no search for it.
 #[test]
 fn asked_again() {
-    let setting = above(cone(12), cuboid(DVec3::ONE));
+    let setting = above(cone(12), cuboid(DVec3::ONE).vertices);
     let bodies = setting.bodies().expect("bodies");
     let mut tracker = Tracker::new();
     check(&mut tracker, &setting, &bodies);
@@ -388,7 +385,7 @@ fn asked_again() {
 
 #[test]
 fn steps_are_those_of_all_casts() {
-    let setting = above(cone(12), cuboid(DVec3::ONE));
+    let setting = above(cone(12), cuboid(DVec3::ONE).vertices);
     let bodies = setting.bodies().expect("bodies");
     let mut tracker = Tracker::new();
     for _ in 0..3 {
@@ -416,7 +413,7 @@ fn steps_are_those_of_all_casts() {
 /// What the cast against the direction left is there for the next one that looks that way.
 #[test]
 fn both_ends_of_a_range_are_followed() {
-    let setting = above(cone(12), cuboid(DVec3::ONE));
+    let setting = above(cone(12), cuboid(DVec3::ONE).vertices);
     let bodies = setting.bodies().expect("bodies");
     let mut tracker = Tracker::new();
     let there = setting.query(&bodies).expect("a query");

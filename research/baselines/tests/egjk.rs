@@ -5,14 +5,15 @@
 //! the answer states and two noises, one for either bound; the nearest points are no more than one
 //! noise off their bodies; and the gap is at most [`GOAL`] of the size.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_baselines::Proximity;
 use colltrans_baselines::egjk::{Egjk, Steps, SupportSearch};
 use colltrans_testkit::oracle::distance::{Distance, distance_of_bodies, distance_of_point};
-use colltrans_testkit::oracle::settings::{FAMILIES, cuboid, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{cuboid, ring_sphere};
 use glam::{DQuat, DVec3};
 
 type Placed<'a> = (&'a ConvexPolyhedron, &'a Pose);
@@ -73,15 +74,7 @@ fn pose(rng: &mut Random, away: f64) -> Pose {
 
 /// Vertices of an ellipsoid in rings.
 fn rings(count: u32, semi_axes: DVec3) -> ConvexPolyhedron {
-    let ring = |k: u32| {
-        let polar_rad = PI * (f64::from(k) + 0.5) / f64::from(count);
-        (0..count).map(move |i| {
-            let angle_rad = TAU * f64::from(i) / f64::from(count);
-            let (sin, cos) = (polar_rad.sin(), polar_rad.cos());
-            DVec3::new(sin * angle_rad.cos(), sin * angle_rad.sin(), cos)
-        })
-    };
-    let points: Vec<DVec3> = (0..count).flat_map(ring).map(|v| v * semi_axes).collect();
+    let points = ring_sphere(count, count).mapped(|v| v * semi_axes).vertices;
     body(&points)
 }
 
@@ -170,7 +163,8 @@ fn one_inside_the_other() {
 fn boxes_on_a_grid() {
     let mut rng = Random::new(3);
     for case in 0..600 {
-        let (p, q) = (body(&cuboid(rng.grid(1, 3))), body(&cuboid(rng.grid(1, 3))));
+        let (p, q) =
+            (body(&cuboid(rng.grid(1, 3)).vertices), body(&cuboid(rng.grid(1, 3)).vertices));
         let place = |rng: &mut Random| {
             let turn = DQuat::from_rotation_z(TAU / 8.0 * rng.pick(&[0.0, 0.0, 1.0, 2.0]));
             Pose::new(turn, rng.grid(-5, 5)).unwrap()

@@ -7,10 +7,10 @@ use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_baselines::pqp::{Pqp, Soup, SoupError};
 use colltrans_testkit::oracle::distance::{distance, distance_of_bodies};
 use colltrans_testkit::oracle::exact::{Vector, place};
-use colltrans_testkit::oracle::settings::{FAMILIES, cuboid, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{self, cuboid};
 use glam::{DQuat, DVec3};
-use std::f64::consts::TAU;
 
 const GOAL: f64 = 1e-13;
 
@@ -196,11 +196,7 @@ fn body(points: &[DVec3]) -> ConvexPolyhedron {
 }
 
 fn prism(sides: u32, axes: DVec3) -> ConvexPolyhedron {
-    let corner = |k: u32, z: f64| {
-        let angle_rad = TAU * f64::from(k) / f64::from(sides);
-        axes * DVec3::new(angle_rad.cos(), angle_rad.sin(), z)
-    };
-    body(&(0..sides).flat_map(|k| [corner(k, -1.0), corner(k, 1.0)]).collect::<Vec<_>>())
+    body(&shapes::prism(sides as usize, 1.0).mapped(|v| v * axes).vertices)
 }
 
 #[test]
@@ -292,7 +288,7 @@ fn a_sequence_gives_what_single_queries_give() {
 
 #[test]
 fn a_common_displacement_costs_nothing() {
-    let cube = Soup::of_polyhedron(&body(&cuboid(DVec3::ONE)));
+    let cube = Soup::of_polyhedron(&body(&cuboid(DVec3::ONE).vertices));
     for displacement in [0.0, 1e6, 1e12] {
         let fixed_at = Pose::from_translation(DVec3::splat(displacement)).unwrap();
         let at = fixed_at.translated(DVec3::new(0.0, 3.0, 4.0)).unwrap();
@@ -305,7 +301,8 @@ fn a_common_displacement_costs_nothing() {
 
 #[test]
 fn surfaces_have_no_inside() {
-    let soups = [1.0, 3.0].map(|half| Soup::of_polyhedron(&body(&cuboid(DVec3::splat(half)))));
+    let soups =
+        [1.0, 3.0].map(|half| Soup::of_polyhedron(&body(&cuboid(DVec3::splat(half)).vertices)));
     let mut pqp = Pqp::new(&soups[0], &soups[1]);
     let at = Pose::from_translation(DVec3::X * 0.5).unwrap();
     assert_eq!(pqp.distance(&at, &Pose::IDENTITY).distance, 1.5);

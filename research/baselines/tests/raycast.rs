@@ -6,18 +6,17 @@
 //! others are within `2 e` of a different outcome, or nearly parallel to the contact plane; what
 //! becomes of those is counted and printed.
 
-use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
-
 use colltrans::{Cast, ConvexPolyhedron, Feature, Outcome, Pose, Solver};
 use colltrans_baselines::raycast::{Options, RayCast, RayCastAnswer};
 use colltrans_testkit::oracle::distance::{distance_of_bodies, distance_of_point};
 use colltrans_testkit::oracle::exact::Ratio;
-use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, cuboid, setting};
+use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
 use colltrans_testkit::oracle::simplex::collision_translation;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{cuboid, ring_sphere};
 use glam::{DQuat, DVec3};
+use std::collections::BTreeMap;
 
 /// How an answer compares with the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -137,15 +136,7 @@ fn check_point(setting: &Setting, bodies: &Bodies, answer: &RayCastAnswer) {
 
 /// Vertices of an ellipsoid in rings.
 fn rings(count: u32, semi_axes: DVec3) -> ConvexPolyhedron {
-    let ring = |k: u32| {
-        let polar_rad = PI * (f64::from(k) + 0.5) / f64::from(count);
-        (0..count).map(move |i| {
-            let angle_rad = TAU * f64::from(i) / f64::from(count);
-            let (sin, cos) = (polar_rad.sin(), polar_rad.cos());
-            DVec3::new(sin * angle_rad.cos(), sin * angle_rad.sin(), cos)
-        })
-    };
-    let points: Vec<DVec3> = (0..count).flat_map(ring).map(|v| v * semi_axes).collect();
+    let points = ring_sphere(count, count).mapped(|v| v * semi_axes).vertices;
     ConvexPolyhedron::from_points(&points).unwrap()
 }
 
@@ -198,7 +189,8 @@ fn large_bodies() {
 }
 
 fn boxes() -> [ConvexPolyhedron; 2] {
-    [0.5, 1.0].map(|half| ConvexPolyhedron::from_points(&cuboid(DVec3::splat(half))).unwrap())
+    [0.5, 1.0]
+        .map(|half| ConvexPolyhedron::from_points(&cuboid(DVec3::splat(half)).vertices).unwrap())
 }
 
 #[test]

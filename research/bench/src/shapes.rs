@@ -66,7 +66,7 @@ impl Shape {
             Self::Box => kit::cuboid(semi_axes),
             Self::Superellipsoid => scaled(kit::superellipsoid(n, 4.0), semi_axes),
             Self::HalfEllipsoid => scaled(kit::half_sphere(n), semi_axes),
-            Self::Prism => scaled(kit::prism((n / 2).max(3) as u32, 1.0), semi_axes),
+            Self::Prism => scaled(kit::prism((n / 2).max(3), 1.0), semi_axes),
         })
     }
 }

@@ -97,7 +97,7 @@ impl Kind {
             Self::Superellipsoid => superellipsoid(n, 4.0),
             Self::HalfEllipsoid => half_sphere(n),
             Self::RandomHull => random_hull(n, random),
-            Self::Prism => prism((n / 2).max(3) as u32, 0.5),
+            Self::Prism => prism((n / 2).max(3), 0.5),
         };
         let Mesh { vertices, faces } = mesh.mapped(|v| v * semi_axes);
         let built = if faces.is_empty() {

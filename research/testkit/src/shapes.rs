@@ -32,6 +32,40 @@ impl Mesh {
         }
         self
     }
+
+    /// The same, moved.
+    #[must_use]
+    pub fn translated(self, by: DVec3) -> Self {
+        self.mapped(|v| v + by)
+    }
+
+    /// Both, side by side.
+    #[must_use]
+    pub fn joined(mut self, other: &Self) -> Self {
+        let base = self.vertices.len() as u32;
+        self.vertices.extend_from_slice(&other.vertices);
+        self.faces.extend(other.faces.iter().map(|f| f.iter().map(|v| v + base).collect()));
+        self
+    }
+
+    /// The same, inside out.
+    #[must_use]
+    pub fn reversed(mut self) -> Self {
+        self.faces.iter_mut().for_each(|f| f.reverse());
+        self
+    }
+
+    /// The same, every face cut into triangles from its first corner.
+    #[must_use]
+    pub fn triangulated(mut self) -> Self {
+        self.faces = self.triangles().map(Vec::from).collect();
+        self
+    }
+
+    /// The corners of the triangles into which the faces are cut from their first corners.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        self.faces.iter().flat_map(|f| f[1..].windows(2).map(|pair| [f[0], pair[0], pair[1]]))
+    }
 }
 
 /// Points by the bits of their coordinates: cases that were found once, to the last digit.
@@ -102,32 +136,64 @@ pub fn half_sphere(n: usize) -> Mesh {
     Mesh::of_points(upper.map(|v| if v.z.abs() < 1e-9 { v.with_z(0.0) } else { v }).collect())
 }
 
+/// The corners of a regular polygon about `z`, the first one above the x axis.
+pub fn ring(sides: usize, radius: f64, z: f64) -> impl Iterator<Item = DVec3> + Clone {
+    (0..sides).map(move |k| {
+        let (sine, cosine) = (TAU * k as f64 / sides as f64).sin_cos();
+        DVec3::new(radius * cosine, radius * sine, z)
+    })
+}
+
 /// A prism over a regular polygon with `sides` corners of radius 1, from `z = -half_height` to
 /// `half_height`: the first corner on the x axis, bottom ring first.
-pub fn prism(sides: u32, half_height: f64) -> Mesh {
-    let ring = |z: f64| {
-        (0..sides).map(move |k| {
-            let angle_rad = TAU * f64::from(k) / f64::from(sides);
-            DVec3::new(angle_rad.cos(), angle_rad.sin(), z)
-        })
-    };
-    let vertices = ring(-half_height).chain(ring(half_height)).collect();
-    let mut faces: Vec<Vec<u32>> = vec![(0..sides).rev().collect(), (sides..2 * sides).collect()];
-    for k in 0..sides {
-        let next = (k + 1) % sides;
-        faces.push(vec![k, next, sides + next, sides + k]);
-    }
-    Mesh { vertices, faces }
+pub fn prism(sides: usize, half_height: f64) -> Mesh {
+    let outline: Vec<DVec3> = ring(sides, 1.0, 0.0).collect();
+    extruded(&outline, [-half_height, half_height])
+}
+
+/// What lies between two heights above and below a polygon, which runs counter-clockwise as seen from
+/// above: its corners at the lower height come first.
+pub fn extruded(outline: &[DVec3], heights: [f64; 2]) -> Mesh {
+    let n = outline.len() as u32;
+    let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+    faces.extend((0..n).map(|k| vec![k, (k + 1) % n, n + (k + 1) % n, n + k]));
+    let vertices = heights.into_iter().flat_map(|z| outline.iter().map(move |p| p.with_z(z)));
+    Mesh { vertices: vertices.collect(), faces }
+}
+
+/// A cone over a regular polygon of radius 1, from its base to its apex, which is the last vertex.
+pub fn cone(sides: usize, [base, apex]: [f64; 2]) -> Mesh {
+    let n = sides as u32;
+    let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect()];
+    faces.extend((0..n).map(|k| vec![k, (k + 1) % n, n]));
+    Mesh { vertices: ring(sides, 1.0, base).chain([DVec3::Z * apex]).collect(), faces }
 }
 
 /// The box from `-half` to `half`.
 pub fn cuboid(half: DVec3) -> Mesh {
-    let corner = |i: usize| {
-        half * DVec3::new([-1.0, 1.0][i & 1], [-1.0, 1.0][i >> 1 & 1], [-1.0, 1.0][i >> 2])
-    };
+    block(-half, half)
+}
+
+/// The box from one corner to the opposite one: bit `k` of a vertex says whether it is high along axis
+/// `k`. The faces look down and up `z`, `y` and `x`.
+pub fn block(low: impl Into<DVec3>, high: impl Into<DVec3>) -> Mesh {
+    let ends = [low.into(), high.into()];
+    let corner = |i: usize| DVec3::new(ends[i & 1].x, ends[i >> 1 & 1].y, ends[i >> 2].z);
     let faces =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     Mesh { vertices: (0..8).map(corner).collect(), faces: faces.map(Vec::from).to_vec() }
+}
+
+/// The points of a grid, so many along each axis, the first at the origin.
+pub fn grid(counts: [usize; 3], spacing: DVec3) -> Vec<DVec3> {
+    let mut points = Vec::new();
+    for i in 0..counts[0] {
+        for j in 0..counts[1] {
+            points
+                .extend((0..counts[2]).map(|k| DVec3::new(i as f64, j as f64, k as f64) * spacing));
+        }
+    }
+    points
 }
 
 /// Random points on the unit sphere: their hull has triangles only.
@@ -155,10 +221,19 @@ mod tests {
 
     #[test]
     fn meshes_are_closed() {
-        for mesh in [ring_sphere(5, 3), ring_sphere(3, 1), prism(3, 0.5), prism(24, 1.0)] {
+        for mesh in [
+            ring_sphere(5, 3),
+            prism(24, 1.0),
+            ring_sphere(3, 1),
+            prism(3, 0.5),
+            cone(7, [-1.0, 1.0]),
+        ] {
             assert_closed_and_outward(&mesh);
         }
-        assert_closed_and_outward(&cuboid(DVec3::new(1.0, 2.0, 3.0)));
+        let cuboid = cuboid(DVec3::new(1.0, 2.0, 3.0));
+        assert_closed_and_outward(&cuboid);
+        assert_eq!(cuboid.clone().triangulated().faces.len(), 12);
+        assert_closed_and_outward(&cuboid.triangulated());
     }
 
     #[test]

@@ -8,31 +8,6 @@ use glam::DVec3;
 
 use crate::shapes::Mesh;
 
-impl Mesh {
-    /// The same, moved.
-    #[must_use]
-    pub fn translated(mut self, by: DVec3) -> Self {
-        self.vertices.iter_mut().for_each(|v| *v += by);
-        self
-    }
-
-    /// Both, side by side.
-    #[must_use]
-    pub fn joined(mut self, other: &Self) -> Self {
-        let base = self.vertices.len() as u32;
-        self.vertices.extend_from_slice(&other.vertices);
-        self.faces.extend(other.faces.iter().map(|f| f.iter().map(|v| v + base).collect()));
-        self
-    }
-
-    /// The same, inside out.
-    #[must_use]
-    pub fn reversed(mut self) -> Self {
-        self.faces.iter_mut().for_each(|f| f.reverse());
-        self
-    }
-}
-
 /// A solid of revolution about `z`, with so many sides, from a closed profile of `[radius, height]`
 /// that runs counter-clockwise with radii to the right and heights upwards. Points at radius 0 are on
 /// the axis.
@@ -129,9 +104,7 @@ pub fn bumpy_ball(triangles: usize) -> Mesh {
         let waves = (7.0 * p.x + 1.0).sin() * (6.0 * p.y + 2.0).sin() * (5.0 * p.z).cos();
         p * (1.0 + 0.2 * waves + 0.02 * (31.0 * p.x).sin() * (29.0 * p.z).cos())
     };
-    let ball = cube.mapped(bump);
-    let halves = |f: &Vec<u32>| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]];
-    Mesh { faces: ball.faces.iter().flat_map(halves).collect(), vertices: ball.vertices }
+    cube.mapped(bump).triangulated()
 }
 
 /// A plate in `x, y` with a row of round holes, in long thin faces as CAD programs make them: every

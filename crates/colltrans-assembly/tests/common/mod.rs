@@ -1,22 +1,44 @@
 //! Parts of boxes.
 
 #![allow(dead_code, unreachable_pub, reason = "each test program uses a part of it")]
+#![allow(clippy::format_push_string, reason = "small files, written for people to read")]
+
+use std::io::Write;
 
 use colltrans_assembly::{Assembly, Part, Piece};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{Mesh, block};
 use glam::{DAffine3, DVec3};
 
 pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Piece {
-    let corner = |k: usize| {
-        DVec3::from_array(std::array::from_fn(|i| if k >> i & 1 == 1 { high[i] } else { low[i] }))
-    };
-    let faces =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    Piece {
-        vertices: (0..8).map(corner).collect(),
-        faces: faces.iter().map(|f| f.to_vec()).collect(),
-        world_from_piece: DAffine3::IDENTITY,
+    let Mesh { vertices, faces } = block(low, high);
+    Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY }
+}
+
+/// The box from the origin to a corner, as a mesh of a 3MF package.
+pub fn mesh_of_3mf(corner: [f64; 3]) -> String {
+    let mesh = block(DVec3::ZERO, corner);
+    let mut text = String::from("<mesh><vertices>");
+    for v in &mesh.vertices {
+        text += &format!("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", v.x, v.y, v.z);
     }
+    text += "</vertices><triangles>";
+    for [a, b, c] in mesh.triangles() {
+        text += &format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>");
+    }
+    text + "</triangles></mesh>"
+}
+
+/// A package of files, zipped.
+pub fn package<T: AsRef<str>>(files: &[(&str, T)]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut zip = zip::ZipWriter::new(&mut bytes);
+    for (name, text) in files {
+        zip.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
+        zip.write_all(text.as_ref().as_bytes()).unwrap();
+    }
+    zip.finish().unwrap();
+    bytes.into_inner()
 }
 
 /// Four walls and a floor around a hole, open at the top.

@@ -221,28 +221,16 @@ fn shells(report: &SolidReport) -> String {
 
 #[cfg(test)]
 mod tests {
+    use colltrans_testkit::shapes::block;
+
     use super::*;
 
     /// A cube of side 2 around a cavity of side 1, and beside it a cube of side 1 inside out.
     fn cubes() -> Mesh {
-        let sides: [[u32; 4]; 6] =
-            [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
-        let corners =
-            [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[x, y]| DVec3::new(x.into(), y.into(), 0.0));
-        let mut mesh = Mesh::new(Vec::new(), Vec::new());
-        for (side, low, turned) in [(2.0, 0.0, false), (1.0, 0.5, true), (1.0, 5.0, true)] {
-            let base = mesh.vertices.len() as u32;
-            for z in [DVec3::ZERO, DVec3::Z] {
-                mesh.vertices.extend(corners.map(|c| (c + z) * side + low));
-            }
-            mesh.faces.extend(sides.map(|mut face| {
-                if turned {
-                    face.reverse();
-                }
-                face.map(|v| v + base).to_vec()
-            }));
-        }
-        mesh
+        let cube = |low: f64, high: f64| block([low; 3], [high; 3]);
+        let all = cube(0.0, 2.0).joined(&cube(0.5, 1.5).reversed());
+        let all = all.joined(&cube(5.0, 6.0).reversed());
+        Mesh::new(all.vertices, all.faces)
     }
 
     #[test]

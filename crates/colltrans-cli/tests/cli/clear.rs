@@ -1,125 +1,79 @@
 //! `colltrans clear`, and solids in `batch` and `info`: small parts that the tests write.
 
-use std::f64::consts::TAU;
-use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Output;
 
+use colltrans_testkit::shapes::{Mesh, block, extruded, ring};
+use glam::DVec3;
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::support::{colltrans, data, json, stderr, stdout};
 
-type Point = [f64; 3];
-
-/// A surface of polygons.
-#[derive(Default)]
-struct Part {
-    vertices: Vec<Point>,
-    faces: Vec<Vec<usize>>,
+fn pin(radius: f64, sides: usize, z: [f64; 2]) -> Mesh {
+    extruded(&ring(sides, radius, 0.0).collect::<Vec<_>>(), z)
 }
 
-impl Part {
-    /// What lies between two outlines, which run counter-clockwise, from below to above.
-    fn prism(outline: &[[f64; 2]], z: [f64; 2]) -> Self {
-        let n = outline.len();
-        let mut part = Self::default();
-        for z in z {
-            part.vertices.extend(outline.iter().map(|[x, y]| [*x, *y, z]));
-        }
-        part.faces = (0..n).map(|i| vec![i, (i + 1) % n, n + (i + 1) % n, n + i]).collect();
-        part.faces.extend([(0..n).rev().collect(), (n..2 * n).collect()]);
-        part
+/// A plate from -4 to 4 with a round hole, a multiple of four sides.
+fn plate(radius: f64, sides: u32, z: [f64; 2]) -> Mesh {
+    let corners = [[4.0, 4.0], [-4.0, 4.0], [-4.0, -4.0], [4.0, -4.0]];
+    let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0)).into_iter();
+    let outline: Vec<DVec3> = corners.chain(ring(sides as usize, radius, 0.0)).collect();
+    let n = outline.len() as u32;
+    let Mesh { vertices, .. } = extruded(&outline, z);
+    let mut faces = Vec::new();
+    let rim = |i: u32| 4 + i % sides;
+    for i in 0..4 {
+        faces.push(vec![i, (i + 1) % 4, n + (i + 1) % 4, n + i]);
+        let after = rim((i + 1) * sides / 4);
+        faces.push(vec![n + i, n + (i + 1) % 4, n + after]);
+        faces.push(vec![i, after, (i + 1) % 4]);
     }
-
-    fn cuboid(low: Point, high: Point) -> Self {
-        let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
-        Self::prism(&corners, [low[2], high[2]])
+    for i in 0..sides {
+        let (corner, a, b) = (i * 4 / sides, rim(i), rim(i + 1));
+        faces.push(vec![b, a, n + a, n + b]);
+        faces.push(vec![n + corner, n + b, n + a]);
+        faces.push(vec![corner, a, b]);
     }
+    Mesh { vertices, faces }
+}
 
-    fn pin(radius: f64, sides: usize, z: [f64; 2]) -> Self {
-        Self::prism(&circle(radius, sides), z)
-    }
+fn write(mesh: &Mesh, folder: &Path, name: &str) {
+    let mesh = colltrans_mesh::Mesh::new(mesh.vertices.clone(), mesh.faces.clone());
+    std::fs::write(folder.join(name), colltrans_mesh::to_off(&mesh)).unwrap();
+}
 
-    /// A plate from -4 to 4 with a round hole, a multiple of four sides.
-    fn plate(radius: f64, sides: usize, z: [f64; 2]) -> Self {
-        let corners = [[4.0, 4.0], [-4.0, 4.0], [-4.0, -4.0], [4.0, -4.0]];
-        let outline: Vec<[f64; 2]> = corners.into_iter().chain(circle(radius, sides)).collect();
-        let n = outline.len();
-        let mut part = Self::default();
-        for z in z {
-            part.vertices.extend(outline.iter().map(|[x, y]| [*x, *y, z]));
-        }
-        let rim = |i: usize| 4 + i % sides;
-        for i in 0..4 {
-            part.faces.push(vec![i, (i + 1) % 4, n + (i + 1) % 4, n + i]);
-            let after = rim((i + 1) * sides / 4);
-            part.faces.push(vec![n + i, n + (i + 1) % 4, n + after]);
-            part.faces.push(vec![i, after, (i + 1) % 4]);
-        }
-        for i in 0..sides {
-            let (corner, a, b) = (i * 4 / sides, rim(i), rim(i + 1));
-            part.faces.push(vec![b, a, n + a, n + b]);
-            part.faces.push(vec![n + corner, n + b, n + a]);
-            part.faces.push(vec![corner, a, b]);
-        }
-        part
-    }
-
-    fn write(&self, folder: &Path, name: &str) {
-        let mut text = format!("OFF\n{} {} 0\n", self.vertices.len(), self.faces.len());
-        for [x, y, z] in &self.vertices {
-            let _ = writeln!(text, "{x} {y} {z}");
-        }
-        for face in &self.faces {
-            let corners: Vec<String> = face.iter().map(ToString::to_string).collect();
-            let _ = writeln!(text, "{} {}", face.len(), corners.join(" "));
-        }
-        std::fs::write(folder.join(name), text).unwrap();
-    }
-
-    /// Binary STL, in which each triangle has its corners to itself, off by up to one step of single
-    /// precision.
-    fn write_with_twins(&self, folder: &Path, name: &str) {
-        let fans = self.faces.iter().flat_map(|f| f[1..].windows(2).map(|e| [f[0], e[0], e[1]]));
-        let triangles: Vec<[usize; 3]> = fans.collect();
-        let mut bytes = vec![0; 80];
-        bytes.extend((triangles.len() as u32).to_le_bytes());
-        for (index, triangle) in triangles.iter().enumerate() {
-            bytes.extend([0; 12]);
-            for &corner in triangle {
-                for c in self.vertices[corner] {
-                    let c = c as f32;
-                    let twin = if index % 3 == 0 && c != 0.0 { c.next_up() } else { c };
-                    bytes.extend(twin.to_le_bytes());
-                }
+/// Binary STL, in which each triangle has its corners to itself, off by up to one step of single
+/// precision.
+fn write_with_twins(mesh: &Mesh, folder: &Path, name: &str) {
+    let triangles: Vec<[u32; 3]> = mesh.triangles().collect();
+    let mut bytes = vec![0; 80];
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for (index, triangle) in triangles.iter().enumerate() {
+        bytes.extend([0; 12]);
+        for &corner in triangle {
+            for c in mesh.vertices[corner as usize].to_array() {
+                let c = c as f32;
+                let twin = if index % 3 == 0 && c != 0.0 { c.next_up() } else { c };
+                bytes.extend(twin.to_le_bytes());
             }
-            bytes.extend([0; 2]);
         }
-        std::fs::write(folder.join(name), bytes).unwrap();
+        bytes.extend([0; 2]);
     }
-}
-
-fn circle(radius: f64, sides: usize) -> Vec<[f64; 2]> {
-    let corner = |i: usize| {
-        let (sin, cos) = (TAU * i as f64 / sides as f64).sin_cos();
-        [radius * cos, radius * sin]
-    };
-    (0..sides).map(corner).collect()
+    std::fs::write(folder.join(name), bytes).unwrap();
 }
 
 /// A pin of radius 1 above a plate whose hole has the same radius and other sides; a block; an open
 /// block; a file that is none.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    Part::pin(1.0, 32, [0.0, 6.0]).write(folder.path(), "pin.off");
-    Part::plate(1.0, 48, [-2.0, 0.0]).write(folder.path(), "plate.off");
-    let block = |low, high| Part::cuboid(low, high);
-    block([-1.0; 3], [1.0; 3]).write(folder.path(), "block.off");
-    block([-9.0, -9.0, -2.0], [9.0, 9.0, -1.0]).write(folder.path(), "table.off");
+    write(&pin(1.0, 32, [0.0, 6.0]), folder.path(), "pin.off");
+    write(&plate(1.0, 48, [-2.0, 0.0]), folder.path(), "plate.off");
+    write(&block([-1.0; 3], [1.0; 3]), folder.path(), "block.off");
+    write(&block([-9.0, -9.0, -2.0], [9.0, 9.0, -1.0]), folder.path(), "table.off");
     let mut open = block([-1.0; 3], [1.0; 3]);
     open.faces.pop();
-    open.write(folder.path(), "open.off");
+    write(&open, folder.path(), "open.off");
     std::fs::write(folder.path().join("broken.off"), "OFF\n3 1 0\n0 0 zero\n").unwrap();
     folder
 }
@@ -268,7 +222,7 @@ fn a_block_on_a_table() {
 #[test]
 fn overlaps_are_told_file_by_file() {
     let folder = folder();
-    Part::cuboid([-1.0, -1.0, 2.0], [1.0, 1.0, 3.0]).write(folder.path(), "lid.off");
+    write(&block([-1.0, -1.0, 2.0], [1.0, 1.0, 3.0]), folder.path(), "lid.off");
     let words =
         "block.off lid.off --from plate.off table.off --direction z --moving-pose 0,0,-0.25";
     let (answer, _) = ask(folder.path(), words);
@@ -305,8 +259,8 @@ fn overlaps_are_told_file_by_file() {
 #[test]
 fn the_files_that_touch_are_named() {
     let folder = folder();
-    Part::cuboid([5.0, 5.0, 3.0], [6.0, 6.0, 4.0]).write(folder.path(), "near.off");
-    Part::cuboid([-6.0, -6.0, 5.0], [-5.0, -5.0, 6.0]).write(folder.path(), "high.off");
+    write(&block([5.0, 5.0, 3.0], [6.0, 6.0, 4.0]), folder.path(), "near.off");
+    write(&block([-6.0, -6.0, 5.0], [-5.0, -5.0, 6.0]), folder.path(), "high.off");
     let words = "block.off high.off near.off --from table.off plate.off --direction -z \
                  --moving-pose 0,0,9";
     let (answer, _) = ask(folder.path(), words);
@@ -327,7 +281,7 @@ fn the_files_that_touch_are_named() {
 #[test]
 fn twins_in_an_stl_file_are_merged_and_said() {
     let folder = folder();
-    Part::plate(1.5, 24, [-2.0, 0.0]).write_with_twins(folder.path(), "plate.stl");
+    write_with_twins(&plate(1.5, 24, [-2.0, 0.0]), folder.path(), "plate.stl");
     let words = "pin.off --from plate.stl --direction -z --moving-pose 0,0,3";
     let (answer, notes) = ask(folder.path(), words);
     assert_eq!(answer["outcome"], "free", "{answer}");
@@ -485,15 +439,8 @@ fn batches_take_solids() {
 #[test]
 fn info_speaks_of_holes_and_defects() {
     let folder = folder();
-    let mut twice = Part::plate(1.0, 12, [0.0, 1.0]);
-    let count = twice.vertices.len();
-    let other = Part::cuboid([20.0; 3], [21.0; 3]);
-    twice.vertices.extend(other.vertices);
-    // The second shell is inside out.
-    twice.faces.extend(
-        other.faces.iter().map(|face| face.iter().rev().map(|v| v + count).collect::<Vec<_>>()),
-    );
-    twice.write(folder.path(), "two.off");
+    let twice = plate(1.0, 12, [0.0, 1.0]).joined(&block([20.0; 3], [21.0; 3]).reversed());
+    write(&twice, folder.path(), "two.off");
     let info =
         |name: &str| stdout(&colltrans(folder.path()).args(["info", name]).output().unwrap());
     for (name, part) in [

@@ -161,23 +161,15 @@ fn solid_moments(
 
 #[cfg(test)]
 mod tests {
+    use colltrans_testkit::shapes::{Mesh, block};
+
     use super::*;
 
     #[test]
     fn a_box_has_its_known_moments() {
-        let vertices: Vec<DVec3> = (0..8)
-            .map(|i| {
-                DVec3::new(
-                    f64::from(i & 1) * 2.0,
-                    f64::from(i >> 1 & 1) * 4.0,
-                    f64::from(i >> 2) * 6.0,
-                )
-            })
-            .collect();
-        let faces: [[u32; 4]; 6] =
-            [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let Mesh { vertices, faces } = block(DVec3::ZERO, DVec3::new(2.0, 4.0, 6.0));
         let topology =
-            Topology::sphere(8, (0..=6).map(|f| 4 * f).collect(), faces.as_flattened()).unwrap();
+            Topology::sphere(8, (0..=6).map(|f| 4 * f).collect(), &faces.concat()).unwrap();
         let m = Inertia::new(&vertices, &topology, 3);
         assert!((m.volume - 48.0).abs() < 1e-12);
         assert!((m.center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-12);

@@ -143,8 +143,8 @@ mod tests {
     use super::*;
     use crate::features::Feature;
     use colltrans::glam::DVec3;
-    use colltrans_testkit::oracle::settings::cuboid;
     use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::cuboid;
 
     fn hierarchy(points: &[DVec3]) -> Hierarchy {
         Hierarchy::new(&ConvexPolyhedron::from_points(points).unwrap()).unwrap()
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_core_has_one_layer() {
-        let cube = hierarchy(&cuboid(DVec3::ONE));
+        let cube = hierarchy(&cuboid(DVec3::ONE).vertices);
         assert_eq!((cube.layer_count(), cube.vertex_count(0)), (1, 8));
         assert_eq!(cube.layer(7).shell.some_vertex(Feature::Vertex(5)), 5);
         let flat = ConvexPolyhedron::from_points(&[DVec3::ZERO, DVec3::X, DVec3::Y]).unwrap();

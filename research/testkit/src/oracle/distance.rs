@@ -286,7 +286,8 @@ fn point_to_segment(point: DVec3, [a, b]: [DVec3; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::settings::{FAMILIES, cuboid, setting};
+    use crate::oracle::settings::{FAMILIES, setting};
+    use crate::shapes::cuboid;
     use glam::DQuat;
 
     fn body(points: &[DVec3]) -> ConvexPolyhedron {
@@ -298,7 +299,7 @@ mod tests {
     }
 
     fn cubes(pose: &Pose) -> Distance {
-        let cube = body(&cuboid(DVec3::splat(0.5)));
+        let cube = body(&cuboid(DVec3::splat(0.5)).vertices);
         distance_of_bodies((&cube, &Pose::IDENTITY), (&cube, pose))
     }
 
@@ -387,7 +388,7 @@ mod tests {
     /// Overlap has a proof of its own: a point that is exactly in both.
     #[test]
     fn inner_points_are_inside() {
-        let cloud = body(&cuboid(DVec3::new(0.3, 1.7, 0.9)));
+        let cloud = body(&cuboid(DVec3::new(0.3, 1.7, 0.9)).vertices);
         let pose = Pose::new(DQuat::from_rotation_y(0.7), DVec3::new(0.1, 7.0, 2.0)).unwrap();
         for corner in cloud.vertices() {
             let inside = pose.transform_point(*corner * 0.999_999);

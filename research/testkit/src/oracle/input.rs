@@ -160,11 +160,11 @@ fn is_in_tetrahedron(point: DVec3, corners: [DVec3; 4]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::settings::cuboid;
+    use crate::shapes::cuboid;
 
     #[test]
     fn a_point_that_is_left_out_is_found() {
-        let points = cuboid(DVec3::ONE);
+        let points = cuboid(DVec3::ONE).vertices;
         let body = ConvexPolyhedron::from_points(&points).expect("a cube");
         assert_eq!(judge(&points, &body), Ok(Kept::default()));
         let with = |extra: DVec3| {
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_vertex_that_is_no_point_is_found() {
-        let mut points = cuboid(DVec3::ONE);
+        let mut points = cuboid(DVec3::ONE).vertices;
         let body = ConvexPolyhedron::from_points(&points).expect("a cube");
         points[3].x = points[3].x.next_down();
         assert!(judge(&points, &body).is_err());

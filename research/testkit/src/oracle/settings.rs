@@ -13,6 +13,7 @@ use glam::{DQuat, DVec3};
 use crate::oracle::check::{Judge, Objection};
 use crate::oracle::input::{self, Kept};
 use crate::random::Random;
+use crate::shapes::cuboid;
 
 /// Two bodies by their points, where they are, and where one is going.
 #[derive(Debug, Clone)]
@@ -233,14 +234,8 @@ fn cloud(rng: &mut Random) -> Vec<DVec3> {
     }
 }
 
-/// The corners of a box.
-pub fn cuboid(half: DVec3) -> Vec<DVec3> {
-    let side = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-    (0..8).map(|i| half * DVec3::new(side(i, 0), side(i, 1), side(i, 2))).collect()
-}
-
 fn whole_box(rng: &mut Random) -> Vec<DVec3> {
-    cuboid(rng.grid(1, 4))
+    cuboid(rng.grid(1, 4)).vertices
 }
 
 /// An upright prism over a regular polygon, the apex angle of the first corner given.
@@ -319,7 +314,7 @@ fn grid(rng: &mut Random) -> Draft {
 /// A face of one body parallel to a face of the other, touching or apart.
 fn face_face(rng: &mut Random) -> Draft {
     let half = rng.grid(1, 3) * 0.25;
-    let mut moving = cuboid(half);
+    let mut moving = cuboid(half).vertices;
     moving.truncate(rng.pick(&[8, 8, 7, 6]));
     let fixed = prism(rng.int(3, 6) as u32, rng.range(0.3, 2.0), half.z, rng.unit());
     let direction =
@@ -335,7 +330,7 @@ fn edge_edge_parallel(rng: &mut Random) -> Draft {
     let mut roof = |up: f64| {
         let (length, width, height) = (rng.whole(1, 3), rng.whole(1, 3), up * rng.whole(1, 2));
         let ridge = [DVec3::new(-length, 0.0, height), DVec3::new(length, 0.0, height)];
-        let base = cuboid(DVec3::new(length, width, 0.0));
+        let base = cuboid(DVec3::new(length, width, 0.0)).vertices;
         ridge.into_iter().chain(base).collect::<Vec<_>>()
     };
     let (moving, fixed) = (roof(1.0), roof(-1.0));
@@ -349,7 +344,7 @@ fn edge_edge_parallel(rng: &mut Random) -> Draft {
 fn vertex_over_vertex(rng: &mut Random) -> Draft {
     let moving = octahedron(rng.whole(1, 3));
     let fixed = if rng.one_in(3) {
-        cuboid(DVec3::splat(rng.whole(1, 2)))
+        cuboid(DVec3::splat(rng.whole(1, 2))).vertices
     } else {
         octahedron(rng.whole(1, 3))
     };
@@ -362,7 +357,7 @@ fn vertex_over_vertex(rng: &mut Random) -> Draft {
 /// A vertex or an edge that comes down exactly on the rim of a face, or just inside or outside it.
 fn rim(rng: &mut Random) -> Draft {
     let half = rng.grid(1, 3);
-    let fixed = cuboid(half);
+    let fixed = cuboid(half).vertices;
     let moving = match rng.int(0, 2) {
         0 => octahedron(rng.whole(1, 2)),
         1 => whole_box(rng),
@@ -397,9 +392,12 @@ fn peg(rng: &mut Random) -> Draft {
     let lateral = peg.x + wall.x + clearance;
     let at = DVec3::new(lateral, rng.range(-0.1, 0.1), rng.range(-2.0, 4.0));
     let round = rng.one_in(3);
-    let moving =
-        if round { prism(6, peg.x, peg.z, rng.pick(&[0.0, TAU / 12.0])) } else { cuboid(peg) };
-    let draft = Draft::new(moving, cuboid(wall), at, DVec3::Z);
+    let moving = if round {
+        prism(6, peg.x, peg.z, rng.pick(&[0.0, TAU / 12.0]))
+    } else {
+        cuboid(peg).vertices
+    };
+    let draft = Draft::new(moving, cuboid(wall).vertices, at, DVec3::Z);
     Draft { graze_tolerance: rng.pick(&[0.0, 0.0, 1e-9, 1e-5, 1e-3]), ..draft }
 }
 
@@ -525,11 +523,12 @@ fn nearly(rng: &mut Random) -> Draft {
 /// A block that glides over a slab, a little downwards: the contact normal is almost orthogonal to
 /// the direction.
 fn shallow(rng: &mut Random) -> Draft {
-    let slab = cuboid(DVec3::new(rng.whole(2, 9), rng.whole(1, 3), rng.pick(&[0.0, 0.5, 1.0])));
+    let slab =
+        cuboid(DVec3::new(rng.whole(2, 9), rng.whole(1, 3), rng.pick(&[0.0, 0.5, 1.0]))).vertices;
     let block = match rng.int(0, 3) {
         0 => octahedron(0.5),
         1 => cloud(rng),
-        _ => cuboid(rng.grid(1, 3) * 0.25),
+        _ => cuboid(rng.grid(1, 3) * 0.25).vertices,
     };
     let descent = rng.pick(&[0.1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 0.0]);
     let drift = rng.pick(&[0.0, 0.0, 0.3]);
@@ -548,7 +547,7 @@ fn thin(rng: &mut Random) -> Draft {
         let thickness = rng.pick(&[1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-17, 0.0]);
         let half = DVec3::new(rng.whole(1, 2), rng.whole(1, 2), thickness);
         let turn = if rng.one_in(2) { rng.rotation() } else { DQuat::IDENTITY };
-        cuboid(half).into_iter().map(|v| turn * v).collect::<Vec<_>>()
+        cuboid(half).vertices.into_iter().map(|v| turn * v).collect::<Vec<_>>()
     };
     let (moving, fixed) = (slab(), slab());
     let direction = axis_or_any(rng);
@@ -602,7 +601,7 @@ fn flat_prism(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
 fn plate(rng: &mut Random, thickness: f64) -> Vec<DVec3> {
     let half = DVec3::new(1.0, rng.pick(&[1.0, 0.5, 1e-2]), 0.5 * thickness);
     match rng.int(0, 2) {
-        0 => cuboid(half),
+        0 => cuboid(half).vertices,
         1 => (0..rng.int(5, 24)).map(|_| rng.vector() * half).collect(),
         _ => (0..rng.int(5, 24))
             .map(|_| rng.vector() * half)

@@ -130,19 +130,13 @@ impl Tableau {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes::cuboid;
     use colltrans::Pose;
     use glam::DVec3;
 
-    fn cube(half: f64) -> Vec<DVec3> {
-        (0..8)
-            .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5)
-            .map(|v| v * 2.0 * half)
-            .collect()
-    }
-
     fn cubes(at: DVec3, direction: DVec3) -> Option<Ratio> {
         let pose = Pose::from_translation(at).unwrap();
-        let (p, q) = (cube(0.5), cube(1.0));
+        let [p, q] = [0.5, 1.0].map(|half| cuboid(DVec3::splat(half)).vertices);
         collision_translation(&Scene::new((&p, &Pose::IDENTITY), (&q, &pose), direction))
     }
 

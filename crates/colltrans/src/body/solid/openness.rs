@@ -102,6 +102,8 @@ fn arc(y: f64, x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use colltrans_testkit::solids::slab;
+
     use super::*;
 
     #[test]
@@ -114,28 +116,10 @@ mod tests {
     }
 
     /// A cube of `n` by `n` squares a side, without the first `missing` triangles.
-    fn cube(n: u32, missing: usize) -> Vec<[DVec3; 3]> {
-        let mut facets = Vec::new();
-        for axis in 0..3 {
-            for side in [0.0, 1.0] {
-                let place = |i: u32, j: u32| {
-                    let (u, v) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(n));
-                    let mut p = [side; 3];
-                    (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (u, v);
-                    DVec3::from_array(p)
-                };
-                for (i, j) in (0..n * n).map(|k| (k / n, k % n)) {
-                    let mut square =
-                        [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
-                    if side == 0.0 {
-                        square.reverse();
-                    }
-                    let [a, b, c, d] = square;
-                    facets.extend([[a, b, c], [a, c, d]]);
-                }
-            }
-        }
-        facets.split_off(missing)
+    fn cube(n: usize, missing: usize) -> Vec<[DVec3; 3]> {
+        let mesh = slab(DVec3::ZERO, DVec3::ONE, [n; 3]);
+        let corners = |triangle: [u32; 3]| triangle.map(|v| mesh.vertices[v as usize]);
+        mesh.triangles().map(corners).skip(missing).collect()
     }
 
     #[test]

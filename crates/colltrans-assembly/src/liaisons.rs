@@ -210,7 +210,7 @@ mod tests {
     /// second's shadow all of the first's, a part of it, or around it: areas are known in fractions.
     #[test]
     fn areas_lie_within_their_bounds() {
-        let mut random = Random::new(5, &[]);
+        let mut random = Random::new(5);
         let mut seen = [0; 3];
         for round in 0..3_000 {
             let mut vector =

@@ -8,7 +8,6 @@ use colltrans::StartOverlap;
 use glam::DVec3;
 
 use crate::bodies::{Bodies, Fit};
-use crate::boxes::Aabb;
 use crate::liaisons::liaisons;
 use crate::matrix::Matrix;
 use crate::part::Assembly;
@@ -16,6 +15,7 @@ use crate::read::{ReadOptions, read_from};
 use crate::rooms::rooms;
 use crate::start::Start;
 use crate::watch::Watch;
+use colltrans::Aabb;
 
 /// Along each axis.
 const GRID: [usize; 3] = [20, 15, 10];

@@ -31,7 +31,7 @@ fn six_volumes(solid: &Solid) -> Dyadic {
 
 #[test]
 fn volumes_lie_within_their_bounds() {
-    let mut random = Random::new(3, &[]);
+    let mut random = Random::new(3);
     for round in 0..200 {
         let side = 10.0_f64.powi(round % 7 - 3);
         let pieces = well([0.0; 3], [1.0, side, 2.0], 0.5);
@@ -51,7 +51,7 @@ fn volumes_lie_within_their_bounds() {
 /// How far boxes that were turned go until they are beyond each other, by the exact heights of corners.
 #[test]
 fn travels_lie_within_their_bounds() {
-    let mut random = Random::new(9, &[]);
+    let mut random = Random::new(9);
     for _ in 0..40 {
         let world = pose(&mut random);
         let parts = vec![
@@ -93,7 +93,7 @@ fn travels_lie_within_their_bounds() {
 /// the lower one.
 #[test]
 fn a_head_is_safe_up_to_the_lower_bound_of_its_true_place() {
-    let mut random = Random::new(4, &[]);
+    let mut random = Random::new(4);
     for round in 0..60 {
         let tolerance = [0.0, 1e-5, 0.02, 0.1][round % 4];
         let world = if round < 8 { DAffine3::IDENTITY } else { pose(&mut random) };

@@ -133,7 +133,7 @@ pub use answer::{
 pub use body::error::{BuildError, PoseError, TopologyError};
 pub use body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, SolidReport};
 pub use body::{
-    Aabb, Body, ConvexPolyhedron, ConvexityDefect, Feature, OffsetReport, Placed, Pose,
+    Aabb, Body, ConvexPolyhedron, ConvexityDefect, Feature, HalfEdge, OffsetReport, Placed, Pose,
     convexity_defect,
 };
 pub use cast::solid::{

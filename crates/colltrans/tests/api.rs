@@ -3,8 +3,8 @@
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
-    MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, OverlapAhead, Pose, PoseError,
-    QueryError, Separation, TopologyError, WhyFree, cast,
+    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, OverlapAhead, Pose,
+    PoseError, QueryError, Separation, TopologyError, WhyFree, cast,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
@@ -372,4 +372,25 @@ fn a_range_knows_the_clearance() {
             assert_eq!(range.clearance().distance(), clearance.distance(), "{setting}");
         }
     }
+}
+
+#[test]
+fn half_edges_lead_around_faces_and_vertices() {
+    for body in [body(&cuboid(DVec3::ONE).vertices), body(&[DVec3::ZERO, DVec3::X, DVec3::Y])] {
+        let half_edges = body.half_edges();
+        assert_eq!(half_edges.len(), 2 * body.edge_count());
+        for face in 0..body.face_count() as u32 {
+            let around = body.face_half_edges(face).map(|h| half_edges[h as usize]);
+            assert!(around.clone().all(|h| h.face == face));
+            assert!(around.map(|h| h.origin).eq(body.face_vertices(face)));
+        }
+        for vertex in 0..body.vertices().len() as u32 {
+            let leaving = body.outgoing(vertex).iter().map(|&h| half_edges[h as usize]);
+            assert!(leaving.clone().all(|h| h.origin == vertex));
+            let target = |h: HalfEdge| half_edges[h.twin as usize].origin;
+            assert!(leaving.map(target).eq(body.neighbours(vertex).iter().copied()));
+        }
+    }
+    let segment = body(&[DVec3::ZERO, DVec3::X]);
+    assert!(segment.half_edges().is_empty() && segment.outgoing(0).is_empty());
 }

@@ -84,7 +84,7 @@ impl fmt::Display for NotSolid {
 impl std::error::Error for NotSolid {}
 
 impl Shell {
-    /// The features of a body, in its frame. Takes `O(n log d)` for vertices of degree `d`.
+    /// The features of a body, in its frame. Takes `O(n)`.
     ///
     /// # Errors
     /// The body is a polygon, a segment or a point.
@@ -92,26 +92,24 @@ impl Shell {
         if body.dimension() < 3 {
             return Err(NotSolid { dimension: body.dimension() });
         }
+        let links = body.half_edges();
+        let half_edges = links.iter().map(|h| HalfEdge {
+            origin: h.origin,
+            target: links[h.twin as usize].origin,
+            twin: h.twin,
+            face: h.face,
+        });
         let faces = 0..body.face_count() as u32;
-        let mut half_edges = Vec::with_capacity(2 * body.edge_count());
-        let mut face_start = vec![0];
-        for face in faces.clone() {
-            let corners = body.face_vertices(face);
-            let next = corners.clone().cycle().skip(1);
-            half_edges.extend(corners.zip(next).map(|(origin, target)| HalfEdge {
-                origin,
-                target,
-                twin: 0,
-                face,
-            }));
-            face_start.push(half_edges.len() as u32);
+        let face_start = faces.clone().map(|f| body.face_half_edges(f).start);
+        let (mut vertex_start, mut outgoing) = (vec![0], Vec::with_capacity(links.len()));
+        for v in 0..body.vertices().len() as u32 {
+            outgoing.extend_from_slice(body.outgoing(v));
+            vertex_start.push(outgoing.len() as u32);
         }
-        let (vertex_start, outgoing) = group_by_origin(body.vertices().len(), &half_edges);
-        pair_twins(&mut half_edges, &vertex_start, &outgoing);
         Ok(Self {
             vertices: body.vertices().to_vec(),
-            half_edges,
-            face_start,
+            half_edges: half_edges.collect(),
+            face_start: face_start.chain([links.len() as u32]).collect(),
             normals: faces.map(|f| body.face_normal(f)).collect(),
             vertex_start,
             outgoing,
@@ -236,40 +234,6 @@ impl Shell {
                 return best;
             }
         }
-    }
-}
-
-/// The half-edges by origin: where each vertex's start, and all of them.
-fn group_by_origin(vertex_count: usize, half_edges: &[HalfEdge]) -> (Vec<u32>, Vec<u32>) {
-    let mut start = vec![0_u32; vertex_count + 1];
-    for h in half_edges {
-        start[h.origin as usize + 1] += 1;
-    }
-    for v in 0..vertex_count {
-        start[v + 1] += start[v];
-    }
-    let mut cursor = start.clone();
-    let mut outgoing = vec![0; half_edges.len()];
-    for (index, h) in half_edges.iter().enumerate() {
-        let slot = &mut cursor[h.origin as usize];
-        outgoing[*slot as usize] = index as u32;
-        *slot += 1;
-    }
-    (start, outgoing)
-}
-
-/// The half-edges that leave one vertex, sorted by target, are searched by those that come back.
-fn pair_twins(half_edges: &mut [HalfEdge], vertex_start: &[u32], outgoing: &[u32]) {
-    let mut by_target = outgoing.to_vec();
-    let range = |v: u32| vertex_start[v as usize] as usize..vertex_start[v as usize + 1] as usize;
-    for v in 0..vertex_start.len() as u32 - 1 {
-        by_target[range(v)].sort_unstable_by_key(|&h| half_edges[h as usize].target);
-    }
-    for h in 0..half_edges.len() {
-        let HalfEdge { origin, target, .. } = half_edges[h];
-        let back = &by_target[range(target)];
-        let place = back.partition_point(|&g| half_edges[g as usize].target < origin);
-        half_edges[h].twin = back[place];
     }
 }
 

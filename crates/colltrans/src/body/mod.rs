@@ -18,3 +18,4 @@ pub(crate) use feature::feature;
 pub(crate) use inertia::Inertia;
 pub use placed::{Body, Placed};
 pub use pose::Pose;
+pub use topology::HalfEdge;

@@ -11,15 +11,16 @@
 
 use crate::body::error::TopologyError;
 
-/// A directed edge along the boundary of its face.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct HalfEdge {
-    /// The vertex it starts from.
-    pub(crate) origin: u32,
-    /// The half-edge that runs the other way, in the neighbouring face.
-    pub(crate) twin: u32,
-    /// The face on its left.
-    pub(crate) face: u32,
+/// A directed edge along the boundary of a face of a [`ConvexPolyhedron`](crate::ConvexPolyhedron).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct HalfEdge {
+    /// The vertex that it starts from.
+    pub origin: u32,
+    /// The half-edge that runs the other way, along the neighbouring face: it starts where this one ends.
+    pub twin: u32,
+    /// The face on its left, as seen from outside.
+    pub face: u32,
 }
 
 /// Vertices, half-edges and faces, by index.

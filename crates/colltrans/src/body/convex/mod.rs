@@ -11,13 +11,14 @@ mod support;
 #[cfg(test)]
 pub(crate) mod tests;
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use glam::DVec3;
 
 use crate::body::Inertia;
 use crate::body::solid::{Solid, SolidError};
-use crate::body::topology::Topology;
+use crate::body::topology::{HalfEdge, Topology};
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use excess::LargeFace;
@@ -98,6 +99,42 @@ impl ConvexPolyhedron {
     /// If there is no such vertex.
     pub fn neighbours(&self, vertex: u32) -> &[u32] {
         self.topology.neighbours(vertex)
+    }
+
+    /// The directed edges, two for each edge: those of face 0 first, each face's one after the other,
+    /// counter-clockwise as seen from outside. Indices of half-edges are indices of this slice, which is
+    /// empty for a segment or a point.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let half_edges = cube.half_edges();
+    /// let across = |h: u32| half_edges[half_edges[h as usize].twin as usize].face;
+    /// let around: Vec<u32> = cube.face_half_edges(0).map(across).collect();
+    /// assert_eq!(around.len(), 4, "the faces that share an edge with face 0");
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    pub fn half_edges(&self) -> &[HalfEdge] {
+        self.topology.half_edges()
+    }
+
+    /// The half-edges around a face: those from its [`Self::face_vertices`], in their order.
+    ///
+    /// # Panics
+    /// If there is no such face.
+    pub fn face_half_edges(&self, face: u32) -> Range<u32> {
+        self.topology.face(face)
+    }
+
+    /// The half-edges that leave `vertex`, in the order of its [`Self::neighbours`]; none for an end of a
+    /// segment.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn outgoing(&self, vertex: u32) -> &[u32] {
+        self.topology.outgoing(vertex)
     }
 
     /// No input point is farther than this from the body (the convex hull of [`Self::vertices`]), nor a

@@ -1,0 +1,260 @@
+//! Checks an answer of the library in exact arithmetic: what its certificate proves, whether that is
+//! what it says, and whether the linear programme says the same (`truth`).
+
+use std::cell::OnceCell;
+use std::fmt;
+
+use colltrans::{Cast, Outcome};
+use glam::DVec3;
+
+use self::truth::Truth;
+use crate::oracle::scene::Scene;
+
+/// How many units of rounding error ([`Scene::noise`]) two different computations of the same
+/// sideways distance may differ by: each is allowed one.
+const TWO_ROUNDINGS: f64 = 2.0;
+
+/// What an answer was found to prove.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Proof {
+    /// Whether outcome and value are proven by the certificate alone, without a rounding error.
+    pub exact: bool,
+    /// `U - L`, in world units, divided by the size of the configuration.
+    pub gap_over_size: f64,
+    /// `U - L` divided by the tolerance that the certificate states.
+    pub gap_over_tolerance: f64,
+    /// How far the witness points miss each other, in units of rounding error.
+    pub residual_in_noises: f64,
+}
+
+impl Proof {
+    /// The larger numbers of both.
+    #[must_use]
+    pub fn worse(&self, other: &Self) -> Self {
+        Self {
+            exact: self.exact && other.exact,
+            gap_over_size: self.gap_over_size.max(other.gap_over_size),
+            gap_over_tolerance: self.gap_over_tolerance.max(other.gap_over_tolerance),
+            residual_in_noises: self.residual_in_noises.max(other.residual_in_noises),
+        }
+    }
+}
+
+/// Why an answer is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Objection(pub String);
+
+impl fmt::Display for Objection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Objection {}
+
+/// `Err` with a formatted [`Objection`] unless the condition holds; a comparison with NaN does not.
+macro_rules! require {
+    ($condition:expr, $($text:tt)+) => {
+        let holds: bool = $condition;
+        if !holds {
+            return Err(Objection(format!($($text)+)));
+        }
+    };
+}
+
+mod certificate;
+mod truth;
+
+/// The two bodies and what is needed to judge an answer about them.
+#[derive(Debug)]
+pub struct Judge<'a> {
+    /// The setting in exact coordinates.
+    pub scene: Scene,
+    /// The query.
+    pub cast: Cast<'a>,
+    /// The points that the bodies were made of, where these are known and are not the vertices alone.
+    input: Option<Scene>,
+    truth: OnceCell<Truth>,
+    truth_of_input: OnceCell<Truth>,
+}
+impl<'a> Judge<'a> {
+    /// Of answers to a query.
+    pub fn new(cast: Cast<'a>) -> Self {
+        Self {
+            scene: Scene::of(&cast),
+            cast,
+            input: None,
+            truth: OnceCell::new(),
+            truth_of_input: OnceCell::new(),
+        }
+    }
+
+    /// Of answers about bodies that were made of these points.
+    #[must_use]
+    pub fn with_input(mut self, moving: &[DVec3], fixed: &[DVec3]) -> Self {
+        let has_dropped =
+            moving.len() > self.scene.moving.len() || fixed.len() > self.scene.fixed.len();
+        self.input = has_dropped.then(|| {
+            let poses = (self.cast.moving_pose(), self.cast.fixed_pose());
+            Scene::new((moving, &poses.0), (fixed, &poses.1), self.cast.direction())
+        });
+        self
+    }
+
+    /// Re-verifies everything an answer carries.
+    ///
+    /// # Errors
+    /// The first statement of the answer that is not true.
+    pub fn check(&self, outcome: &Outcome) -> Result<Proof, Objection> {
+        match outcome {
+            Outcome::Contact(contact) => self.check_contact(contact),
+            Outcome::Grazing(grazing) => self.check_grazing(grazing),
+            Outcome::Separated(separated) => self.check_separated(separated),
+        }
+    }
+
+    /// Overlaps up to this are grazing.
+    fn border(&self) -> f64 {
+        self.cast.options().graze_tolerance.max(self.scene.touching)
+    }
+}
+
+/// Compares two answers to the same question: outcomes of one kind, and translations within
+/// both tolerances.
+///
+/// # Errors
+/// How they differ. At the rim of the shadow both may still be admissible: that is for
+/// [`Judge::compare_with_oracle`] to say of each.
+pub fn same(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
+    let (a, b) = match (first, second) {
+        (Outcome::Separated(_), Outcome::Separated(_)) => return Ok(()),
+        (Outcome::Contact(a), Outcome::Contact(b)) => (a, b),
+        (Outcome::Grazing(a), Outcome::Grazing(b)) => (&a.contact, &b.contact),
+        _ => return Err(Objection(format!("{} and {}", kind(first), kind(second)))),
+    };
+    let (error, tolerance) =
+        ((a.translation - b.translation).abs(), a.certificate.rounding + b.certificate.rounding);
+    require!(
+        error <= tolerance,
+        "translations {:e} and {:e}, {error:e} apart (tolerated: {tolerance:e})",
+        a.translation,
+        b.translation
+    );
+    Ok(())
+}
+
+/// The name of an outcome.
+pub fn kind(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Outcome::Contact(_) => "contact",
+        Outcome::Grazing(_) => "grazing",
+        Outcome::Separated(_) => "separated",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oracle::settings::{Setting, setting};
+    use colltrans::{Certificate, Contact, Grazing, Separated, Solver};
+
+    /// An answer, and what the judge says about it after a change.
+    fn objects(setting: &Setting, outcome: &Outcome) -> bool {
+        let bodies = setting.bodies().expect("bodies");
+        let judge = setting.judge(&bodies);
+        judge.check(outcome).and_then(|_| judge.compare_with_oracle(outcome)).is_err()
+    }
+
+    fn answers(kind: fn(&Outcome) -> bool) -> Vec<(Setting, Outcome)> {
+        let ask = |seed| {
+            let setting = setting(["random", "boxes", "peg"][seed as usize % 3], seed);
+            let outcome = setting.cast(&setting.bodies().expect("bodies"), Solver::Portal);
+            outcome.ok().map(|outcome| (setting, outcome))
+        };
+        (0..240).filter_map(ask).filter(|(_, outcome)| kind(outcome)).take(20).collect()
+    }
+
+    #[test]
+    fn changed_contacts_are_refused() {
+        type Change = fn(&mut Contact);
+        let changes: [(&str, Change); 8] = [
+            ("later", |c| c.translation += 4.0 * c.certificate.rounding),
+            ("earlier", |c| c.translation -= 4.0 * c.certificate.rounding),
+            ("lower bound", |c| c.certificate.lower += 4.0 * c.certificate.rounding),
+            ("upper bound", |c| c.certificate.upper -= 100.0 * c.certificate.rounding),
+            ("turned normal", |c| {
+                let aside = c.normal.any_orthonormal_vector();
+                c.normal = (c.normal + aside * 1e-3).normalize();
+                c.certificate.normal = c.normal;
+            }),
+            ("opposite normal", |c| {
+                c.normal = -c.normal;
+                c.certificate.normal = c.normal;
+            }),
+            ("weights", |c| c.certificate.weights = [1.0, -1.0, 1.0]),
+            ("vertex", |c| c.certificate.pairs[0].fixed = 99),
+        ];
+        let contacts = answers(|o| matches!(o, Outcome::Contact(_)));
+        assert_eq!(contacts.len(), 20);
+        for (setting, outcome) in contacts {
+            assert!(!objects(&setting, &outcome), "{setting}");
+            let Outcome::Contact(contact) = outcome else { unreachable!() };
+            for (name, change) in changes {
+                let mut changed = contact;
+                change(&mut changed);
+                assert!(objects(&setting, &Outcome::Contact(changed)), "{setting}: {name}");
+            }
+            let Certificate { normal, .. } = contact.certificate;
+            let orthogonal = normal.cross(setting.direction).normalize();
+            let mut separated = Separated {
+                certificate: colltrans::Separation { normal: orthogonal, margin: 1e-3 },
+                solver: Solver::Portal,
+                steps: contact.steps,
+            };
+            if !orthogonal.is_finite() {
+                separated.certificate.normal = setting.direction.any_orthonormal_vector();
+            }
+            assert!(objects(&setting, &Outcome::Separated(separated)), "{setting}: separated");
+            let grazing = Grazing {
+                separating_direction: separated.certificate.normal,
+                overlap: 0.0,
+                contact,
+            };
+            assert!(objects(&setting, &Outcome::Grazing(grazing)), "{setting}: grazing");
+        }
+    }
+
+    #[test]
+    fn changed_separations_are_refused() {
+        let separations = answers(|o| matches!(o, Outcome::Separated(_)));
+        assert_eq!(separations.len(), 20);
+        for (setting, outcome) in separations {
+            assert!(!objects(&setting, &outcome), "{setting}");
+            let Outcome::Separated(separated) = outcome else { unreachable!() };
+            let changes: [fn(&mut Separated, DVec3); 4] = [
+                |s, _| s.certificate.margin += 1e-9,
+                |s, _| s.certificate.normal = -s.certificate.normal,
+                |s, d| s.certificate.normal = (s.certificate.normal + d * 1e-9).normalize(),
+                |s, _| s.certificate.normal *= 1.001,
+            ];
+            for (index, change) in changes.into_iter().enumerate() {
+                let mut changed = separated;
+                change(&mut changed, setting.direction.normalize());
+                assert!(objects(&setting, &Outcome::Separated(changed)), "{setting}: {index}");
+            }
+        }
+    }
+
+    #[test]
+    fn grazing_is_no_contact() {
+        let grazings = answers(|o| matches!(o, Outcome::Grazing(_)));
+        assert_eq!(grazings.len(), 20);
+        for (setting, outcome) in grazings {
+            assert!(!objects(&setting, &outcome), "{setting}");
+            let Outcome::Grazing(grazing) = outcome else { unreachable!() };
+            assert!(objects(&setting, &Outcome::Contact(grazing.contact)), "{setting}");
+            let aside = Grazing { overlap: grazing.overlap - 1e-3, ..grazing };
+            assert!(objects(&setting, &Outcome::Grazing(aside)), "{setting}: overlap");
+        }
+    }
+}

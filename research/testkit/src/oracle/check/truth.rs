@@ -1,0 +1,188 @@
+//! Answers beside what the linear programme ([`simplex`](crate::oracle::simplex)) and the exact sideways overlap
+//! ([`shadow`](crate::oracle::shadow)) say: of the vertices, and of the points that the bodies were made of.
+
+use std::cmp::Ordering;
+
+use colltrans::{Certificate, Contact, Outcome};
+
+use super::{Judge, Objection, TWO_ROUNDINGS};
+use crate::oracle::exact::{Dyadic, Ratio, Vector};
+use crate::oracle::scene::Scene;
+use crate::oracle::shadow::{SignedDistance, sideways_overlap};
+use crate::oracle::simplex::collision_translation;
+
+/// What the oracle says of a scene: it takes long, so it is asked once.
+#[derive(Debug)]
+pub(super) struct Truth {
+    pub(super) translation: Option<Ratio>,
+    overlap: SignedDistance,
+}
+
+impl Truth {
+    fn of(scene: &Scene) -> Self {
+        Self { translation: collision_translation(scene), overlap: sideways_overlap(scene) }
+    }
+}
+
+impl Judge<'_> {
+    pub(super) fn truth(&self) -> &Truth {
+        self.truth.get_or_init(|| Truth::of(&self.scene))
+    }
+
+    /// Compares an answer with the linear programme and the exact sideways overlap, of the vertices:
+    /// outcome exactly, value within the stated bound; and of the input points: within what the
+    /// bodies' hull errors allow ([`input`](crate::oracle::input)).
+    ///
+    /// # Errors
+    /// How they disagree.
+    pub fn compare_with_oracle(&self, outcome: &Outcome) -> Result<(), Objection> {
+        self.compare_vertices(outcome)?;
+        let Some(input) = &self.input else { return Ok(()) };
+        self.compare_input(outcome, input).map_err(|e| Objection(format!("of the input: {e}")))
+    }
+
+    /// The consequences of [`input`](crate::oracle::input).
+    fn compare_input(&self, outcome: &Outcome, input: &Scene) -> Result<(), Objection> {
+        let Truth { translation: truth, overlap } =
+            self.truth_of_input.get_or_init(|| Truth::of(input));
+        let off = self.hull_errors();
+        match outcome {
+            Outcome::Separated(separated) => {
+                let allowed = off - separated.certificate.margin;
+                require!(
+                    if allowed < 0.0 { truth.is_none() } else { !overlap.exceeds(allowed) },
+                    "separated, but the shadows overlap by {:e}",
+                    overlap.to_f64()
+                );
+                Ok(())
+            }
+            Outcome::Contact(contact) => {
+                require!(truth.is_some(), "contact, but they never meet");
+                self.encloses(contact, truth.as_ref(), off)
+            }
+            Outcome::Grazing(grazing) => {
+                let allowed = grazing.overlap + off + TWO_ROUNDINGS * self.scene.noise;
+                require!(
+                    !overlap.exceeds(allowed),
+                    "grazing, but the shadows overlap by {:e}",
+                    overlap.to_f64()
+                );
+                self.encloses(&grazing.contact, truth.as_ref(), off)
+            }
+        }
+    }
+
+    /// The bounds enclose the true value of bodies that reach up to `off` beyond these.
+    fn encloses(
+        &self,
+        contact: &Contact,
+        truth: Option<&Ratio>,
+        off: f64,
+    ) -> Result<(), Objection> {
+        let Some(truth) = truth else { return Ok(()) };
+        let Certificate { normal, lower, upper, .. } = contact.certificate;
+        let along = Vector::new(normal).dot(&self.scene.direction);
+        let lower = Ratio::from_f64(lower).minus(&Ratio::new(Dyadic::new(off), along));
+        require!(
+            lower <= *truth && (upper == f64::INFINITY || *truth <= Ratio::from_f64(upper)),
+            "the true value {:e} is not between {:e} and {upper:e}",
+            truth.to_f64(),
+            lower.to_f64()
+        );
+        Ok(())
+    }
+
+    /// The hull errors of both bodies together, in the world: poses may stretch lengths by a
+    /// millionth, and normals are unit vectors up to rounding.
+    fn hull_errors(&self) -> f64 {
+        (self.cast.moving().hull_error() + self.cast.fixed().hull_error()) * (1.0 + 4e-6)
+    }
+
+    fn compare_vertices(&self, outcome: &Outcome) -> Result<(), Objection> {
+        let Truth { translation: truth, overlap } = self.truth();
+        let meets = overlap.sign != Ordering::Less;
+        require!(truth.is_some() == meets, "the oracle contradicts itself");
+        let slack = TWO_ROUNDINGS * self.scene.noise;
+        let border = self.border();
+        let is = overlap.to_f64();
+        match outcome {
+            Outcome::Contact(contact) => {
+                let Some(truth) = truth else {
+                    return Err(Objection(format!("contact, but the shadows are {is:e} apart")));
+                };
+                require!(
+                    overlap.exceeds(border - slack),
+                    "contact, but the shadows overlap by {is:e} only (grazing up to {border:e})"
+                );
+                self.agrees(contact, truth)
+            }
+            Outcome::Separated(_) => {
+                require!(!meets, "separated, but the shadows overlap by {is:e}");
+                Ok(())
+            }
+            Outcome::Grazing(grazing) => {
+                require!(
+                    !overlap.exceeds(border + slack) && overlap.exceeds(-slack),
+                    "grazing, but the shadows overlap by {is:e} (grazing up to {border:e})"
+                );
+                match truth {
+                    Some(truth) if overlap.exceeds(self.scene.touching + slack) => {
+                        self.agrees(&grazing.contact, truth)
+                    }
+                    Some(truth) => Self::not_later(&grazing.contact, truth),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+
+    /// The value agrees with the true one within the tolerance that the certificate states, and the
+    /// bounds enclose the true one exactly.
+    #[expect(clippy::unused_self, reason = "reads like its siblings")]
+    fn agrees(&self, contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
+        Self::not_below(contact, truth)?;
+        let Certificate { upper, rounding, .. } = contact.certificate;
+        require!(
+            upper == f64::INFINITY || *truth <= Ratio::from_f64(upper),
+            "upper bound {upper:e} is less than the true value {:e}",
+            truth.to_f64()
+        );
+        let error = Ratio::from_f64(contact.translation).minus(truth);
+        require!(
+            error.is_within(rounding),
+            "translation {:e}, true value {:e}, off by {:e} (tolerated: {rounding:e})",
+            contact.translation,
+            truth.to_f64(),
+            error.to_f64()
+        );
+        Ok(())
+    }
+
+    /// The value is the true one, or less, within the tolerance that the certificate states: the
+    /// bodies may have been widened sideways, and widened bodies meet earlier, how much earlier is
+    /// for the slope of their faces at the rim to say.
+    fn not_later(contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
+        Self::not_below(contact, truth)?;
+        let tolerance = contact.certificate.rounding;
+        let late = Ratio::from_f64(contact.translation).minus(truth);
+        require!(
+            late.is_within(tolerance) || contact.translation < truth.to_f64(),
+            "translation {:e} of widened bodies is {:e} later than the true one (tolerated: \
+             {tolerance:e})",
+            contact.translation,
+            late.to_f64()
+        );
+        Ok(())
+    }
+
+    /// The lower bound is one, exactly.
+    fn not_below(contact: &Contact, truth: &Ratio) -> Result<(), Objection> {
+        let lower = contact.certificate.lower;
+        require!(
+            Ratio::from_f64(lower) <= *truth,
+            "lower bound {lower:e} is more than the true value {:e}",
+            truth.to_f64()
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,240 @@
+//! Settings that are hard on purpose: random ones, and tied ones, which are the rule among the
+//! parts of machines.
+//!
+//! A setting is a function of its family's name and a seed, so that a line of a report is enough to
+//! replay it.
+
+mod bodies;
+mod nearly_flat;
+mod stretched;
+mod tied;
+
+use std::fmt;
+
+use colltrans::{BuildError, Cast, ConvexPolyhedron, Outcome, Pose, QueryError, Solver};
+use glam::{DQuat, DVec3};
+
+use crate::oracle::check::{Judge, Objection};
+use crate::oracle::input::{self, Kept};
+use crate::random::Random;
+
+pub use self::nearly_flat::narrow_rings;
+use self::nearly_flat::{
+    disc, flat_prism, lattice, nearly_flat_faces, needle, onto_nearly_flat, plate,
+};
+use self::stretched::{
+    far, flat, magnitude, needle_plate, offset, random, segment_point, shallow, size_ratio, thin,
+};
+use self::tied::{
+    boxes, cylinders, edge_edge_parallel, face_face, grid, identical, nearly, peg, prisms, rim,
+    turned_boxes, vertex_over_vertex,
+};
+
+/// Two bodies by their points, where they are, and where one is going.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    /// The family it belongs to.
+    pub family: &'static str,
+    /// The seed it was drawn with.
+    pub seed: u64,
+    /// Points whose hull is the moving body.
+    pub moving: Vec<DVec3>,
+    /// Points whose hull is the fixed body.
+    pub fixed: Vec<DVec3>,
+    /// Where the moving body is.
+    pub moving_pose: Pose,
+    /// Where the fixed body is.
+    pub fixed_pose: Pose,
+    /// The direction.
+    pub direction: DVec3,
+    /// The graze tolerance of the query.
+    pub graze_tolerance: f64,
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.family, self.seed)
+    }
+}
+
+/// The bodies of a setting.
+#[derive(Debug, Clone)]
+pub struct Bodies {
+    /// The moving body.
+    pub moving: ConvexPolyhedron,
+    /// The fixed body.
+    pub fixed: ConvexPolyhedron,
+}
+
+impl Setting {
+    /// Builds both bodies.
+    ///
+    /// # Errors
+    /// As [`ConvexPolyhedron::from_points`].
+    pub fn bodies(&self) -> Result<Bodies, BuildError> {
+        Ok(Bodies {
+            moving: ConvexPolyhedron::from_points(&self.moving)?,
+            fixed: ConvexPolyhedron::from_points(&self.fixed)?,
+        })
+    }
+
+    /// The query, with default choices but for the graze tolerance.
+    ///
+    /// # Errors
+    /// As [`Cast::new`] and [`Cast::with_graze_tolerance`].
+    pub fn query<'a>(&self, bodies: &'a Bodies) -> Result<Cast<'a>, QueryError> {
+        let Bodies { moving, fixed } = bodies;
+        Cast::new(moving.at(self.moving_pose), fixed.at(self.fixed_pose), self.direction)?
+            .with_graze_tolerance(self.graze_tolerance)
+    }
+
+    /// Asks the library where the bodies first meet.
+    ///
+    /// # Errors
+    /// As [`Self::query`] and [`Cast::first_contact`].
+    pub fn cast(&self, bodies: &Bodies, solver: Solver) -> Result<Outcome, QueryError> {
+        self.query(bodies)?.with_solver(solver).first_contact()
+    }
+
+    /// The judge of answers about it.
+    ///
+    /// # Panics
+    /// If the library refuses the query.
+    pub fn judge<'a>(&self, bodies: &'a Bodies) -> Judge<'a> {
+        Judge::new(self.query(bodies).expect("a query")).with_input(&self.moving, &self.fixed)
+    }
+
+    /// Holds both bodies against the points that they were made of.
+    ///
+    /// # Errors
+    /// Which one does not keep them, and how; as [`input::judge`].
+    pub fn judge_bodies(&self, bodies: &Bodies) -> Result<[Kept; 2], Objection> {
+        let named = |name: &'static str| move |e| Objection(format!("{name} body: {e}"));
+        Ok([
+            input::judge(&self.moving, &bodies.moving).map_err(named("moving"))?,
+            input::judge(&self.fixed, &bodies.fixed).map_err(named("fixed"))?,
+        ])
+    }
+
+    /// All numbers of the setting, for a report.
+    pub fn dump(&self) -> String {
+        format!("{self:?}")
+    }
+}
+
+/// A family: its name, and how to draw one of its settings.
+pub type Family = (&'static str, fn(&mut Random) -> Draft);
+
+/// All families.
+pub const FAMILIES: &[Family] = &[
+    ("random", random),
+    ("boxes", boxes),
+    ("turned-boxes", turned_boxes),
+    ("prisms", prisms),
+    ("grid", grid),
+    ("face-face", face_face),
+    ("edge-edge-parallel", edge_edge_parallel),
+    ("vertex-over-vertex", vertex_over_vertex),
+    ("rim", rim),
+    ("identical", identical),
+    ("peg", peg),
+    ("needle-plate", needle_plate),
+    ("size-ratio", size_ratio),
+    ("offset", offset),
+    ("far", far),
+    ("flat", flat),
+    ("segment-point", segment_point),
+    ("nearly", nearly),
+    ("shallow", shallow),
+    ("thin", thin),
+    ("cylinders", cylinders),
+    ("magnitude", magnitude),
+    ("narrow-rings", nearly_flat_faces),
+    ("nearly-flat-disc", |rng| onto_nearly_flat(rng, disc)),
+    ("nearly-flat-prism", |rng| onto_nearly_flat(rng, flat_prism)),
+    ("nearly-flat-plate", |rng| onto_nearly_flat(rng, plate)),
+    ("nearly-flat-lattice", |rng| onto_nearly_flat(rng, lattice)),
+    ("nearly-straight", |rng| onto_nearly_flat(rng, needle)),
+];
+
+/// The families of bodies that are hardly thicker than rounding, or less.
+pub const NEARLY_FLAT: &[&str] = &[
+    "nearly-flat-disc",
+    "nearly-flat-prism",
+    "nearly-flat-plate",
+    "nearly-flat-lattice",
+    "nearly-straight",
+];
+
+/// A setting before it is turned and scaled as a whole.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    moving: Vec<DVec3>,
+    fixed: Vec<DVec3>,
+    moving_rotation: DQuat,
+    fixed_rotation: DQuat,
+    moving_at: DVec3,
+    fixed_at: DVec3,
+    direction: DVec3,
+    graze_tolerance: f64,
+}
+
+impl Draft {
+    fn new(moving: Vec<DVec3>, fixed: Vec<DVec3>, fixed_at: DVec3, direction: DVec3) -> Self {
+        Self {
+            moving,
+            fixed,
+            moving_rotation: DQuat::IDENTITY,
+            fixed_rotation: DQuat::IDENTITY,
+            moving_at: DVec3::ZERO,
+            fixed_at,
+            direction,
+            graze_tolerance: 0.0,
+        }
+    }
+
+    fn turned(self, moving_rotation: DQuat, fixed_rotation: DQuat) -> Self {
+        Self { moving_rotation, fixed_rotation, ..self }
+    }
+
+    /// The whole scene turned: ties that were exact are now ties up to rounding.
+    fn turn(&mut self, rotation: DQuat) {
+        self.moving_rotation = (rotation * self.moving_rotation).normalize();
+        self.fixed_rotation = (rotation * self.fixed_rotation).normalize();
+        self.moving_at = rotation * self.moving_at;
+        self.fixed_at = rotation * self.fixed_at;
+        self.direction = rotation * self.direction;
+    }
+}
+
+/// The setting of a family with a seed: half of them as drawn, half turned as a whole; some with a
+/// direction that is turned around or no unit vector.
+///
+/// # Panics
+/// If there is no such family.
+pub fn setting(family: &str, seed: u64) -> Setting {
+    let &(family, draw) = FAMILIES.iter().find(|f| f.0 == family).expect("a known family");
+    let salt = family.bytes().fold(0, |h: u64, b| h.wrapping_mul(31).wrapping_add(b.into()));
+    let mut rng = Random::new(seed ^ salt.rotate_left(32));
+    let mut draft = draw(&mut rng);
+    if rng.one_in(2) {
+        draft.turn(rng.rotation());
+    }
+    if rng.one_in(4) {
+        draft.direction = -draft.direction;
+    }
+    if rng.one_in(4) {
+        draft.direction *= rng.range(-7.0, 7.0).exp();
+    }
+    let pose = |rotation, at| Pose::new(rotation, at).expect("a rotation");
+    Setting {
+        family,
+        seed,
+        moving_pose: pose(draft.moving_rotation, draft.moving_at),
+        fixed_pose: pose(draft.fixed_rotation, draft.fixed_at),
+        moving: draft.moving,
+        fixed: draft.fixed,
+        direction: draft.direction,
+        graze_tolerance: draft.graze_tolerance,
+    }
+}

@@ -28,7 +28,8 @@ fn grid() -> Assembly {
     for k in 0..GRID.iter().product() {
         let [i, j, l] = [k % GRID[0], k / GRID[0] % GRID[1], k / GRID[0] / GRID[1]];
         let place = format!("[{}, {}, {}]", 2 * i, 2 * j, 2 * l);
-        manifest += &format!("[[part]]\nfile = 'c.off'\nname = 'p{k}'\ntranslation = {place}\n");
+        let part = format!("[[part]]\nfile = 'c.off'\nname = 'p{k}'\ntranslation = {place}\n");
+        manifest.push_str(&part);
     }
     let files = [("m.toml", manifest.as_str()), ("c.off", CUBE)];
     let files: BTreeMap<PathBuf, Vec<u8>> =

@@ -291,7 +291,7 @@ fn paths_of_a_3mf_package_may_have_blanks() {
         let object = format!("<object id=\"3\"><components>{component}</components></object>");
         model(PRODUCTION, &object, "<item objectid=\"3\"/>")
     };
-    let cube = || model("", &object(1, [1, 2, 3]), "");
+    let cube = || model("", &object(1, [1.0, 2.0, 3.0]), "");
     // Written out in neither, either or both; `%C3%A9` is one letter.
     for (target, root) in [
         ("/3D/my%20model.model", "3D/my model.model"),
@@ -314,7 +314,7 @@ fn paths_of_a_3mf_package_may_have_blanks() {
 #[test]
 fn what_is_no_part_of_a_3mf_model_is_left_out_and_said() {
     let of = |kind: &str, id: u32| {
-        object(id, [id, 1, 1])
+        object(id, [f64::from(id), 1.0, 1.0])
             .replace("type=\"model\"", &format!("type=\"{kind}\" name=\"{kind}\""))
     };
     let kinds = ["model", "surface", "support", "solidsupport", "other"];

@@ -22,8 +22,10 @@ pub(crate) fn plain(text: &str) -> Cow<'_, str> {
 pub(crate) fn plain_json(text: &str) -> Cow<'_, str> {
     // JSON writes what is beyond 2^16 as UTF-16 does, as two.
     let escape = |c: char| {
-        let units = c.encode_utf16(&mut [0; 2]).to_vec();
-        units.iter().map(|unit| format!("\\u{unit:04x}")).collect()
+        let mut units = [0; 2];
+        let units: Vec<String> =
+            c.encode_utf16(&mut units).iter().map(|unit| format!("\\u{unit:04x}")).collect();
+        units.concat()
     };
     written_out(text, |c| steers(c) && c != '\n', escape)
 }

@@ -12,12 +12,9 @@ use base64::Engine;
 use colltrans_assembly::read::{ReadOptions, read, read_from};
 use colltrans_assembly::{Assembly, Bodies, Fit, ReadError};
 use colltrans_testkit::shapes::block;
-use common::{mesh_of_3mf, package};
+use common::{CUBE, mesh_of_3mf, package};
 use glam::DVec3;
 use serde_json::{Value, json};
-
-const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
-    4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
 /// The source, and files beside it, from memory.
 fn from_memory(name: &str, files: &[(&str, Vec<u8>)]) -> Result<Assembly, ReadError> {

@@ -1,7 +1,6 @@
 //! The corpora of the fuzz targets of readers as ordinary tests. A finding becomes one more file.
 
-use std::fs;
-use std::path::Path;
+use colltrans_testkit::oracle::fuzz::corpus;
 
 #[path = "../../../fuzz/readers.rs"]
 mod readers;
@@ -30,14 +29,7 @@ fn changed(seed: &[u8], mut target: impl FnMut(&[u8])) {
 
 /// Runs a target over every file of its corpus, as it is and changed.
 fn replay(name: &str, target: fn(&[u8]), at_least: usize) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(name);
-    let mut files: Vec<_> =
-        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.sort();
-    assert!(files.len() >= at_least, "{} files only in {}", files.len(), folder.display());
-    for file in files {
-        println!("{}", file.display());
-        let seed = fs::read(&file).unwrap();
+    for seed in corpus(name, at_least) {
         target(&seed);
         if seed.len() < 4_096 {
             changed(&seed, target);

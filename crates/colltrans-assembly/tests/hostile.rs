@@ -21,7 +21,7 @@ use colltrans_assembly::read::{ReadOptions, read_from};
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
-use common::{mesh_of_3mf, package};
+use common::{CUBE, mesh_of_3mf, package};
 use quick_xml::events::Event;
 use serde_json::{Value, json};
 
@@ -34,9 +34,6 @@ const HOSTILE: [&str; 6] = [
     "+cmd|' /C calc'!A0",
     "\t-1,\"\n",
 ];
-
-const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
-    4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
 /// What each kind of output says, made of an assembly of cubes that partly overlap.
 struct Outputs {

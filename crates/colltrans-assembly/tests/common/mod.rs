@@ -10,6 +10,10 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, block};
 use glam::{DAffine3, DVec3};
 
+/// The unit cube, as a file.
+pub const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
+    4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+
 pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Piece {
     let Mesh { vertices, faces } = block(low, high);
     Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY }

@@ -6,7 +6,7 @@ use std::process::Output;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::support::{colltrans, data, folder, json, stderr, stdout};
+use crate::support::{self, colltrans, data, folder, json, stderr, stdout};
 
 /// A cube from 0 to 1, one upon it, and what places them: as URDF and as manifests.
 fn stacked() -> TempDir {
@@ -30,29 +30,25 @@ fn stacked() -> TempDir {
     folder
 }
 
+fn of_assembly<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    [&["assembly"][..], arguments].concat()
+}
+
 fn run(folder: &Path, arguments: &[&str]) -> Output {
-    colltrans(folder).arg("assembly").args(arguments).output().unwrap()
+    support::run(folder, &of_assembly(arguments))
 }
 
 fn answered(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
-    stdout(&output)
+    support::answered(folder, &of_assembly(arguments))
+}
+
+fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    support::refused(folder, &of_assembly(arguments), code, words);
 }
 
 fn facts(folder: &Path, arguments: &[&str]) -> Value {
     let arguments: Vec<&str> = arguments.iter().copied().chain(["--json"]).collect();
     json(&answered(folder, &arguments))
-}
-
-fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = run(folder, arguments);
-    let message = stderr(&output);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
-    assert!(stdout(&output).is_empty());
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in {message}");
-    }
 }
 
 fn names(value: &Value) -> Vec<&str> {

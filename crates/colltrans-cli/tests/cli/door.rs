@@ -1,28 +1,8 @@
 //! What newcomers do: outputs on top of inputs, parts that are not convex, poses by hand, scans.
 
 use std::path::Path;
-use std::process::Output;
 
-use crate::support::{CAST, colltrans, folder, json, stderr, stdout};
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    colltrans(folder).args(arguments).output().unwrap()
-}
-
-fn answered(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
-    stdout(&output)
-}
-
-fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = run(folder, arguments);
-    let message = stderr(&output);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
-    for word in words {
-        assert!(message.contains(word), "{word:?} is not in {message}");
-    }
-}
+use crate::support::{CAST, answered, colltrans, folder, json, refused, run, stderr, stdout};
 
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<_> = std::fs::read_dir(folder)

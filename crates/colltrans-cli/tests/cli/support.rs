@@ -14,6 +14,28 @@ pub(crate) fn colltrans(folder: &Path) -> Command {
     command
 }
 
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Output {
+    colltrans(folder).args(arguments).output().unwrap()
+}
+
+/// What is printed; nothing else is expected than success.
+pub(crate) fn answered(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    stdout(&output)
+}
+
+/// Fails with a code, prints nothing, and says all these words.
+pub(crate) fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    let output = run(folder, arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
+    assert!(stdout(&output).is_empty());
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in {message}");
+    }
+}
+
 /// A folder with a unit cube (`cube.off`), a body that is not convex (`dent.off`), an open one
 /// (`open.off`), a broken file (`broken.off`) and a point cloud (`points.ply`).
 pub(crate) fn folder() -> TempDir {

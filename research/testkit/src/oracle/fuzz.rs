@@ -5,6 +5,9 @@
 //! which reaches every special value and magnitude, or as small whole numbers, which reaches every
 //! tie.
 
+use std::fs;
+use std::path::Path;
+
 use colltrans::{
     Cast, Clearance, ConvexPolyhedron, Pose, PoseError, Solid, SolidOptions, Solver, StartProof,
 };
@@ -23,6 +26,24 @@ const MOST_POINTS: usize = 64;
 const MOST_JUDGED: usize = 10;
 /// Settings of a sequence.
 const MOST_STEPS: usize = 24;
+
+/// The files of a target's corpus, each printed before it is given out: who fails has named it.
+///
+/// # Panics
+/// If there are fewer files than there should be.
+pub fn corpus(target: &str, at_least: usize) -> impl Iterator<Item = Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(target);
+    let mut files: Vec<_> = fs::read_dir(&folder)
+        .unwrap_or_else(|e| panic!("{}: {e}", folder.display()))
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    files.sort();
+    assert!(files.len() >= at_least, "{} files only in {}", files.len(), folder.display());
+    files.into_iter().map(|file| {
+        println!("{}", file.display());
+        fs::read(file).expect("a file")
+    })
+}
 
 /// Bytes, read one number after the other; zeros after the end.
 #[derive(Debug, Clone)]

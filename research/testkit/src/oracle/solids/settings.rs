@@ -58,7 +58,7 @@ impl Setting {
         let mut shear = DMat3::IDENTITY;
         let mut turns = [DMat3::IDENTITY; 2];
         let mut rotation = DQuat::IDENTITY;
-        let mut translations = [whole(3, rng), whole(3, rng)];
+        let mut translations = [rng.grid(-3, 3), rng.grid(-3, 3)];
         let mut direction = way(rng);
         match family {
             "grid" => {}
@@ -77,7 +77,7 @@ impl Setting {
                 translations = translations.map(|t| if zero { DVec3::ZERO } else { map * t });
                 direction = map * direction;
                 if zero {
-                    cells[1] = displaced(&cells[1], whole(2, rng));
+                    cells[1] = displaced(&cells[1], rng.grid(-2, 2));
                 }
             }
             "mould" => {
@@ -185,15 +185,11 @@ impl Setting {
     }
 }
 
-pub(super) fn whole(most: i64, rng: &mut Random) -> DVec3 {
-    DVec3::new(rng.whole(-most, most), rng.whole(-most, most), rng.whole(-most, most))
-}
-
 /// A direction along an axis or a diagonal, or of small whole numbers.
 pub(super) fn way(rng: &mut Random) -> DVec3 {
     loop {
         let most = [1, 1, 3][rng.int(0, 2) as usize];
-        let mut d = whole(most, rng);
+        let mut d = rng.grid(-most, most);
         if rng.one_in(3) {
             d = DVec3::AXES[rng.int(0, 2) as usize] * rng.whole(1, 3);
         }
@@ -205,7 +201,7 @@ pub(super) fn way(rng: &mut Random) -> DVec3 {
 
 pub(super) fn sheared(rng: &mut Random) -> DMat3 {
     loop {
-        let m = DMat3::from_cols(whole(2, rng), whole(2, rng), whole(2, rng));
+        let m = DMat3::from_cols(rng.grid(-2, 2), rng.grid(-2, 2), rng.grid(-2, 2));
         if m.determinant() != 0.0 {
             return m;
         }

@@ -4,7 +4,7 @@ use colltrans::{Clearance, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::Cells;
-use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way, whole};
+use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way};
 use super::squares::{Crossing, Mixed, Squares};
 use super::{encloses, exactly};
 use crate::oracle::exact::{Ratio, Vector};
@@ -50,11 +50,11 @@ impl Setting {
         });
         let half = if rng.one_in(3) { 0.5 } else { 1.0 };
         let mut direction = way(rng);
-        let mut translations = [whole(3, rng) * half, whole(3, rng) * half];
+        let mut translations = [rng.grid(-3, 3) * half, rng.grid(-3, 3) * half];
         if !rng.one_in(4) {
             // Mostly behind the other one.
             let behind = direction * rng.whole(0, 3);
-            translations[0] = translations[1] + whole(1, rng) * half - behind;
+            translations[0] = translations[1] + rng.grid(-1, 1) * half - behind;
         }
         let mut shear = DMat3::IDENTITY;
         let mut rotation = DQuat::IDENTITY;

@@ -1,6 +1,5 @@
 //! The minimisation against brute force.
 
-use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec2, DVec3};
 
 use super::cell::face_of;
@@ -14,7 +13,7 @@ use super::{CtaOptions, Guess, Origin};
 use crate::answer::Steps;
 use crate::body::ConvexPolyhedron;
 use crate::body::Pose;
-use crate::body::convex::tests::bodies::{cone, cuboid, ellipsoid, prism, thin_ellipsoid};
+use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism, thin_ellipsoid};
 use crate::setting::Setting;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::{Nobody, Observer, Watch};
@@ -149,17 +148,20 @@ fn check(
 }
 
 fn random_pose(random: &mut Random, spread: f64) -> Pose {
-    let translation = random.vector() * spread;
+    let translation = DVec3::new(random.signed(), random.signed(), random.signed()) * spread;
     Pose::new(random.rotation(), translation).unwrap()
 }
 
 #[test]
 fn random_bodies_agree_with_brute_force() {
-    let mut random = Random::new(7);
+    let mut random = Random(7);
     for round in 0..2000 {
         let mut body = || {
-            let axes =
-                DVec3::new(random.range(0.6, 1.4), random.range(0.6, 1.4), random.range(0.6, 1.4));
+            let axes = DVec3::new(
+                random.within(0.6, 1.4),
+                random.within(0.6, 1.4),
+                random.within(0.6, 1.4),
+            );
             match random.index(4) {
                 0 => ellipsoid(8 + random.index(30), axes),
                 1 => prism(3 + random.index(6), axes),
@@ -169,14 +171,14 @@ fn random_bodies_agree_with_brute_force() {
         };
         let (p, q) = (body(), body());
         let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
-        let d = random.direction();
+        let d = random.unit();
         check((&p, &p_pose), (&q, &q_pose), d, 1e-8, &format!("round {round}"));
     }
 }
 
 #[test]
 fn tied_bodies_agree_with_brute_force() {
-    let mut random = Random::new(13);
+    let mut random = Random(13);
     let bodies = [
         cuboid(DVec3::ZERO, DVec3::ONE),
         cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)),
@@ -226,7 +228,7 @@ fn bound_by(normal: DVec3, p: &Placed, q: &Placed, d: DVec3) -> f64 {
 
 #[test]
 fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
-    let mut random = Random::new(17);
+    let mut random = Random(17);
     let bodies = [
         ellipsoid(3000, DVec3::ONE),
         ellipsoid(3000, DVec3::new(1000.0, 1.0, 1.0)),
@@ -238,7 +240,7 @@ fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
     for round in 0..400 {
         let p = &bodies[random.index(bodies.len())];
         let q = &bodies[random.index(bodies.len())];
-        let d = random.direction();
+        let d = random.unit();
         let poses = [0.0, 3.0].map(|t| Pose::new(random.rotation(), d * t).unwrap());
         let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), d).unwrap();
         let narrowed = minimised(&setting, &EXACT).0;
@@ -258,7 +260,7 @@ fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
 
 #[test]
 fn the_exit_test_ends_nearly_every_search_at_the_contact() {
-    let mut random = Random::new(23);
+    let mut random = Random(23);
     let bodies = [
         ellipsoid(30, DVec3::ONE),
         ellipsoid(60, DVec3::new(1.0, 0.7, 1.3)),
@@ -295,15 +297,15 @@ fn the_exit_test_ends_nearly_every_search_at_the_contact() {
 
 #[test]
 fn a_hit_on_a_large_face_names_the_portal() {
-    let mut random = Random::new(37);
+    let mut random = Random(37);
     let point = ellipsoid(200, DVec3::splat(0.2));
     let mut hits = 0;
     for round in 0..600 {
         let face = prism(4 + random.index(60), DVec3::ONE);
         // Onto a cap, from either side and as either body.
-        let along = DVec3::new(0.3 * random.range(-1.0, 1.0), 0.3 * random.range(-1.0, 1.0), 1.0);
+        let along = DVec3::new(0.3 * random.signed(), 0.3 * random.signed(), 1.0);
         let cap = if random.index(2) == 0 { -along } else { along };
-        let aside = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), 0.0) * 0.6;
+        let aside = DVec3::new(random.signed(), random.signed(), 0.0) * 0.6;
         let [rest, start] =
             [DVec3::ZERO, aside - cap * 4.0].map(|at| Pose::new(DQuat::IDENTITY, at).unwrap());
         let setting = if random.index(2) == 0 {
@@ -324,7 +326,7 @@ fn a_hit_on_a_large_face_names_the_portal() {
 #[test]
 fn a_shift_that_keeps_to_its_cell_takes_more_planar_problems() {
     let one_by_one = CtaOptions { keeps_to_cell: true, ..EXACT };
-    let mut random = Random::new(47);
+    let mut random = Random(47);
     let bodies = similar(2000, false);
     let (mut kept, mut crossed) = (0, 0);
     for round in 0..300 {
@@ -344,9 +346,9 @@ fn a_shift_that_keeps_to_its_cell_takes_more_planar_problems() {
 #[test]
 fn steps_do_not_grow_with_the_bodies() {
     for count in [8, 128, 2000, 20_000] {
-        let mut random = Random::new(19);
+        let mut random = Random(19);
         let [p, q] = [0, 1].map(|_| {
-            let axes = [0, 1, 2].map(|_| random.range(0.6, 1.4));
+            let axes = [0, 1, 2].map(|_| random.within(0.6, 1.4));
             ellipsoid(count, DVec3::from_array(axes))
         });
         let mut steps = 0;
@@ -371,8 +373,8 @@ struct Example {
 }
 
 fn colliding(random: &mut Random) -> Example {
-    let d = random.direction();
-    let across = random.direction().cross(d).normalize() * random.range(0.0, 1.0);
+    let d = random.unit();
+    let across = random.unit().cross(d).normalize() * random.within(0.0, 1.0);
     let poses = [DVec3::ZERO, d * 5.0 + across]
         .map(|translation| Pose::new(random.rotation(), translation).unwrap());
     Example { poses, d }
@@ -399,7 +401,7 @@ fn polygon(side: &Side, x: f64) -> Vec<Crossing> {
 
 #[test]
 fn planar_problems_agree_with_brute_force() {
-    let mut random = Random::new(5);
+    let mut random = Random(5);
     for round in 0..3000 {
         let mut body = || match random.index(4) {
             0 => ellipsoid(8 + random.index(60), DVec3::ONE),
@@ -409,7 +411,7 @@ fn planar_problems_agree_with_brute_force() {
         };
         let (p, q) = (body(), body());
         let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
-        let setting = Setting::new(p.at(p_pose), q.at(q_pose), random.direction()).unwrap();
+        let setting = Setting::new(p.at(p_pose), q.at(q_pose), random.unit()).unwrap();
         check_planar(&setting, &mut random, &format!("round {round}"));
     }
 }
@@ -451,7 +453,7 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     let query = SectionPair::new(setting);
     let levels = [0, 1].map(|i| {
         let [low, high] = query.sides[i].range();
-        random.range(low, high)
+        random.within(low, high)
     });
     let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
     for (i, polygon) in polygons.iter().enumerate() {
@@ -483,7 +485,7 @@ fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     for share in [1e-9, 1e-3, 0.1, 1.0] {
         let others = [0, 1].map(|i| {
             let [low, high] = query.sides[i].range();
-            levels[i] + (random.range(low, high) - levels[i]) * share
+            levels[i] + (random.within(low, high) - levels[i]) * share
         });
         let other = planar::solve(&query.sides, others, &Hint::NONE).unwrap();
         let hint = other.hint(others, levels, least.min(10.0) - share);
@@ -515,18 +517,18 @@ fn check_answer(answer: &Planar, polygons: &[Vec<Crossing>; 2], least: f64, name
 fn random_levels(random: &mut Random, query: &SectionPair) -> [f64; 2] {
     query.sides.each_ref().map(|side| {
         let [low, high] = side.range();
-        random.range(low, high)
+        random.within(low, high)
     })
 }
 
 #[test]
 fn the_faces_of_a_contact_tell_it_again() {
-    let mut random = Random::new(43);
+    let mut random = Random(43);
     let (p, q) = (ellipsoid(200, DVec3::ONE), ellipsoid(60, DVec3::new(1.0, 0.7, 1.3)));
     let (mut contacts, mut told) = (0, 0);
     for round in 0..3000 {
         let poses = [random_pose(&mut random, 0.7), random_pose(&mut random, 0.7)];
-        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.direction()).unwrap();
+        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
         let query = SectionPair::new(&setting);
         let levels = random_levels(&mut random, &query);
         let found = planar::solve(&query.sides, levels, &Hint::NONE).unwrap();
@@ -544,11 +546,11 @@ fn the_faces_of_a_contact_tell_it_again() {
 /// Iterations of all loops per planar problem, and planar problems per search, of searches from the
 /// centre to the end.
 fn work_per_problem(bodies: &[ConvexPolyhedron; 2], aside: f64, rounds: usize) -> [f64; 2] {
-    let mut random = Random::new(29);
+    let mut random = Random(29);
     let (mut problems, mut iterations) = (0, 0);
     for _ in 0..rounds {
         let mut e = colliding(&mut random);
-        let shift = random.direction().cross(e.d).normalize() * aside;
+        let shift = random.unit().cross(e.d).normalize() * aside;
         e.poses[1] = Pose::new(e.poses[1].rotation(), e.poses[1].translation() + shift).unwrap();
         let [p, q] = bodies;
         let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
@@ -578,9 +580,9 @@ fn planar_problems_do_not_walk_along_sections() {
 
 /// Two ellipsoids with faces as long as wide, or a hundred times as long.
 fn similar(count: usize, thin: bool) -> [ConvexPolyhedron; 2] {
-    let mut random = Random::new(31);
+    let mut random = Random(31);
     [0, 1].map(|_| {
-        let axes = DVec3::from_array([0, 1, 2].map(|_| random.range(0.6, 1.4)));
+        let axes = DVec3::from_array([0, 1, 2].map(|_| random.within(0.6, 1.4)));
         if thin { thin_ellipsoid(count, axes) } else { ellipsoid(count, axes) }
     })
 }
@@ -588,12 +590,12 @@ fn similar(count: usize, thin: bool) -> [ConvexPolyhedron; 2] {
 /// Mean iterations of planar problems at random levels of nothing known: of contacts, of sections
 /// that pass each other sideways, and by height.
 fn work_from_nothing(bodies: &[ConvexPolyhedron; 2], rounds: usize) -> [f64; 3] {
-    let mut random = Random::new(41);
+    let mut random = Random(41);
     let (mut problems, mut iterations) = ([0_u32; 3], [0_u32; 3]);
     for _ in 0..rounds {
         let [p, q] = bodies;
         let poses = [random_pose(&mut random, 0.7), random_pose(&mut random, 0.7)];
-        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.direction()).unwrap();
+        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
         let query = SectionPair::new(&setting);
         let levels = random_levels(&mut random, &query);
         let kind = match planar::solve(&query.sides, levels, &Hint::NONE).unwrap() {

@@ -1,7 +1,6 @@
-use colltrans_testkit::random::Random;
 use glam::{DVec2, DVec3};
 
-use super::bodies::{cone, cuboid, ellipsoid, prism};
+use super::bodies::{Random, cone, cuboid, ellipsoid, prism};
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::sections::{SectionIndex, next_clockwise, next_counter_clockwise};
 
@@ -26,7 +25,7 @@ fn levels(body: &ConvexPolyhedron, axis: DVec3, random: &mut Random) -> Vec<f64>
     let high = of_vertices.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut levels = vec![low];
     for _ in 0..20 {
-        levels.push(random.range(low, high));
+        levels.push(random.within(low, high));
         levels.push(of_vertices[random.index(of_vertices.len())]);
     }
     levels.retain(|&x| x < high);
@@ -45,7 +44,7 @@ fn crossing(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
 
 #[test]
 fn walks_visit_the_whole_section_once_in_either_direction() {
-    let mut random = Random::new(1);
+    let mut random = Random(1);
     for body in bodies() {
         let topology = body.topology();
         for axis in crate::body::convex::sections::AXES {
@@ -100,7 +99,7 @@ fn walks_are_counter_clockwise_from_the_tip_of_the_axis() {
 
 #[test]
 fn snapshots_hold_crossing_edges_in_order_at_even_strides_in_linear_space() {
-    let mut random = Random::new(2);
+    let mut random = Random(2);
     for body in bodies() {
         let topology = body.topology();
         let index = SectionIndex::build(body.vertices(), topology);
@@ -133,13 +132,13 @@ fn snapshots_hold_crossing_edges_in_order_at_even_strides_in_linear_space() {
 
 #[test]
 fn the_extremes_of_a_snapshot_agree_with_a_scan() {
-    let mut random = Random::new(3);
+    let mut random = Random(3);
     for body in bodies() {
         let index = SectionIndex::build(body.vertices(), body.topology());
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
             for x in levels(&body, axis, &mut random) {
-                let constants = DVec2::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0));
-                let map = index.axis(i).map([random.direction(), random.direction()], constants);
+                let constants = DVec2::new(random.signed(), random.signed());
+                let map = index.axis(i).map([random.unit(), random.unit()], constants);
                 let snapshot = index.axis(i).snapshot(&map, x);
                 let height = |i: usize| snapshot.point(i).x;
                 let heights: Vec<f64> = (0..snapshot.len()).map(height).collect();
@@ -157,15 +156,15 @@ fn the_extremes_of_a_snapshot_agree_with_a_scan() {
 
 #[test]
 fn snapshots_show_the_points_of_their_own_level() {
-    let mut random = Random::new(4);
+    let mut random = Random(4);
     for body in bodies() {
         let index = SectionIndex::build(body.vertices(), body.topology());
         let size = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
             for x in levels(&body, axis, &mut random) {
                 let (level, entries) = index.axis(i).snapshot_for_test(x);
-                let covectors = [random.direction(), random.direction()];
-                let constants = DVec2::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+                let covectors = [random.unit(), random.unit()];
+                let constants = DVec2::new(random.signed(), random.signed());
                 let map = index.axis(i).map(covectors, constants);
                 let above = body.vertices().iter().map(|v| axis.dot(*v)).filter(|&l| l > level);
                 let next = above.fold(f64::INFINITY, f64::min);

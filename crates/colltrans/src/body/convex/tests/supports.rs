@@ -2,16 +2,15 @@
 
 use std::f64::consts::TAU;
 
-use colltrans_testkit::random::Random;
 use glam::DVec3;
 
-use super::bodies::{cone, prism};
+use super::bodies::{Random, cone, prism};
 use crate::body::ConvexPolyhedron;
 
 /// A frustum over a polygon with its corners anywhere on an ellipse, most of them close together.
 fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
     let mut angles: Vec<f64> =
-        (0..around).map(|_| random.range(0.0, 1.0).powi(8) * 0.999 * TAU).collect();
+        (0..around).map(|_| random.within(0.0, 1.0).powi(8) * 0.999 * TAU).collect();
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|a, b| *a - *b < 1e-3 / around as f64);
     let ring = |radius: f64, z: f64| {
@@ -24,19 +23,19 @@ fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
 /// Along the axis, across it, and by ever less beside the axis, where a small change of the direction
 /// leads around the whole base.
 fn direction(random: &mut Random, k: usize) -> DVec3 {
-    let lateral = random.direction().with_z(0.0);
+    let lateral = random.unit().with_z(0.0);
     let up = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     match k / 2 % 4 {
-        0 => random.direction(),
+        0 => random.unit(),
         1 => lateral,
         2 => DVec3::Z * up,
-        _ => lateral * 10_f64.powf(random.range(-12.0, 0.0)) + DVec3::Z * up,
+        _ => lateral * 10_f64.powf(random.within(-12.0, 0.0)) + DVec3::Z * up,
     }
 }
 
 #[test]
 fn no_vertex_is_farther_than_the_support_point() {
-    let mut random = Random::new(41);
+    let mut random = Random(41);
     let scales = [DVec3::ONE, DVec3::new(1.0, 4.0, 0.01), DVec3::new(0.1, 0.2, 30.0)];
     let mut bodies = Vec::new();
     for around in [24, 33, 100, 1_500] {

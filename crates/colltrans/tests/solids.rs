@@ -470,9 +470,7 @@ fn answers_do_not_depend_on_order_subdivision_or_displacement() {
 }
 
 #[test]
-fn a_graze_tolerance_on_a_solid_names_the_other_way() {
+fn a_negative_tolerance_is_refused() {
     let cube = cuboid([0.0; 3], [1.0; 3]);
-    let refused = cast(&cube, &cube, DVec3::X).with_graze_tolerance(0.5).expect_err("a solid");
-    assert!(refused.to_string().contains("with_tolerance"), "{refused}");
     assert!(cast(&cube, &cube, DVec3::X).with_tolerance(-1.0).is_err());
 }

@@ -31,15 +31,6 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
-    /// A graze tolerance was set on a query between solids.
-    #[error(
-        "a graze tolerance ({tolerance}) on a solid would depend on how finely it is meshed; \
-         `with_tolerance` shrinks both bodies instead"
-    )]
-    GrazeOnSolid {
-        /// The tolerance as given.
-        tolerance: f64,
-    },
     /// A convex body that is no solid.
     #[error("a convex body is no solid: {0}")]
     NoSolid(#[from] SolidError),

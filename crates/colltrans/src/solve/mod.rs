@@ -28,7 +28,7 @@ use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
 use portal::{
-    Enclosure, Face, FirstNormal, Followed, Optimum, Overlap, Plane, Portal, Refined,
+    Context, Enclosure, Face, FirstNormal, Followed, Known, Overlap, Plane, Portal, Refined,
     SeparatingLine,
 };
 use proof::Proven;
@@ -51,20 +51,18 @@ pub(crate) fn search<O: Observer>(
     };
     *next = WarmStart::Nothing;
     let mut first = Run {
-        difference: MinkowskiDifference::new(setting),
+        context: Context {
+            difference: MinkowskiDifference::new(setting),
+            watch: Watch::new(observer),
+        },
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
-        optimum: None,
-        face: None,
-        is_wrapped: false,
-        is_second: false,
-        watch: Watch::new(observer),
     };
     let mut answer = first.run(focus, last, next);
-    first.watch.ended(Phase::Answer);
+    first.context.watch.ended(Phase::Answer);
     if let Err(QueryError::NotConverged { .. }) = answer {
-        let turns: &[DVec2] = if first.watch.steps.started_from == StartedFrom::Scratch {
+        let turns: &[DVec2] = if first.context.watch.steps.started_from == StartedFrom::Scratch {
             &TURNS[1..]
         } else {
             &TURNS
@@ -81,11 +79,11 @@ fn again<O: Observer>(
     turns: &[DVec2],
     next: &mut WarmStart,
 ) -> Result<Outcome, QueryError> {
-    run.watch.steps.started_from = StartedFrom::Scratch;
+    run.context.watch.steps.started_from = StartedFrom::Scratch;
     let mut answer = Err(stalled(Stalled::Cycle));
     for &turn in turns {
-        run.difference = MinkowskiDifference::turned_by(run.difference.setting, turn);
-        run.is_second = false;
+        run.context.difference =
+            MinkowskiDifference::turned_by(run.context.difference.setting, turn);
         answer = run.run(&Focus::NONE, &WarmStart::Nothing, next);
         if !matches!(answer, Err(QueryError::NotConverged { .. })) {
             break;
@@ -116,19 +114,17 @@ enum Start {
 
 /// One cast under way.
 struct Run<'a, 'o, O> {
-    difference: MinkowskiDifference<'a>,
+    context: Context<'a, 'o, O>,
     graze_tolerance: f64,
     solver: Solver,
     narrowing: Narrowing,
-    /// The optimum in the first portal, if that is known to be the lowest.
-    optimum: Option<Optimum>,
-    /// The first portal as a face, if that is proven to be the lowest.
-    face: Option<Face>,
-    /// Whether the first portal was reached face by face, so that it probably is the lowest.
-    is_wrapped: bool,
-    /// Whether a line that seemed to pass `M` was found not to.
-    is_second: bool,
-    watch: Watch<'o, O>,
+}
+
+/// Whether a line that seemed to pass `M` was found not to, after which the search has begun again.
+#[derive(Clone, Copy, PartialEq)]
+enum Attempt {
+    First,
+    Second,
 }
 
 impl<O: Observer> Run<'_, '_, O> {
@@ -138,9 +134,9 @@ impl<O: Observer> Run<'_, '_, O> {
         last: &WarmStart,
         next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
-        self.watch.begun(|| ShadowFrame {
-            world_from_shadow: self.difference.setting_from_shadow,
-            noise: self.difference.noise.point(),
+        self.context.watch.begun(|| ShadowFrame {
+            world_from_shadow: self.context.difference.setting_from_shadow,
+            noise: self.context.difference.noise.point(),
         });
         if focus.features
             && let Some(separated) = self.still_apart(last, next)
@@ -149,13 +145,13 @@ impl<O: Observer> Run<'_, '_, O> {
         }
         let followed = if focus.features { self.follow(last) } else { None };
         let enclosure = if followed.is_some() {
-            self.watch.steps.started_from = StartedFrom::Features;
+            self.context.watch.steps.started_from = StartedFrom::Features;
             followed
         } else {
             self.enclosure(focus.region, last)
         };
-        self.watch.ended(Phase::Finish);
-        self.concluded(enclosure, next)
+        self.context.watch.ended(Phase::Finish);
+        self.concluded(enclosure, Attempt::First, next)
     }
 
     /// What follows from a portal, or from a separating direction.
@@ -164,12 +160,15 @@ impl<O: Observer> Run<'_, '_, O> {
     fn concluded(
         &mut self,
         enclosure: Option<Enclosure>,
+        attempt: Attempt,
         next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
         match enclosure {
             None => Err(stalled(Stalled::NoPortal)),
-            Some(Enclosure::Portal(mut portal)) => self.contact_or_grazing(&mut portal, next),
-            Some(Enclosure::Beside(found)) => self.passed(found, next),
+            Some(Enclosure::Portal(mut portal, known)) => {
+                self.contact_or_grazing(&mut portal, known, attempt, next)
+            }
+            Some(Enclosure::Beside(found)) => self.passed(found, attempt, next),
         }
     }
 
@@ -177,14 +176,18 @@ impl<O: Observer> Run<'_, '_, O> {
     fn passed(
         &mut self,
         found: SeparatingLine,
+        attempt: Attempt,
         next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
         if let Some(separated) = self.separated(&found, next) {
             return Ok(Outcome::Separated(separated));
         }
-        let widest = portal::widest_margin(&self.difference, found, &mut self.watch);
-        if widest.margin < -self.difference.touching() {
-            return self.enclosed_after_all(&widest, next);
+        let widest = portal::widest_margin(&mut self.context, found);
+        if widest.margin < -self.context.difference.touching() {
+            return match attempt {
+                Attempt::First => self.enclosed_after_all(&widest, next),
+                Attempt::Second => Err(stalled(Stalled::NoPortal)),
+            };
         }
         if let Some(separated) = self.separated(&widest, next) {
             return Ok(Outcome::Separated(separated));
@@ -199,29 +202,23 @@ impl<O: Observer> Run<'_, '_, O> {
         refuted: &SeparatingLine,
         next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
-        if std::mem::replace(&mut self.is_second, true) {
-            return Err(stalled(Stalled::NoPortal));
-        }
         let start =
             FirstNormal { normal: refuted.normal.extend(0.0), near: Some(refuted.point.pair) };
-        let enclosure = portal::enclose(&self.difference, &start, &mut self.watch);
-        self.concluded(enclosure, next)
+        let enclosure = portal::enclose(&mut self.context, &start);
+        self.concluded(enclosure, Attempt::Second, next)
     }
 
     /// Feature focus: a portal, or a separating direction, from those of the last answer.
     fn follow(&mut self, last: &WarmStart) -> Option<Enclosure> {
         match last {
             WarmStart::Nothing => None,
-            WarmStart::Contact(portal) => {
-                let optimum = &mut self.optimum;
-                match portal::follow(&self.difference, portal, optimum, &mut self.watch) {
-                    Followed::Portal(portal) => Some(self.wrapped(portal)),
-                    Followed::Rim { outward, near } => self.beside(-outward, near),
-                    Followed::Lost => None,
-                }
-            }
+            WarmStart::Contact(portal) => match portal::follow(&mut self.context, portal) {
+                Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
+                Followed::Rim { outward, near } => self.beside(-outward, near),
+                Followed::Lost => None,
+            },
             WarmStart::Apart { normals, pair } => {
-                let [p, q] = self.difference.shadow_from_bodies(*normals)?;
+                let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
                 self.beside((p + q).truncate(), *pair)
             }
         }
@@ -229,16 +226,15 @@ impl<O: Observer> Run<'_, '_, O> {
 
     /// A portal, or a separating direction, from scratch or from the region of the last solution.
     fn enclosure(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
-        let setting = self.difference.setting;
+        let setting = self.context.difference.setting;
         let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
         if self.solver == Solver::Cta && solid {
             return self.narrowed(region, last);
         }
-        if let Some((portal, face)) = portal::facing(&self.difference, &mut self.watch) {
-            self.face = Some(face);
-            return Some(Enclosure::Portal(portal));
+        if let Some((portal, face)) = portal::facing(&mut self.context) {
+            return Some(Enclosure::Portal(portal, Known::Lowest(face)));
         }
-        self.approach(FirstNormal::new(&self.difference))
+        self.approach(FirstNormal::new(&self.context.difference))
     }
 
     /// The same by the collision translation algorithm.
@@ -255,13 +251,13 @@ impl<O: Observer> Run<'_, '_, O> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory the guess stalls its reader")]
     fn approach(&mut self, start: FirstNormal) -> Option<Enclosure> {
-        self.watch.ended(Phase::Setup);
+        self.context.watch.ended(Phase::Setup);
         let mut nearest = start;
         if start.normal.z > 0.0 {
-            let optimum = &mut self.optimum;
-            let (difference, watch) = (&self.difference, &mut self.watch);
-            let found = match portal::approach(difference, &start, &mut nearest, optimum, watch) {
-                Followed::Portal(portal) => Some(self.wrapped(portal)),
+            let (followed, reached) = portal::approach(&mut self.context, &start);
+            nearest = reached;
+            let found = match followed {
+                Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
                 Followed::Rim { outward, near } => self.beside(-outward, near),
                 Followed::Lost => None,
             };
@@ -269,14 +265,7 @@ impl<O: Observer> Run<'_, '_, O> {
                 return found;
             }
         }
-        portal::enclose(&self.difference, &nearest, &mut self.watch)
-    }
-
-    /// A portal that was reached face by face.
-    #[inline]
-    fn wrapped(&mut self, portal: Portal) -> Enclosure {
-        self.is_wrapped = true;
-        Enclosure::Portal(portal)
+        portal::enclose(&mut self.context, &nearest)
     }
 
     /// Whether all of `M` lies beyond a lateral direction.
@@ -286,21 +275,21 @@ impl<O: Observer> Run<'_, '_, O> {
             return None;
         }
         let normal = lateral.try_normalize()?;
-        let least = -self.difference.touching();
-        if normal.dot(self.difference.vertex(near).shadow()) < least {
+        let least = -self.context.difference.touching();
+        if normal.dot(self.context.difference.vertex(near).shadow()) < least {
             return None;
         }
-        let point = self.difference.support_from(normal.extend(0.0), near);
-        self.watch.support(|| Support::of(normal.extend(0.0), &point));
+        let point = self.context.difference.support_from(normal.extend(0.0), near);
+        self.context.watch.support(|| Support::of(normal.extend(0.0), &point));
         let margin = normal.dot(point.shadow());
         (margin >= least).then_some(Enclosure::Beside(SeparatingLine { normal, margin, point }))
     }
 
     /// The first guess of the contact normal, or more than a guess.
     fn start(&mut self, region: Region, last: &WarmStart) -> Start {
-        let ellipsoids = FirstNormal::from_ellipsoids(&self.difference);
+        let ellipsoids = FirstNormal::from_ellipsoids(&self.context.difference);
         if let Some(focus) = self.region(region, last) {
-            self.watch.steps.started_from = StartedFrom::Region;
+            self.context.watch.steps.started_from = StartedFrom::Region;
             return self.narrow(&ellipsoids, Origin::Region(focus));
         }
         match self.narrowing.start {
@@ -317,8 +306,8 @@ impl<O: Observer> Run<'_, '_, O> {
         if normal.z > 0.0 {
             return Start::Normal(*ellipsoids);
         }
-        let support = self.difference.support(normal);
-        self.watch.support(|| Support::of(normal, &support));
+        let support = self.context.difference.support(normal);
+        self.context.watch.support(|| Support::of(normal, &support));
         if normal.dot(support.at) > 0.0 {
             return Start::Normal(FirstNormal::guided(normal, support.pair));
         }
@@ -327,17 +316,18 @@ impl<O: Observer> Run<'_, '_, O> {
 
     /// By the collision translation algorithm.
     fn narrow(&mut self, ellipsoids: &FirstNormal, origin: Origin) -> Start {
-        self.watch.ended(Phase::Setup);
+        self.context.watch.ended(Phase::Setup);
         let Narrowing { gap, keeps_to_cell, .. } = self.narrowing;
         let options = CtaOptions { start: origin, gap, keeps_to_cell };
-        let narrowed = cta::minimise(self.difference.setting, &options, &mut self.watch);
+        let narrowed =
+            cta::minimise(self.context.difference.setting, &options, &mut self.context.watch);
         let corners = narrowed.corners.as_ref();
-        if let Some(portal) = corners.and_then(|c| portal::around(&self.difference, c)) {
-            return Start::Enclosed(Enclosure::Portal(portal));
+        if let Some(portal) = corners.and_then(|c| portal::around(&self.context.difference, c)) {
+            return Start::Enclosed(Enclosure::Portal(portal, Known::Around));
         }
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair { moving: moving[0], fixed: fixed[0] };
-        let in_shadow = |normal| self.difference.setting_from_shadow.transpose() * normal;
+        let in_shadow = |normal| self.context.difference.setting_from_shadow.transpose() * normal;
         Start::Normal(match narrowed.guess {
             Guess::Contact { normal } => FirstNormal::guided(in_shadow(normal), near),
             Guess::Separation { direction } => {
@@ -349,7 +339,7 @@ impl<O: Observer> Run<'_, '_, O> {
 
     /// Region focus: the last contact points, and the half-side of the square around them.
     fn region(&self, region: Region, last: &WarmStart) -> Option<RegionFocus> {
-        let setting = self.difference.setting;
+        let setting = self.context.difference.setting;
         let (touching, normals, pair) = match last {
             WarmStart::Nothing => return None,
             WarmStart::Contact(portal) => {
@@ -362,65 +352,67 @@ impl<O: Observer> Run<'_, '_, O> {
             Region::Everywhere => return None,
             Region::Fixed(delta) => delta,
             Region::Automatic => {
-                self.difference.shadow_from_bodies(normals)?;
+                self.context.difference.shadow_from_bodies(normals)?;
                 setting.displacement(touching)
             }
         };
-        let worth = region != Region::Automatic || self.difference.is_near(half_side);
+        let worth = region != Region::Automatic || self.context.difference.is_near(half_side);
         worth.then_some(RegionFocus { touching, half_side, pair, normal: normals[0] })
     }
 
     fn contact_or_grazing(
         &mut self,
         portal: &mut Portal,
+        known: Known,
+        attempt: Attempt,
         next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
-        let Face { plane, weights } = if let Some(face) = self.known_face(portal) {
+        let Face { plane, weights } = if let Some(face) = self.known_face(portal, known) {
             face
         } else {
             match self.refine(portal) {
                 Some(Refined::Lowest(face)) => face,
-                Some(Refined::Rim(rim)) => return self.passed(rim, next),
+                Some(Refined::Rim(rim)) => return self.passed(rim, attempt, next),
                 None => return Err(stalled(Stalled::Cycle)),
             }
         };
-        let tolerance = self.graze_tolerance.max(self.difference.touching());
-        let overlap = portal::overlap(&self.difference, portal, tolerance, &mut self.watch);
-        self.watch.ended(Phase::Finish);
-        let proven = Proven::new(&self.difference, portal, &plane, weights)?;
+        let tolerance = self.graze_tolerance.max(self.context.difference.touching());
+        let overlap = portal::overlap(&mut self.context, portal, tolerance);
+        self.context.watch.ended(Phase::Finish);
+        let proven = Proven::new(&self.context.difference, portal, &plane, weights)?;
         *next = WarmStart::Contact(proven.contact_portal());
         match overlap {
-            Overlap::Ample => Ok(Outcome::Contact(proven.contact(self.solver, self.watch.steps))),
+            Overlap::Ample => {
+                Ok(Outcome::Contact(proven.contact(self.solver, self.context.watch.steps)))
+            }
             Overlap::Slight { inward, depth, .. } => {
-                let contact = proven.contact(self.solver, self.watch.steps);
-                let grazing = proof::grazing(&self.difference, inward, depth, contact);
+                let contact = proven.contact(self.solver, self.context.watch.steps);
+                let grazing = proof::grazing(&self.context.difference, inward, depth, contact);
                 Ok(Outcome::Grazing(grazing))
             }
         }
     }
 
-    /// The lowest face, if the start has found it, or it is the first portal's.
+    /// The lowest face, if the start has found it, or it is the portal's own.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    fn known_face(&mut self, portal: &Portal) -> Option<Face> {
-        if let Some(face) = self.face.take() {
-            return Some(face);
+    fn known_face(&mut self, portal: &Portal, known: Known) -> Option<Face> {
+        match known {
+            Known::Lowest(face) => Some(face),
+            Known::Optimum(optimum) => portal::proven(&self.context.difference, portal, &optimum),
+            Known::FaceByFace => portal::face(&mut self.context, portal),
+            Known::Around => None,
         }
-        if let Some(optimum) = self.optimum.take() {
-            return portal::proven(&self.difference, portal, &optimum);
-        }
-        let may_be = std::mem::take(&mut self.is_wrapped);
-        if may_be { portal::face(&self.difference, portal, &mut self.watch) } else { None }
     }
 
     /// The lowest face, and its portal in place of the one that leads there.
     #[inline(never)]
     fn refine(&mut self, portal: &mut Portal) -> Option<Refined> {
-        let most = match self.watch.steps.started_from {
+        let most = match self.context.watch.steps.started_from {
             StartedFrom::Features => MOST_AFTER_FOLLOWING,
             StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
         };
-        portal::refine(&self.difference, portal, most, &mut self.watch)
+        portal::refine(&mut self.context, portal, most)
     }
 
     /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
@@ -431,46 +423,45 @@ impl<O: Observer> Run<'_, '_, O> {
         rim: &SeparatingLine,
         next: &mut WarmStart,
     ) -> Result<Grazing, QueryError> {
-        self.difference = self.difference.widened(rim.margin);
-        let start = FirstNormal::from_ellipsoids(&self.difference);
-        let Some(Enclosure::Portal(mut portal)) =
-            portal::enclose(&self.difference, &start, &mut self.watch)
+        self.context.difference = self.context.difference.widened(rim.margin);
+        let start = FirstNormal::from_ellipsoids(&self.context.difference);
+        let Some(Enclosure::Portal(mut portal, _)) = portal::enclose(&mut self.context, &start)
         else {
             return Err(stalled(Stalled::NoPortal));
         };
         let Some(Refined::Lowest(Face { plane, weights })) =
-            portal::refine(&self.difference, &mut portal, portal::MAX_PORTALS, &mut self.watch)
+            portal::refine(&mut self.context, &mut portal, portal::MAX_PORTALS)
         else {
             return Err(stalled(Stalled::Cycle));
         };
-        let proven = Proven::new(&self.difference, &portal, &plane, weights)?;
-        let contact = proven.contact(self.solver, self.watch.steps);
-        let grazing = proof::grazing(&self.difference, rim.normal, -rim.margin, contact);
-        let plane = Plane::of(&self.difference, rim.normal.extend(0.0), rim.point.pair);
-        *next = proof::separation(&self.difference, &plane, rim.margin).1;
+        let proven = Proven::new(&self.context.difference, &portal, &plane, weights)?;
+        let contact = proven.contact(self.solver, self.context.watch.steps);
+        let grazing = proof::grazing(&self.context.difference, rim.normal, -rim.margin, contact);
+        let plane = Plane::of(&self.context.difference, rim.normal.extend(0.0), rim.point.pair);
+        *next = proof::separation(&self.context.difference, &plane, rim.margin).1;
         Ok(grazing)
     }
 
     /// The separation that a line proves; `None` if rounding may have made it.
     #[inline]
     fn separated(&self, found: &SeparatingLine, next: &mut WarmStart) -> Option<Separated> {
-        if found.margin <= self.difference.noise.lowered() {
+        if found.margin <= self.context.difference.noise.lowered() {
             return None;
         }
-        let plane = Plane::of(&self.difference, found.normal.extend(0.0), found.point.pair);
-        let settled = found.normal.dot(self.difference.vertex(plane.lowest).shadow());
+        let plane = Plane::of(&self.context.difference, found.normal.extend(0.0), found.point.pair);
+        let settled = found.normal.dot(self.context.difference.vertex(plane.lowest).shadow());
         self.separated_by(&plane, found.margin.min(settled), next)
     }
 
     /// The separation that a plane parallel to the direction proves.
     #[inline]
     fn separated_by(&self, plane: &Plane, margin: f64, next: &mut WarmStart) -> Option<Separated> {
-        let (certificate, start) = proof::separation(&self.difference, plane, margin);
+        let (certificate, start) = proof::separation(&self.context.difference, plane, margin);
         if certificate.margin <= 0.0 || !self.others_agree(&certificate) {
             return None;
         }
         *next = start;
-        Some(Separated { certificate, solver: self.solver, steps: self.watch.steps })
+        Some(Separated { certificate, solver: self.solver, steps: self.context.watch.steps })
     }
 
     /// The separation that the plane between the bodies of the last answer proves, turned with them,
@@ -478,20 +469,20 @@ impl<O: Observer> Run<'_, '_, O> {
     #[inline]
     fn still_apart(&mut self, last: &WarmStart, next: &mut WarmStart) -> Option<Separated> {
         let WarmStart::Apart { normals, pair } = last else { return None };
-        let [p, q] = self.difference.shadow_from_bodies(*normals)?;
+        let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
         let lateral = (p + q).truncate();
         // Of a length fit to be squared.
         if lateral.length_squared() <= f64::MIN_POSITIVE {
             return None;
         }
         let normal = lateral.extend(0.0);
-        let plane = Plane::at(&self.difference, normal, *pair)?;
-        let point = self.difference.vertex(plane.lowest);
-        self.watch.support(|| Support::of(normal, &point));
-        self.watch.steps.started_from = StartedFrom::Features;
+        let plane = Plane::at(&self.context.difference, normal, *pair)?;
+        let point = self.context.difference.vertex(plane.lowest);
+        self.context.watch.support(|| Support::of(normal, &point));
+        self.context.watch.steps.started_from = StartedFrom::Features;
         let found = self.separated_by(&plane, normal.dot(point.at) / lateral.length(), next);
         if found.is_none() {
-            self.watch.steps.started_from = StartedFrom::Scratch;
+            self.context.watch.steps.started_from = StartedFrom::Scratch;
         }
         found
     }
@@ -502,8 +493,8 @@ impl<O: Observer> Run<'_, '_, O> {
     /// twice what counts as touching from a margin. A smaller one is checked here, as they will.
     #[inline]
     fn others_agree(&self, certificate: &Separation) -> bool {
-        certificate.margin > 2.0 * self.difference.noise.touching()
-            || certificate.verify(self.difference.setting).is_ok()
+        certificate.margin > 2.0 * self.context.difference.noise.touching()
+            || certificate.verify(self.context.difference.setting).is_ok()
     }
 }
 

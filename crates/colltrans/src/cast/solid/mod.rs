@@ -128,7 +128,15 @@ impl<'a> Cast<'a, Solid> {
         Ok(Self { options, ..self })
     }
 
-    /// The same with both bodies shrunk by half of this length.
+    /// The same with both bodies shrunk by half of this length. A graze tolerance would depend on how
+    /// finely a solid is meshed; there is none:
+    ///
+    /// ```compile_fail
+    /// # use colltrans::{Cast, Solid};
+    /// fn graze(cast: Cast<Solid>) {
+    ///     cast.with_graze_tolerance(0.5);
+    /// }
+    /// ```
     ///
     /// # Errors
     /// A tolerance that is negative or not finite.
@@ -140,14 +148,6 @@ impl<'a> Cast<'a, Solid> {
     #[must_use]
     pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
         Self { options: SolidOptions { start_overlap, ..self.options }, ..self }
-    }
-
-    /// Always an error: on a solid a graze tolerance would depend on how finely it is meshed.
-    ///
-    /// # Errors
-    /// [`QueryError::GrazeOnSolid`], which names [`Self::with_tolerance`].
-    pub fn with_graze_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
-        Err(QueryError::GrazeOnSolid { tolerance })
     }
 
     /// The tolerance that is used, as a length.

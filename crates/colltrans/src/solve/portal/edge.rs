@@ -4,10 +4,10 @@ use glam::DVec2;
 
 use super::tied::crossed_or_tied;
 use super::wrap::Tilt;
-use super::{Optimum, Portal};
+use super::{Context, Known, Portal};
 use crate::number::plane::triangle_normal;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::{Observer, Watch};
+use crate::setting::minkowski::Point;
+use crate::solve::observe::Observer;
 
 /// The corner after another.
 const NEXT: [usize; 3] = [1, 2, 0];
@@ -19,37 +19,34 @@ pub(super) struct Edge {
     pub(super) third: Point,
 }
 
-/// The corner of the portal where an edge begins over which the line has left it; none, and perhaps
-/// the `optimum`, if it has not.
+/// Where the line is, seen from a portal that was reached face by face.
+pub(super) enum Line {
+    /// It has left the portal over the edge that begins at this corner.
+    Beyond(usize),
+    /// It pierces the portal.
+    Inside(Known),
+}
+
+/// Where the line is, seen from a portal.
 #[inline]
-pub(super) fn crossed<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<usize> {
-    match difference.is_left_rounded(&portal[0], &portal[1]) {
-        Some(true) => left_behind(difference, portal, optimum, watch),
-        Some(false) => Some(0),
-        None => crossed_or_tied(difference, portal, optimum, watch),
+pub(super) fn crossed<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Line {
+    match context.difference.is_left_rounded(&portal[0], &portal[1]) {
+        Some(true) => left_behind(context, portal),
+        Some(false) => Line::Beyond(0),
+        None => crossed_or_tied(context, portal),
     }
 }
 
 /// The same, if the line is known to be on the left of the first edge.
 #[inline]
-pub(super) fn left_behind<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<usize> {
-    let second = difference.is_left_rounded(&portal[1], &portal[2]);
-    let third = difference.is_left_rounded(&portal[2], &portal[0]);
+pub(super) fn left_behind<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Line {
+    let second = context.difference.is_left_rounded(&portal[1], &portal[2]);
+    let third = context.difference.is_left_rounded(&portal[2], &portal[0]);
     match (second, third) {
-        (Some(true), Some(true)) => None,
-        (Some(false), _) => Some(1),
-        (_, Some(false)) => Some(2),
-        _ => crossed_or_tied(difference, portal, optimum, watch),
+        (Some(true), Some(true)) => Line::Inside(Known::FaceByFace),
+        (Some(false), _) => Line::Beyond(1),
+        (_, Some(false)) => Line::Beyond(2),
+        _ => crossed_or_tied(context, portal),
     }
 }
 

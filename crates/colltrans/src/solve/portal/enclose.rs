@@ -11,17 +11,17 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use super::start::{slope_per_shadow, steep};
-use super::{FirstNormal, Plane, Portal, normal_of};
+use super::{Context, FirstNormal, Known, Plane, Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::{Observer, Support, Watch};
+use crate::solve::observe::{Observer, Support};
 
 /// What the search for a first portal ends with.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Enclosure {
     /// A portal.
-    Portal(Portal),
+    Portal(Portal, Known),
     /// All of `M` lies on one side.
     Beside(SeparatingLine),
 }
@@ -60,16 +60,15 @@ const MAX_POINTS: usize = 10_000;
 
 /// Finds a first portal. `None` if rounding makes the search run in a circle.
 pub(crate) fn enclose<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     start: &FirstNormal,
-    watch: &mut Watch<O>,
 ) -> Option<Enclosure> {
-    let first = match first(difference, start, watch) {
+    let first = match first(context, start) {
         Ok(tangent) => tangent,
         Err(line) => return Some(Enclosure::Beside(line)),
     };
-    let slope_per_shadow = slope_per_shadow(difference, first.slope);
-    let mut search = Enclosing { difference, slope_per_shadow, watch };
+    let slope_per_shadow = slope_per_shadow(&context.difference, first.slope);
+    let mut search = Enclosing { slope_per_shadow, context };
     let second = match search.beyond(&[first], first.point.shadow(), first.slope) {
         Ok(tangent) => tangent,
         Err(line) => return Some(Enclosure::Beside(line)),
@@ -79,16 +78,15 @@ pub(crate) fn enclose<O: Observer>(
 
 /// The support point along the guess; if the guess is lateral, it may already separate.
 fn first<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     start: &FirstNormal,
-    watch: &mut Watch<O>,
 ) -> Result<Tangent, SeparatingLine> {
     let normal = start.normal;
     let point = match start.near {
-        Some(near) => difference.support_from(normal, near),
-        None => difference.support(normal),
+        Some(near) => context.difference.support_from(normal, near),
+        None => context.difference.support(normal),
     };
-    watch.support(|| Support::of(normal, &point));
+    context.watch.support(|| Support::of(normal, &point));
     if normal.z != 0.0 {
         return Ok(Tangent { point, slope: normal.truncate() });
     }
@@ -100,20 +98,18 @@ fn first<O: Observer>(
     Ok(Tangent { point, slope: steep(lateral) })
 }
 
-struct Enclosing<'a, 'o, O> {
-    difference: &'a MinkowskiDifference<'a>,
+struct Enclosing<'c, 'a, 'o, O> {
+    context: &'c mut Context<'a, 'o, O>,
     /// The change of slope that would move the shadow of a support point by minus a given vector if the
     /// bodies were ellipsoids.
     slope_per_shadow: DMat2,
-    watch: &'a mut Watch<'o, O>,
 }
 
-impl<O: Observer> Enclosing<'_, '_, O> {
+impl<O: Observer> Enclosing<'_, '_, '_, O> {
     /// Adds points until they enclose the line. `None` if rounding makes the search run in a
     /// circle.
     fn close(&mut self, [first, second]: [Tangent; 2]) -> Option<Enclosure> {
-        let difference = self.difference;
-        let mut edge = if difference.is_left(&first.point, &second.point) {
+        let mut edge = if self.context.difference.is_left(&first.point, &second.point) {
             [first, second]
         } else {
             [second, first]
@@ -125,12 +121,12 @@ impl<O: Observer> Enclosing<'_, '_, O> {
                 Err(line) => return Some(Enclosure::Beside(line)),
             };
             let [from, to] = edge;
-            if !difference.is_left(&to.point, &third.point) {
+            if !self.context.difference.is_left(&to.point, &third.point) {
                 edge = [third, to];
-            } else if !difference.is_left(&third.point, &from.point) {
+            } else if !self.context.difference.is_left(&third.point, &from.point) {
                 edge = [from, third];
             } else {
-                return Some(Enclosure::Portal([from, to, third].map(|t| t.point)));
+                return Some(Enclosure::Portal([from, to, third].map(|t| t.point), Known::Around));
             }
         }
         None
@@ -148,7 +144,7 @@ impl<O: Observer> Enclosing<'_, '_, O> {
     ) -> Result<Tangent, SeparatingLine> {
         let outward = outward(known, near_side);
         // Points closer to the line than this may be on either side of it.
-        let clearly = -self.difference.touching();
+        let clearly = -self.context.difference.touching();
         let clearly_scaled = clearly * outward.length();
         let near = known[known.len() - 1].point.pair;
         for factor in OVERSHOOT {
@@ -156,21 +152,21 @@ impl<O: Observer> Enclosing<'_, '_, O> {
             if !slope.is_finite() {
                 break;
             }
-            let point = self.difference.support_from(normal_of(slope), near);
-            self.watch.support(|| Support::of(normal_of(slope), &point));
+            let point = self.context.difference.support_from(normal_of(slope), near);
+            self.context.watch.support(|| Support::of(normal_of(slope), &point));
             if outward.dot(point.shadow()) < clearly_scaled {
                 return Ok(Tangent { point, slope });
             }
         }
         let outward = outward.normalize();
-        let point = self.difference.support(outward.extend(0.0));
-        self.watch.support(|| Support::of(outward.extend(0.0), &point));
+        let point = self.context.difference.support(outward.extend(0.0));
+        self.context.watch.support(|| Support::of(outward.extend(0.0), &point));
         let margin = outward.dot(point.shadow());
         if margin < clearly {
             return Ok(Tangent { point, slope });
         }
         // The climb may have stuck.
-        let line = settled(self.difference, outward, point);
+        let line = settled(&self.context.difference, outward, point);
         if line.margin >= clearly { Err(line) } else { Ok(Tangent { point: line.point, slope }) }
     }
 }
@@ -214,20 +210,19 @@ pub(super) fn nearest_share([from, to]: [DVec2; 2]) -> f64 {
 /// true distance of the line from the shadow (Gilbert's algorithm with segments). A margin that is
 /// clearly negative says that the line is inside after all, and the climb to a support point had stuck.
 pub(crate) fn widest_margin<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     found: SeparatingLine,
-    watch: &mut Watch<O>,
 ) -> SeparatingLine {
-    let mut best = settled(difference, found.normal, found.point);
+    let mut best = settled(&context.difference, found.normal, found.point);
     let mut segment = [best.point; 2];
     let (mut nearest, mut stalls) = (f64::INFINITY, 0);
     for _ in 0..MAX_POINTS {
         let Some((normal, distance)) = from_segment(&segment) else { break };
         let lateral: DVec3 = normal.extend(0.0);
-        let climbed = difference.support_from(lateral, segment[0].pair);
-        let line = settled(difference, normal, climbed);
+        let climbed = context.difference.support_from(lateral, segment[0].pair);
+        let line = settled(&context.difference, normal, climbed);
         let SeparatingLine { margin, point, .. } = line;
-        watch.support(|| Support::of(lateral, &point));
+        context.watch.support(|| Support::of(lateral, &point));
         if margin > best.margin {
             best = line;
         }
@@ -235,9 +230,9 @@ pub(crate) fn widest_margin<O: Observer>(
         let away = options.map(|s| from_segment(&s).map_or(0.0, |(_, distance)| distance));
         let nearer = usize::from(away[1] < away[0]);
         // As far up to rounding, a new segment may still have the better normal.
-        let closer = nearest - away[nearer] > PROGRESS * difference.noise.point();
+        let closer = nearest - away[nearer] > PROGRESS * context.difference.noise.point();
         (nearest, stalls) = if closer { (away[nearer], 0) } else { (nearest, stalls + 1) };
-        if distance - margin <= difference.noise.point() || stalls > MOST_STALLS {
+        if distance - margin <= context.difference.noise.point() || stalls > MOST_STALLS {
             break;
         }
         segment = options[nearer];

@@ -8,14 +8,14 @@
 
 use glam::DVec3;
 
-use super::Portal;
 use super::plane::{Face, Plane};
 use super::refine::{is_wide, weights};
 use super::tied::met_share;
+use super::{Context, Portal};
 use crate::body::ConvexPolyhedron;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::{Observer, Support, Watch};
+use crate::solve::observe::{Observer, Support};
 
 /// Least cosine of the angle between normals of faces that may be parallel: whether they are is seen
 /// by how far the bodies reach beyond a plane through both.
@@ -24,19 +24,16 @@ const PARALLEL: f64 = 1.0 - 1e-12;
 /// The lowest face and a portal in it, if it is the difference of two large faces and the line passes
 /// well inside.
 #[inline]
-pub(crate) fn facing<O: Observer>(
-    difference: &MinkowskiDifference,
-    watch: &mut Watch<O>,
-) -> Option<(Portal, Face)> {
-    let setting = difference.setting;
+pub(crate) fn facing<O: Observer>(context: &mut Context<O>) -> Option<(Portal, Face)> {
+    let setting = context.difference.setting;
     if !setting.moving.has_large_faces() || !setting.fixed.has_large_faces() {
         return None;
     }
-    let (portal, face) = between(difference)?;
+    let (portal, face) = between(&context.difference)?;
     let plane = &face.plane;
-    watch.portal(|| portal.map(|p| p.at));
-    let normal = || difference.setting_from_shadow.transpose() * plane.normal;
-    watch.support(|| Support::of(normal(), &difference.vertex(plane.lowest)));
+    context.watch.portal(|| portal.map(|p| p.at));
+    let normal = || context.difference.setting_from_shadow.transpose() * plane.normal;
+    context.watch.support(|| Support::of(normal(), &context.difference.vertex(plane.lowest)));
     Some((portal, face))
 }
 

@@ -9,18 +9,18 @@
 
 use glam::DVec3;
 
-use super::Portal;
-use super::edge::{Edge, left_behind};
-use super::refine::{Optimum, plane_normal};
+use super::edge::{Edge, Line, left_behind};
+use super::refine::plane_normal;
+use super::{Context, Known, Portal};
 use crate::body::ConvexPolyhedron;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::{Observer, Watch};
+use crate::solve::observe::Observer;
 
 /// Where a face ends.
 pub(super) enum Flat {
     /// The line pierces it.
-    Portal(Portal),
+    Portal(Portal, Known),
     /// The line is beyond: the normal of the face (shadow frame), and its corner on that side.
     Corner(DVec3, Point),
     /// Nothing flat.
@@ -45,31 +45,30 @@ pub(super) fn has_large_faces(difference: &MinkowskiDifference) -> bool {
 /// From a triangle of a face, and the corner where an edge begins over which the line has left it.
 #[inline(never)]
 pub(super) fn across<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     mut portal: Portal,
     mut from: usize,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
 ) -> Flat {
-    let Some(normal) = plane_normal(difference, &portal) else { return Flat::No };
+    let Some(normal) = plane_normal(&context.difference, &portal) else { return Flat::No };
     let mut face = None;
     for _ in 0..MAX_STEPS {
-        watch.portal(|| portal.map(|p| p.at));
+        context.watch.portal(|| portal.map(|p| p.at));
         let edge = Edge::of(&portal, from);
         let outward = edge.outward();
-        let (p, q) = *face.get_or_insert_with(|| in_plane(difference, edge.from.pair, normal));
-        let far = farthest(difference, (p, q), outward.extend(0.0));
+        let (p, q) =
+            *face.get_or_insert_with(|| in_plane(&context.difference, edge.from.pair, normal));
+        let far = farthest(&context.difference, (p, q), outward.extend(0.0));
         let beyond = outward.dot(far.shadow() - edge.from.shadow());
-        if beyond <= difference.touching() * outward.length() {
+        if beyond <= context.difference.touching() * outward.length() {
             return Flat::No;
         }
         if outward.dot(far.shadow()) <= 0.0 {
             return Flat::Corner(normal, far);
         }
         portal = [edge.to, edge.from, far];
-        match left_behind(difference, &portal, optimum, watch) {
-            Some(next) => from = next,
-            None => return Flat::Portal(portal),
+        match left_behind(context, &portal) {
+            Line::Beyond(next) => from = next,
+            Line::Inside(known) => return Flat::Portal(portal, known),
         }
     }
     Flat::No

@@ -16,21 +16,21 @@
 
 use glam::{DVec2, DVec3};
 
-use super::edge::{Edge, crossed, left_behind};
+use super::edge::{Edge, Line, crossed, left_behind};
 use super::flat::{Flat, across, has_large_faces};
 use super::start::{continued, slope_per_shadow};
-use super::tied::{Pointed, beside, pointed};
+use super::tied::{Beside, Pointed, beside, pointed};
 use super::wrap::first_met;
-use super::{FirstNormal, Optimum, Portal, normal_of};
+use super::{Context, FirstNormal, Known, Portal, normal_of};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::MinkowskiDifference;
-use crate::solve::observe::{Observer, Support, Watch};
+use crate::solve::observe::{Observer, Support};
 
 /// What became of an old portal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Followed {
     /// A portal around the line.
-    Portal(Portal),
+    Portal(Portal, Known),
     /// Nothing of `M` seems to lie beyond an edge: its outward normal in the shadow plane (any
     /// length), and a pair of vertices there.
     Rim { outward: DVec2, near: VertexPair },
@@ -61,59 +61,52 @@ pub(crate) struct ContactPortal {
 
 /// Follows the line from where it met `M` before.
 #[inline]
-pub(crate) fn follow<O: Observer>(
-    difference: &MinkowskiDifference,
-    last: &ContactPortal,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Followed {
+pub(crate) fn follow<O: Observer>(context: &mut Context<O>, last: &ContactPortal) -> Followed {
     let [a, b, c] = last.pairs;
-    let mut portal = [difference.vertex(a), difference.vertex(b), difference.vertex(c)];
+    let mut portal =
+        [context.difference.vertex(a), context.difference.vertex(b), context.difference.vertex(c)];
     let [a, b, c] = portal.map(|p| p.shadow());
     if (b - a).perp_dot(c - a) < 0.0 {
         portal.swap(0, 1);
     }
-    let mut edge = match crossed(difference, &portal, optimum, watch) {
-        Some(from) => Edge::of(&portal, from),
-        None => return Followed::Portal(portal),
+    let mut edge = match crossed(context, &portal) {
+        Line::Beyond(from) => Edge::of(&portal, from),
+        Line::Inside(known) => return Followed::Portal(portal, known),
     };
     let shift = a * last.weights[0] + b * last.weights[1] + c * last.weights[2];
-    let Some(slopes) = slopes(difference, last, shift) else { return Followed::Lost };
+    let Some(slopes) = slopes(&context.difference, last, shift) else { return Followed::Lost };
     if edge.distance() > FAR * edge.width() {
-        let slope = continued(difference, shift, slopes);
-        match jump(difference, slope, last.pairs[0], optimum, watch) {
-            Some(there) if optimum.is_some() => return Followed::Portal(there),
-            Some(there) => portal = there,
+        let slope = continued(&context.difference, shift, slopes);
+        match jump(context, slope, last.pairs[0]) {
+            Some(Beside::Edge(there, found)) => {
+                return Followed::Portal(there, Known::Optimum(found));
+            }
+            Some(Beside::Face(there)) => portal = there,
             None => return Followed::Lost,
         }
-        match left_behind(difference, &portal, optimum, watch) {
-            Some(from) => edge = Edge::of(&portal, from),
-            None => return Followed::Portal(portal),
+        match left_behind(context, &portal) {
+            Line::Beyond(from) => edge = Edge::of(&portal, from),
+            Line::Inside(known) => return Followed::Portal(portal, known),
         }
     }
-    walk(difference, edge, optimum, watch)
+    walk(context, edge)
 }
 
 /// From a face of `M` to the one that the line pierces, over one edge after another, of which the
 /// first is given.
 #[inline(never)]
-fn walk<O: Observer>(
-    difference: &MinkowskiDifference,
-    mut edge: Edge,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Followed {
+fn walk<O: Observer>(context: &mut Context<O>, mut edge: Edge) -> Followed {
     for _ in 0..CROSSINGS {
-        watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
+        context.watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
         // The edge that was crossed has the line on its left now.
-        let portal = match first_met(difference, &edge.from, &tilt) {
+        let portal = match first_met(&context.difference, &edge.from, &tilt) {
             Some(point) => [edge.to, edge.from, point],
             None => return Followed::Rim { outward: tilt.outward, near: edge.from.pair },
         };
-        match left_behind(difference, &portal, optimum, watch) {
-            Some(from) => edge = Edge::of(&portal, from),
-            None => return Followed::Portal(portal),
+        match left_behind(context, &portal) {
+            Line::Beyond(from) => edge = Edge::of(&portal, from),
+            Line::Inside(known) => return Followed::Portal(portal, known),
         }
     }
     Followed::Lost
@@ -133,48 +126,47 @@ const REACH: f64 = 8.0;
 /// From a guessed normal: the face of `M` beside its support point, and from there to the line.
 ///
 /// Where the support point is itself on the line, or nearly so, its plane may prove that the portal
-/// reached is the lowest; then `optimum` says so. Where no portal is reached, `nearest` becomes the
-/// support point that corrections led to.
+/// reached is the lowest. Beside what became of it, the support point that corrections led to, from where
+/// to go on if no portal is reached.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "passed through memory its result stalls its reader")]
 pub(crate) fn approach<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     start: &FirstNormal,
-    nearest: &mut FirstNormal,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Followed {
+) -> (Followed, FirstNormal) {
+    let reached = |portal, known| (Followed::Portal(portal, known), *start);
     let mut slope = start.normal.truncate();
     let mut vertex = match start.near {
-        Some(near) => difference.support_from(normal_of(slope), near),
-        None => difference.support(normal_of(slope)),
+        Some(near) => context.difference.support_from(normal_of(slope), near),
+        None => context.difference.support(normal_of(slope)),
     };
-    watch.support(|| Support::of(normal_of(slope), &vertex));
+    context.watch.support(|| Support::of(normal_of(slope), &vertex));
     let mut within_reach = None;
     // A corner that is farthest in what seems to be a face need not be one, and proves nothing.
     let mut is_support = true;
     for _ in 0..CORRECTIONS {
         let shadow = vertex.shadow();
         let mut toward_line = -shadow;
-        let touching = difference.touching();
+        let touching = context.difference.touching();
         if is_support && shadow.length_squared() <= touching * touching {
-            match pointed(difference, &vertex, slope, watch) {
+            match pointed(context, &vertex, slope) {
                 Pointed::Lowest(portal, found) => {
-                    *optimum = Some(found);
-                    return Followed::Portal(portal);
+                    return reached(portal, Known::Optimum(found));
                 }
                 Pointed::Toward(line) => toward_line = line,
                 Pointed::Unknown => {}
             }
         }
-        let Some(portal) = beside(difference, &vertex, slope, toward_line, optimum, watch) else {
-            break;
+        let portal = match beside(context, &vertex, slope, toward_line) {
+            Some(Beside::Face(portal)) => portal,
+            Some(Beside::Edge(portal, found)) => {
+                return reached(portal, Known::Optimum(found));
+            }
+            None => break,
         };
-        if optimum.is_some() {
-            return Followed::Portal(portal);
-        }
-        let Some(from) = left_behind(difference, &portal, optimum, watch) else {
-            return Followed::Portal(portal);
+        let from = match left_behind(context, &portal) {
+            Line::Beyond(from) => from,
+            Line::Inside(known) => return reached(portal, known),
         };
         let edge = Edge::of(&portal, from);
         let [distance, width] = [edge.distance(), edge.width()];
@@ -184,9 +176,9 @@ pub(crate) fn approach<O: Observer>(
         if distance <= FAR * width {
             break;
         }
-        if has_large_faces(difference) {
-            match across(difference, portal, from, optimum, watch) {
-                Flat::Portal(portal) => return Followed::Portal(portal),
+        if has_large_faces(&context.difference) {
+            match across(context, portal, from) {
+                Flat::Portal(portal, known) => return reached(portal, known),
                 Flat::Corner(normal, corner) => {
                     (slope, vertex) = (normal.truncate() / normal.z, corner);
                     is_support = false;
@@ -195,12 +187,12 @@ pub(crate) fn approach<O: Observer>(
                 Flat::No => {}
             }
         }
-        let corrected = slope + slope_per_shadow(difference, slope) * shadow;
+        let corrected = slope + slope_per_shadow(&context.difference, slope) * shadow;
         if !corrected.is_finite() {
             break;
         }
-        let next = difference.support_from(normal_of(corrected), vertex.pair);
-        watch.support(|| Support::of(normal_of(corrected), &next));
+        let next = context.difference.support_from(normal_of(corrected), vertex.pair);
+        context.watch.support(|| Support::of(normal_of(corrected), &next));
         let [before, after] = [shadow, next.shadow()].map(DVec2::length_squared);
         if after <= before {
             (slope, vertex, is_support) = (corrected, next, true);
@@ -209,11 +201,9 @@ pub(crate) fn approach<O: Observer>(
             break;
         }
     }
-    *nearest = FirstNormal { normal: normal_of(slope), near: Some(vertex.pair) };
-    match within_reach {
-        Some(edge) => walk(difference, edge, optimum, watch),
-        None => Followed::Lost,
-    }
+    let nearest = FirstNormal { normal: normal_of(slope), near: Some(vertex.pair) };
+    let followed = within_reach.map_or(Followed::Lost, |edge| walk(context, edge));
+    (followed, nearest)
 }
 
 /// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has
@@ -229,17 +219,11 @@ fn slopes(
 }
 
 /// The face of `M` at the support point along a slope, on the side of the line.
-fn jump<O: Observer>(
-    difference: &MinkowskiDifference,
-    slope: DVec2,
-    near: VertexPair,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<Portal> {
+fn jump<O: Observer>(context: &mut Context<O>, slope: DVec2, near: VertexPair) -> Option<Beside> {
     if !slope.is_finite() {
         return None;
     }
-    let vertex = difference.support_from(normal_of(slope), near);
-    watch.support(|| Support::of(normal_of(slope), &vertex));
-    beside(difference, &vertex, slope, -vertex.shadow(), optimum, watch)
+    let vertex = context.difference.support_from(normal_of(slope), near);
+    context.watch.support(|| Support::of(normal_of(slope), &vertex));
+    beside(context, &vertex, slope, -vertex.shadow())
 }

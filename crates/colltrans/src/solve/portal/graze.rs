@@ -7,10 +7,10 @@
 
 use glam::DVec2;
 
-use super::Plane;
+use super::{Context, Plane};
 use crate::number::determinant::accurate_det;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::{Observer, Support, Watch};
+use crate::setting::minkowski::Point;
+use crate::solve::observe::{Observer, Support};
 
 /// The sideways overlap, as far as it had to be known.
 #[derive(Debug, Clone, Copy)]
@@ -36,26 +36,20 @@ const MAX_CORNERS: usize = 64;
 /// Compares the overlap with `tolerance`, from a portal around the line.
 #[inline]
 pub(crate) fn overlap<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     portal: &[Point; 3],
     tolerance: f64,
-    watch: &mut Watch<O>,
 ) -> Overlap {
-    if is_ample(portal, tolerance) || difference.is_deep(tolerance) {
+    if is_ample(portal, tolerance) || context.difference.is_deep(tolerance) {
         return Overlap::Ample;
     }
-    search(difference, portal, tolerance, watch)
+    search(context, portal, tolerance)
 }
 
 /// The polygon, grown until it decides.
 #[cold]
 #[inline(never)]
-fn search<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &[Point; 3],
-    tolerance: f64,
-    watch: &mut Watch<O>,
-) -> Overlap {
+fn search<O: Observer>(context: &mut Context<O>, portal: &[Point; 3], tolerance: f64) -> Overlap {
     let mut corners = [portal[0]; MAX_CORNERS];
     corners[..3].copy_from_slice(portal);
     let mut count = first_polygon(&mut corners);
@@ -68,12 +62,12 @@ fn search<O: Observer>(
             return Overlap::Ample;
         }
         let inward = (-outward).extend(0.0);
-        let is_last = |depth: f64| depth - reach <= difference.noise.point();
-        let mut point = difference.support_from(inward, corners[edge].pair);
+        let is_last = |depth: f64| depth - reach <= context.difference.noise.point();
+        let mut point = context.difference.support_from(inward, corners[edge].pair);
         if is_last(outward.dot(point.shadow())) {
-            point = Plane::settled(difference, inward, point);
+            point = Plane::settled(&context.difference, inward, point);
         }
-        watch.support(|| Support::of(inward, &point));
+        context.watch.support(|| Support::of(inward, &point));
         let depth = outward.dot(point.shadow());
         if is_last(depth) || count == MAX_CORNERS {
             return if depth > tolerance {

@@ -25,6 +25,8 @@ mod wrap;
 
 use glam::{DVec2, DVec3};
 
+use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::solve::observe::Watch;
 pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, widest_margin};
 pub(crate) use facing::facing;
 pub(crate) use follow::{ContactPortal, Followed, approach, follow};
@@ -33,10 +35,27 @@ pub(crate) use plane::{Face, Plane};
 pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, face, proven, refine};
 pub(crate) use start::FirstNormal;
 
-use crate::setting::minkowski::Point;
-
 /// Three points of `M` whose shadows, counter-clockwise, contain the line.
 pub(crate) type Portal = [Point; 3];
+
+/// What all stages of one cast share.
+pub(crate) struct Context<'a, 'o, O> {
+    pub(crate) difference: MinkowskiDifference<'a>,
+    pub(crate) watch: Watch<'o, O>,
+}
+
+/// What a stage knows of the portal that it hands on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Known {
+    /// It is around the line.
+    Around,
+    /// It was reached face by face, so that it probably is the lowest.
+    FaceByFace,
+    /// A plane through it supports `M`, up to the climb that has seen so.
+    Optimum(Optimum),
+    /// It is proven to be the lowest.
+    Lowest(Face),
+}
 
 /// `(a, 1)`.
 fn normal_of(slope: DVec2) -> DVec3 {

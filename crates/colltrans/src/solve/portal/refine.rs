@@ -15,15 +15,15 @@
 
 use glam::DVec3;
 
-use super::Portal;
 use super::enclose::{SeparatingLine, nearest_share};
 use super::graze::{Overlap, overlap};
 use super::plane::{Face, Plane};
+use super::{Context, Portal};
 use crate::number::determinant::accurate_det;
 use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::{Observer, Support, Watch};
+use crate::solve::observe::{Observer, Support};
 
 /// The lowest face on the line.
 #[derive(Debug, Clone, Copy)]
@@ -60,15 +60,11 @@ pub(crate) enum Refined {
 /// was followed.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-pub(crate) fn face<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    watch: &mut Watch<O>,
-) -> Option<Face> {
-    let normal = plane_normal(difference, portal)?;
-    let plane = Plane::at(difference, normal, portal[2].pair)?;
-    watch.portal(|| portal.map(|p| p.at));
-    watch.support(|| Support::of(normal, &difference.vertex(plane.lowest)));
+pub(crate) fn face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<Face> {
+    let normal = plane_normal(&context.difference, portal)?;
+    let plane = Plane::at(&context.difference, normal, portal[2].pair)?;
+    context.watch.portal(|| portal.map(|p| p.at));
+    context.watch.support(|| Support::of(normal, &context.difference.vertex(plane.lowest)));
     Some(Face { plane, weights: weights(portal) })
 }
 
@@ -76,21 +72,20 @@ pub(crate) fn face<O: Observer>(
 /// there are more than `most`, for one because rounding makes them run in a circle.
 #[inline]
 pub(crate) fn refine<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     portal: &mut Portal,
     most: usize,
-    watch: &mut Watch<O>,
 ) -> Option<Refined> {
     let mut newest = 2;
     let mut narrow = 0;
     for round in 0..most {
-        watch.portal(|| portal.map(|p| p.at));
-        let plane = match plane_normal(difference, portal) {
+        context.watch.portal(|| portal.map(|p| p.at));
+        let plane = match plane_normal(&context.difference, portal) {
             Some(plane) => plane,
             None if narrow == MAX_NARROW => return None,
             None => {
                 if narrow == 0
-                    && let Some(rim) = rim(difference, portal, watch)
+                    && let Some(rim) = rim(context, portal)
                 {
                     return Some(Refined::Rim(rim));
                 }
@@ -98,16 +93,16 @@ pub(crate) fn refine<O: Observer>(
                 narrow_plane_normal(portal)
             }
         };
-        let point = difference.support_from(plane, portal[newest].pair);
-        watch.support(|| Support::of(plane, &point));
-        let rounding = difference.noise.plane(round >= LONG);
-        let below = match lowest(difference, portal, plane, point, rounding) {
+        let point = context.difference.support_from(plane, portal[newest].pair);
+        context.watch.support(|| Support::of(plane, &point));
+        let rounding = context.difference.noise.plane(round >= LONG);
+        let below = match lowest(&context.difference, portal, plane, point, rounding) {
             Err(point) => point,
             // An upright plane bounds nothing.
             Ok(_) if plane.z == 0.0 => return None,
             Ok(plane) => return Some(Refined::Lowest(Face { plane, weights: weights(portal) })),
         };
-        newest = exchange(difference, portal, below);
+        newest = exchange(&context.difference, portal, below);
     }
     None
 }
@@ -165,12 +160,8 @@ fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> boo
 }
 
 /// The rim of the shadow of `M`, if the line passes it.
-fn rim<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    watch: &mut Watch<O>,
-) -> Option<SeparatingLine> {
-    match overlap(difference, portal, difference.touching(), watch) {
+fn rim<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<SeparatingLine> {
+    match overlap(context, portal, context.difference.touching()) {
         Overlap::Slight { inward, depth, point } => {
             Some(SeparatingLine { normal: inward, margin: -depth, point })
         }

@@ -8,14 +8,15 @@
 
 use glam::{DVec2, DVec3};
 
+use super::edge::Line;
 use super::enclose::nearest_share;
 use super::refine::{Optimum, largest, plane_normal, weights};
 use super::wrap::{Tilt, first_met};
-use super::{Plane, Portal, normal_of};
+use super::{Context, Known, Plane, Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::{Observer, Support, Watch};
+use crate::solve::observe::{Observer, Support};
 
 /// What a support point within rounding error of the line says.
 pub(super) enum Pointed {
@@ -38,18 +39,17 @@ pub(super) enum Pointed {
 #[cold]
 #[inline(never)]
 pub(super) fn pointed<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     vertex: &Point,
     slope: DVec2,
-    watch: &mut Watch<O>,
 ) -> Pointed {
     let normal = normal_of(slope);
     let optimum = |weights| Optimum { normal, lowest: vertex.pair, weights };
     let at_corner = || {
         let portal =
-            difference.setting.fixed.neighbours(vertex.pair.fixed).first().and_then(|&q| {
-                let to = difference.vertex(VertexPair { fixed: q, ..vertex.pair });
-                corner(difference, vertex, &to)
+            context.difference.setting.fixed.neighbours(vertex.pair.fixed).first().and_then(|&q| {
+                let to = context.difference.vertex(VertexPair { fixed: q, ..vertex.pair });
+                corner(&context.difference, vertex, &to)
             });
         match portal {
             Some(portal) => {
@@ -60,18 +60,23 @@ pub(super) fn pointed<O: Observer>(
         }
     };
     let residual = vertex.shadow().length();
-    if residual <= difference.noise.point() && difference.is_met_at(vertex.at, residual, normal) {
+    if residual <= context.difference.noise.point()
+        && context.difference.is_met_at(vertex.at, residual, normal)
+    {
         return at_corner();
     }
-    let Some(shadow) = difference.exact_shadow(vertex.pair) else { return Pointed::Unknown };
+    let Some(shadow) = context.difference.exact_shadow(vertex.pair) else {
+        return Pointed::Unknown;
+    };
     if shadow == DVec2::ZERO {
         return at_corner();
     }
     let line = -shadow.normalize();
-    let Some(portal) = beside(difference, vertex, slope, line, &mut None, watch) else {
-        return Pointed::Toward(line);
+    let portal = match beside(context, vertex, slope, line) {
+        Some(Beside::Face(portal) | Beside::Edge(portal, _)) => portal,
+        None => return Pointed::Toward(line),
     };
-    if [(1, 2), (2, 0)].iter().any(|&(i, j)| !difference.is_left(&portal[i], &portal[j])) {
+    if [(1, 2), (2, 0)].iter().any(|&(i, j)| !context.difference.is_left(&portal[i], &portal[j])) {
         return Pointed::Toward(line);
     }
     // Of the three corners, `vertex` is the first or the second.
@@ -80,11 +85,11 @@ pub(super) fn pointed<O: Observer>(
     let [a, b] = [i, j].map(|k| portal[k].at - vertex.at);
     let (u, v) = (a.truncate(), b.truncate());
     let area = accurate_det(u, v);
-    let least = difference.touching() * (u.length() + v.length());
+    let least = context.difference.touching() * (u.length() + v.length());
     let parts = [-accurate_det(shadow, v), -accurate_det(u, shadow)].map(|p| (p / area).max(0.0));
     let sum = parts[0] + parts[1];
     let height = parts[0] * normal.dot(a) + parts[1] * normal.dot(b);
-    let level = height <= difference.noise.point() * normal.length();
+    let level = height <= context.difference.noise.point() * normal.length();
     // Narrower triangles have no plane.
     if area.abs() <= least || sum > 1.0 || !level {
         return Pointed::Toward(line);
@@ -124,22 +129,20 @@ fn corner(difference: &MinkowskiDifference, from: &Point, to: &Point) -> Option<
 /// lowest face and the line to be deep inside the shadow of `M`; only else it is decided exactly.
 #[cold]
 #[inline(never)]
-pub(super) fn crossed_or_tied<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<usize> {
+pub(super) fn crossed_or_tied<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Line {
     let edges = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| [&portal[i], &portal[j]]);
-    let clear = edges.iter().position(|[i, j]| difference.is_left_rounded(i, j) == Some(false));
-    if clear.is_some() {
-        return clear;
+    let clear =
+        edges.iter().position(|[i, j]| context.difference.is_left_rounded(i, j) == Some(false));
+    if let Some(from) = clear {
+        return Line::Beyond(from);
     }
-    *optimum = lowest_face(difference, portal, watch);
-    if optimum.is_some() {
-        return None;
+    if let Some(optimum) = lowest_face(context, portal) {
+        return Line::Inside(Known::Optimum(optimum));
     }
-    edges.iter().position(|[i, j]| !difference.is_left(i, j))
+    match edges.iter().position(|[i, j]| !context.difference.is_left(i, j)) {
+        Some(from) => Line::Beyond(from),
+        None => Line::Inside(Known::FaceByFace),
+    }
 }
 
 /// The optimum on an edge of `M` that the line meets up to rounding, if the plane through it supports
@@ -147,15 +150,14 @@ pub(super) fn crossed_or_tied<O: Observer>(
 #[cold]
 #[inline(never)]
 pub(super) fn lowest_edge<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     [from, to]: &[Point; 2],
     normal: DVec3,
-    watch: &mut Watch<O>,
 ) -> Option<(Portal, Optimum)> {
-    let share = met_share(difference, [from, to], normal)?;
-    let portal = corner(difference, from, to)?;
-    let plane = Plane::at(difference, normal, from.pair)?;
-    watch.support(|| Support::of(normal, &difference.vertex(plane.lowest)));
+    let share = met_share(&context.difference, [from, to], normal)?;
+    let portal = corner(&context.difference, from, to)?;
+    let plane = Plane::at(&context.difference, normal, from.pair)?;
+    context.watch.support(|| Support::of(normal, &context.difference.vertex(plane.lowest)));
     let weights = weights_of(&portal, from, share);
     Some((portal, Optimum { normal, lowest: plane.lowest, weights }))
 }
@@ -177,53 +179,56 @@ pub(super) fn met_share(
 
 /// The optimum in a portal that contains the line up to rounding, if its plane supports `M` and the
 /// line is so deep inside the shadow of `M` that rounding does not matter.
-fn lowest_face<O: Observer>(
-    difference: &MinkowskiDifference,
-    portal: &Portal,
-    watch: &mut Watch<O>,
-) -> Option<Optimum> {
-    let normal = plane_normal(difference, portal)?;
+fn lowest_face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<Optimum> {
+    let normal = plane_normal(&context.difference, portal)?;
     let weights = weights(portal);
     let contact = portal.iter().zip(weights).map(|(corner, w)| corner.at * w).sum::<DVec3>();
     let residual = contact.truncate().length();
     let least = 2 - largest([weights[2], weights[1], weights[0]].map(|w| -w));
     let edge = [&portal[(least + 1) % 3], &portal[(least + 2) % 3]];
-    if residual > difference.noise.point() || !difference.is_met_on(edge, contact, residual, normal)
+    if residual > context.difference.noise.point()
+        || !context.difference.is_met_on(edge, contact, residual, normal)
     {
         return None;
     }
-    let plane = Plane::at(difference, normal, portal[2].pair)?;
-    watch.support(|| Support::of(normal, &difference.vertex(plane.lowest)));
+    let plane = Plane::at(&context.difference, normal, portal[2].pair)?;
+    context.watch.support(|| Support::of(normal, &context.difference.vertex(plane.lowest)));
     Some(Optimum { normal, lowest: plane.lowest, weights })
 }
 
-/// The face of `M` at the support point `vertex` along a slope, in the direction of the line, with
-/// the line on the left of its first edge; or an edge under the line, with the `optimum`.
+/// What of `M` is beside a support point.
+pub(super) enum Beside {
+    /// A face with the line on the left of its first edge.
+    Face(Portal),
+    /// An edge under the line, which is as low as can be told.
+    Edge(Portal, Optimum),
+}
+
+/// The face, or the edge, of `M` at the support point `vertex` along a slope, in the direction of the
+/// line.
 pub(super) fn beside<O: Observer>(
-    difference: &MinkowskiDifference,
+    context: &mut Context<O>,
     vertex: &Point,
     slope: DVec2,
     line: DVec2,
-    optimum: &mut Option<Optimum>,
-    watch: &mut Watch<O>,
-) -> Option<Portal> {
+) -> Option<Beside> {
     let (vertex, normal) = (*vertex, normal_of(slope));
     let toward_line = Tilt { normal, outward: line };
-    let second = first_met(difference, &vertex, &toward_line)?;
+    let second = first_met(&context.difference, &vertex, &toward_line)?;
     // The plane after the turn, which contains both.
     let edge = second.at - vertex.at;
     let turn = normal.dot(edge) / toward_line.outward.dot(edge.truncate());
     let normal = normal_of(slope - toward_line.outward * turn);
-    let rounded = difference.is_left_rounded(&vertex, &second);
+    let rounded = context.difference.is_left_rounded(&vertex, &second);
     if rounded.is_none()
-        && let Some((portal, found)) = lowest_edge(difference, &[vertex, second], normal, watch)
+        && let Some((portal, found)) = lowest_edge(context, &[vertex, second], normal)
     {
-        *optimum = Some(found);
-        return Some(portal);
+        return Some(Beside::Edge(portal, found));
     }
-    let line_is_left = rounded.unwrap_or_else(|| difference.is_left(&vertex, &second));
+    let line_is_left = rounded.unwrap_or_else(|| context.difference.is_left(&vertex, &second));
     let left = edge.truncate().perp();
     let outward = if line_is_left { left } else { -left };
-    let third = first_met(difference, &vertex, &Tilt { normal, outward })?;
-    Some(if line_is_left { [vertex, second, third] } else { [second, vertex, third] })
+    let third = first_met(&context.difference, &vertex, &Tilt { normal, outward })?;
+    let face = if line_is_left { [vertex, second, third] } else { [second, vertex, third] };
+    Some(Beside::Face(face))
 }

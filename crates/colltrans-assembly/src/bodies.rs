@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 
 use colltrans::{
-    Bounded, Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidOptions, StartOverlap,
-    Workspace,
+    Bounded, Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidError, SolidOptions,
+    StartOverlap, Workspace,
 };
 use glam::DVec3;
 use rayon::prelude::*;
@@ -127,7 +127,10 @@ impl<'a> Bodies<'a> {
             return Err(AssemblyError::Length { what, value });
         }
         let displaced = |part: &Part| {
-            let refused = |source| AssemblyError::Part { part: part.name().into(), source };
+            let refused = |source: SolidError| AssemblyError::Part {
+                part: part.name().into(),
+                source: source.into(),
+            };
             let solid = match fit {
                 Fit::Tolerance(length) => part.solid().shrunk(length / 2.0),
                 Fit::Apart(length) => part.solid().grown(length / 2.0),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use colltrans::SolidError;
+use colltrans_mesh::body::Refused;
 use thiserror::Error;
 
 /// Why an assembly could not be read.
@@ -92,7 +92,7 @@ pub enum AssemblyError {
         /// Its name.
         part: String,
         /// What is wrong.
-        source: SolidError,
+        source: Refused,
     },
     /// Two parts have one name.
     #[error("two parts are named {name}")]

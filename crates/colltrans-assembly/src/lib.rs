@@ -19,7 +19,6 @@ mod bodies;
 mod boxes;
 mod csv;
 mod error;
-mod orient;
 mod part;
 mod watch;
 mod witness;

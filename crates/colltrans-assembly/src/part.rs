@@ -3,20 +3,18 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
-use colltrans::{Solid, SolidError};
+use colltrans::{Aabb, Solid, SolidError};
+use colltrans_mesh::Mesh;
+use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
 use glam::{DAffine3, DVec3};
 
 use crate::error::AssemblyError;
-use crate::orient;
-use colltrans::Aabb;
 
 /// A mesh and its place: a part has one or several, which may overlap each other.
 #[derive(Debug, Clone)]
 pub struct Piece {
-    /// Vertices in the piece's own frame.
-    pub vertices: Vec<DVec3>,
-    /// Faces, counter-clockwise as seen from outside.
-    pub faces: Vec<Vec<u32>>,
+    /// In the piece's own frame; faces run counter-clockwise as seen from outside.
+    pub mesh: Mesh,
     /// From the piece's frame to the world; may scale and mirror.
     pub world_from_piece: DAffine3,
 }
@@ -45,17 +43,18 @@ impl Part {
         let mut defects = Vec::new();
         let mut solids = Vec::with_capacity(pieces.len());
         for (k, piece) in pieces.iter().enumerate() {
-            let mut own = Vec::new();
-            solids.push(solid(piece, &mut own).map_err(refused)?);
-            let which =
-                |text| if pieces.len() > 1 { format!("piece {}: {text}", k + 1) } else { text };
-            defects.extend(own.into_iter().map(which));
+            let Loaded { body, notes, .. } = solid(piece).map_err(refused)?;
+            solids.push(body);
+            let several = pieces.len() > 1;
+            defects.extend(notes.iter().map(|note| {
+                if several { format!("piece {}: {note}", k + 1) } else { note.to_string() }
+            }));
         }
-        let facets = pieces.iter().map(|p| p.faces.len()).sum();
+        let facets = pieces.iter().map(|p| p.mesh.faces.len()).sum();
         let solid = match &solids[..] {
-            [] => return Err(refused(SolidError::Empty)),
+            [] => return Err(refused(SolidError::Empty.into())),
             [_] => solids.remove(0),
-            _ => Solid::from_pieces(&solids).map_err(refused)?,
+            _ => Solid::from_pieces(&solids).map_err(|e| refused(e.into()))?,
         };
         Ok(Self { name, solid, facets, fixed: false, defects })
     }
@@ -86,7 +85,7 @@ impl Part {
         self.fixed
     }
 
-    /// What is wrong with its surface, in words.
+    /// What was mended of its surface, or is wrong with it, in words.
     pub fn defects(&self) -> &[String] {
         &self.defects
     }
@@ -101,43 +100,16 @@ impl Part {
     }
 }
 
-fn solid(piece: &Piece, defects: &mut Vec<String>) -> Result<Solid, SolidError> {
-    let place = |v: &DVec3| piece.world_from_piece.transform_point3(*v);
-    let vertices: Vec<DVec3> = piece.vertices.iter().map(place).collect();
-    let mirrored = piece.world_from_piece.matrix3.determinant() < 0.0;
-    let mut faces = piece.faces.clone();
-    if mirrored {
-        for face in &mut faces {
-            face.reverse();
-        }
+/// A piece where it stands.
+fn solid(piece: &Piece) -> Result<Loaded<Solid>, Refused> {
+    let mut mesh = piece.mesh.clone();
+    for vertex in &mut mesh.vertices {
+        *vertex = piece.world_from_piece.transform_point3(*vertex);
     }
-    let mut built = Solid::from_mesh(&vertices, &faces);
-    if let Err(SolidError::Inconsistent { .. }) = built
-        && let Some(turned) = orient::consistent(&vertices, &mut faces)
-    {
-        defects.push(format!("facets oriented against the others, and turned: {turned}"));
-        built = Solid::from_mesh(&vertices, &faces);
+    if piece.world_from_piece.matrix3.determinant() < 0.0 {
+        mesh.faces.iter_mut().for_each(|face| face.reverse());
     }
-    let solid = match built {
-        Err(SolidError::Open { count, from, to, facet }) => {
-            let solid = Solid::from_open_mesh(&vertices, &faces)?;
-            let surface = solid.report().surface().unwrap_or_default();
-            defects.push(format!(
-                "not closed: {count} edges have a facet on one side only, the first from vertex {from} \
-                 to vertex {to} of facet {facet}; taken as a surface of {surface}"
-            ));
-            solid
-        }
-        other => other?,
-    };
-    let report = solid.report();
-    if report.turned() > 0 {
-        defects.push(format!("shells inside out, and turned: {}", report.turned()));
-    }
-    if report.crowded_edges > 0 {
-        defects.push(format!("edges at which more than two facets meet: {}", report.crowded_edges));
-    }
-    Ok(solid)
+    body::solid(&mesh, &BodyOptions { open: true, ..BodyOptions::default() })
 }
 
 /// What of two parts is let pass.

@@ -425,7 +425,8 @@ impl Planner<'_> {
 
 #[cfg(test)]
 mod tests {
-    use colltrans_testkit::shapes::{Mesh, block};
+    use colltrans_mesh::Mesh;
+    use colltrans_testkit::shapes::block;
     use glam::DAffine3;
 
     use super::*;
@@ -433,8 +434,9 @@ mod tests {
     use crate::part::{Assembly, Part, Piece};
 
     fn cube(name: usize, at: DVec3) -> Part {
-        let Mesh { vertices, faces } = block(DVec3::ZERO, DVec3::ONE);
-        let piece = Piece { vertices, faces, world_from_piece: DAffine3::from_translation(at) };
+        let cube = block(DVec3::ZERO, DVec3::ONE);
+        let mesh = Mesh::new(cube.vertices, cube.faces);
+        let piece = Piece { mesh, world_from_piece: DAffine3::from_translation(at) };
         Part::new(name.to_string(), &[piece]).unwrap()
     }
 

@@ -44,7 +44,7 @@ fn volumes_lie_within_their_bounds() {
         assert!(high - low < 1e-8 * solid.volume(), "{low} {high}");
     }
     let mut open = cuboid([0.0; 3], [1.0; 3]);
-    open.faces.pop();
+    open.mesh.faces.pop();
     assert_eq!(part("open", &[open]).solid().volume_bounds(), None);
 }
 

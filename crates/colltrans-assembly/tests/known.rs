@@ -458,9 +458,9 @@ fn directions_and_names_that_are_wrong_are_refused() {
 
 /// The sides of a box that are listed, of sheet.
 fn sheets(low: [f64; 3], high: [f64; 3], sides: &[usize]) -> Piece {
-    let closed = cuboid(low, high);
-    let faces = sides.iter().map(|&side| closed.faces[side].clone()).collect();
-    Piece { faces, ..closed }
+    let mut piece = cuboid(low, high);
+    piece.mesh.faces = sides.iter().map(|&side| piece.mesh.faces[side].clone()).collect();
+    piece
 }
 
 fn along(assembly: &Assembly, part: usize, d: DVec3) -> PartRoom {

@@ -10,10 +10,9 @@ mod values;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use colltrans::glam::DVec3;
 use colltrans::{Pose, Solver};
+use colltrans_mesh::body::BodyOptions;
 
-use crate::body::Recipe;
 use crate::failure::{Code, Failure};
-use crate::solid;
 pub(crate) use assembly::AssemblyArguments;
 use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEAR_ANSWERS, CLEARANCE_ANSWERS, EXIT_CODES,
@@ -152,12 +151,13 @@ const OPEN_OR_UNCLEAN: &str = "Meshes that are not closed or clean";
 
 impl ClearArguments {
     /// How the files of the moving and of the fixed body are read.
-    pub(crate) fn recipes(&self) -> [solid::Recipe; 2] {
+    pub(crate) fn body_options(&self) -> [BodyOptions; 2] {
         let &Self { merge_tolerance, open, .. } = self;
-        [self.places.moving_scale, self.places.fixed_scale].map(|scale| solid::Recipe {
+        [self.places.moving_scale, self.places.fixed_scale].map(|scale| BodyOptions {
             scale,
             merge_tolerance,
             open,
+            ..BodyOptions::default()
         })
     }
 }
@@ -266,26 +266,21 @@ pub(crate) struct BodyArguments {
 }
 
 impl BodyArguments {
-    /// How a mesh of its own size becomes a body.
-    pub(crate) const fn recipe(&self, hull: bool, scale: f64) -> Recipe {
+    /// How a mesh becomes a body, but for whether its hull is taken.
+    pub(crate) fn options(&self, scale: f64) -> BodyOptions {
         let Self { convex_tolerance, merge_tolerance } = *self;
-        Recipe { hull, scale, convex_tolerance, merge_tolerance }
-    }
-}
-
-impl BodyArguments {
-    pub(crate) const fn merge_tolerance(&self) -> Option<f64> {
-        self.merge_tolerance
+        BodyOptions { scale, convex_tolerance, merge_tolerance, ..BodyOptions::default() }
     }
 }
 
 impl PairArguments {
     /// How the mesh files become bodies.
-    pub(crate) fn recipes(&self) -> [Recipe; 2] {
+    pub(crate) fn body_options(&self) -> [BodyOptions; 2] {
         let HullArguments { hull, hull_moving, hull_fixed } = self.hulls;
+        let one = |hull, scale| BodyOptions { hull, ..self.body.options(scale) };
         [
-            self.body.recipe(hull || hull_moving, self.places.moving_scale),
-            self.body.recipe(hull || hull_fixed, self.places.fixed_scale),
+            one(hull || hull_moving, self.places.moving_scale),
+            one(hull || hull_fixed, self.places.fixed_scale),
         ]
     }
 }

@@ -36,12 +36,11 @@ pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure
     let places = &arguments.places;
     let [moving_pose, fixed_pose] = places.poses()?;
     let directions = directions(&arguments.directions)?;
-    let [moving_recipe, fixed_recipe] = arguments.recipes();
-    let moving = body::load_or_fail(&arguments.moving, moving_recipe)?;
-    let fixed = body::load_or_fail(&arguments.fixed, fixed_recipe)?;
-    let notes = places.notes();
-    let merged = [&moving.note, &fixed.note].map(Clone::clone);
-    notes.into_iter().chain(merged).flatten().for_each(|text| note(&text));
+    let [moving_options, fixed_options] = arguments.body_options();
+    let moving = body::load_or_fail(&arguments.moving, &moving_options)?;
+    let fixed = body::load_or_fail(&arguments.fixed, &fixed_options)?;
+    let (placed, mended) = (places.notes(), moving.notes.iter().chain(&fixed.notes));
+    placed.iter().flatten().chain(mended).for_each(|text| note(text));
     let options = Options {
         solver: arguments.solver.into(),
         graze_tolerance: arguments.graze_tolerance,
@@ -166,7 +165,7 @@ fn scan<'a>(
         for (name, excess) in
             Hulls::of(parts[0].excess, parts[1].excess).iter().flat_map(Hulls::named)
         {
-            note(&format!("{name}: {}", report::exceeds(&excess)));
+            note(&format!("{name}: {excess}"));
         }
     }
     for (direction, cast) in casts {

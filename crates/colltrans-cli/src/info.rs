@@ -3,14 +3,13 @@
 use std::path::Path;
 
 use colltrans::{BuildError, ConvexPolyhedron};
+use colltrans_mesh::body::{BodyOptions, Excess, Note};
 use colltrans_mesh::{Mesh, ReadOptions};
 
 use crate::args::InfoArguments;
-use crate::body;
-use crate::excess::Excess;
 use crate::failure::{Code, Failure, print};
 use crate::numbers::{about, known, six_digits, vector};
-use crate::report::{exceeds, line};
+use crate::report::line;
 use crate::solid;
 use crate::terminal::shown;
 
@@ -45,8 +44,8 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         line(&mut text, "extent", &format!("{x} x {y} x {z}"));
         line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
     }
-    if let Some(merged) = body::merged(mesh) {
-        line(&mut text, "merged", &merged);
+    if let Some(merged) = Note::merged(mesh) {
+        line(&mut text, "merged", &merged.to_string());
     }
     if !mesh.faces.is_empty() {
         line(&mut text, "surface", &surface(mesh));
@@ -76,9 +75,9 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
             line(&mut text, "hull", &format!("{}{all}", counts(&hull)));
             line(&mut text, "hull volume", &computed(hull.volume()));
             let excess = Excess::of(mesh, &hull);
-            let tolerance = body::tolerance(mesh, asked_tolerance);
+            let tolerance = tolerance(mesh, asked_tolerance);
             if !mesh.faces.is_empty() && !excess.is_within(tolerance, mesh.extent()) {
-                line(&mut text, "hull exceeds", &exceeds(&excess));
+                line(&mut text, "hull exceeds", &excess.to_string());
             }
             let error = about(hull.hull_error());
             line(
@@ -105,6 +104,11 @@ fn vertices(mesh: &Mesh) -> String {
             format!("{}, {unused} of them used by no face", mesh.vertices.len())
         }
     }
+}
+
+/// How deep a face may lie below the hull.
+fn tolerance(mesh: &Mesh, convex_tolerance: Option<f64>) -> f64 {
+    BodyOptions { convex_tolerance, ..BodyOptions::default() }.convex_tolerance_of(mesh)
 }
 
 fn faces(mesh: &Mesh) -> String {
@@ -138,7 +142,7 @@ fn surface(mesh: &Mesh) -> String {
 }
 
 fn not_quite(mesh: &Mesh, face: usize, depth: f64, asked_tolerance: Option<f64>) -> String {
-    let tolerance = body::tolerance(mesh, asked_tolerance);
+    let tolerance = tolerance(mesh, asked_tolerance);
     let relative = depth / mesh.extent();
     let verdict = if depth <= tolerance {
         "yes, within tolerance"

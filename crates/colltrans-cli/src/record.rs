@@ -9,9 +9,9 @@ use colltrans::{
     Bounded, Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing,
     OverlapAhead, Separated, Solver, Steps, WhyFree,
 };
+use colltrans_mesh::body::Excess;
 use serde::Serialize;
 
-use crate::excess::Excess;
 use crate::numbers::{six_digits, unit_vector};
 use crate::solid::{Answer, Kind};
 

@@ -8,7 +8,6 @@ use colltrans::{
 };
 
 use crate::cast::Asked;
-use crate::excess::Excess;
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
 use crate::record::{FeatureRecord, Hulls, Name, Record, solver_name};
 
@@ -224,7 +223,7 @@ fn separated(text: &mut String, separated: &Separated) {
 fn hulls(text: &mut String, record: &Record) {
     let Some(hulls) = &record.hull else { return };
     for (name, excess) in hulls.named() {
-        line(text, name, &exceeds(&excess));
+        line(text, name, &excess.to_string());
     }
     let Hulls { moving, fixed } = hulls;
     let whose = match (moving, fixed) {
@@ -246,38 +245,6 @@ fn hulls(text: &mut String, record: &Record) {
         }
     };
     line(text, "so this is", &meaning);
-}
-
-/// By how much a hull exceeds its part.
-pub(crate) fn exceeds(excess: &Excess) -> String {
-    let volume = match excess.part_volume {
-        Some(part) => {
-            let more = (excess.hull_volume - part).max(0.0);
-            let share = 100.0 * more / excess.hull_volume;
-            format!(
-                "{} of its volume {} is not the part ({share:.3} %)",
-                six_digits(more),
-                six_digits(excess.hull_volume)
-            )
-        }
-        None => {
-            format!(
-                "volume {}, the part's is unknown ({})",
-                six_digits(excess.hull_volume),
-                if excess.is_closed {
-                    "its faces are oriented inwards"
-                } else {
-                    "it is not closed"
-                }
-            )
-        }
-    };
-    match excess.depth {
-        Some(depth) => {
-            format!("{volume}; the part's surface lies up to {} below it", six_digits(depth))
-        }
-        None => volume,
-    }
 }
 
 pub(crate) fn line(text: &mut String, name: &str, value: &str) {

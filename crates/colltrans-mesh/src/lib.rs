@@ -1,7 +1,7 @@
-//! Mesh files in double precision: STL, OBJ, PLY and OFF.
+//! Mesh files in double precision: STL, OBJ, PLY and OFF, and the bodies made of them.
 //!
 //! The data's way: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`) ->
-//! [`Mesh`] -> twins along open edges merged (`merge`). A reader either returns every vertex and
+//! [`Mesh`] -> twins along open edges merged (`merge`) -> a body of the library ([`body`]). A reader either returns every vertex and
 //! face of the file, in the file's order, or an [`Error`] that says what is wrong and where; it
 //! never allocates more than a small multiple of the file's size, whatever the file's header
 //! promises. What the extension says is held against what the file holds (`sniff`).
@@ -10,6 +10,7 @@
 //! three corners, none of them followed by itself, and nothing else is promised: coordinates may
 //! be NaN, a face may pass twice through a vertex, the surface may be open ([`Mesh::open_edges`]).
 
+pub mod body;
 mod error;
 pub mod file;
 mod merge;
@@ -21,6 +22,7 @@ mod ply;
 mod sniff;
 mod stl;
 mod text;
+pub mod words;
 mod write;
 
 use std::fmt;
@@ -31,6 +33,7 @@ use merge::{Places, Precision};
 use sniff::{Content, sniff};
 
 pub use error::{Error, Place};
+pub use merge::sides;
 pub use mesh::{Merged, Mesh};
 pub use write::{to_obj, to_off, to_stl, write};
 

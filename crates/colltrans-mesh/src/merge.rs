@@ -63,6 +63,14 @@ impl Mesh {
     /// face has no area, and the edges it joined become neighbours.
     #[must_use]
     pub fn weld(&self) -> Self {
+        let (vertices, faces) = self.welded();
+        let mut mesh = Self { vertices, faces, precision: self.precision, merged: self.merged };
+        mesh.drop_flat_faces();
+        mesh
+    }
+
+    /// The different vertices, and all faces over them.
+    pub(crate) fn welded(&self) -> (Vec<DVec3>, Vec<Vec<u32>>) {
         let mut index_of = HashMap::with_capacity(self.vertices.len() / 4);
         let mut vertices = Vec::new();
         let welded: Vec<u32> = self
@@ -79,14 +87,13 @@ impl Mesh {
             .collect();
         let renamed = |face: &Vec<u32>| face.iter().map(|&v| welded[v as usize]).collect();
         let faces = self.faces.iter().map(renamed).collect();
-        let mut mesh = Self { vertices, faces, merged: self.merged };
-        mesh.drop_flat_faces();
-        mesh
+        (vertices, faces)
     }
 
     /// Merges twins along open edges. `None` is the default tolerance.
     pub(crate) fn close(&mut self, asked: Option<f64>, precision: Precision, places: Places) {
-        self.merged.tolerance = asked.unwrap_or_else(|| precision.tolerance(&self.vertices));
+        self.precision = precision.tolerance(&self.vertices);
+        self.merged.tolerance = asked.unwrap_or(self.precision);
         let mut on_border: Vec<u32> = self.open_edges().into_iter().flatten().collect();
         if !on_border.is_empty() {
             on_border.sort_unstable();
@@ -123,18 +130,9 @@ impl Mesh {
     ///
     /// A surface without open edges encloses a volume, if its faces are oriented outwards.
     pub fn open_edges(&self) -> Vec<[u32; 2]> {
-        let mut edges = Vec::with_capacity(self.faces.iter().map(Vec::len).sum());
-        for face in &self.faces {
-            let next = face.iter().cycle().skip(1);
-            edges.extend(face.iter().zip(next).filter(|(a, b)| a != b).map(|(&a, &b)| {
-                let (low, high) = (a.min(b), a.max(b));
-                (u64::from(low) << 32 | u64::from(high), a > b)
-            }));
-        }
-        edges.sort_unstable();
         let mut open = Vec::new();
-        for same in edges.chunk_by(|(a, _), (b, _)| a == b) {
-            let backward = same.iter().filter(|(_, backward)| *backward).count();
+        for same in sides(&self.faces).chunk_by(|(a, _), (b, _)| a == b) {
+            let backward = same.iter().filter(|(_, side)| side & 1 == 1).count();
             let [low, high] = [(same[0].0 >> 32) as u32, same[0].0 as u32];
             match (same.len() - backward).cmp(&backward) {
                 std::cmp::Ordering::Equal => {}
@@ -182,6 +180,26 @@ impl Mesh {
     }
 }
 
+/// The sides of all faces, those of one edge beside each other: the edge, its lower vertex above the
+/// higher one, and the corner at which the side begins, counted through all faces, times two, plus one
+/// where the side runs from the higher vertex to the lower.
+pub fn sides<F: AsRef<[u32]>>(faces: &[F]) -> Vec<(u64, u64)> {
+    let mut sides = Vec::with_capacity(faces.iter().map(|face| face.as_ref().len()).sum());
+    let mut corner = 0;
+    for face in faces.iter().map(AsRef::as_ref) {
+        for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
+            let (low, high) = (a.min(b), a.max(b));
+            if a != b {
+                let edge = u64::from(low) << 32 | u64::from(high);
+                sides.push((edge, corner << 1 | u64::from(a > b)));
+            }
+            corner += 1;
+        }
+    }
+    sides.sort_unstable();
+    sides
+}
+
 /// Equal exactly for equal coordinates.
 fn key(vertex: DVec3) -> [u64; 3] {
     // Adding 0 turns -0 into 0 and changes nothing else.
@@ -222,9 +240,14 @@ struct Grid {
     cell: f64,
     tolerance: f64,
     /// The representative of each cell that came last.
-    last: HashMap<[i64; 3], u32>,
+    last: HashMap<[u64; 3], u32>,
     /// For every vertex, the representative before it in its cell.
     before: Vec<u32>,
+}
+
+/// A key like that of coordinates ([`key`]): one kind of map is half the code of two.
+fn key_of(cell: [i64; 3]) -> [u64; 3] {
+    cell.map(|c| c as u64)
 }
 
 /// The nearest representative, and how many were near enough.
@@ -259,7 +282,7 @@ impl Grid {
     }
 
     fn insert(&mut self, vertex: u32, position: DVec3) {
-        let last = self.last.entry(self.cell_of(position)).or_insert(NONE);
+        let last = self.last.entry(key_of(self.cell_of(position))).or_insert(NONE);
         self.before[vertex as usize] = *last;
         *last = vertex;
     }
@@ -273,7 +296,7 @@ impl Grid {
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let Some(&last) = self.last.get(&[x, y, z]) else { continue };
+                    let Some(&last) = self.last.get(&key_of([x, y, z])) else { continue };
                     found = self.nearer(found, last, position, vertices);
                 }
             }

@@ -12,6 +12,10 @@ pub struct Mesh {
     pub faces: Vec<Vec<u32>>,
     /// What was merged when the file was read; nothing for a mesh that comes from elsewhere.
     pub merged: Merged,
+    /// How far apart vertices of the file may be written that were meant to be one: what is merged by
+    /// default ([`ReadOptions::merge_tolerance`](crate::ReadOptions::merge_tolerance)); 0 for a mesh that
+    /// comes from elsewhere.
+    pub precision: f64,
 }
 
 /// What was merged when a file was read.
@@ -34,7 +38,7 @@ pub struct Merged {
 impl Mesh {
     /// A mesh of these vertices and faces.
     pub fn new(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>) -> Self {
-        Self { vertices, faces, merged: Merged::default() }
+        Self { vertices, faces, ..Self::default() }
     }
 
     /// The smallest and the largest coordinates of all vertices; `None` without vertices.

@@ -3,20 +3,17 @@
 //! Numbers of an answer: the vertices (three `f64` each), the triangles (three `u32` each), the face
 //! of each triangle (`u32`), the edges to be drawn (two `u32` each). Vertices are those of the body.
 
-use std::collections::HashMap;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use colltrans::{BuildError, ConvexPolyhedron, Feature, ShellKind, Solid, SolidError};
-use colltrans_mesh::{Format, Mesh};
+use colltrans::{ConvexPolyhedron, Feature, ShellKind, Solid};
+use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, Take};
+use colltrans_mesh::{Format, Mesh, sides};
 use glam::DVec3;
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, Refusal};
-use crate::question::Take;
 
-/// How deep a face may lie below the hull, as a part of the mesh's extent: as on the command line.
-const CONVEX_TOLERANCE: f64 = 1e-5;
 /// Edges of a solid whose faces make a smaller angle are not drawn: its cosine.
 const SMOOTH: f64 = 0.94;
 
@@ -76,6 +73,10 @@ struct Facts {
     notes: Vec<String>,
 }
 
+fn words(notes: &[Note]) -> Vec<String> {
+    notes.iter().map(Note::to_string).collect()
+}
+
 /// What is drawn.
 #[derive(Debug, Default)]
 struct Drawn {
@@ -91,98 +92,40 @@ pub(crate) fn read(name: &str, file: Vec<u8>) -> Result<Mesh, Refusal> {
 }
 
 pub(crate) fn build(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, Answer), Refusal> {
-    let mut notes: Vec<String> = merged(mesh).into_iter().collect();
+    let options = BodyOptions {
+        hull: take == Take::Hull,
+        open: take == Take::Open,
+        ..BodyOptions::default()
+    };
     match take {
         Take::Convex | Take::Hull => {
-            let body = if take == Take::Hull {
-                ConvexPolyhedron::from_points(&mesh.vertices)
-            } else {
-                let tolerance = CONVEX_TOLERANCE * mesh.extent();
-                ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, tolerance)
-            };
-            let body = body.map_err(|error| refused_hull(name, &error))?;
-            if take == Take::Hull {
-                notes.extend(filled(mesh, &body));
-            }
-            let answer = answer(&convex_facts(&body, notes), body.vertices(), &of_hull(&body));
+            let loaded = body::convex(mesh, &options).map_err(|error| refusal(name, &error))?;
+            let Loaded { body, notes, .. } = loaded;
+            let answer = answer(&convex_facts(&body, &notes), body.vertices(), &of_hull(&body));
             Ok((Part::Convex(Hull { body, solid: OnceLock::new() }), answer))
         }
         Take::Solid | Take::Open => {
-            let body = match Solid::from_mesh(&mesh.vertices, &mesh.faces) {
-                Err(SolidError::Open { .. }) if take == Take::Open => {
-                    Solid::from_open_mesh(&mesh.vertices, &mesh.faces)
-                }
-                built => built,
-            };
-            let body = body.map_err(|error| refused_solid(name, &error))?;
-            notes.extend(mended(&body));
-            let surface = body.report().surface();
-            notes.extend(surface.map(|surface| format!("an open surface: {surface}")));
-            let answer = answer(&solid_facts(&body, notes), body.vertices(), &of_solid(&body));
-            let precision = mesh.merged.tolerance;
+            let loaded = body::solid(mesh, &options).map_err(|error| refusal(name, &error))?;
+            let Loaded { body, precision, notes } = loaded;
+            let answer = answer(&solid_facts(&body, &notes), body.vertices(), &of_solid(&body));
             Ok((Part::Solid(Facets { body, precision }), answer))
         }
     }
 }
 
-fn refused_hull(name: &str, error: &BuildError) -> Refusal {
-    let instead = match error {
-        BuildError::Topology(colltrans::TopologyError::OpenEdge { .. }) => vec!["hull", "open"],
-        BuildError::NotConvex { .. } | BuildError::InsideOut { .. } | BuildError::Topology(_) => {
-            vec!["solid", "hull"]
-        }
-        _ => Vec::new(),
-    };
-    Refusal { instead, ..format!("{name}: {error}").into() }
-}
-
-fn refused_solid(name: &str, error: &SolidError) -> Refusal {
-    match error {
-        SolidError::Open { count, from, to, facet } => {
-            let edges = if *count == 1 { "edge has" } else { "edges have" };
-            let error = format!(
-                "{name}: the surface is not closed: {count} {edges} a face on one side only, the \
-                 first runs from vertex {from} to vertex {to} of face {facet}"
-            );
-            Refusal { instead: vec!["open", "hull"], ..error.into() }
-        }
-        other => Refusal { instead: vec!["hull"], ..format!("{name}: {other}").into() },
+/// What a question calls this.
+fn word(take: Take) -> &'static str {
+    match take {
+        Take::Convex => "convex",
+        Take::Hull => "hull",
+        Take::Solid => "solid",
+        Take::Open => "open",
     }
 }
 
-/// What was merged when a mesh was read, if anything was.
-fn merged(mesh: &Mesh) -> Option<String> {
-    let merged = &mesh.merged;
-    (merged.vertices > 0).then(|| {
-        format!(
-            "{} vertices on open edges merged with another, at most {:.1e} away",
-            merged.vertices, merged.largest_distance
-        )
-    })
-}
-
-/// What a hull has more than its mesh.
-fn filled(mesh: &Mesh, body: &ConvexPolyhedron) -> Option<String> {
-    let part = mesh.signed_volume();
-    let closed = mesh.open_edges().is_empty();
-    let more = body.volume() / part - 1.0;
-    (closed && part > 0.0 && more > CONVEX_TOLERANCE)
-        .then(|| format!("the hull has {:.1} % more volume than the part", 100.0 * more))
-}
-
-/// What was mended when a solid was built.
-fn mended(body: &Solid) -> Vec<String> {
-    let report = body.report();
-    let told = [
-        (report.turned(), "shells inside out in the file, turned"),
-        (report.facets_without_area, "faces without area left out"),
-        (report.slits_closed, "slits without area closed"),
-        (report.open_edges, "edges with a face on one side only"),
-    ];
-    told.iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| format!("{count} {what}"))
-        .collect()
+fn refusal(name: &str, error: &Refused) -> Refusal {
+    let instead = error.instead().iter().map(|take| word(*take)).collect();
+    Refusal { instead, ..format!("{name}: {error}").into() }
 }
 
 fn bounds(vertices: &[DVec3]) -> [[f64; 3]; 2] {
@@ -191,7 +134,7 @@ fn bounds(vertices: &[DVec3]) -> [[f64; 3]; 2] {
     [low.to_array(), high.to_array()]
 }
 
-fn convex_facts(body: &ConvexPolyhedron, notes: Vec<String>) -> Facts {
+fn convex_facts(body: &ConvexPolyhedron, notes: &[Note]) -> Facts {
     Facts {
         kind: "convex",
         faces: body.face_count(),
@@ -201,11 +144,11 @@ fn convex_facts(body: &ConvexPolyhedron, notes: Vec<String>) -> Facts {
         shells: None,
         volume: body.volume(),
         bounds: bounds(body.vertices()),
-        notes,
+        notes: words(notes),
     }
 }
 
-fn solid_facts(body: &Solid, notes: Vec<String>) -> Facts {
+fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
     let faces = body.facet_indices().iter().max().map_or(0, |last| *last as usize + 1);
     Facts {
         kind: "solid",
@@ -216,7 +159,7 @@ fn solid_facts(body: &Solid, notes: Vec<String>) -> Facts {
         shells: (!body.is_closed()).then(|| ShellKind::ALL.map(|kind| body.report().count(kind))),
         volume: body.volume(),
         bounds: bounds(body.vertices()),
-        notes,
+        notes: words(notes),
     }
 }
 
@@ -244,21 +187,22 @@ fn of_solid(body: &Solid) -> Drawn {
         let [a, b, c] = t.map(|v| vertices[v as usize]);
         (b - a).cross(c - a).normalize_or_zero()
     };
-    let mut sides: HashMap<[u32; 2], (DVec3, bool)> = HashMap::new();
-    for triangle in body.triangles() {
-        let n = normal(triangle);
-        for k in 0..3 {
-            let [a, b] = [triangle[k], triangle[(k + 1) % 3]];
-            sides
-                .entry([a.min(b), a.max(b)])
-                .and_modify(|(other, smooth)| *smooth = other.dot(n) > SMOOTH)
-                .or_insert((n, false));
+    let triangles = body.triangles();
+    let mut edges = Vec::new();
+    for around in sides(triangles).chunk_by(|(a, _), (b, _)| a == b) {
+        // A side is twice its corner, of which a triangle has three.
+        let smooth = match *around {
+            [] | [_] => false,
+            [(_, first), .., (_, last)] => {
+                let [a, b] = [first, last].map(|side| normal(&triangles[(side / 6) as usize]));
+                a.dot(b) > SMOOTH
+            }
+        };
+        if !smooth {
+            edges.push([(around[0].0 >> 32) as u32, around[0].0 as u32]);
         }
     }
-    let sharp = sides.iter().filter(|(_, (_, smooth))| !smooth).map(|(edge, _)| *edge);
-    let mut edges: Vec<[u32; 2]> = sharp.collect();
-    edges.sort_unstable();
-    Drawn { triangles: body.triangles().to_vec(), faces: body.face_numbers().to_vec(), edges }
+    Drawn { triangles: triangles.to_vec(), faces: body.face_numbers().to_vec(), edges }
 }
 
 fn answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {

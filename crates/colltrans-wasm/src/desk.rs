@@ -1,10 +1,11 @@
 //! The bodies in use, and what is answered about them.
 
 use colltrans_mesh::Mesh;
+use colltrans_mesh::body::Take;
 
 use crate::answer::{Answer, Refusal};
 use crate::body::{self, Part};
-use crate::question::{Load, Question, Slot, Take};
+use crate::question::{Load, Question, Slot};
 use crate::{certify, convex, levels, search, solid};
 
 /// A body made of a file with more bytes goes before the next file is read: both may not fit.

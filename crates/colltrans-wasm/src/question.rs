@@ -2,6 +2,7 @@
 //!
 //! Read by hand: what derived readers add would be a third of the download.
 
+use colltrans_mesh::body::Take;
 use serde_json::Value;
 
 use crate::fields::Fields;
@@ -28,19 +29,6 @@ pub(crate) enum Question {
 pub(crate) enum Slot {
     Moving,
     Fixed,
-}
-
-/// How a mesh becomes a body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Take {
-    /// It must be convex.
-    Convex,
-    /// The convex hull of its vertices.
-    Hull,
-    /// It need not be convex, but closed.
-    Solid,
-    /// A surface that may be open.
-    Open,
 }
 
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! Casts between bodies of which at least one need not be convex.
 
-use colltrans::{Cast, Clearance, Solid, SolidOptions, StartOverlap};
+use colltrans::{Cast, Clearance, Solid, StartOverlap};
+use colltrans_mesh::body::between;
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -8,9 +9,6 @@ use crate::answer::{Answer, Refusal};
 use crate::body::{Facets, Lit, Part};
 use crate::pose::pose;
 use crate::question::Pair;
-
-/// Default tolerance, in multiples of the precisions of both files together: as on the command line.
-const PRECISIONS: f64 = 2.0;
 
 pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);
@@ -70,13 +68,9 @@ pub(crate) fn query<'a>(
     let [moving_pose, fixed_pose] =
         [pose(pair.moving_pose, "moving")?, pose(pair.fixed_pose, "fixed")?];
     let direction = DVec3::from_array(pair.direction);
-    let placed = [moving.body.at(moving_pose), fixed.body.at(fixed_pose)];
-    let cast = Cast::new(placed[0], placed[1], direction).map_err(|error| error.to_string())?;
-    let of_files = PRECISIONS * (moving.precision + fixed.precision);
-    let tolerance = pair.tolerance.unwrap_or_else(|| of_files.max(cast.tolerance()));
-    let start_overlap =
-        if pair.ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
-    let options =
-        SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() };
-    Ok(cast.with_options(options).map_err(|error| error.to_string())?)
+    let precisions = [moving.precision, fixed.precision];
+    let start = if pair.ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+    let (moving, fixed) = (moving.body.at(moving_pose), fixed.body.at(fixed_pose));
+    let cast = between(moving, fixed, direction, precisions, pair.tolerance, start);
+    Ok(cast.map_err(|error| error.to_string())?)
 }

@@ -339,13 +339,12 @@ impl Reader<'_> {
         }
         let (mut parts, mut names) = (Vec::new(), Names::default());
         for Placed { node, name, mesh, world } in self.placed {
-            let Mesh { vertices, faces, .. } = &meshes[&mesh];
-            if faces.is_empty() {
+            let mesh = &meshes[&mesh];
+            if mesh.faces.is_empty() {
                 continue;
             }
             let name = names.unique(&name.map_or(format!("node {node}"), str::to_owned));
-            let (vertices, faces) = (vertices.clone(), faces.clone());
-            let piece = Piece { vertices, faces, world_from_piece: world };
+            let piece = Piece { mesh: mesh.clone(), world_from_piece: world };
             parts.push(Part::new(name, &[piece]).map_err(in_file(self.path))?);
         }
         Ok(parts)

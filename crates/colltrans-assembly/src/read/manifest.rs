@@ -140,7 +140,9 @@ impl Gathered {
             };
             self.budget.read(&path, bytes.len());
             let piece = piece(&path, bytes, world)?;
-            self.budget.facets(piece.faces.len().max(piece.vertices.len())).map_err(refused)?;
+            self.budget
+                .facets(piece.mesh.faces.len().max(piece.mesh.vertices.len()))
+                .map_err(refused)?;
             pieces.push(piece);
         }
         if self.missing.len() == missing {

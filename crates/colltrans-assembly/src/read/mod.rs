@@ -174,8 +174,7 @@ fn plain_words(message: &str) -> String {
 #[cfg(feature = "files")]
 fn piece(path: &Path, bytes: Vec<u8>, world_from_piece: DAffine3) -> Result<Piece, ReadError> {
     let format = colltrans_mesh::Format::of_path(path)?;
-    let mesh = colltrans_mesh::parse(format, bytes, path)?;
-    Ok(Piece { vertices: mesh.vertices, faces: mesh.faces, world_from_piece })
+    Ok(Piece { mesh: colltrans_mesh::parse(format, bytes, path)?, world_from_piece })
 }
 
 /// Nodes, components, links or parts of a source, each as often as it is placed, at most.

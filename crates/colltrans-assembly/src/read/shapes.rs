@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use colltrans_mesh::Mesh;
 use glam::{DAffine3, DVec3};
 
 use crate::part::Piece;
@@ -17,7 +18,7 @@ pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
     let faces =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let faces = faces.iter().map(|f| f.to_vec()).collect();
-    Piece { vertices: (0..8).map(corner).collect(), faces, world_from_piece }
+    Piece { mesh: Mesh::new((0..8).map(corner).collect(), faces), world_from_piece }
 }
 
 pub(super) fn cylinder(radius: f64, length: f64, world_from_piece: DAffine3) -> Piece {
@@ -60,7 +61,7 @@ fn turned(profile: &[(f64, f64)], poles: Option<[f64; 2]>, world_from_piece: DAf
         faces.push((0..n).rev().collect());
         faces.push((top..top + n).collect());
     }
-    Piece { vertices, faces, world_from_piece }
+    Piece { mesh: Mesh::new(vertices, faces), world_from_piece }
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use std::collections::{HashMap, VecDeque};
 use std::io::{Cursor, Read};
 use std::rc::Rc;
 
+use colltrans_mesh::Mesh;
 use glam::{DAffine3, DMat3, DVec3};
 use quick_xml::NsReader;
 use quick_xml::events::{BytesStart, Event};
@@ -76,8 +77,8 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     }
     let (mut parts, mut names) = (Vec::with_capacity(placed.len()), Names::default());
     for (k, name, object, world_from_piece) in placed {
-        let (vertices, faces) = (object.vertices.clone(), object.faces.clone());
-        let part = Part::new(names.unique(&name), &[Piece { vertices, faces, world_from_piece }]);
+        let mesh = Mesh::new(object.vertices.clone(), object.faces.clone());
+        let part = Part::new(names.unique(&name), &[Piece { mesh, world_from_piece }]);
         let place = format!("build item {}", k + 1);
         parts.push(part.map_err(|e| contents(source.path, place, e))?);
     }

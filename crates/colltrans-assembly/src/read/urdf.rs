@@ -84,7 +84,7 @@ impl<'a> Gathered<'a> {
                 _ => {
                     let piece = solid(shape, at).map_err(refused)?;
                     self.budget.place().map_err(refused)?;
-                    self.budget.facets(piece.faces.len()).map_err(refused)?;
+                    self.budget.facets(piece.mesh.faces.len()).map_err(refused)?;
                     pieces.push(piece);
                 }
             }
@@ -114,7 +114,9 @@ impl<'a> Gathered<'a> {
         };
         self.budget.read(&file, bytes.len());
         let piece = piece(&file, bytes, at * DAffine3::from_scale(DVec3::from_array(scale)))?;
-        self.budget.facets(piece.faces.len().max(piece.vertices.len())).map_err(refused)?;
+        self.budget
+            .facets(piece.mesh.faces.len().max(piece.mesh.vertices.len()))
+            .map_err(refused)?;
         Ok(Some(piece))
     }
 }

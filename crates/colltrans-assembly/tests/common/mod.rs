@@ -6,8 +6,9 @@
 use std::io::Write;
 
 use colltrans_assembly::{Assembly, Part, Piece};
+use colltrans_mesh::Mesh;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{Mesh, block};
+use colltrans_testkit::shapes::block;
 use glam::{DAffine3, DVec3};
 
 /// The unit cube, as a file.
@@ -15,8 +16,9 @@ pub const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 
     4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
 pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Piece {
-    let Mesh { vertices, faces } = block(low, high);
-    Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY }
+    let mesh = block(low, high);
+    let mesh = Mesh::new(mesh.vertices, mesh.faces);
+    Piece { mesh, world_from_piece: DAffine3::IDENTITY }
 }
 
 /// The box from the origin to a corner, as a mesh of a 3MF package.

@@ -149,7 +149,7 @@ mod tests {
     /// How often bodies of one vertex were built after each of these uses.
     fn builds(capacity: usize, uses: &[f64]) -> Vec<u32> {
         let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
-        let one: Built = Ok(Arc::new(Shape::Convex(Part { body, excess: None, note: None })));
+        let one: Built = Ok(Arc::new(Shape::Convex(Part::of(body))));
         let cache = Cache::new(capacity);
         let mut builds = 0;
         let count = |&x: &f64| {
@@ -185,7 +185,7 @@ mod tests {
             let point = DVec3::splat(f64::from(k));
             let built = cache.get(key(point.x), |_| {
                 let body = ConvexPolyhedron::from_points(&[point]).unwrap();
-                Ok(Arc::new(Shape::Convex(Part { body, excess: None, note: None })))
+                Ok(Arc::new(Shape::Convex(Part::of(body))))
             });
             drop(built.unwrap());
             let state = cache.lock();

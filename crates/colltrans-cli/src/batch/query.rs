@@ -7,6 +7,7 @@ use std::sync::Arc;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
 use colltrans_assembly::read::plain;
+use colltrans_mesh::body::BodyOptions;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -192,9 +193,8 @@ impl Desk {
         let key = Key::Solid { path: path.clone(), scale: scale.to_bits(), open };
         self.cache.get(key, |_| {
             self.watched.note(&path);
-            let merge_tolerance = self.body.merge_tolerance();
-            let recipe = solid::Recipe { scale, merge_tolerance, open };
-            let body = solid::Body::load(&[path], recipe, || ())?;
+            let options = BodyOptions { open, ..self.body.options(scale) };
+            let body = solid::Body::load(&[path], &options, || ())?;
             Ok(Arc::new(Shape::Solid(body)))
         })
     }
@@ -204,7 +204,8 @@ impl Desk {
         let key = Key::Mesh { path: path.clone(), hull, scale: scale.to_bits() };
         self.cache.get(key, |_| {
             self.watched.note(&path);
-            let part = body::load(&path, self.body.recipe(hull, scale))?;
+            let options = BodyOptions { hull, ..self.body.options(scale) };
+            let part = body::load(&path, &options)?;
             Ok(Arc::new(Shape::Convex(part)))
         })
     }
@@ -220,7 +221,7 @@ fn positive(scale: Option<f64>) -> Result<f64, String> {
 fn hull_of(points: &[[f64; 3]]) -> Built {
     let points: Vec<DVec3> = points.iter().copied().map(DVec3::from_array).collect();
     let body = ConvexPolyhedron::from_points(&points).map_err(|e| e.to_string())?;
-    Ok(Arc::new(Shape::Convex(Part { body, excess: None, note: None })))
+    Ok(Arc::new(Shape::Convex(Part::of(body))))
 }
 
 /// A bug must not take the other lines with it.
@@ -266,7 +267,7 @@ impl<B> Query<'_, B> {
             Asked::Clearance => cast.clearance().map(|far| Record::of_clearance(&far, &cast)),
         };
         let record = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
-        let notes = [moving, fixed].into_iter().filter_map(|part| part.note.clone()).collect();
+        let notes = [moving, fixed].into_iter().flat_map(|part| part.notes.clone()).collect();
         Ok(Record { hull: Hulls::of(moving.excess, fixed.excess), notes, ..record })
     }
 

@@ -53,7 +53,7 @@ mod tests {
 
     fn shape() -> Arc<Shape> {
         let body = ConvexPolyhedron::from_points(&[DVec3::ONE]).unwrap();
-        Arc::new(Shape::Convex(Part { body, excess: None, note: None }))
+        Arc::new(Shape::Convex(Part::of(body)))
     }
 
     #[test]

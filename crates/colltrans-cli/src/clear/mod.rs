@@ -92,10 +92,10 @@ fn scan<'a>(
 /// Both bodies.
 fn load(arguments: &ClearArguments, files: usize) -> Result<[Body; 2], Failure> {
     let bar = progress::steps(files, "reading");
-    let [moving, fixed] = arguments.recipes();
-    let load = |files, recipe| Body::load(files, recipe, || bar.inc(1));
-    let moving = load(&arguments.moving, moving);
-    let bodies = moving.and_then(|moving| Ok([moving, load(&arguments.from, fixed)?]));
+    let [moving, fixed] = arguments.body_options();
+    let load = |files, options| Body::load(files, options, || bar.inc(1));
+    let moving = load(&arguments.moving, &moving);
+    let bodies = moving.and_then(|moving| Ok([moving, load(&arguments.from, &fixed)?]));
     bar.finish_and_clear();
     bodies.map_err(|message| Failure::new(Code::Input, message))
 }

@@ -6,9 +6,8 @@
 //! `serde_json`.
 
 use colltrans::Bounded;
+use colltrans_mesh::body::Excess;
 use serde::Serialize;
-
-use crate::excess::Excess;
 
 use super::{FeatureRecord, Features, Hulls, Record, StepCounts};
 

@@ -4,17 +4,15 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Bounded, Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOptions,
-    SolidOverlap, StartOverlap,
+    Bounded, Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOverlap,
+    StartOverlap,
 };
+use colltrans_mesh::body::between;
 
 use super::{Body, Piece};
 use crate::numbers::counted;
 use crate::record::FeatureRecord;
 
-/// Default tolerance, in multiples of the precisions of both files together: both ends of a fit
-/// are off by less than one of them, and a slanting facet makes more of it.
-const PRECISIONS: f64 = 2.0;
 /// What rounding alone can do to a length, as a part of the scene's size.
 const ROUNDING: f64 = 1e-14;
 
@@ -100,8 +98,10 @@ impl<'a> Question<'a> {
 
     /// The answer; `done` is called after each pair of files that was looked at.
     pub(crate) fn ask(&self, done: impl FnMut()) -> Result<Answer<'a>, QueryError> {
-        let tolerance = self.tolerance_used()?;
-        let cast = self.cast(self.moving.solid(), self.fixed.solid(), tolerance)?;
+        let precisions = [self.moving.precision(), self.fixed.precision()];
+        let cast =
+            self.cast(self.moving.solid(), self.fixed.solid(), precisions, self.tolerance)?;
+        let tolerance = cast.tolerance();
         let kind = match cast.clearance() {
             Clearance::Free(_) => Kind::Free,
             Clearance::Blocked { distance, contact } => {
@@ -121,7 +121,7 @@ impl<'a> Question<'a> {
             overlaps,
             surfaces: [self.moving.is_surface(), self.fixed.is_surface()],
             notes: self.unshrunk(tolerance),
-            error: self.moving.precision() + self.fixed.precision() + ROUNDING * self.size(),
+            error: precisions[0] + precisions[1] + ROUNDING * self.size(),
         })
     }
 
@@ -129,26 +129,13 @@ impl<'a> Question<'a> {
         &self,
         moving: &'s Solid,
         fixed: &'s Solid,
-        tolerance: f64,
+        precisions: [f64; 2],
+        tolerance: Option<f64>,
     ) -> Result<Cast<'s, Solid>, QueryError> {
-        let start_overlap =
+        let start =
             if self.ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
-        let options =
-            SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() };
-        Cast::new(moving.at(self.moving_pose), fixed.at(self.fixed_pose), self.direction)?
-            .with_options(options)
-    }
-
-    /// What was asked for, or what the files and the poses ask for.
-    fn tolerance_used(&self) -> Result<f64, QueryError> {
-        if let Some(tolerance) = self.tolerance {
-            return Ok(tolerance);
-        }
-        let moving = self.moving.solid().at(self.moving_pose);
-        let fixed = self.fixed.solid().at(self.fixed_pose);
-        let of_poses = Cast::new(moving, fixed, self.direction)?.tolerance();
-        let of_files = PRECISIONS * (self.moving.precision() + self.fixed.precision());
-        Ok(of_files.max(of_poses))
+        let (moving, fixed) = (moving.at(self.moving_pose), fixed.at(self.fixed_pose));
+        between(moving, fixed, self.direction, precisions, tolerance, start)
     }
 
     fn stop(&self, distance: f64, contact: &SolidContact) -> Stop<'a> {
@@ -172,7 +159,7 @@ impl<'a> Question<'a> {
         let mut found = Vec::new();
         for moving in &self.moving.pieces {
             for fixed in &self.fixed.pieces {
-                let cast = self.cast(&moving.solid, &fixed.solid, tolerance)?;
+                let cast = self.cast(&moving.solid, &fixed.solid, [0.0; 2], Some(tolerance))?;
                 if let Some(SolidOverlap { depth, .. }) = cast.start_overlap() {
                     let (moving, fixed) = (moving.file.as_path(), fixed.file.as_path());
                     found.push(Overlap { moving, fixed, depth });

@@ -3,33 +3,20 @@
 //! A body is made of one file or of several; each is a *piece* and keeps its name, so that an
 //! answer can say which files are involved. This is the only module that knows the library's
 //! solids: [`load`](Body::load) makes them of files, [`ask`] asks them.
-//!
-//! Precision of a file, a length: how far apart its vertices may be written that were meant to be
-//! one, which is what the reader merges by default: `2^-22` of the largest coordinate in single
-//! precision, else `2^-48` of it.
 
 mod ask;
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
 use colltrans::{ConvexPolyhedron, Pose, Solid, SolidError, SolidReport};
-use colltrans_mesh::{Mesh, ReadOptions};
+use colltrans_mesh::Mesh;
+use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid};
 
-use crate::body::merged;
+use crate::body::{hint, of_file, refusal};
 use crate::numbers::counted;
 pub(crate) use ask::{Answer, Kind, Overlap, Question, Stop, Touch};
-
-/// How mesh files become a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Recipe {
-    /// Lengths are multiplied by this, after the merging.
-    pub(crate) scale: f64,
-    pub(crate) merge_tolerance: Option<f64>,
-    /// Whether surfaces may be open.
-    pub(crate) open: bool,
-}
 
 /// A body of one piece or several.
 #[derive(Debug)]
@@ -54,20 +41,16 @@ impl Body {
     /// and says what would help.
     pub(crate) fn load(
         files: &[PathBuf],
-        recipe: Recipe,
+        options: &BodyOptions,
         mut done: impl FnMut(),
     ) -> Result<Self, String> {
         let mut pieces = Vec::with_capacity(files.len());
         let mut notes = Vec::new();
         for file in files {
-            let (mut mesh, precision) = read(file, recipe.merge_tolerance)?;
-            let told = |what: String| format!("{}: {what}", file.display());
-            notes.extend(merged(&mesh).map(told));
-            mesh.vertices.iter_mut().for_each(|v| *v *= recipe.scale);
-            let solid = build(&mesh, recipe.open).map_err(|error| told(refusal(&error)))?;
-            notes.extend(mended(solid.report()).map(told));
-            notes.extend(gaps(solid.report()).map(told));
-            pieces.push(Piece { file: file.clone(), solid, precision: precision * recipe.scale });
+            let Loaded { body: solid, precision, notes: mended } =
+                load_solid(file, options).map_err(|error| refusal(&error))?;
+            notes.extend(mended.iter().map(|note| of_file(file, note)));
+            pieces.push(Piece { file: file.clone(), solid, precision });
             done();
         }
         Self::of_pieces(pieces, notes)
@@ -77,7 +60,7 @@ impl Body {
     pub(crate) fn of_convex(body: &ConvexPolyhedron) -> Result<Self, String> {
         let solid = Solid::from_convex(body).map_err(|error| match error {
             SolidError::Empty => "without an area, which bodies asked against solids need".into(),
-            other => refusal(&other),
+            other => Refused::Solid(other).to_string(),
         })?;
         let piece = Piece { file: PathBuf::new(), solid, precision: 0.0 };
         Self::of_pieces(vec![piece], Vec::new())
@@ -122,83 +105,28 @@ impl Body {
     }
 }
 
-/// A mesh, and the precision of its file.
-fn read(file: &Path, merge_tolerance: Option<f64>) -> Result<(Mesh, f64), String> {
-    let with = |tolerance| {
-        let options = ReadOptions::default().with_merge_tolerance(tolerance);
-        colltrans_mesh::read_with(file, options).map_err(|error| error.to_string())
-    };
-    let mesh = with(None)?;
-    let precision = mesh.merged.tolerance;
-    match merge_tolerance {
-        None => Ok((mesh, precision)),
-        asked => Ok((with(asked)?, precision)),
-    }
-}
-
-fn build(mesh: &Mesh, open: bool) -> Result<Solid, SolidError> {
-    match Solid::from_mesh(&mesh.vertices, &mesh.faces) {
-        Err(SolidError::Open { .. }) if open => Solid::from_open_mesh(&mesh.vertices, &mesh.faces),
-        built => built,
-    }
-}
-
-/// Why a mesh is no solid, and what would help.
-fn refusal(error: &SolidError) -> String {
-    match error {
-        SolidError::Open { count, from, to, facet } => format!(
-            "the surface is not closed: {} have a face on one side only, the first runs from \
-             vertex {from} to vertex {to} of face {facet}; --merge-tolerance closes gaps, `clear \
-             --open` takes it as a surface without an inside",
-            counted(*count, "edge", "edges")
-        ),
-        SolidError::Empty => "holds no faces with an area".into(),
-        other => other.to_string(),
-    }
-}
-
-/// What was mended when a solid was built, if anything was.
-fn mended(report: &SolidReport) -> Option<String> {
-    let mut text = Vec::new();
-    let mut tell = |count: usize, one: &str, many: &str, what: &str| {
-        if count > 0 {
-            text.push(format!("{} {what}", counted(count, one, many)));
-        }
-    };
-    tell(report.turned(), "shell", "shells", "turned, inside out in the file");
-    tell(report.facets_without_area, "face", "faces", "without area left out");
-    tell(report.slits_closed, "slit", "slits", "without area closed");
-    (!text.is_empty()).then(|| text.join("; "))
-}
-
-/// What an open surface is taken for.
-fn gaps(report: &SolidReport) -> Option<String> {
-    let edges = counted(report.open_edges, "open edge", "open edges");
-    report.surface().map(|surface| format!("an open surface ({edges}): {surface}"))
-}
-
 /// What `info` says of a mesh as a solid: a line for each heading.
 pub(crate) fn describe(mesh: &Mesh) -> Vec<(&'static str, String)> {
     if mesh.faces.is_empty() {
         return Vec::new();
     }
-    let solid = match Solid::from_mesh(&mesh.vertices, &mesh.faces) {
-        Ok(solid) => solid,
-        Err(error) => {
-            let mut lines = vec![("solid", format!("no: {}", refusal(&error)))];
-            let open = Solid::from_open_mesh(&mesh.vertices, &mesh.faces);
-            let surface = open.ok().and_then(|open| open.report().surface());
+    let Loaded { body: solid, notes, .. } = match body::solid(mesh, &BodyOptions::default()) {
+        Ok(loaded) => loaded,
+        Err(refused) => {
+            let mut lines = vec![("solid", format!("no: {refused}{}", hint(&refused)))];
+            let open = body::solid(mesh, &BodyOptions { open: true, ..BodyOptions::default() });
+            let surface = open.ok().and_then(|open| open.body.report().surface());
             lines.extend(surface.map(|surface| ("with --open", surface)));
             return lines;
         }
     };
-    let report = solid.report();
-    let mut lines = vec![("solid", format!("yes: {}", shells(report)))];
-    lines.extend(mended(report).map(|what| ("mended", what)));
-    if report.crowded_edges > 0 {
-        let edges = counted(report.crowded_edges, "edge is", "edges are");
-        lines.push(("touches", format!("itself: {edges} shared by more than two faces")));
-    }
+    let mut lines = vec![("solid", format!("yes: {}", shells(solid.report())))];
+    lines.extend(notes.iter().filter_map(|note| match note {
+        // It has a line of its own.
+        Note::Merged(_) => None,
+        Note::Crowded(_) => Some(("touches", format!("itself: {note}"))),
+        mended => Some(("mended", mended.to_string())),
+    }));
     lines
 }
 

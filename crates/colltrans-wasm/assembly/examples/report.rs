@@ -58,9 +58,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn assembly(files: &[String]) -> Result<Assembly, Box<dyn Error>> {
     let parts = files.iter().map(|file| {
-        let colltrans_mesh::Mesh { vertices, faces, .. } = colltrans_mesh::read(file)?;
+        let mesh = colltrans_mesh::read(file)?;
         let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
-        let piece = Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY };
+        let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
         Ok(Part::new(name, &[piece])?)
     });
     Ok(Assembly::new(parts.collect::<Result<_, Box<dyn Error>>>()?)?)

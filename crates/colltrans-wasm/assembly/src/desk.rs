@@ -94,11 +94,7 @@ impl Desk {
             let mesh =
                 colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
             let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
-            let piece = Piece {
-                vertices: mesh.vertices,
-                faces: mesh.faces,
-                world_from_piece: DAffine3::IDENTITY,
-            };
+            let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
             let part = Part::new(self.unused(&stem), &[piece]);
             self.gathered.push(part.map_err(|error| format!("{name}: {error}"))?);
         }

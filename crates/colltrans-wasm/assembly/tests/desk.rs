@@ -76,8 +76,7 @@ fn a_map_is_the_library_s() {
         numbers.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
     let parts = files().into_iter().map(|file| {
         let mesh = colltrans_mesh::read(&file).unwrap();
-        let (vertices, faces) = (mesh.vertices, mesh.faces);
-        let piece = Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY };
+        let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
         Part::new(stem(&file), &[piece]).unwrap()
     });
     let assembly = Assembly::new(parts.collect()).unwrap();

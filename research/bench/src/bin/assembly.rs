@@ -62,8 +62,7 @@ fn spheres(side: u32, around: u32, rings: u32) -> Result<Assembly, Box<dyn Error
         let cell = [k % side, k / side % side, k / (side * side)].map(f64::from);
         let at = DVec3::from_array(cell) * 2.05;
         let piece = Piece {
-            vertices: vertices.clone(),
-            faces: faces.clone(),
+            mesh: colltrans_mesh::Mesh::new(vertices.clone(), faces.clone()),
             world_from_piece: DAffine3::from_translation(at),
         };
         parts.push(Part::new(format!("sphere_{k}"), &[piece])?);

@@ -5,11 +5,14 @@
 //! convexity, at the corners, the middles of the edges and the centres of all faces: for curved
 //! surfaces that is all there is, in a large flat face some other point may lie a little deeper.
 
-use std::collections::{HashMap, VecDeque};
-
 use colltrans::ConvexPolyhedron;
-use colltrans::glam::DVec3;
-use colltrans_mesh::Mesh;
+use glam::DVec3;
+
+use crate::Mesh;
+use crate::merge::sides;
+
+/// Whether depths are looked at; volumes are in any case.
+const DEEP: bool = cfg!(feature = "depth");
 
 /// Planes that are compared before the search for the deepest point is given up: some seconds.
 const MOST_COMPARISONS: u64 = 4_000_000_000;
@@ -19,37 +22,38 @@ const RECENT: usize = 8;
 
 /// What a hull has and its part has not.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Excess {
+pub struct Excess {
     /// Volume of the hull.
-    pub(crate) hull_volume: f64,
+    pub hull_volume: f64,
     /// Volume of the part; `None` if its surface is open or oriented inwards.
-    pub(crate) part_volume: Option<f64>,
+    pub part_volume: Option<f64>,
     /// Whether the part's surface is closed.
-    pub(crate) is_closed: bool,
-    /// How deep the part's surface lies below the hull's; `None` without a surface, or if there is
-    /// more of it than can be looked at.
-    pub(crate) depth: Option<f64>,
+    pub is_closed: bool,
+    /// How deep the part's surface lies below the hull's; `None` without a surface, if there is more of
+    /// it than can be looked at, and without the feature `depth`.
+    pub depth: Option<f64>,
 }
 
 impl Excess {
-    pub(crate) fn of(mesh: &Mesh, hull: &ConvexPolyhedron) -> Self {
+    /// By how much the convex hull of a mesh exceeds it.
+    pub fn of(mesh: &Mesh, hull: &ConvexPolyhedron) -> Self {
         let volume = mesh.signed_volume();
         let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
         Self {
             hull_volume: hull.volume(),
             part_volume: (is_closed && volume >= 0.0).then_some(volume),
             is_closed,
-            depth: (!mesh.faces.is_empty()).then(|| depth(mesh, hull)).flatten(),
+            depth: if DEEP && !mesh.faces.is_empty() { depth(mesh, hull) } else { None },
         }
     }
 
     /// Whether the part is its hull to within a depth below it, as it would be taken for convex
     /// without asking for the hull: what is said of one holds for the other.
-    pub(crate) fn is_within(&self, tolerance: f64, extent: f64) -> bool {
+    pub fn is_within(&self, tolerance: f64, extent: f64) -> bool {
         // A box with sides of this extent has six faces.
         let most = 6.0 * tolerance * extent * extent;
         let is_filled = self.part_volume.is_some_and(|volume| self.hull_volume - volume <= most);
-        is_filled && self.depth.is_some_and(|depth| depth <= tolerance)
+        is_filled && self.depth.map_or(!DEEP, |depth| depth <= tolerance)
     }
 }
 
@@ -64,7 +68,7 @@ fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
     let mut deepest = noise;
     // Points in the order of the mesh are near each other, and so are the faces they are below.
     let mut passed = 0;
-    let mut recent = VecDeque::from([0]);
+    let mut recent = [0; RECENT];
     let mut comparisons = 0;
     for p in mesh.faces.iter().flat_map(|face| samples(mesh, face)) {
         // Most points are seen to be no deeper by one face or by those around them.
@@ -85,8 +89,8 @@ fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
             }
         }
         deepest = deepest.max(least.0);
-        recent.push_front(least.1);
-        recent.truncate(RECENT);
+        recent.rotate_right(1);
+        recent[0] = least.1;
         if comparisons > MOST_COMPARISONS {
             return None;
         }
@@ -109,24 +113,24 @@ impl Faces {
     fn of(hull: &ConvexPolyhedron) -> Self {
         let vertices = hull.vertices();
         let centre = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
-        let mut planes = Vec::new();
-        let mut start = vec![0];
-        let mut edges = Vec::new();
-        let mut face_of = HashMap::new();
-        for face in 0..hull.face_count() as u32 {
-            let normal = hull.face_normal(face);
-            let corners = hull.face_vertices(face);
-            let heights = corners.clone().map(|v| normal.dot(vertices[v as usize] - centre));
+        let faces = (0..hull.face_count() as u32).map(|face| hull.face_vertices(face).collect());
+        let faces: Vec<Vec<u32>> = faces.collect();
+        let (mut planes, mut start, mut owner) = (Vec::new(), vec![0], Vec::new());
+        for (face, corners) in faces.iter().enumerate() {
+            let normal = hull.face_normal(face as u32);
+            let heights = corners.iter().map(|v| normal.dot(vertices[*v as usize] - centre));
             planes.push((normal, heights.fold(f64::NEG_INFINITY, f64::max)));
-            for (a, b) in corners.clone().zip(corners.cycle().skip(1)) {
-                edges.push((a, b));
-                face_of.insert((a, b), face);
-            }
-            start.push(edges.len() as u32);
+            owner.resize(owner.len() + corners.len(), face as u32);
+            start.push(owner.len() as u32);
         }
-        // Across every edge lies a face that has it the other way round.
-        let across = |&(a, b): &(u32, u32)| face_of.get(&(b, a)).copied().unwrap_or_default();
-        Self { centre, planes, start, neighbours: edges.iter().map(across).collect() }
+        let mut neighbours = vec![0; owner.len()];
+        for edge in sides(&faces).chunk_by(|(a, _), (b, _)| a == b) {
+            if let [(_, x), (_, y)] = *edge {
+                let [x, y] = [x, y].map(|side| (side >> 1) as usize);
+                (neighbours[x], neighbours[y]) = (owner[y], owner[x]);
+            }
+        }
+        Self { centre, planes, start, neighbours }
     }
 
     /// How far a point is below a face.

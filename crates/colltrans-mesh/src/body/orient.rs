@@ -4,13 +4,13 @@
 //! connected part that is carried on to all; the smaller set is turned. Which side is outside is not
 //! decided here.
 
-use std::collections::HashMap;
-
-use glam::DVec3;
+use crate::Mesh;
+use crate::merge::sides;
 
 /// Turns facets until neighbours agree; how many. `None` if they cannot, on a one-sided surface.
-pub(crate) fn consistent(vertices: &[DVec3], faces: &mut [Vec<u32>]) -> Option<usize> {
-    let neighbours = neighbours(vertices, faces);
+pub(super) fn consistent(mesh: &mut Mesh) -> Option<usize> {
+    let neighbours = neighbours(mesh);
+    let faces = &mut mesh.faces;
     let mut turned: Vec<Option<bool>> = vec![None; faces.len()];
     let mut count = 0;
     for first in 0..faces.len() {
@@ -45,25 +45,17 @@ pub(crate) fn consistent(vertices: &[DVec3], faces: &mut [Vec<u32>]) -> Option<u
 }
 
 /// For each facet those with which it shares an edge that no third one has, and whether they agree.
-fn neighbours(vertices: &[DVec3], faces: &[Vec<u32>]) -> Vec<Vec<(usize, bool)>> {
-    let mut index = HashMap::new();
-    let bits = |v: u32| vertices[v as usize].to_array().map(|c| (c + 0.0).to_bits());
-    let mut edges: HashMap<[usize; 2], Vec<(usize, bool)>> = HashMap::new();
-    for (k, face) in faces.iter().enumerate() {
-        for (i, &a) in face.iter().enumerate() {
-            let b = face[(i + 1) % face.len()];
-            let [a, b] = [a, b].map(|v| {
-                let next = index.len();
-                *index.entry(bits(v)).or_insert(next)
-            });
-            edges.entry([a.min(b), a.max(b)]).or_default().push((k, a < b));
-        }
-    }
+fn neighbours(mesh: &Mesh) -> Vec<Vec<(usize, bool)>> {
+    let (_, faces) = mesh.welded();
+    let corners = faces.iter().enumerate();
+    let owner: Vec<usize> = corners.flat_map(|(k, face)| face.iter().map(move |_| k)).collect();
     let mut neighbours = vec![Vec::new(); faces.len()];
-    for shared in edges.values() {
-        if let [(f, x), (g, y)] = shared[..] {
-            neighbours[f].push((g, x != y));
-            neighbours[g].push((f, x != y));
+    for shared in sides(&faces).chunk_by(|(a, _), (b, _)| a == b) {
+        if let [(_, x), (_, y)] = *shared {
+            let [f, g] = [x, y].map(|side| owner[(side >> 1) as usize]);
+            let agree = (x ^ y) & 1 == 1;
+            neighbours[f].push((g, agree));
+            neighbours[g].push((f, agree));
         }
     }
     neighbours
@@ -73,6 +65,7 @@ fn neighbours(vertices: &[DVec3], faces: &[Vec<u32>]) -> Vec<Vec<(usize, bool)>>
 mod tests {
     use colltrans_testkit::random::Random;
     use colltrans_testkit::shapes::ring_sphere;
+    use glam::DVec3;
 
     use super::*;
 
@@ -89,13 +82,14 @@ mod tests {
                     turned += 1;
                 }
             }
-            assert_eq!(consistent(&mesh.vertices, &mut faces), Some(turned));
-            assert_eq!(faces, mesh.faces);
+            let mut mended = Mesh::new(mesh.vertices.clone(), faces);
+            assert_eq!(consistent(&mut mended), Some(turned));
+            assert_eq!(mended.faces, mesh.faces);
         }
         // Moebius' band.
         let band: Vec<DVec3> =
             (0..6).map(|k| DVec3::new(f64::from(k), f64::from(k * k), 1.0)).collect();
-        let mut faces: Vec<Vec<u32>> = vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4], vec![4, 5, 0, 1]];
-        assert_eq!(consistent(&band, &mut faces), None);
+        let faces: Vec<Vec<u32>> = vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4], vec![4, 5, 0, 1]];
+        assert_eq!(consistent(&mut Mesh::new(band, faces)), None);
     }
 }

@@ -1,0 +1,262 @@
+//! From a mesh to a body: what the command line, the page, assemblies and Python have in common.
+//!
+//! [`convex`] and [`solid`] make a body of a mesh, [`load_convex`] and [`load_solid`] of a file. A body
+//! comes with what was mended for it ([`Note`]) and with the precision of its coordinates, from which
+//! [`between`] takes the tolerance of a query where nobody gives one. So every front end answers the
+//! same for the same files.
+
+mod excess;
+mod note;
+mod orient;
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use colltrans::{
+    BuildError, Cast, ConvexPolyhedron, Placed, QueryError, Solid, SolidError, SolidOptions,
+    StartOverlap, TopologyError,
+};
+use glam::DVec3;
+use thiserror::Error;
+
+pub use excess::Excess;
+pub use note::{Note, report_notes};
+
+use crate::words::counted;
+use crate::{Error, Mesh, ReadOptions, read_with};
+
+/// How deep a face may lie below the hull by default, as a part of the mesh's extent: a hundred
+/// times what single precision makes of it, and what six printed digits make of it.
+const CONVEX_TOLERANCE: f64 = 1e-5;
+/// Default tolerance between solids, in multiples of the precisions of both together: both ends of a
+/// fit are off by less than one of them, and a slanting facet makes more of it.
+const PRECISIONS: f64 = 2.0;
+
+/// How a mesh becomes a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyOptions {
+    /// Lengths are multiplied by this, after the tolerances below, which are in the file's unit.
+    pub scale: f64,
+    /// As [`ReadOptions::merge_tolerance`], where a file is read.
+    pub merge_tolerance: Option<f64>,
+    /// How deep a face of a convex body may lie below the hull; `None` is 1e-5 of the mesh's extent.
+    pub convex_tolerance: Option<f64>,
+    /// Of a convex body: the convex hull of all vertices is taken, whatever the faces are.
+    pub hull: bool,
+    /// Of a solid: shells may be open, and block from both sides then.
+    pub open: bool,
+}
+
+impl Default for BodyOptions {
+    fn default() -> Self {
+        Self { scale: 1.0, merge_tolerance: None, convex_tolerance: None, hull: false, open: false }
+    }
+}
+
+impl BodyOptions {
+    /// How deep a face of this mesh may lie below the hull, in the file's unit.
+    pub fn convex_tolerance_of(&self, mesh: &Mesh) -> f64 {
+        self.convex_tolerance.unwrap_or_else(|| CONVEX_TOLERANCE * mesh.extent())
+    }
+
+    fn scaled<'m>(&self, mesh: &'m Mesh) -> Cow<'m, Mesh> {
+        if self.scale == 1.0 {
+            return Cow::Borrowed(mesh);
+        }
+        let mut scaled = mesh.clone();
+        scaled.vertices.iter_mut().for_each(|v| *v *= self.scale);
+        Cow::Owned(scaled)
+    }
+}
+
+/// A body made of a mesh.
+#[derive(Debug, Clone)]
+pub struct Loaded<B> {
+    /// The body.
+    pub body: B,
+    /// [`Mesh::precision`], in the unit of the body.
+    pub precision: f64,
+    /// What was mended, or is not as it is in the file.
+    pub notes: Vec<Note>,
+}
+
+/// What a mesh can be taken as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Take {
+    /// A convex body, which its faces must be.
+    Convex,
+    /// The convex hull of its vertices ([`BodyOptions::hull`]).
+    Hull,
+    /// A solid, closed.
+    Solid,
+    /// A solid, shells of which may be open ([`BodyOptions::open`]).
+    Open,
+}
+
+/// Why a mesh is no body of the kind asked for.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Refused {
+    /// It is no convex body.
+    #[error(transparent)]
+    Convex(#[from] BuildError),
+    /// It is no solid.
+    #[error("{}", of_solid(.0))]
+    Solid(#[from] SolidError),
+}
+
+impl Refused {
+    /// What the same mesh could be taken as instead.
+    pub fn instead(&self) -> &'static [Take] {
+        match self {
+            Self::Convex(BuildError::Topology(TopologyError::OpenEdge { .. })) => {
+                &[Take::Hull, Take::Open]
+            }
+            Self::Convex(
+                BuildError::NotConvex { .. }
+                | BuildError::InsideOut { .. }
+                | BuildError::Topology(_),
+            ) => &[Take::Solid, Take::Hull],
+            Self::Convex(_) => &[],
+            Self::Solid(SolidError::Open { .. }) => &[Take::Open, Take::Hull],
+            Self::Solid(_) => &[Take::Hull],
+        }
+    }
+}
+
+fn of_solid(error: &SolidError) -> String {
+    match error {
+        SolidError::Open { count, from, to, facet } => format!(
+            "the surface is not closed: {} a face on one side only, the first runs from vertex \
+             {from} to vertex {to} of face {facet}",
+            counted(*count, "edge has", "edges have")
+        ),
+        SolidError::Empty => "holds no faces with an area".into(),
+        other => other.to_string(),
+    }
+}
+
+/// Why no body was made of a file. Every message names it.
+#[derive(Debug, Error)]
+pub enum LoadError {
+    /// It is no mesh.
+    #[error(transparent)]
+    Mesh(#[from] Error),
+    /// Its mesh is no body of the kind asked for.
+    #[error("{}: {source}", path.display())]
+    Body {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: Refused,
+    },
+}
+
+/// A convex body of a mesh: its surface must be closed and convex, unless the hull is asked for.
+///
+/// # Errors
+/// What is wrong with the surface, and where.
+pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhedron>, Refused> {
+    let tolerance = options.convex_tolerance_of(mesh) * options.scale;
+    let precision = mesh.precision * options.scale;
+    let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
+    let mesh = options.scaled(mesh);
+    if !options.hull {
+        let body = ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, tolerance)?;
+        return Ok(Loaded { body, precision, notes });
+    }
+    let body = ConvexPolyhedron::from_points(&mesh.vertices)?;
+    let excess = Excess::of(&mesh, &body);
+    if !excess.is_within(tolerance, mesh.extent()) {
+        notes.push(Note::Exceeds(excess));
+    }
+    Ok(Loaded { body, precision, notes })
+}
+
+/// A solid of a mesh. Facets that are oriented against the others of their shell are turned.
+///
+/// # Errors
+/// What is wrong with the surface, and where; that it is open, unless it may be.
+pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
+    let precision = mesh.precision * options.scale;
+    let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
+    let mut mesh = options.scaled(mesh);
+    let mut built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
+    if let Err(SolidError::Inconsistent { .. }) = built
+        && let Some(turned) = orient::consistent(mesh.to_mut())
+    {
+        notes.push(Note::FacesTurned(turned));
+        built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
+    }
+    let mut first = None;
+    if let Err(SolidError::Open { from, to, facet, .. }) = built
+        && options.open
+    {
+        first = Some([from, to, facet]);
+        built = Solid::from_open_mesh(&mesh.vertices, &mesh.faces);
+    }
+    let body = built?;
+    notes.extend(report_notes(body.report(), first));
+    Ok(Loaded { body, precision, notes })
+}
+
+/// Reads a file as a [`convex`] body.
+///
+/// # Errors
+/// As of [`read`](crate::read) and [`convex`].
+pub fn load_convex(
+    path: impl AsRef<Path>,
+    options: &BodyOptions,
+) -> Result<Loaded<ConvexPolyhedron>, LoadError> {
+    load(path, options, |mesh, options| convex(&mesh, options))
+}
+
+/// Reads a file as a [`solid`].
+///
+/// # Errors
+/// As of [`read`](crate::read) and [`solid`].
+pub fn load_solid(
+    path: impl AsRef<Path>,
+    options: &BodyOptions,
+) -> Result<Loaded<Solid>, LoadError> {
+    load(path, options, |mesh, options| solid(&mesh, options))
+}
+
+/// Reads a file and makes something of its mesh.
+///
+/// # Errors
+/// As of [`read`](crate::read), and of what is made.
+pub fn load<T>(
+    path: impl AsRef<Path>,
+    options: &BodyOptions,
+    take: impl FnOnce(Mesh, &BodyOptions) -> Result<T, Refused>,
+) -> Result<T, LoadError> {
+    let path = path.as_ref();
+    let read = ReadOptions::default().with_merge_tolerance(options.merge_tolerance);
+    let mesh = read_with(path, read)?;
+    take(mesh, options).map_err(|source| LoadError::Body { path: path.to_owned(), source })
+}
+
+/// A query between solids of these precisions (lengths, see [`Loaded::precision`]).
+///
+/// Without a tolerance it is what the files ask for, twice their precisions together, and no less than
+/// what turned poses need.
+///
+/// # Errors
+/// As of [`Cast::new`] and of its options.
+pub fn between<'a>(
+    moving: Placed<'a, Solid>,
+    fixed: Placed<'a, Solid>,
+    direction: DVec3,
+    precisions: [f64; 2],
+    tolerance: Option<f64>,
+    start_overlap: StartOverlap,
+) -> Result<Cast<'a, Solid>, QueryError> {
+    let cast = Cast::new(moving, fixed, direction)?;
+    let of_files = PRECISIONS * (precisions[0] + precisions[1]);
+    let tolerance = tolerance.unwrap_or_else(|| of_files.max(cast.tolerance()));
+    cast.with_options(SolidOptions {
+        start_overlap,
+        tolerance: Some(tolerance),
+        ..SolidOptions::default()
+    })
+}

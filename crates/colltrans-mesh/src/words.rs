@@ -1,0 +1,122 @@
+//! Numbers for people: as many digits as are known, and no `-0`; and how many there are of something.
+
+/// All digits, with an exponent where there would be many zeros.
+pub fn number(value: f64) -> String {
+    if value == 0.0 {
+        "0".into()
+    } else if (1e-4..1e15).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// A number that is known to within an error: rounded to the decimal place of the error's first
+/// digit, so that what is dropped is less than the error; without zeros at the end.
+pub fn known(value: f64, error: f64) -> String {
+    if !value.is_finite() || !error.is_normal() || value == 0.0 {
+        return number(value);
+    }
+    let place = decade(error);
+    let leading = decade(value);
+    if place > leading {
+        // Nothing of it is known.
+        return if value.abs() <= error.abs() { "0".into() } else { format!("{value:.0e}") };
+    }
+    // Digits after the first one; an f64 has no more than 17.
+    let digits = (leading - place).clamp(0, 16) as usize;
+    let rounded: f64 = format!("{value:.digits$e}").parse().unwrap_or(value);
+    number(rounded)
+}
+
+/// Six digits, for what is measured and not proven.
+pub fn six_digits(value: f64) -> String {
+    known(value, value.abs() * 1e-5)
+}
+
+/// One significant digit, rounded up: for errors and tolerances.
+pub fn about(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return number(value);
+    }
+    let nearest = format!("{value:.0e}");
+    let shown: f64 = nearest.parse().unwrap_or(value);
+    if shown.abs() >= value.abs() {
+        return nearest;
+    }
+    // Rounded down; half a unit of the digit more is rounded up.
+    let half: f64 = format!("5e{}", decade(value) - 1).parse().unwrap_or(0.0);
+    format!("{:.0e}", value + half.copysign(value))
+}
+
+/// The power of ten of the first digit of a number that is finite and not 0: exact, as no logarithm
+/// of the platform is.
+pub fn decade(value: f64) -> i32 {
+    let written = format!("{value:e}");
+    written.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0)
+}
+
+/// How many there are of something.
+pub fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_never_shown_smaller() {
+        for (value, shown) in [
+            (1.117e-12, "2e-12"),
+            (3.87e-13, "4e-13"),
+            (9.2, "1e1"),
+            (1e-6, "1e-6"),
+            (-1.2, "-2e0"),
+        ] {
+            assert_eq!(about(value), shown);
+        }
+    }
+
+    #[test]
+    fn decades_are_exact() {
+        for (value, power) in
+            [(1.0, 0), (-10.0, 1), (999.999, 2), (1e-3, -3), (0.001_f64.next_down(), -4)]
+        {
+            assert_eq!(decade(value), power, "{value}");
+        }
+    }
+
+    #[test]
+    fn only_known_digits_are_shown() {
+        assert_eq!(known(1.0 / 3.0, 7e-15), "0.333333333333333");
+        assert_eq!(known(2.000_000_000_000_000_4, 7e-15), "2");
+        assert_eq!(known(-1_234.567_891, 0.02), "-1234.57");
+        assert_eq!(known(-1e-16, 7e-15), "0");
+        assert_eq!(known(123_456.789, 1e3), "123000");
+        assert_eq!(known(1.0 / 3.0, 0.0), (1.0_f64 / 3.0).to_string());
+        assert_eq!(known(9.999_999_999_999_999, 1e-14), "10");
+        assert_eq!(known(1e-20, 1e-30), "1e-20");
+        assert_eq!(known(f64::INFINITY, 1.0), "inf");
+        // What is dropped is less than the error.
+        let mut value = 0.1_f64;
+        while value < 1e6 {
+            for error in [1e-3, 3e-9, 9.9e-12] {
+                let shown: f64 = known(value, error).parse().unwrap();
+                assert!((shown - value).abs() <= error, "{value} {error}");
+            }
+            value *= 1.37;
+        }
+    }
+
+    #[test]
+    fn many_zeros_become_an_exponent() {
+        assert_eq!([1e-5, 2e16, 1e-4].map(number), ["1e-5", "2e16", "0.0001"]);
+    }
+
+    #[test]
+    fn zero_is_zero() {
+        assert_eq!([0.0, -0.0].map(number), ["0", "0"]);
+        assert_eq!([0.0, -0.0].map(about), ["0", "0"]);
+    }
+}

@@ -3,7 +3,7 @@
 import { h, refill, svg } from "./dom";
 import { type Answer, type Certificate, type Claims, type ConvexAnswer, MOST_MIB, type Slot, type SolidAnswer, type SolidProof, type Take } from "./engine";
 import { type Vec, length, short } from "./math";
-import { asCommand, asPython, asRust } from "./share";
+import { asCommand } from "./share";
 import type { Solver, State } from "./state";
 import type { Drawn } from "./view/body";
 import { say } from "./words";
@@ -163,15 +163,15 @@ export class AnswerPanel {
   }
 
   private share(): HTMLElement {
-    const copy = (text: () => string | undefined, what: string) => () => this.now && this.act.copy(text(), what);
-    const state = () => this.now!.state;
-    this.command.addEventListener("click", copy(() => asCommand(state()), "The command"));
+    const copy = (text: (state: State) => string | undefined | Promise<string>, what: string) => async () =>
+      this.now && this.act.copy(await text(this.now.state), what);
+    this.command.addEventListener("click", copy(asCommand, "The command"));
     return h("div", { style: "display: flex; flex-direction: column; gap: 10px" },
       h("div", { class: "row" },
         h("button", { class: "small", onclick: copy(() => undefined, "The link") }, "Copy link"),
         this.command,
-        h("button", { class: "small", onclick: copy(() => asRust(state()), "The program") }, "Copy as Rust"),
-        h("button", { class: "small", onclick: copy(() => asPython(state()), "The program") }, "Copy as Python")),
+        h("button", { class: "small", onclick: copy(async (state) => (await import("./programs")).asRust(state), "The program") }, "Copy as Rust"),
+        h("button", { class: "small", onclick: copy(async (state) => (await import("./programs")).asPython(state), "The program") }, "Copy as Python")),
       h("div", { class: "row" },
         h("button", { class: "small", onclick: () => this.act.save("png") }, "Save the view (PNG)"),
         h("button", { class: "small", onclick: () => this.act.save("svg") }, "Save the shadows (SVG)"),

@@ -7,7 +7,7 @@ import { test } from "node:test";
 import { build } from "esbuild";
 
 const resolveDir = join(dirname(fileURLToPath(import.meta.url)), "../src");
-const contents = ["share", "state", "examples"].map((name) => `export * from "./${name}";`).join("");
+const contents = ["share", "programs", "state", "examples"].map((name) => `export * from "./${name}";`).join("");
 const { outputFiles } = await build({ stdin: { contents, resolveDir, loader: "ts" }, bundle: true, format: "esm", write: false });
 const { EXAMPLES, asCommand, asPython, asRust, fromExample, fromHash, toHash } = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
 
@@ -32,6 +32,6 @@ test("the same question as a command line, or none where none asks the same", ()
 
 test("and as programs", () => {
   const state = fromHash('#m=a"b.stl:hull&f=plate.off:open&d=0,0,-1&tol=1&mp=0,0,7,0,0,0,1');
-  assert.match(asRust(state), /colltrans_mesh::read\("a\\"b\.stl"\)\?[^]*Solid::from_convex\(&ConvexPolyhedron::from_points[^]*from_open_mesh[^]*DVec3::new\(0\.0, 0\.0, -1\.0\)[^]*with_tolerance\(1\.0\)\?/);
+  assert.match(asRust(state), /load_convex\("a\\"b\.stl", &BodyOptions \{ hull: true, [^]*Solid::from_convex\(&moving\.body\)\?[^]*load_solid\("plate\.off", &BodyOptions \{ open: true, [^]*DVec3::new\(0\.0, 0\.0, -1\.0\),\n *\[0\.0, fixed\.precision\],\n *Some\(1\.0\)/);
   assert.match(asPython(state), /read\("a\\"b\.stl", hull=True\)[^]*Solid\.read\("plate\.off", open=True\)[^]*tolerance=1\.0/);
 });

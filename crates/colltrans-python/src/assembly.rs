@@ -22,6 +22,7 @@ use colltrans_assembly::plan::{PlanOptions, Step, disassemble};
 use colltrans_assembly::read::{Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
+use colltrans_mesh::Mesh;
 use pyo3::prelude::*;
 
 use crate::arrays::{faces, points};
@@ -130,8 +131,8 @@ impl Assembly {
     fn new(parts: Vec<(String, Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> PyResult<Self> {
         let part = |(name, vertices, corners): &(String, Bound<'_, PyAny>, Bound<'_, PyAny>)| {
             let (vertices, faces) = (points(vertices, "vertices")?, faces(corners)?);
-            Part::new(name, &[Piece { vertices, faces, world_from_piece: DAffine3::IDENTITY }])
-                .or_raise()
+            let mesh = Mesh::new(vertices, faces);
+            Part::new(name, &[Piece { mesh, world_from_piece: DAffine3::IDENTITY }]).or_raise()
         };
         let parts = parts.iter().map(part).collect::<PyResult<_>>()?;
         Ok(Self(Arc::new(colltrans_assembly::Assembly::new(parts).or_raise()?)))

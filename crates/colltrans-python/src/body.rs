@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans_mesh::ReadOptions;
+use colltrans_mesh::body::{BodyOptions, load_convex};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -36,18 +36,27 @@ use crate::offset::OffsetReport;
 /// >>> tetrahedron
 /// ConvexPolyhedron(4 vertices, 6 edges, 4 faces)
 #[pyclass(frozen, module = "colltrans")]
-pub(crate) struct ConvexPolyhedron(pub(crate) colltrans::ConvexPolyhedron);
+pub(crate) struct ConvexPolyhedron(
+    pub(crate) colltrans::ConvexPolyhedron,
+    /// What was mended when it was read.
+    pub(crate) Vec<String>,
+);
 
-/// How deep a face of a file may lie below the hull by default, as a part of the mesh's extent: as
-/// on the command line.
-const FILE_TOLERANCE: f64 = 1e-5;
+impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
+    fn from(body: colltrans::ConvexPolyhedron) -> Self {
+        Self(body, Vec::new())
+    }
+}
+
+/// A body as JSON, and its notes.
+type Read = (String, Vec<String>);
 
 #[pymethods]
 impl ConvexPolyhedron {
     #[new]
     fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Self> {
         let points = self::points(points, "points")?;
-        py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self)
+        py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self::from)
     }
 
     /// A closed convex surface.
@@ -93,7 +102,7 @@ impl ConvexPolyhedron {
         let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
         py.detach(|| colltrans::ConvexPolyhedron::from_mesh(&vertices, &faces, convex_tolerance))
             .or_raise()
-            .map(Self)
+            .map(Self::from)
     }
 
     /// From a mesh of trimesh, or anything with ``vertices`` and ``faces``: a closed convex surface.
@@ -137,13 +146,13 @@ impl ConvexPolyhedron {
     #[staticmethod]
     fn cuboid(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (low, high) = (vector(low, "low")?, vector(high, "high")?);
-        colltrans::ConvexPolyhedron::cuboid(low, high).or_raise().map(Self)
+        colltrans::ConvexPolyhedron::cuboid(low, high).or_raise().map(Self::from)
     }
 
     /// From what `to_json` has written, exact in bits.
     #[staticmethod]
     fn from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
-        py.detach(|| colltrans::ConvexPolyhedron::from_json(text)).or_raise().map(Self)
+        py.detach(|| colltrans::ConvexPolyhedron::from_json(text)).or_raise().map(Self::from)
     }
 
     /// The body as text: vertices and faces in their order, exact in bits.
@@ -256,7 +265,7 @@ impl ConvexPolyhedron {
     /// shrunk by 0.75 nothing is left of the body: it holds no ball of this radius, one of radius 0.5 it does
     fn shrunk(&self, py: Python<'_>, amount: f64) -> PyResult<(Self, OffsetReport)> {
         let (body, report) = py.detach(|| self.0.shrunk(amount)).or_raise()?;
-        Ok((Self(body), OffsetReport(report)))
+        Ok((body.into(), OffsetReport(report)))
     }
 
     /// What lies at most so far outside every face plane, for a margin to be kept.
@@ -291,7 +300,7 @@ impl ConvexPolyhedron {
     /// 8.0
     fn grown(&self, py: Python<'_>, amount: f64) -> PyResult<(Self, OffsetReport)> {
         let (body, report) = py.detach(|| self.0.grown(amount)).or_raise()?;
-        Ok((Self(body), OffsetReport(report)))
+        Ok((body.into(), OffsetReport(report)))
     }
 
     /// int: Bytes of memory that the body occupies.
@@ -300,8 +309,20 @@ impl ConvexPolyhedron {
         self.0.memory_bytes()
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
-        Ok((py.get_type::<Self>().getattr("from_json")?, (self.to_json(),)))
+    /// list of str: What was mended when it was read from a file, and by how much its hull exceeds it.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.1.clone()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Read)> {
+        Ok((py.get_type::<Self>().getattr("_read")?, (self.to_json(), self.notes())))
+    }
+
+    #[staticmethod]
+    #[pyo3(name = "_read")]
+    fn read_again(py: Python<'_>, text: &str, notes: Vec<String>) -> PyResult<Self> {
+        Ok(Self(Self::from_json(py, text)?.0, notes))
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {
@@ -357,19 +378,9 @@ pub(crate) fn read(
     if !scale.is_finite() || scale <= 0.0 {
         return Err(error("InputError", format_args!("scale: {scale} is not finite and positive")));
     }
-    let options = ReadOptions::default().with_merge_tolerance(merge_tolerance);
-    let (mesh, built) = py.detach(|| {
-        let mut mesh = colltrans_mesh::read_with(&path, options).or_raise()?;
-        let tolerance = convex_tolerance.unwrap_or_else(|| FILE_TOLERANCE * mesh.extent()) * scale;
-        if scale != 1.0 {
-            mesh.vertices.iter_mut().for_each(|v| *v *= scale);
-        }
-        let built = if hull {
-            colltrans::ConvexPolyhedron::from_points(&mesh.vertices)
-        } else {
-            colltrans::ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, tolerance)
-        };
-        PyResult::Ok((path.display().to_string(), built))
-    })?;
-    built.map(ConvexPolyhedron).map_err(|what| error("BuildError", format_args!("{mesh}: {what}")))
+    let options =
+        BodyOptions { scale, merge_tolerance, convex_tolerance, hull, ..BodyOptions::default() };
+    let loaded = py.detach(|| load_convex(&path, &options)).or_raise()?;
+    let notes = loaded.notes.iter().map(ToString::to_string).collect();
+    Ok(ConvexPolyhedron(loaded.body, notes))
 }

@@ -6,6 +6,7 @@
 use std::fmt::Display;
 
 use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError, SolidError};
+use colltrans_mesh::body::{LoadError, Refused};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -52,6 +53,10 @@ impl Raised for SolidError {
     const CLASS: &'static str = "BuildError";
 }
 
+impl Raised for Refused {
+    const CLASS: &'static str = "BuildError";
+}
+
 impl Raised for PoseError {
     const CLASS: &'static str = "PoseError";
 }
@@ -72,10 +77,6 @@ impl Raised for colltrans_assembly::ReadError {
     const CLASS: &'static str = "AssemblyError";
 }
 
-impl Raised for colltrans_mesh::Error {
-    const CLASS: &'static str = "MeshError";
-}
-
 /// What was computed, or an exception.
 pub(crate) trait OrRaise<T> {
     fn or_raise(self) -> PyResult<T>;
@@ -84,5 +85,14 @@ pub(crate) trait OrRaise<T> {
 impl<T, E: Raised> OrRaise<T> for Result<T, E> {
     fn or_raise(self) -> PyResult<T> {
         self.map_err(|what| error(E::CLASS, what))
+    }
+}
+
+impl<T> OrRaise<T> for Result<T, LoadError> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(|what| match what {
+            LoadError::Mesh(what) => error("MeshError", what),
+            LoadError::Body { .. } => error("BuildError", what),
+        })
     }
 }

@@ -228,7 +228,8 @@ impl Cast {
     fn from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
         let saved = colltrans::Case::from_json(text).or_raise()?;
         let cast = saved.cast().map_err(|what| error("QueryError", what))?;
-        let body = |body: &colltrans::ConvexPolyhedron| Py::new(py, ConvexPolyhedron(body.clone()));
+        let body =
+            |body: &colltrans::ConvexPolyhedron| Py::new(py, ConvexPolyhedron::from(body.clone()));
         Ok(Self(Query {
             moving: body(cast.moving())?,
             fixed: body(cast.fixed())?,

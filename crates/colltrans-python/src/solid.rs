@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 use colltrans::glam::DVec3;
 use colltrans::{AsSolid, ShellKind};
-use colltrans_mesh::ReadOptions;
+use colltrans_mesh::Mesh;
+use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused, load};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -22,11 +23,7 @@ use crate::offset::ShrinkReport;
 
 /// What a solid was made of.
 enum Source {
-    Mesh {
-        vertices: Vec<DVec3>,
-        faces: Vec<Vec<u32>>,
-        open: bool,
-    },
+    Mesh(Box<Mesh>, BodyOptions),
     Pieces(Vec<Piece>),
     /// Another solid, its facets moved inwards by this much, or outwards if it is negative.
     Moved(Py<Solid>, f64),
@@ -59,11 +56,26 @@ impl Piece {
         }
     }
 
+    /// Convex bodies count as exact.
+    pub(crate) fn precision(&self) -> f64 {
+        match self {
+            Self::Convex(_) => 0.0,
+            Self::Solid(solid) => solid.get().precision,
+        }
+    }
+
     /// Of a convex body, about as many as it has as a solid.
     pub(crate) fn triangle_count(&self) -> usize {
         match self {
             Self::Convex(body) => 2 * body.get().0.vertices().len(),
             Self::Solid(solid) => solid.get().solid.triangles().len(),
+        }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        match self {
+            Self::Convex(body) => body.get().1.clone(),
+            Self::Solid(solid) => solid.get().notes.clone(),
         }
     }
 
@@ -106,20 +118,24 @@ impl Piece {
 /// ...       [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 /// Solid(4 vertices, 4 triangles)
 #[pyclass(frozen, module = "colltrans")]
+#[expect(clippy::struct_field_names, reason = "a solid of the library, and how it came to be")]
 pub(crate) struct Solid {
     pub(crate) solid: colltrans::Solid,
+    /// How far apart vertices may be written that were meant to be one.
+    precision: f64,
+    notes: Vec<String>,
     source: Arc<Source>,
 }
 
+/// Vertices, faces, whether shells may be open, the scale, the precision of the file, the notes.
+type OfMesh<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyAny>>, bool, f64, f64, Vec<String>);
+
 impl Solid {
-    fn of_mesh(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>, open: bool) -> PyResult<Self> {
-        let solid = if open {
-            colltrans::Solid::from_open_mesh(&vertices, &faces)
-        } else {
-            colltrans::Solid::from_mesh(&vertices, &faces)
-        };
-        let solid = solid.or_raise()?;
-        Ok(Self { solid, source: Arc::new(Source::Mesh { vertices, faces, open }) })
+    fn of_mesh(mesh: Mesh, options: BodyOptions) -> Result<Self, Refused> {
+        let Loaded { body: solid, precision, notes } = body::solid(&mesh, &options)?;
+        let notes = notes.iter().map(ToString::to_string).collect();
+        let source = Arc::new(Source::Mesh(Box::new(mesh), options));
+        Ok(Self { solid, precision, notes, source })
     }
 
     /// With facets moved inwards by an amount, or outwards.
@@ -129,7 +145,8 @@ impl Solid {
         let (solid, report) = slf.py().detach(moved).or_raise()?;
         let by = if inwards { amount } else { -amount };
         let source = Arc::new(Source::Moved(slf.clone().unbind(), by));
-        Ok((Self { solid, source }, ShrinkReport(report)))
+        let (precision, notes) = (slf.get().precision, slf.get().notes.clone());
+        Ok((Self { solid, precision, notes, source }, ShrinkReport(report)))
     }
 }
 
@@ -144,7 +161,8 @@ impl Solid {
         open: bool,
     ) -> PyResult<Self> {
         let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
-        py.detach(|| Self::of_mesh(vertices, faces, open))
+        let options = BodyOptions { open, ..BodyOptions::default() };
+        py.detach(|| Self::of_mesh(Mesh::new(vertices, faces), options)).or_raise()
     }
 
     /// The union of several bodies, which may overlap.
@@ -171,7 +189,9 @@ impl Solid {
             pieces.iter().map(|piece| Piece::of(piece, "pieces")).collect::<PyResult<_>>()?;
         let solids: Result<Vec<_>, _> = pieces.iter().map(Piece::solid).collect();
         let solid = colltrans::Solid::from_pieces(solids.or_raise()?).or_raise()?;
-        Ok(Self { solid, source: Arc::new(Source::Pieces(pieces)) })
+        let precision = pieces.iter().map(Piece::precision).fold(0.0, f64::max);
+        let notes = pieces.iter().flat_map(Piece::notes).collect();
+        Ok(Self { solid, precision, notes, source: Arc::new(Source::Pieces(pieces)) })
     }
 
     /// From a mesh of trimesh, or anything with ``vertices`` and ``faces``.
@@ -224,12 +244,9 @@ impl Solid {
         if !scale.is_finite() || scale <= 0.0 {
             return Err(crate::errors::input("scale", format_args!("{scale} is not positive")));
         }
-        let options = ReadOptions::default().with_merge_tolerance(merge_tolerance);
-        py.detach(|| {
-            let mesh = colltrans_mesh::read_with(&path, options).or_raise()?;
-            let vertices = mesh.vertices.iter().map(|v| *v * scale).collect();
-            Self::of_mesh(vertices, mesh.faces, open)
-        })
+        let options = BodyOptions { scale, merge_tolerance, open, ..BodyOptions::default() };
+        py.detach(|| load(&path, &options, |mesh, options| Self::of_mesh(mesh, *options)))
+            .or_raise()
     }
 
     /// The solid with every facet plane moved inwards.
@@ -324,6 +341,19 @@ impl Solid {
         ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.count(kind))).collect()
     }
 
+    /// list of str: What was mended to make it of its mesh, or is not as it is in the file.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// float: How far apart vertices of its file may be written that were meant to be one, a length: from
+    /// it comes the default tolerance of a query. 0 for what was not read from a file.
+    #[getter]
+    fn precision(&self) -> f64 {
+        self.precision
+    }
+
     /// float: The volume, in the cube of the unit of length.
     #[getter]
     fn volume(&self) -> f64 {
@@ -354,25 +384,33 @@ impl Solid {
                 Ok((class.getattr("from_pieces")?, (pieces,).into_pyobject(py)?))
             }
             Source::Moved(of, by) => Ok((class.getattr("_moved")?, (of, *by).into_pyobject(py)?)),
-            Source::Mesh { vertices, faces, open } => {
-                let vertices = table(py, vertices.iter().map(DVec3::to_array))?;
-                let faces: Vec<_> = faces.iter().map(|f| f.clone().into_pyarray(py)).collect();
-                let name = if *open { "_open" } else { "_closed" };
-                Ok((class.getattr(name)?, (vertices, faces).into_pyobject(py)?))
+            Source::Mesh(mesh, BodyOptions { open, scale, .. }) => {
+                let vertices = table(py, mesh.vertices.iter().map(DVec3::to_array))?.into_any();
+                let face = |f: &Vec<u32>| f.clone().into_pyarray(py).into_any();
+                let faces: Vec<_> = mesh.faces.iter().map(face).collect();
+                let state: OfMesh<'_> =
+                    (vertices, faces, *open, *scale, mesh.precision, self.notes.clone());
+                Ok((class.getattr("_mesh")?, state.into_pyobject(py)?))
             }
         }
     }
 
     #[staticmethod]
-    #[pyo3(name = "_closed")]
-    fn closed(py: Python<'_>, v: &Bound<'_, PyAny>, f: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Self::new(py, v, f, false)
-    }
-
-    #[staticmethod]
-    #[pyo3(name = "_open")]
-    fn open(py: Python<'_>, v: &Bound<'_, PyAny>, f: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Self::new(py, v, f, true)
+    #[pyo3(name = "_mesh")]
+    fn of_mesh_again(
+        py: Python<'_>,
+        v: &Bound<'_, PyAny>,
+        f: &Bound<'_, PyAny>,
+        open: bool,
+        scale: f64,
+        precision: f64,
+        notes: Vec<String>,
+    ) -> PyResult<Self> {
+        let mut mesh = Mesh::new(points(v, "vertices")?, faces(f)?);
+        mesh.precision = precision;
+        let options = BodyOptions { open, scale, ..BodyOptions::default() };
+        let solid = py.detach(|| Self::of_mesh(mesh, options)).or_raise()?;
+        Ok(Self { notes, ..solid })
     }
 
     #[staticmethod]

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use colltrans::glam::DVec3;
 use colltrans::{SolidOptions, StartOverlap};
+use colltrans_mesh::body::between;
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -31,8 +32,9 @@ use crate::solid_answer::{SolidCertificate, SolidOverlapping, solid_answer};
 ///     Where the bodies are; see :class:`Pose`.
 /// tolerance : float, optional
 ///     Both bodies are shrunk by half of this length, so that parts that fit do not jam. By default
-///     what rounding can do to a fit, 0 where both poses turn by quarter turns. (The command line
-///     adds what the files' precision can do.)
+///     as on the command line: twice what rounding may have made of the coordinates of both files
+///     (:attr:`Solid.precision`), and no less than what turned poses need; 0 for bodies that are not of
+///     files where both poses turn by quarter turns.
 /// ignore_start_overlaps : bool
 ///     Whether facets that cross now do not block, but contacts that begin later do.
 ///
@@ -42,6 +44,8 @@ use crate::solid_answer::{SolidCertificate, SolidOverlapping, solid_answer};
 /// >>> bolt, plate = Solid.read("data/bolt.stl"), Solid.read("data/plate.off")
 /// >>> query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
 /// >>> found = query.clearance()
+/// >>> query.tolerance  # the bolt is in single precision
+/// 2.3841858407536165e-06
 /// >>> found.contact.translation
 /// 7.0
 /// >>> 7 - 1e-11 < found.distance <= 7
@@ -69,8 +73,9 @@ impl SolidCast {
     ) -> PyResult<T> {
         let solids = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
         let [moving, fixed] = [0, 1].map(|i| solids[i].at(self.poses[i]));
-        colltrans::Cast::new(moving, fixed, self.direction)
-            .and_then(|cast| cast.with_options(self.options))
+        let precisions = [0, 1].map(|i| self.bodies[i].precision());
+        let SolidOptions { tolerance, start_overlap, .. } = self.options;
+        between(moving, fixed, self.direction, precisions, tolerance, start_overlap)
             .map(|cast| question(&cast))
             .map_err(|what| error("QueryError", what))
     }

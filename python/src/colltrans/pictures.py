@@ -35,7 +35,8 @@ from colltrans._colltrans import (
 )
 
 Floats: TypeAlias = NDArray[np.float64]
-MOVING, FIXED, TOUCH = "#d9822b", "#4c6a92", "#c0392b"
+# Blue and sand, as in the drawings of the command line and in the page (`web/src/colours.ts`).
+MOVING, FIXED, TOUCH = "#6f97d6", "#d9cbb0", "#c0392b"
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ FILES = {
 def page(lines: list[str]) -> list[dict[str, Any]]:
     """Answers of the page's module, built natively."""
     crate = ROOT / "crates/colltrans-wasm/Cargo.toml"
-    command = [
+    command: list[str | Path] = [
         "cargo",
         "run",
         "--quiet",

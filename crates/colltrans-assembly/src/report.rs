@@ -5,12 +5,11 @@ pub mod facts;
 pub mod glb;
 pub mod graph;
 pub mod html;
-mod markup;
 pub mod scene;
 mod viewer;
 
+pub use colltrans_picture::escaped;
 use glam::DVec3;
-pub use markup::escaped;
 
 use crate::bodies::Bodies;
 use crate::candidates::Candidate;

@@ -4,11 +4,10 @@
 //! and the contact rule, the larger one may be cut by the window.
 
 use colltrans::glam::DVec2;
+use colltrans_picture::{Frame, View};
 
 use super::size::working_size;
 use super::story::Story;
-use super::svg::Frame;
-use super::view::View;
 use super::{Cast, Solid};
 
 const PAGE_WIDTH: f64 = 720.0;

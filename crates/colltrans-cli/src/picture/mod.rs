@@ -1,7 +1,7 @@
 //! A picture of an answer, as one would put it in a paper: both bodies, the moving one at its start
 //! (light) and where it stops, the way it goes, the contact.
 //!
-//! Notation as in [`view`]; `P` is the moving body, `Q` the fixed one, `n` the unit normal from `P`
+//! Notation as in [`View`]; `P` is the moving body, `Q` the fixed one, `n` the unit normal from `P`
 //! to `Q`.
 //!
 //! Hidden surfaces. A convex body hides its own parts where they look away ([`solid`]). Between
@@ -15,51 +15,31 @@
 //! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths.
 //!
 //! The data's way: [`story`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
-//! (how large, by [`size`]) -> [`solid`] and [`notes`] (the drawing) -> [`svg`].
+//! (how large, by [`size`]) -> [`solid`] and [`notes`] (the drawing) -> [`Page`].
 
 mod layout;
 mod notes;
 mod parts;
-mod raster;
 mod size;
 mod solid;
 mod story;
-mod svg;
-mod view;
 mod viewpoint;
 
 use colltrans::ContactRange;
 use colltrans::glam::{DVec2, DVec3};
+use colltrans_picture::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Page, View};
 
 use layout::Layout;
 use notes::Notes;
 pub(crate) use parts::draw_solids;
-use solid::{Paint, Solid};
+use solid::Solid;
 use story::Story;
-use svg::Page;
-use view::View;
 
 /// A query and its answer.
 pub(crate) struct Scene<'a> {
     pub(crate) cast: &'a colltrans::Cast<'a>,
     pub(crate) answer: &'a ContactRange,
 }
-
-const MOVING: Paint = Paint {
-    dark: [70.0, 108.0, 168.0],
-    light: [214.0, 228.0, 246.0],
-    line: "#1f3a68",
-    fine: "#5676a8",
-};
-const FIXED: Paint = Paint {
-    dark: [148.0, 134.0, 112.0],
-    light: [248.0, 243.0, 232.0],
-    line: "#4a4033",
-    fine: "#8d8069",
-};
-/// Features of the moving and the fixed body in the contact plane.
-const MOVING_MARK: &str = "#0b57d0";
-const FIXED_MARK: &str = "#c2600f";
 
 /// The bodies as they are drawn.
 struct Cast {

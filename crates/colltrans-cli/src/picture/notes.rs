@@ -1,13 +1,12 @@
 //! Arrows, labels, legend and caption: all that is written over the scene.
 
 use colltrans::glam::{DVec2, DVec3};
+use colltrans_picture::{FIXED, FIXED_MARK, Frame, MOVING, MOVING_MARK, Page, Stroke, View};
 
+use super::Cast;
 use super::layout::{LINE_HEIGHT, Layout};
 use super::solid::convex_outline;
 use super::story::{Story, short};
-use super::svg::{Frame, Page, Stroke};
-use super::view::View;
-use super::{Cast, FIXED, FIXED_MARK, MOVING, MOVING_MARK};
 
 const WAY: &str = "#b3261e";
 const NORMAL: &str = "#14733f";

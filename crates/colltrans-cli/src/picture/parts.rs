@@ -1,25 +1,24 @@
 //! A picture of parts that need not be convex.
 //!
 //! Which faces are seen, and which pieces of which edges, is decided by a buffer of depths
-//! ([`super::raster`]), to half a pixel: for any surfaces, in any position, in time that grows with
+//! ([`Raster`]), to half a pixel: for any surfaces, in any position, in time that grows with
 //! faces and pixels. Drawn are outlines (edges between faces that look towards the viewer and away)
 //! and creases (edges that bend by more than [`SMOOTH`]), and what of them is hidden as dashes where
 //! there are few.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use colltrans::glam::{DVec2, DVec3};
+use colltrans_picture::{
+    Edge, FIXED, MOVING, Page, Paint, Raster, SHADES, SMOOTH, Stroke, View, edges,
+};
 
 use super::layout::Layout;
 use super::notes::Notes;
-use super::raster::Raster;
 use super::size::working_size;
-use super::solid::{Paint, SHADES, SMOOTH, Solid, brightness};
+use super::solid::Solid;
 use super::story::{Story, components, quantity, short};
-use super::svg::{Page, Stroke};
-use super::view::View;
-use super::{Cast, FIXED, MOVING, viewpoint};
+use super::{Cast, viewpoint};
 use crate::solid::{Answer, Kind, Question, Stop};
 
 /// Hidden edges are drawn if no more edges than this are drawn at all.
@@ -101,26 +100,6 @@ fn place(stop: &Stop<'_>, answer: &Answer<'_>) -> f64 {
     if place.abs() <= answer.error { 0.0 } else { place }
 }
 
-/// Two ends, and the faces at the edge.
-type Edge = ([u32; 2], Vec<u32>);
-
-/// All edges, in the order of their first appearance.
-fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
-    let mut place = HashMap::with_capacity(triangles.len() * 3 / 2);
-    let mut edges: Vec<Edge> = Vec::new();
-    for (face, &[a, b, c]) in triangles.iter().enumerate() {
-        for [p, q] in [[a, b], [b, c], [c, a]] {
-            let ends = [p.min(q), p.max(q)];
-            let index = *place.entry(ends).or_insert_with(|| {
-                edges.push((ends, Vec::with_capacity(2)));
-                edges.len() - 1
-            });
-            edges[index].1.push(face as u32);
-        }
-    }
-    edges
-}
-
 /// From the scene to the page.
 struct Eye<'a> {
     view: &'a View,
@@ -166,9 +145,9 @@ impl Eye<'_> {
         for (face, &area) in body.faces.iter().zip(&body.areas) {
             let normal = area.normalize_or_zero();
             let facing = normal * normal.dot(self.view.toward).signum();
-            let lit = brightness(self.view, facing);
+            let lit = self.view.brightness(facing);
             let tone = first_tone + (lit * SHADES as f64).round() as usize;
-            raster.draw([0, 1, 2].map(|k| seen[face[k] as usize]), tone as u8);
+            raster.draw([0, 1, 2].map(|k| seen[face[k] as usize]), tone as u32);
         }
     }
 

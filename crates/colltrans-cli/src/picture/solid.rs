@@ -6,9 +6,7 @@
 
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::{ConvexPolyhedron, Feature, Pose};
-
-use super::svg::{Page, Stroke};
-use super::view::View;
+use colltrans_picture::{Page, Paint, SHADES, SMOOTH, Stroke, View};
 
 /// A placed body, relative to a point of the scene.
 #[derive(Debug, Clone)]
@@ -21,36 +19,10 @@ pub(super) struct Solid {
     edges: Vec<([u32; 2], [u32; 2])>,
 }
 
-/// Colours of a body.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Paint {
-    /// Red, green, blue of a face in the shadow and in the light.
-    pub(super) dark: [f64; 3],
-    pub(super) light: [f64; 3],
-    pub(super) line: &'static str,
-    /// Lines inside smooth surfaces.
-    pub(super) fine: &'static str,
-}
-
-/// Number of shades: neighbouring faces of dense meshes share a path.
-pub(super) const SHADES: usize = 40;
-/// Edges that bend less are part of a smooth surface (cosine of 25 degrees).
-pub(super) const SMOOTH: f64 = 0.906;
 /// Hidden edges are drawn for bodies with no more edges than this.
 const FEW_EDGES: usize = 64;
 /// On smooth surfaces, edges are drawn if they are longer than this on average, in pixels.
 const DENSE: f64 = 7.0;
-
-impl Paint {
-    /// The colour of one of [`SHADES`], from dark to light.
-    pub(super) fn shade(&self, shade: usize) -> String {
-        let part = shade as f64 / SHADES as f64;
-        let [r, g, b]: [u8; 3] = std::array::from_fn(|i| {
-            (self.dark[i] + part * (self.light[i] - self.dark[i])).round() as u8
-        });
-        format!("#{r:02x}{g:02x}{b:02x}")
-    }
-}
 
 /// A feature by the numbers of the body that is drawn.
 #[derive(Clone, Copy)]
@@ -143,7 +115,7 @@ impl Solid {
     fn fill(&self, page: &mut Page, view: &View, paint: &Paint, flat: &[DVec2], front: &[bool]) {
         let mut by_shade: Vec<Vec<Vec<DVec2>>> = vec![Vec::new(); SHADES + 1];
         for (face, corners) in self.faces.iter().enumerate().filter(|(f, _)| front[*f]) {
-            let lit = brightness(view, self.areas[face].normalize_or_zero());
+            let lit = view.brightness(self.areas[face].normalize_or_zero());
             let shade = (lit * SHADES as f64).round() as usize;
             by_shade[shade].push(corners.iter().map(|&v| flat[v as usize]).collect());
         }
@@ -313,14 +285,6 @@ fn edges(faces: &[Vec<u32>]) -> Vec<([u32; 2], [u32; 2])> {
     sides.sort_unstable();
     // A closed surface has every edge in two faces.
     sides.chunks_exact(2).map(|pair| (pair[0].0, [pair[0].1, pair[1].1])).collect()
-}
-
-/// Light from the upper left, before the page.
-pub(super) fn brightness(view: &View, normal: DVec3) -> f64 {
-    let on_page = view.project(normal);
-    let light = DVec3::new(-0.45, 0.65, 0.61);
-    let lit = light.dot(DVec3::new(on_page.x, on_page.y, normal.dot(view.toward)));
-    (0.22 + 0.78 * lit).clamp(0.0, 1.0)
 }
 
 /// The convex outline of points on the page (monotone chain).

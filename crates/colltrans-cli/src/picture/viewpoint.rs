@@ -6,9 +6,9 @@
 //! Functions of `libm`, not of the platform: a view that wins by a last bit is the same everywhere.
 
 use colltrans::glam::DVec3;
+use colltrans_picture::View;
 
 use super::solid::Solid;
-use super::view::View;
 
 /// Heights above the horizon that are tried, in degrees.
 const ELEVATIONS: [f64; 6] = [22.0, 12.0, 32.0, 45.0, 58.0, 72.0];

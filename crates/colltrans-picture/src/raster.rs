@@ -5,35 +5,35 @@
 //! Invariant: each sample holds the nearest of all triangles drawn so far that cover it, and the
 //! tone of that one.
 
-use colltrans::glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
-use super::svg::Frame;
+use crate::Frame;
 
 /// Samples to a pixel, along each axis.
 const FINE: usize = 2;
 /// Nothing is there.
-pub(super) const EMPTY: u8 = u8::MAX;
+const EMPTY: u32 = u32::MAX;
 
 /// Depths and tones over a window.
-pub(super) struct Raster {
+pub struct Raster {
     width: usize,
     height: usize,
     depths: Vec<f64>,
-    tones: Vec<u8>,
+    tones: Vec<u32>,
     window: Frame,
 }
 
 impl Raster {
     /// Over a window that begins at (0, 0).
-    pub(super) fn new(window: Frame) -> Self {
+    pub fn new(window: Frame) -> Self {
         let [width, height] = window.high.to_array().map(|side| side.ceil() as usize * FINE);
         let count = width * height;
         let (depths, tones) = (vec![f64::NEG_INFINITY; count], vec![EMPTY; count]);
         Self { width, height, depths, tones, window }
     }
 
-    /// Draws a triangle: x and y on the page, z the depth.
-    pub(super) fn draw(&mut self, corners: [DVec3; 3], tone: u8) {
+    /// Draws a triangle of a tone, a small number: x and y on the page, z the depth.
+    pub fn draw(&mut self, corners: [DVec3; 3], tone: u32) {
         let [a, b, c] = corners.map(|p| (p.truncate() * FINE as f64 - 0.5).extend(p.z));
         let (u, v) = (b - a, c - a);
         let twice = u.x * v.y - u.y * v.x;
@@ -69,7 +69,7 @@ impl Raster {
     }
 
     /// Whether a point of the page at this depth is in front of all around it, or level with it.
-    pub(super) fn sees(&self, at: DVec2, depth: f64) -> bool {
+    pub fn sees(&self, at: DVec2, depth: f64) -> bool {
         let [x, y] = (at * FINE as f64).to_array().map(|c| c.floor() as isize);
         let around = |x: isize, y: isize| {
             let inside = x >= 0 && y >= 0 && x < self.width as isize && y < self.height as isize;
@@ -85,7 +85,7 @@ impl Raster {
 
     /// The parts of a segment that are seen, and those that are hidden; x and y on the page, z the
     /// depth, which may be less by `slack`.
-    pub(super) fn split(&self, [a, b]: [DVec3; 2], slack: f64) -> [Vec<[DVec2; 2]>; 2] {
+    pub fn split(&self, [a, b]: [DVec3; 2], slack: f64) -> [Vec<[DVec2; 2]>; 2] {
         let mut parts = [Vec::new(), Vec::new()];
         let (from, to) = (a.truncate(), b.truncate());
         let Some([first, last]) = self.window.clip_segment([from, to]) else { return parts };
@@ -109,12 +109,13 @@ impl Raster {
         parts
     }
 
-    /// Rectangles of one tone, in whole pixels: left, top, right, bottom.
-    pub(super) fn tiles(&self) -> Vec<Vec<[usize; 4]>> {
-        let mut done = vec![Vec::new(); usize::from(EMPTY)];
-        let mut open: Vec<(u8, [usize; 4])> = Vec::new();
+    /// For each tone its rectangles, in whole pixels: left, top, right, bottom.
+    pub fn tiles(&self) -> Vec<Vec<[usize; 4]>> {
+        let tones = self.tones.iter().filter(|tone| **tone != EMPTY).max();
+        let mut done = vec![Vec::new(); tones.map_or(0, |last| *last as usize + 1)];
+        let mut open: Vec<(u32, [usize; 4])> = Vec::new();
         for y in 0..self.height / FINE {
-            let mut runs: Vec<(u8, [usize; 4])> = Vec::new();
+            let mut runs: Vec<(u32, [usize; 4])> = Vec::new();
             for x in 0..self.width / FINE {
                 let tone = self.tones[y * FINE * self.width + x * FINE];
                 match runs.last_mut() {
@@ -132,23 +133,23 @@ impl Raster {
                     if (other, rect[0], rect[2]) == (tone, left, right) {
                         first = rect[1];
                     } else {
-                        done[usize::from(other)].push(rect);
+                        done[other as usize].push(rect);
                     }
                 }
                 open.push((tone, [left, first, right, bottom]));
             }
             for (tone, rect) in above {
-                done[usize::from(tone)].push(rect);
+                done[tone as usize].push(rect);
             }
         }
         for (tone, rect) in open {
-            done[usize::from(tone)].push(rect);
+            done[tone as usize].push(rect);
         }
         done
     }
 
     /// Leaves only what is nearer than another raster of the same window, which then hides as well.
-    pub(super) fn keep_before(&mut self, other: &Self) {
+    pub fn keep_before(&mut self, other: &Self) {
         for (cell, &covered) in other.depths.iter().enumerate() {
             if self.depths[cell] < covered {
                 (self.depths[cell], self.tones[cell]) = (covered, EMPTY);
@@ -177,7 +178,7 @@ mod tests {
             let triangles: Vec<[DVec3; 3]> = (0..12).map(|_| [point(), point(), point()]).collect();
             let mut raster = Raster::new(window());
             for (k, &triangle) in triangles.iter().enumerate() {
-                raster.draw(triangle, k as u8);
+                raster.draw(triangle, k as u32);
             }
             for cell in 0..raster.width * raster.height {
                 let at = DVec2::new(
@@ -192,7 +193,7 @@ mod tests {
                         [area(q, r, at), area(r, p, at), area(p, q, at)].map(|w| w / area(p, q, r));
                     let depth = w[0] * a.z + w[1] * b.z + w[2] * c.z;
                     if w.iter().all(|&w| w >= 0.0) && depth > best.0 {
-                        best = (depth, k as u8);
+                        best = (depth, k as u32);
                     }
                 }
                 assert_eq!(raster.tones[cell], best.1);

@@ -5,23 +5,27 @@
 
 use std::fmt::Write as _;
 
-use colltrans::glam::DVec2;
-use colltrans_assembly::report::escaped;
+use glam::DVec2;
 
 /// Line width, colour, dashes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stroke {
-    pub(super) colour: &'static str,
-    pub(super) width: f64,
-    pub(super) dashes: Option<&'static str>,
+pub struct Stroke {
+    /// As SVG writes it.
+    pub colour: &'static str,
+    /// In pixels.
+    pub width: f64,
+    /// Lengths of dashes and gaps.
+    pub dashes: Option<&'static str>,
 }
 
 impl Stroke {
-    pub(super) const fn solid(colour: &'static str, width: f64) -> Self {
+    /// A line without gaps.
+    pub const fn solid(colour: &'static str, width: f64) -> Self {
         Self { colour, width, dashes: None }
     }
 
-    pub(super) const fn dashed(colour: &'static str, width: f64, dashes: &'static str) -> Self {
+    /// A line of dashes.
+    pub const fn dashed(colour: &'static str, width: f64, dashes: &'static str) -> Self {
         Self { colour, width, dashes: Some(dashes) }
     }
 
@@ -34,9 +38,11 @@ impl Stroke {
 
 /// An axis-parallel rectangle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    pub(super) low: DVec2,
-    pub(super) high: DVec2,
+pub struct Frame {
+    /// The smallest coordinates.
+    pub low: DVec2,
+    /// The largest.
+    pub high: DVec2,
 }
 
 impl Frame {
@@ -60,7 +66,7 @@ impl Frame {
     }
 
     /// The part of a segment inside the frame.
-    pub(super) fn clip_segment(&self, [mut a, mut b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
+    pub fn clip_segment(&self, [mut a, mut b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
         for side in self.sides() {
             let (at_a, at_b) = (side(a), side(b));
             if at_a < 0.0 && at_b < 0.0 {
@@ -90,29 +96,31 @@ impl Frame {
 }
 
 /// The body of an SVG file in the making.
-pub(super) struct Page {
+pub struct Page {
     body: String,
     frame: Frame,
 }
 
 impl Page {
     /// A page whose shapes are cut to `frame` and a margin around it.
-    pub(super) fn new(frame: Frame) -> Self {
+    pub fn new(frame: Frame) -> Self {
         let margin = DVec2::splat(20.0);
         let frame = Frame { low: frame.low - margin, high: frame.high + margin };
         Self { body: String::new(), frame }
     }
 
-    pub(super) fn open_group(&mut self, attributes: &str) {
+    /// What follows has these attributes, up to [`Self::close_group`].
+    pub fn open_group(&mut self, attributes: &str) {
         let _ = writeln!(self.body, "<g {attributes}>");
     }
 
-    pub(super) fn close_group(&mut self) {
+    /// Ends what [`Self::open_group`] began.
+    pub fn close_group(&mut self) {
         self.body.push_str("</g>\n");
     }
 
     /// Axis-parallel rectangles of one look, by corners at whole pixels, all within the frame.
-    pub(super) fn tiles(&mut self, look: &str, all: &[[usize; 4]]) {
+    pub fn tiles(&mut self, look: &str, all: &[[usize; 4]]) {
         let mut data = String::new();
         for [x, y, right, bottom] in all {
             let _ = write!(data, "M{x} {y}L{right} {y}L{right} {bottom}L{x} {bottom}Z");
@@ -121,7 +129,7 @@ impl Page {
     }
 
     /// Convex polygons of one look.
-    pub(super) fn polygons<I: IntoIterator<Item = Vec<DVec2>>>(&mut self, look: &str, all: I) {
+    pub fn polygons<I: IntoIterator<Item = Vec<DVec2>>>(&mut self, look: &str, all: I) {
         let mut data = String::new();
         for polygon in all {
             push_path(&mut data, &self.frame.clip(&polygon), true);
@@ -130,7 +138,7 @@ impl Page {
     }
 
     /// Segments of one look.
-    pub(super) fn segments<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, stroke: Stroke, all: I) {
+    pub fn segments<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, stroke: Stroke, all: I) {
         let mut data = String::new();
         for segment in all {
             if let Some(kept) = self.frame.clip_segment(segment) {
@@ -147,13 +155,13 @@ impl Page {
     }
 
     /// A line with a white rim that sets it off from what lies below.
-    pub(super) fn haloed(&mut self, stroke: Stroke, segment: [DVec2; 2]) {
+    pub fn haloed(&mut self, stroke: Stroke, segment: [DVec2; 2]) {
         self.segments(Stroke::solid("#ffffff", stroke.width + 2.4), [segment]);
         self.segments(stroke, [segment]);
     }
 
     /// A line with an arrow head at its second end.
-    pub(super) fn arrow(&mut self, colour: &'static str, width: f64, [tail, tip]: [DVec2; 2]) {
+    pub fn arrow(&mut self, colour: &'static str, width: f64, [tail, tip]: [DVec2; 2]) {
         let along = (tip - tail).normalize_or_zero();
         let across = along.perp();
         let length = (4.5 * width + 3.0).min((tip - tail).length());
@@ -164,7 +172,8 @@ impl Page {
         self.polygons(&look, [vec![tip, base + half, base + along * (0.2 * length), base - half]]);
     }
 
-    pub(super) fn dot(&mut self, at: DVec2, radius: f64, fill: &str, rim: &str) {
+    /// A disc with a rim.
+    pub fn dot(&mut self, at: DVec2, radius: f64, fill: &str, rim: &str) {
         let (x, y) = (number(at.x), number(at.y));
         let _ = writeln!(
             self.body,
@@ -173,7 +182,7 @@ impl Page {
     }
 
     /// Text with a white rim around a point.
-    pub(super) fn label(&mut self, centre: DVec2, look: &str, text: &str) {
+    pub fn label(&mut self, centre: DVec2, look: &str, text: &str) {
         // The base line lies a third of a letter's height below the middle.
         let at = centre + DVec2::new(0.0, 5.0);
         let rim = r##"stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round""##;
@@ -183,7 +192,7 @@ impl Page {
     }
 
     /// Text on a base line; `anchor` is `start`, `middle` or `end`.
-    pub(super) fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
+    pub fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
         let (x, y) = (number(at.x), number(at.y));
         let text = escaped(text);
         let _ = writeln!(
@@ -192,7 +201,8 @@ impl Page {
         );
     }
 
-    pub(super) fn rectangle(&mut self, look: &str, frame: Frame) {
+    /// A rectangle of this look.
+    pub fn rectangle(&mut self, look: &str, frame: Frame) {
         let size = frame.high - frame.low;
         let _ = writeln!(
             self.body,
@@ -204,8 +214,19 @@ impl Page {
         );
     }
 
+    /// A picture to be put into a page, as wide as there is room.
+    pub fn inline(self, size: DVec2) -> String {
+        let DVec2 { x: width, y: height } = size;
+        let white = r##"<rect width="100%" height="100%" fill="#ffffff"/>"##;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+             stroke-linecap=\"round\" stroke-linejoin=\"round\">\n{white}\n{}</svg>\n",
+            self.body
+        )
+    }
+
     /// The whole file; `window` is what the group with the clip path `window` shows.
-    pub(super) fn finish(self, size: DVec2, window: Frame, title: &str) -> String {
+    pub fn finish(self, size: DVec2, window: Frame, title: &str) -> String {
         let DVec2 { x: width, y: height } = size;
         let mut text = String::new();
         let _ = writeln!(
@@ -221,6 +242,25 @@ impl Page {
         text.push_str("</svg>\n");
         text
     }
+}
+
+/// A text as HTML and XML write it, in elements and in attributes. Characters that XML has no way to
+/// write (XML 1.0, 2.2, *Char*), control codes above all, become the sign for what cannot be shown.
+pub fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => {
+                safe.push('\u{fffd}');
+            }
+            c => safe.push(c),
+        }
+    }
+    safe
 }
 
 fn push_path(data: &mut String, points: &[DVec2], closed: bool) {
@@ -244,6 +284,13 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_ends_its_element_or_its_attribute() {
+        let hostile = "</text><script>\"'&\u{1b}[31m\0";
+        let text = escaped(hostile);
+        assert_eq!(text, "&lt;/text&gt;&lt;script&gt;&quot;'&amp;\u{fffd}[31m\u{fffd}");
+    }
 
     #[test]
     fn clipping_keeps_what_is_inside() {

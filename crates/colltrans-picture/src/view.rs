@@ -1,0 +1,47 @@
+//! An orthographic view.
+//!
+//! Notation. `v` is the unit vector towards the viewer. World z points up on the page.
+
+use glam::{DVec2, DVec3};
+
+/// An orthographic projection.
+#[derive(Debug, Clone, Copy)]
+pub struct View {
+    right: DVec3,
+    up: DVec3,
+    /// Unit vector towards the viewer.
+    pub toward: DVec3,
+}
+
+impl View {
+    /// From an azimuth and a height above the horizon, in radians.
+    pub fn new(azimuth: f64, elevation: f64) -> Self {
+        let (sin_a, cos_a) = libm::sincos(azimuth);
+        let (sin_e, cos_e) = libm::sincos(elevation);
+        Self {
+            right: DVec3::new(-sin_a, cos_a, 0.0),
+            up: DVec3::new(-sin_e * cos_a, -sin_e * sin_a, cos_e),
+            toward: DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e),
+        }
+    }
+
+    /// From a direction towards the viewer that is not upright.
+    pub fn from(toward: DVec3) -> Self {
+        let toward = toward.normalize();
+        let right = DVec3::Z.cross(toward).normalize();
+        Self { right, up: toward.cross(right), toward }
+    }
+
+    /// How bright a face with this normal is, from 0 to 1: light from the upper left, before the page.
+    pub fn brightness(&self, normal: DVec3) -> f64 {
+        let on_page = self.project(normal);
+        let light = DVec3::new(-0.45, 0.65, 0.61);
+        let lit = light.dot(DVec3::new(on_page.x, on_page.y, normal.dot(self.toward)));
+        (0.22 + 0.78 * lit).clamp(0.0, 1.0)
+    }
+
+    /// Right and up on the page.
+    pub fn project(&self, p: DVec3) -> DVec2 {
+        DVec2::new(self.right.dot(p), self.up.dot(p))
+    }
+}

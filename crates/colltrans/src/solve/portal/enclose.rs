@@ -68,7 +68,7 @@ pub(crate) fn enclose<O: Observer>(
         Err(line) => return Some(Enclosure::Beside(line)),
     };
     let slope_per_shadow = slope_per_shadow(&context.difference, first.slope);
-    let mut search = Enclosing { slope_per_shadow, context };
+    let mut search = Enclosing { context, slope_per_shadow };
     let second = match search.beyond(&[first], first.point.shadow(), first.slope) {
         Ok(tangent) => tangent,
         Err(line) => return Some(Enclosure::Beside(line)),

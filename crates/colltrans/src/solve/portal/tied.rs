@@ -72,9 +72,9 @@ pub(super) fn pointed<O: Observer>(
         return at_corner();
     }
     let line = -shadow.normalize();
-    let portal = match beside(context, vertex, slope, line) {
-        Some(Beside::Face(portal) | Beside::Edge(portal, _)) => portal,
-        None => return Pointed::Toward(line),
+    let found = beside(context, vertex, slope, line);
+    let Some(Beside::Face(portal) | Beside::Edge(portal, _)) = found else {
+        return Pointed::Toward(line);
     };
     if [(1, 2), (2, 0)].iter().any(|&(i, j)| !context.difference.is_left(&portal[i], &portal[j])) {
         return Pointed::Toward(line);

@@ -306,7 +306,7 @@ fn open_surfaces_are_refused_unless_they_are_meant() {
     refused(folder.path(), words, 3, &parts);
     let (answer, notes) = ask(folder.path(), &format!("{words} --open"));
     assert!((number(&answer, "translation") - 4.0).abs() < 1e-9, "{answer}");
-    let surface = "open.off: an open surface (4 open edges, the first from vertex 5 to vertex 4 of";
+    let surface = "open.off: an open surface (4 open edges, the first from vertex 3 to vertex 1 of";
     assert!(notes.contains(surface), "{notes}");
     assert_eq!(answer["surfaces"], serde_json::json!(["moving"]));
     // Nothing is inside it, but its walls block from both sides.

@@ -303,7 +303,8 @@ impl ConvexPolyhedron {
         Ok((body.into(), OffsetReport(report)))
     }
 
-    /// int: Bytes of memory that the body occupies.
+    /// int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count
+    /// once they are made.
     #[getter]
     fn nbytes(&self) -> usize {
         self.0.memory_bytes()

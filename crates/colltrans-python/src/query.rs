@@ -120,7 +120,8 @@ pub(crate) fn solver_name(solver: Solver) -> &'static str {
 /// graze_tolerance : float
 ///     Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
 /// solver : {"auto", "cta", "portal"}
-///     How the search is narrowed. Answers and certificates are the same.
+///     How the search is narrowed. Answers and certificates are the same. A body's first query with
+///     "cta" that needs its sections makes them, and pays for it.
 ///
 /// Raises
 /// ------

@@ -30,7 +30,8 @@ use crate::solve::{WarmStart, search};
 ///
 /// A tracker is small (less than 450 bytes), allocates nothing and may be
 /// cloned, to follow several motions from one place. [`Focus`] says what it makes of its last
-/// answer.
+/// answer. With [`Solver::Cta`](crate::Solver::Cta) a body's first query that solves a planar problem makes
+/// its sections, tracked or not: see [`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections).
 ///
 /// ```
 /// use colltrans::glam::{DQuat, DVec3};

@@ -110,7 +110,7 @@ impl Kind {
     }
 }
 
-/// A moving and a fixed body, with what the contestants make of them before any query.
+/// A moving and a fixed body, with what the solvers make of them before any query.
 #[derive(Debug)]
 pub struct Bodies {
     /// The moving and the fixed one.
@@ -125,8 +125,10 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// With their diameter.
+    /// With their diameter, and the sections that the paper's algorithm needs: queries are timed, and
+    /// none is to pay for what is made of a body once.
     pub fn new(pair: [ConvexPolyhedron; 2]) -> Self {
+        pair.iter().for_each(ConvexPolyhedron::prepare_sections);
         let mean = |body: &ConvexPolyhedron| {
             body.vertices().iter().sum::<DVec3>() / body.vertices().len() as f64
         };

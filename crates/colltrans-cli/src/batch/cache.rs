@@ -1,7 +1,7 @@
 //! Bodies that occur again are built once.
 //!
-//! Invariant: the bytes of all entries sum to no more than the capacity, or there are only as many
-//! as one query needs. Entries leave in the order of their last use. Building happens outside the lock; whoever
+//! Invariant: the bytes of all entries, as weighed when they were last used, sum to no more than the
+//! capacity when one is added, or there are only as many as one query needs. Entries leave in the order of their last use. Building happens outside the lock; whoever
 //! wants a body that another thread is building waits for that body only.
 
 use std::collections::{BTreeMap, HashMap};
@@ -111,6 +111,12 @@ impl State {
                 self.by_last_use.insert(self.clock, kept);
             }
             entry.last_use = self.clock;
+            if let Some(body) = entry.body.get() {
+                // It may have made its sections, or been shrunk, since.
+                let weight = weight(key, body);
+                self.total = self.total - entry.weight + weight;
+                entry.weight = weight;
+            }
             return Arc::clone(&entry.body);
         }
         let body = Arc::new(OnceLock::new());
@@ -164,6 +170,23 @@ mod tests {
         assert_eq!(state.by_last_use.len(), state.entries.len());
         assert_eq!(state.total, state.entries.len() * weight(&key(0.0), &one));
         counts
+    }
+
+    /// Sections, for one, are made by a query and not when a body is built.
+    #[test]
+    fn a_body_that_has_grown_weighs_more_when_it_is_used_next() {
+        let body = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
+        let shape = Arc::new(Shape::Convex(Part { body, excess: None, note: None }));
+        let cache = Cache::new(1 << 20);
+        let total = || {
+            let _ = cache.get(key(1.0), |_| Ok(Arc::clone(&shape)));
+            cache.lock().total
+        };
+        let built = total();
+        let Shape::Convex(part) = &*shape else { unreachable!("it is convex") };
+        part.body.prepare_sections();
+        assert_eq!(total(), weight(&key(1.0), &Ok(Arc::clone(&shape))));
+        assert!(total() > built);
     }
 
     #[test]

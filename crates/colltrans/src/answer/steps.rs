@@ -8,7 +8,9 @@ pub enum Solver {
     Auto,
     /// The collision translation algorithm (the paper, section III): convex minimisation over pairs
     /// of planar sections, then portal refinement from the normal found. Bodies of lower dimension
-    /// have no sections to speak of: portal refinement does their work alone.
+    /// have no sections to speak of: portal refinement does their work alone. A body's first cast
+    /// that solves a planar problem makes its sections
+    /// ([`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections)).
     Cta,
     /// Portal refinement from scratch, starting from what the contact of two ellipsoids would be.
     Portal,

@@ -2,7 +2,7 @@
 //!
 //! Data flow: points, a mesh or two corners -> [`build`] (which vertices, which faces) ->
 //! [`topology`](crate::body::topology) (half-edges, no coordinates) -> the indices built on both
-//! ([`support`] points, [`sections`]).
+//! ([`support`] points at once, [`sections`] when the paper's algorithm first asks for them).
 
 mod build;
 mod excess;
@@ -29,7 +29,10 @@ pub(crate) use support::greatest_on_cycle;
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
 ///
 /// It may be of lower dimension: a flat polygon, a segment, a point. Immutable, `Send` and `Sync`;
-/// everything a query needs is built once, here, in `O(n)` space.
+/// everything a query needs is built once, here, in `O(n)` space. Two things are made when they are
+/// first asked for, once, and kept: planar sections for [`Solver::Cta`](crate::Solver::Cta)
+/// ([`Self::prepare_sections`] makes them beforehand), and the body as a [`Solid`]. A clone copies what
+/// there is.
 ///
 /// Vertices and faces are numbered from 0; [`Self::input_indices`] leads back to the input.
 #[derive(Debug, Clone)]
@@ -45,7 +48,8 @@ pub struct ConvexPolyhedron {
     topology: Topology,
     inertia: Inertia,
     support: SupportIndex,
-    sections: SectionIndex,
+    /// Made when [`crate::Solver::Cta`] first asks for them: portal refinement does without.
+    sections: OnceLock<SectionIndex>,
     /// The same body as a solid, made when it is first asked for.
     pub(crate) solid: OnceLock<Box<Result<Solid, SolidError>>>,
 }
@@ -196,7 +200,28 @@ impl ConvexPolyhedron {
         self.support.plane_candidates(&self.vertices, &self.topology, vertex, direction)
     }
 
-    /// Bytes of memory that the polyhedron occupies, on the heap and in itself.
+    /// Makes the planar sections that [`Solver::Cta`](crate::Solver::Cta) works on, unless they are there.
+    ///
+    /// Otherwise the body's first cast with that solver that solves a planar problem makes them, in
+    /// `O(n log n)`, on one thread while others that need them wait: who times queries, or answers within a
+    /// deadline, pays here. No other solver needs them; a body of lower dimension has none.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let before = cube.memory_bytes();
+    /// cube.prepare_sections();
+    /// assert!(cube.memory_bytes() > before);
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    pub fn prepare_sections(&self) {
+        self.sections();
+    }
+
+    /// Bytes of memory that the polyhedron occupies now, on the heap and in itself: sections, and the
+    /// body as a solid, count once they are made.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>()
             + self.vertices.capacity() * size_of::<DVec3>()
@@ -204,7 +229,11 @@ impl ConvexPolyhedron {
             + self.topology.heap_bytes()
             + self.large_faces.capacity() * size_of::<LargeFace>()
             + self.support.heap_bytes()
-            + self.sections.heap_bytes()
+            + self.sections.get().map_or(0, SectionIndex::heap_bytes)
+            + self.solid.get().map_or(0, |solid| {
+                let inside = solid.as_ref().as_ref().map_or(0, Solid::heap_bytes);
+                size_of_val(solid.as_ref()) + inside
+            })
     }
 
     pub(crate) fn inertia(&self) -> &Inertia {
@@ -216,6 +245,9 @@ impl ConvexPolyhedron {
     }
 
     pub(crate) fn sections(&self) -> &SectionIndex {
-        &self.sections
+        self.sections.get_or_init(|| match self.dimension {
+            3 => SectionIndex::build(&self.vertices, &self.topology),
+            _ => SectionIndex::default(),
+        })
     }
 }

@@ -373,10 +373,15 @@ impl Solid {
         self.nodes[0].bounds
     }
 
-    /// Bytes of memory that the solid occupies, on the heap and in itself.
+    /// Bytes of memory that the solid occupies now, on the heap and in itself: what is made when it is first
+    /// asked for (shrunk facets, polygons) counts once it is there.
     pub fn memory_bytes(&self) -> usize {
-        size_of::<Self>()
-            + self.vertices.capacity() * size_of::<DVec3>()
+        size_of::<Self>() + self.heap_bytes()
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        self.vertices.capacity() * size_of::<DVec3>()
             + self.vertex_index.capacity() * size_of::<u32>()
             + self.triangles.capacity() * size_of::<[u32; 3]>()
             + self.facet_index.capacity() * size_of::<u32>()

@@ -383,7 +383,8 @@ fn solids(page: &mut String, run: &Value) -> Result<(), Failure> {
 fn building(page: &mut String, run: &Value) -> Result<(), Failure> {
     page.push_str(
         "\n## Memory and building\n\nOf the run of casts from scratch: everything a polyhedron \
-         carries; built from points or faces, drawing them included.\n\n\
+         carries, the sections of `cta` included; built from points or faces, drawing them and making \
+         the sections included. The program `memory` tells what sections take.\n\n\
          | shape | vertices | bytes a vertex | ms |\n|---|---:|---:|---:|\n",
     );
     for row in rows(run).iter().filter(|row| text(row, "meeting") == "colliding") {

@@ -9,7 +9,6 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
-use super::sections::SectionIndex;
 use super::support::SupportIndex;
 use crate::body::Inertia;
 use crate::body::error::BuildError;
@@ -154,11 +153,6 @@ impl ConvexPolyhedron {
         let vertices: Vec<DVec3> = input_index.iter().map(|&i| points[i as usize]).collect();
         let inertia = Inertia::new(&vertices, &topology, dimension);
         let support = SupportIndex::build(&vertices, &topology, &inertia);
-        let sections = if dimension == 3 {
-            SectionIndex::build(&vertices, &topology)
-        } else {
-            SectionIndex::default()
-        };
         let mut body = Self {
             vertices,
             input_index,
@@ -169,7 +163,7 @@ impl ConvexPolyhedron {
             topology,
             inertia,
             support,
-            sections,
+            sections: OnceLock::new(),
             solid: OnceLock::new(),
         };
         body.measure_faces();

@@ -1,5 +1,7 @@
 //! Planar sections of a polyhedron across fixed axes: `O(n)` space, logarithmic access (the paper,
-//! section III).
+//! section III). Made when the paper's algorithm first asks: portal refinement does without. The paper's
+//! *drums*, parts of a body between two levels where the section's edges change, are not built:
+//! *snapshots*, all crossings of one level, and walks from them take their place.
 //!
 //! Notation. `level(v) = a . v` for a section axis `a` of the body frame. The section at level `x`
 //! is the convex polygon in which the plane `a . v = x` cuts the body; each of its vertices lies on

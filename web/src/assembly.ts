@@ -1,7 +1,7 @@
 // The assemblies' part of the page, read when it is asked for: several parts, who stops whom along
 // the arrow, the removal map of one of them, and how everything comes apart.
 //
-// The data's way: files -> the library in a worker of its own (parts, fit, plan) -> `Parts`, `Player`
+// Data flow: files -> the library in a worker of its own (parts, fit, plan) -> `Parts`, `Player`
 // and `Sphere`. Another assembly takes another worker, so that what the last one held is given back.
 
 import { Group, MeshLambertMaterial, Vector3 } from "three";
@@ -12,6 +12,7 @@ import { type RemovalMap, Sphere } from "./assembly/sphere";
 import { palette } from "./colours";
 import { h, refill, soon } from "./dom";
 import { Engine, bytesOf } from "./engine";
+import { ACCEPTED, names } from "./formats";
 import { type Vec, length, short, shown, times, unit } from "./math";
 import { quoted } from "./share";
 import type { State } from "./state";
@@ -153,7 +154,7 @@ export class AssemblyTab {
         h("div", { class: "row" },
           h("button", { class: "small", onclick: () => this.choose() }, "Choose files…"),
           h("button", { class: "small", onclick: () => void this.example() }, "Small gearbox")),
-        h("small", {}, "STL, OBJ, PLY and OFF files, one part each, or GLB; or drop them here. Up to 120 parts and 400,000 triangles: beyond that, the command line.")),
+        h("small", {}, `${names("and")} files, one part each, or GLB; or drop them here. Up to 120 parts and 400,000 triangles: beyond that, the command line.`)),
       card("Direction",
         h("div", { class: "fields" }, h("span", {}, "d"), ...this.fields),
         h("div", { class: "row" },
@@ -207,7 +208,7 @@ export class AssemblyTab {
   }
 
   private choose() {
-    const input = h("input", { type: "file", multiple: true, accept: ".stl,.obj,.ply,.off,.glb" });
+    const input = h("input", { type: "file", multiple: true, accept: `${ACCEPTED},.glb` });
     input.addEventListener("change", () => void this.open([...(input.files ?? [])]));
     input.click();
   }

@@ -1,6 +1,6 @@
 // The page: a question, its answer, and what is seen of it.
 //
-// The data's way: `State` (what is asked; kept in the address) -> `Engine` (the library, in a worker)
+// Data flow: `State` (what is asked; kept in the address) -> `Engine` (the library, in a worker)
 // -> the answer -> `View`, `Shadow`, `Timeline` and the panel. One question is on its way at a time;
 // of those that come meanwhile only the last is asked.
 
@@ -8,6 +8,7 @@ import { onChange } from "./colours";
 import { h, named, soon } from "./dom";
 import { type Answer, Engine, type Pair, Refused, type Slot, type SolidAnswer, type SolidProof, type Take, bytesOf } from "./engine";
 import { EXAMPLES, type Part, SLOTS } from "./examples";
+import { ACCEPTED } from "./formats";
 import { dot, length, placed, sub } from "./math";
 import type { AssemblyTab } from "./assembly";
 import type { Found } from "./found";
@@ -356,7 +357,7 @@ class Page {
   }
 
   private choose(slot: Slot) {
-    const input = h("input", { type: "file", accept: ".stl,.obj,.ply,.off" });
+    const input = h("input", { type: "file", accept: ACCEPTED });
     input.addEventListener("change", () => {
       const file = input.files?.[0];
       if (file) void this.open(slot, file);

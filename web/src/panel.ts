@@ -2,6 +2,7 @@
 
 import { h, refill, svg } from "./dom";
 import { type Answer, type Certificate, type Claims, type ConvexAnswer, MOST_MIB, type Slot, type SolidAnswer, type SolidProof, type Take } from "./engine";
+import { names } from "./formats";
 import { type Vec, length, short } from "./math";
 import { asCommand } from "./share";
 import type { Solver, State } from "./state";
@@ -260,7 +261,7 @@ export class AnswerPanel {
             facts && h("button", { class: "small", onclick: () => this.act.dismiss(slot) }, "Leave it"))),
       );
     });
-    refill(this.parts, ...rows, h("small", { style: "color: var(--soft)" }, `STL, OBJ, PLY or OFF, up to ${MOST_MIB} MiB; or drop files on the view.`));
+    refill(this.parts, ...rows, h("small", { style: "color: var(--soft)" }, `${names("or")}, up to ${MOST_MIB} MiB; or drop files on the view.`));
   }
 
   private showProof(answer: Answer, shown: Shown) {

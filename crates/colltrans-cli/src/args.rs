@@ -16,7 +16,7 @@ use crate::failure::{Code, Failure};
 pub(crate) use assembly::AssemblyArguments;
 use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEAR_ANSWERS, CLEARANCE_ANSWERS, EXIT_CODES,
-    FORMATS, fitted,
+    fitted, formats,
 };
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, threads};
@@ -27,7 +27,7 @@ use values::{angles, bytes, factor, length, picture, place, threads};
 /// --direction -z`, with proven bounds. Parts that have holes and hollows: `colltrans clear MOVING
 /// --from FIXED --direction -z`.
 #[derive(Debug, Parser)]
-#[command(name = "colltrans", version, max_term_width = help::WIDEST, after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, FORMATS, EXIT_CODES]))]
+#[command(name = "colltrans", version, max_term_width = help::WIDEST, after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, &formats(), EXIT_CODES]))]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -39,19 +39,19 @@ pub(crate) enum Command {
     ///
     /// The answer is the translation at which they first meet, wherever the moving mesh is now:
     /// negative if they overlap, or if the contact lies behind.
-    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, FORMATS, EXIT_CODES]))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, &formats(), EXIT_CODES]))]
     Cast(Box<PairArguments>),
     /// Say how far one mesh can move from where it is before another blocks it
     ///
     /// Takes what `cast` takes. Contacts behind do not block, and neither does a mesh along which
     /// the moving one slides.
-    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEARANCE_ANSWERS, FORMATS, EXIT_CODES]))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEARANCE_ANSWERS, &formats(), EXIT_CODES]))]
     Clearance(Box<PairArguments>),
     /// Say how far a part that need not be convex can move before other parts block it
     ///
     /// Several files on one side are one body, in place. Parts are closed surfaces, and are taken as
     /// they are, with their holes.
-    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEAR_ANSWERS, FORMATS, EXIT_CODES]))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEAR_ANSWERS, &formats(), EXIT_CODES]))]
     Clear(Box<ClearArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[BATCH_FORMAT, EXIT_CODES]))]
@@ -64,7 +64,7 @@ pub(crate) enum Command {
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[ASSEMBLY_FORMAT, EXIT_CODES]))]
     Assembly(Box<AssemblyArguments>),
     /// Say what a mesh file holds, and whether it is convex
-    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[FORMATS, EXIT_CODES]))]
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[&formats(), EXIT_CODES]))]
     Info(InfoArguments),
     /// Answer a saved query once more
     ///

@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh file, and where.
+//! Errors of mesh files, with their place.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ pub enum Error {
     #[error(
         "{}: unknown mesh format; the extension must be one of {}",
         path.display(),
-        Format::EXTENSIONS.join(", ")
+        Format::ALL.map(Format::extension).join(", ")
     )]
     UnknownFormat {
         /// The file.

@@ -1,8 +1,8 @@
 //! Mesh files in double precision: STL, OBJ, PLY and OFF, and the bodies made of them.
 //!
-//! The data's way: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`) ->
-//! [`Mesh`] -> twins along open edges merged (`merge`) -> a body of the library ([`body`]). A reader either returns every vertex and
-//! face of the file, in the file's order, or an [`Error`] that says what is wrong and where; it
+//! Data flow: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`) ->
+//! [`Mesh`] -> twins along open edges merged (`merge`) -> a body of the library ([`body`]). A reader either
+//! returns every vertex and face of the file, in the file's order, or an [`Error`] that says what is wrong and where; it
 //! never allocates more than a small multiple of the file's size, whatever the file's header
 //! promises. What the extension says is held against what the file holds (`sniff`).
 //!
@@ -50,9 +50,37 @@ pub enum Format {
     Off,
 }
 
+/// The one list of formats: what has to be said of another one is said here, and its reader named in
+/// [`parse_with`].
 impl Format {
-    /// The extensions that are understood.
-    pub const EXTENSIONS: [&str; 4] = ["stl", "obj", "ply", "off"];
+    /// All of them, in the order in which texts name them.
+    pub const ALL: [Self; 4] = [Self::Stl, Self::Obj, Self::Ply, Self::Off];
+
+    /// The extension of its files, in lower case.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Stl => "stl",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Off => "off",
+        }
+    }
+
+    /// A file of the format, in words.
+    const fn file(self) -> &'static str {
+        match self {
+            Self::Stl => "an STL file",
+            Self::Obj => "an OBJ file",
+            Self::Ply => "a PLY file",
+            Self::Off => "an OFF file",
+        }
+    }
+
+    /// The names of all formats: `STL, OBJ, PLY or OFF`, for the word `or`.
+    pub fn names(word: &str) -> String {
+        let [others @ .., last] = Self::ALL.map(|format| format.to_string());
+        format!("{} {word} {last}", others.join(", "))
+    }
 
     /// The format that a path's extension names, in upper or lower case.
     ///
@@ -60,24 +88,17 @@ impl Format {
     /// [`Error::UnknownFormat`] for any other extension, or none.
     pub fn of_path(path: &Path) -> Result<Self, Error> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-        match extension.to_ascii_lowercase().as_str() {
-            "stl" => Ok(Self::Stl),
-            "obj" => Ok(Self::Obj),
-            "ply" => Ok(Self::Ply),
-            "off" => Ok(Self::Off),
-            _ => Err(Error::UnknownFormat { path: path.to_owned() }),
-        }
+        let named = |format: &Self| extension.eq_ignore_ascii_case(format.extension());
+        Self::ALL
+            .into_iter()
+            .find(named)
+            .ok_or_else(|| Error::UnknownFormat { path: path.to_owned() })
     }
 }
 
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Stl => "STL",
-            Self::Obj => "OBJ",
-            Self::Ply => "PLY",
-            Self::Off => "OFF",
-        })
+        f.write_str(&self.extension().to_ascii_uppercase())
     }
 }
 

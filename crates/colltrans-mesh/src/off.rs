@@ -86,7 +86,7 @@ fn parse_counts(line: &Line<'_>) -> Result<(usize, usize), Fault> {
         let word = words.next().ok_or_else(|| line.fault(format!("no number of {what}")))?;
         word.parse::<u32>()
             .map(|count| count as usize)
-            .map_err(|_| line.fault(format!("{} is no number of {what}", quoted(word))))
+            .map_err(|_| line.fault(format!("{} is not a number of {what}", quoted(word))))
     };
     Ok((count("vertices")?, count("faces")?))
 }
@@ -96,7 +96,7 @@ fn parse_vertex(line: &Line<'_>) -> Result<DVec3, Fault> {
     let mut words = line.content.split_whitespace();
     for c in &mut xyz {
         let word = words.next().ok_or_else(|| line.fault("a vertex needs 3 coordinates"))?;
-        *c = word.parse().map_err(|_| line.fault(format!("{} is no number", quoted(word))))?;
+        *c = word.parse().map_err(|_| line.fault(format!("{} is not a number", quoted(word))))?;
     }
     Ok(DVec3::from_array(xyz))
 }
@@ -106,7 +106,7 @@ fn parse_face(line: &Line<'_>, vertex_count: usize) -> Result<Vec<u32>, Fault> {
     let word = words.next().unwrap_or_default();
     let corners: usize = word
         .parse()
-        .map_err(|_| line.fault(format!("{} is no number of corners", quoted(word))))?;
+        .map_err(|_| line.fault(format!("{} is not a number of corners", quoted(word))))?;
     let face = words
         .take(corners)
         .map(|word| match word.parse::<u32>() {

@@ -1,4 +1,4 @@
-//! Characters that do something instead of being seen, in names that files hold.
+//! Control characters in names that files hold: those that do something instead of being seen.
 //!
 //! A name may hold codes that move a terminal's cursor or end a line of a table, marks that turn the order
 //! of letters round, and characters without any width, so that two names look like one.

@@ -1,4 +1,4 @@
-//! What a file holds by its first bytes, whatever its name says.
+//! Tells what a file holds by its first bytes, whatever its name says.
 //!
 //! Only what is certain is told: signatures, and first words that no other format begins with.
 //! A reader that were given the wrong format might find nothing wrong: an OBJ file, for one, is a
@@ -23,9 +23,7 @@ impl Content {
         match self {
             Self::Mesh(Format::Stl) if stl::is_text(bytes) => "a text STL file",
             Self::Mesh(Format::Stl) => "a binary STL file",
-            Self::Mesh(Format::Obj) => "an OBJ file",
-            Self::Mesh(Format::Ply) => "a PLY file",
-            Self::Mesh(Format::Off) => "an OFF file",
+            Self::Mesh(format) => format.file(),
             Self::Other(name) => name,
         }
     }

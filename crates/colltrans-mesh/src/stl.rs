@@ -186,7 +186,7 @@ fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<DVec3, String> {
     let mut xyz = [0.0; 3];
     let mut found = 0;
     for word in words {
-        let value = word.parse().map_err(|_| format!("{} is no number", quoted(word)))?;
+        let value = word.parse().map_err(|_| format!("{} is not a number", quoted(word)))?;
         if let Some(place) = xyz.get_mut(found) {
             *place = value;
         }

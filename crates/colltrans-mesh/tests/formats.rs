@@ -224,7 +224,7 @@ fn broken_ply_files_are_told_in_plain_words() {
             "line 6: not the type of a property and its name, as in `property float \
             x` or `property list uchar int vertex_indices`",
         ),
-        ("vertex 3", "vertex three", "line 3: `three` is no number of elements `vertex`"),
+        ("vertex 3", "vertex three", "line 3: `three` is not a number of elements `vertex`"),
         ("element vertex 3\n", "", "line 3: a property before the first `element`"),
         (
             "end_header\n",
@@ -245,7 +245,7 @@ fn broken_ply_files_are_told_in_plain_words() {
             1.0`",
         ),
         ("format ascii 1.0\n", "", "line 8: the header ends without a line `format`"),
-        ("\n1 0 0", "\n1 zero 0", "line 11: `zero` is no number"),
+        ("\n1 0 0", "\n1 zero 0", "line 11: `zero` is not a number"),
         ("\n0 1 0", "\n0 1", "line 12: the line ends before the number of `z`"),
         (
             "3 0 1 2",
@@ -298,6 +298,7 @@ fn ply_errors_say_where() {
 #[test]
 fn the_extension_tells_the_format() {
     assert_eq!(Format::of_path(Path::new("a.b/PART.Stl")).unwrap(), Format::Stl);
+    assert_eq!(Format::names("or"), "STL, OBJ, PLY or OFF");
     for path in ["part.step", "part", "stl"] {
         let message = colltrans_mesh::read(path).unwrap_err().to_string();
         assert!(message.contains(path) && message.contains("stl, obj, ply, off"), "{message}");

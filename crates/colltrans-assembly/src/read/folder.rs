@@ -61,7 +61,7 @@ impl Others {
 
     /// What was found, and what to do.
     fn told(&self) -> String {
-        let none = "no STL, OBJ, PLY or OFF file is in this folder";
+        let none = format!("no {} file is in this folder", Format::names("or"));
         let counted = |count: usize, what: &str| {
             if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
         };

@@ -1,4 +1,6 @@
-//! What `--help` says at length, in lines that fit the terminal.
+//! The long texts of `--help`, filled into lines that fit the terminal.
+
+use colltrans_mesh::Format;
 
 /// Lines are no longer than this, however wide the terminal is.
 pub(super) const WIDEST: usize = 100;
@@ -99,11 +101,15 @@ Exit codes:
   4  the query has no certified answer (please report the case)
   5  the output cannot be written";
 
-pub(super) const FORMATS: &str = "\
-Mesh files: STL (binary or text), OBJ, PLY and OFF, told by their extension. Lengths are in the unit
-of the files; both meshes must have the same one (--moving-scale, --fixed-scale). Vertex indices in
-answers count from 0 in the order of the file; the corners of STL triangles are merged where they
-are equal, in the order of their first appearance.";
+/// Which mesh files are read, and how their numbers are meant.
+pub(super) fn formats() -> String {
+    format!("Mesh files: {}, told by their extension. {UNITS}", Format::names("and"))
+}
+
+const UNITS: &str = "\
+Lengths are in the unit of the files; both meshes must have the same one (--moving-scale,
+--fixed-scale). Vertex indices in answers count from 0 in the order of the file; the corners of STL
+triangles are merged where they are equal, in the order of their first appearance.";
 
 pub(super) const CAST_EXAMPLES: &str = "\
 Examples:
@@ -215,7 +221,7 @@ in the unit of the meshes. Bodies that occur again are built once while they fit
 that exists is replaced when all lines are answered, and never if a query reads it. A line may have
 up to 64 MiB."#;
 
-pub(super) const ASSEMBLY_FORMAT: &str = r#"SOURCE is a folder of meshes, each a part in its place (STL, OBJ, PLY, OFF); a manifest (.toml, .json);
+pub(super) const ASSEMBLY_FORMAT: &str = r#"SOURCE is a folder of meshes, each a part in its place; a manifest (.toml, .json);
 a URDF file (metres); .glb, .gltf (metres) or .3mf (the unit it says).
 
 A manifest, in TOML (JSON has the same fields):
@@ -257,7 +263,7 @@ mod tests {
     fn every_text_fits_every_terminal() {
         let texts = [
             EXIT_CODES,
-            FORMATS,
+            &formats(),
             CAST_EXAMPLES,
             CLEARANCE_ANSWERS,
             CLEAR_ANSWERS,

@@ -1,5 +1,5 @@
-//! What is wrong with a header, or with a row of text, that the parser has refused: in words, with the
-//! line. It tells less, and in terms of its grammar.
+//! Explains why the parser has refused a header or a row of text: in words, with the line. It tells less
+//! itself, and in terms of its grammar.
 
 use ply_rs_bw::ply::{ElementDef, PropertyType, ScalarType};
 
@@ -67,7 +67,7 @@ fn element(words: &[&str]) -> Option<String> {
     match words {
         [_, _, count] if count.parse::<usize>().is_ok() => None,
         [_, name, count] => {
-            Some(format!("{} is no number of elements {}", quoted(count), quoted(name)))
+            Some(format!("{} is not a number of elements {}", quoted(count), quoted(name)))
         }
         _ => Some("not the name of an element and their number, as in `element vertex 8`".into()),
     }
@@ -143,7 +143,7 @@ fn is_number(word: &str, kind: &ScalarType) -> bool {
 
 fn no_number(word: &str, kind: &ScalarType) -> String {
     match range(kind) {
-        None => format!("{} is no number", quoted(word)),
+        None => format!("{} is not a number", quoted(word)),
         Some([low, high]) => format!("{} is no whole number from {low} to {high}", quoted(word)),
     }
 }

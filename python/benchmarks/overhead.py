@@ -125,8 +125,8 @@ def report(folder, vertices, count):
         ("many 2", "bare 2", "many, 2 threads"),
         ("many 2 wall", "bare 2 wall", "many, 2 threads, wall"),
     ]
-    for name, yardstick, words in pairs:
-        own, theirs = least[name], least[yardstick]
+    for name, reference, words in pairs:
+        own, theirs = least[name], least[reference]
         print(
             f"| {vertices} vertices: {words} | {theirs:.0f} | {own:.0f} "
             f"| {own / theirs:.2f} | {own - theirs:.0f} |",

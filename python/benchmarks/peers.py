@@ -7,7 +7,7 @@ distance query allows, conservative advancement: move on by the distance over th
 direction along its normal, until it is below a billionth, the bodies part, or 100 steps are
 done. python-fcl's own continuous collision has rows of its own.
 
-The yardstick is this package's answer with its proof: the error is against its certified
+The reference is this package's answer with its proof: the error is against its certified
 bounds. *missed* are contacts that were not found, *invented* those that are none, *off* those
 found but wrong by more than 1e-6 (the bodies have radius 1), *stuck* the loops that did not
 end.

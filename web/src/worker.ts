@@ -2,7 +2,7 @@
 
 interface Library {
   memory: WebAssembly.Memory;
-  question_room(bytes: number): number;
+  question_buffer(bytes: number): number;
   ask(text: number): void;
   text(): number;
   text_length(): number;
@@ -61,8 +61,8 @@ function why(loaded: Library, error: unknown): string {
 
 function answer(loaded: Library, { text, file }: Asked): [string, ArrayBuffer] {
   const question = new TextEncoder().encode(text);
-  const room = loaded.question_room(question.length + (file?.byteLength ?? 0));
-  const memory = new Uint8Array(loaded.memory.buffer, room);
+  const start = loaded.question_buffer(question.length + (file?.byteLength ?? 0));
+  const memory = new Uint8Array(loaded.memory.buffer, start);
   memory.set(question);
   if (file) memory.set(new Uint8Array(file), question.length);
   loaded.ask(question.length);

@@ -497,7 +497,7 @@ fn placed(
     options: SolidOptions,
 ) -> Option<Cast<'_, Solid>> {
     let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY), d);
-    // Directions and tolerances are checked at the door, so nothing is refused here.
+    // Directions and tolerances are checked on input, so nothing is refused here.
     cast.and_then(|c| c.with_options(options)).ok()
 }
 

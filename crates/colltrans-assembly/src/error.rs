@@ -1,4 +1,4 @@
-//! What can go wrong, with the file and the place.
+//! Errors of assemblies, with the file and the place.
 
 use std::path::PathBuf;
 

@@ -206,7 +206,7 @@ mod tests {
 
     use super::*;
 
-    /// Triangles in parallel planes that have a vector for a normal which is no number of this kind, the
+    /// Triangles in parallel planes that have a vector for a normal which is not a number of this kind, the
     /// second's shadow all of the first's, a part of it, or around it: areas are known in fractions.
     #[test]
     fn areas_lie_within_their_bounds() {

@@ -1,4 +1,4 @@
-//! The removal map of a part or group: its room over the whole sphere of directions.
+//! The removal map of a part or group: its free travel (*room*) over the whole sphere of directions.
 //!
 //! Samples on an icosahedron, then three refinements: triangles between a free corner and one that is
 //! not, until the border is known to the angle asked for; the surroundings of directions that go

@@ -18,7 +18,7 @@ use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
 use crate::witness::Witnesses;
 
-/// The room of a part, or of a group, in one direction.
+/// The room (free travel) of a part, or of a group, in one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PartRoom {
     /// Nothing is in the way.

@@ -1,4 +1,4 @@
-//! Looking on and stopping: progress, and a flag that cancels.
+//! Progress of a run for an observer, and a flag that cancels it.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -35,7 +35,7 @@ impl Stage {
 /// Called with what is being done, how much of it is done, and how much there is.
 pub(crate) type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
 
-/// Who looks on: nobody, by default.
+/// An observer of a run: none, by default.
 #[derive(Clone, Copy, Default)]
 pub struct Watch<'a> {
     cancel: Option<&'a AtomicBool>,

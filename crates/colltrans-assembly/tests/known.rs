@@ -215,7 +215,7 @@ type Stage<'a> = &'a dyn Fn(Watch) -> Result<(), AssemblyError>;
 fn any_stage_ends_soon_after_it_is_cancelled() {
     let assembly = boxed();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    // Called off by what looks on, after so many calls: in the midst of each stage.
+    // Called off by the observer, after so many calls: in the midst of each stage.
     let asked = |limit: usize, work: Stage| {
         let (flag, calls) = (AtomicBool::new(false), AtomicUsize::new(0));
         let look = |_, _, _| {

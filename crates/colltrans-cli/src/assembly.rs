@@ -1,6 +1,6 @@
 //! `assembly`: which parts come out.
 //!
-//! The data's way: source -> parts -> overlaps, contacts, directions, matrix, plan, maps (all of them
+//! Data flow: source -> parts -> overlaps, contacts, directions, matrix, plan, maps (all of them
 //! `colltrans_assembly`'s) -> text, JSON or files ([`output`]).
 
 mod output;

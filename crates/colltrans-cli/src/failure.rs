@@ -1,4 +1,4 @@
-//! How a command ends when it does not succeed: one message, one exit code.
+//! How a command fails: with one message and one exit code.
 
 use std::fmt::Display;
 use std::io::{self, Write};

@@ -1,4 +1,4 @@
-//! No output overwrites an input: files by what they are, not by what they are called.
+//! Refuses outputs that would overwrite an input: files by what they are, not by what they are called.
 
 use std::fs::Metadata;
 use std::io;

@@ -1,6 +1,6 @@
 //! `colltrans`: how far can one body translate before it touches another.
 //!
-//! The data's way: [`args`] -> [`body`] (mesh file to polyhedron)
+//! Data flow: [`args`] -> [`body`] (mesh file to polyhedron)
 //! -> the library's `Cast` -> [`record`] (what is said about the answer) -> [`report`]
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read, [`outputs`]

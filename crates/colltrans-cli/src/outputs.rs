@@ -1,4 +1,4 @@
-//! Files appear whole or not at all.
+//! Writes files so that they appear whole or not at all.
 //!
 //! A file is written under another name beside its place (`NAME.PROCESS-N.partial`), and renamed when
 //! all of it is on the disk. So a run that is killed, or a full disk, leaves what was there before, and

@@ -1,4 +1,4 @@
-//! Bars for work that takes long: on standard error, and only where somebody looks at it.
+//! Progress bars for work that takes long: on standard error, and only where that is a terminal.
 
 use std::io::{self, IsTerminal};
 use std::time::Duration;

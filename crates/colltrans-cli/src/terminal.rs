@@ -1,4 +1,4 @@
-//! Text from outside on a terminal: names of parts and files say nothing to it.
+//! Makes text from outside harmless on a terminal: names of parts and files control nothing there.
 //!
 //! Names may hold [what steers](colltrans_mesh::plain). Everything that is printed goes through [`plain`] or [`plain_json`];
 //! names within lines go through [`shown`], so that they cannot end their line either.

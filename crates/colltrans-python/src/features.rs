@@ -1,4 +1,4 @@
-//! What answers are told by: the work done, and what touches.
+//! The work done for an answer, and the features that touch.
 
 use numpy::PyArray1;
 use pyo3::prelude::*;

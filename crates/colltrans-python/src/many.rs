@@ -409,7 +409,7 @@ fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<&'a ConvexPolyh
     of.iter().map(body).collect()
 }
 
-/// Answers `n` queries: the door of `colltrans.many`, which has made all arguments what they have to
+/// Answers `n` queries: what `colltrans.many` calls when it has made all arguments what they have to
 /// be, tables with one row or `n`.
 ///
 /// Returns the columns by their names, the names of the outcomes, and the messages by their rows.

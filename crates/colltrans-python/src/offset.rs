@@ -1,4 +1,4 @@
-//! What shrinking and growing tell beside the body.
+//! Reports of shrinking and growing.
 
 use numpy::PyArray1;
 use pyo3::prelude::*;

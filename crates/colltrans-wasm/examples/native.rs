@@ -5,10 +5,10 @@
 
 use std::io::{self, BufRead as _, Write as _};
 
-use colltrans_wasm::Desk;
+use colltrans_wasm::State;
 
 fn main() -> io::Result<()> {
-    let mut desk = Desk::default();
+    let mut state = State::default();
     let mut out = io::BufWriter::new(io::stdout());
     for line in io::stdin().lock().lines() {
         let line = line?;
@@ -16,7 +16,7 @@ fn main() -> io::Result<()> {
             Some((path, question)) => (std::fs::read(path)?, question),
             None => (Vec::new(), line.as_str()),
         };
-        out.write_all(&desk.ask(question.as_bytes(), file).text)?;
+        out.write_all(&state.ask(question.as_bytes(), file).text)?;
         out.write_all(b"\n")?;
     }
     out.flush()

@@ -1,4 +1,4 @@
-//! What comes back from a desk.
+//! What comes back for a question.
 
 use serde_json::{Value, json};
 

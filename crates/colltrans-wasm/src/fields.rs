@@ -33,7 +33,7 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn number(&self, key: &str) -> Result<Option<f64>, String> {
-        let number = |value: &Value| value.as_f64().ok_or_else(|| format!("{key} is no number"));
+        let number = |value: &Value| value.as_f64().ok_or_else(|| format!("{key} is not a number"));
         self.get(key).map(number).transpose()
     }
 

@@ -1,12 +1,12 @@
 //! The library in a browser.
 //!
-//! The data's way: a page writes a question, JSON and perhaps the bytes of a file, to the `door` ->
-//! [`Desk::ask`] reads it as a `question::Question` -> `body` (files become bodies, which stay on
-//! the desk), `convex` and `solid` (casts), `certify` (proofs between solids), `search` (how an answer was found) -> an
+//! Data flow: a page writes a question, JSON and perhaps the bytes of a file, to a buffer (`exports`) ->
+//! [`State::ask`] reads it as a `question::Question` -> `body` (files become bodies, which stay in
+//! the state), `convex` and `solid` (casts), `certify` (proofs between solids), `search` (how an answer was found) -> an
 //! [`Answer`]: JSON, and perhaps numbers in binary for large things.
 //!
 //! The part for assemblies is a module of its own, read when it is asked for (`assembly/`); it has the
-//! same door.
+//! same exported names.
 //!
 //! Nothing here computes geometry. The same code runs natively (`examples/native.rs`), so what a
 //! browser answers can be held against it, byte for byte: numbers are written with as many digits as
@@ -16,14 +16,14 @@ mod answer;
 mod body;
 mod certify;
 mod convex;
-mod desk;
-mod door;
+mod exports;
 mod fields;
 mod levels;
 mod pose;
 mod question;
 mod search;
 mod solid;
+mod state;
 
 pub use answer::Answer;
-pub use desk::Desk;
+pub use state::State;

@@ -1,4 +1,4 @@
-//! One body seen from the other.
+//! One body in the other's frame.
 
 use colltrans::Pose;
 use glam::{DMat3, DVec3};

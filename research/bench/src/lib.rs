@@ -1,6 +1,6 @@
 //! Measurements of `colltrans` beside `parry3d-f64`.
 //!
-//! The data's way: [`shapes`] and [`ties`] (on what) -> `colltrans_lab::settings` (where it is) ->
+//! Data flow: [`shapes`] and [`ties`] (on what) -> `colltrans_lab::settings` (where it is) ->
 //! [`parry`] (the same in the other library) -> [`report`]. The programs `table`, `coherence` and
 //! `solids` go that way.
 

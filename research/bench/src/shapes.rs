@@ -1,8 +1,8 @@
-//! Bodies to measure with: ellipsoids, and bodies that are none.
+//! Bodies to measure with: ellipsoids, hulls of random points, boxes, needles, plates and others.
 
 use colltrans::{BuildError, ConvexPolyhedron};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{self as kit, Mesh};
+use colltrans_testkit::shapes::{self, Mesh};
 use glam::DVec3;
 
 /// A kind of body, of any number of vertices.
@@ -48,25 +48,25 @@ impl Shape {
     /// As the constructors of [`ConvexPolyhedron`].
     pub fn draw(self, n: usize, random: &mut Random) -> Result<ConvexPolyhedron, BuildError> {
         let semi_axes = DVec3::from_array([0; 3].map(|_| random.range(0.6, 1.4)));
-        let [around, rings] = kit::even_rings(n);
+        let [around, rings] = shapes::even_rings(n);
         let scaled = |mesh: Mesh, by: DVec3| mesh.mapped(|v| v * by);
         body(&match self {
-            Self::Ellipsoid => scaled(kit::ring_sphere(around, rings), semi_axes),
-            Self::RandomHull => kit::random_hull(n, random),
+            Self::Ellipsoid => scaled(shapes::ring_sphere(around, rings), semi_axes),
+            Self::RandomHull => shapes::random_hull(n, random),
             // Of the same length whatever the ratio; the rings run around the long axis or across
             // the plate.
             Self::Needle(ratio) => {
                 let thin = semi_axes * DVec3::new(1.0 / ratio, 1.0 / ratio, 1.0);
-                scaled(kit::ring_sphere(around, rings), thin)
+                scaled(shapes::ring_sphere(around, rings), thin)
             }
             Self::Plate(ratio) => {
                 let thin = semi_axes * DVec3::new(1.0, 1.0 / ratio, 1.0);
-                scaled(kit::ring_sphere(around, rings), thin)
+                scaled(shapes::ring_sphere(around, rings), thin)
             }
-            Self::Box => kit::cuboid(semi_axes),
-            Self::Superellipsoid => scaled(kit::superellipsoid(n, 4.0), semi_axes),
-            Self::HalfEllipsoid => scaled(kit::half_sphere(n), semi_axes),
-            Self::Prism => scaled(kit::prism((n / 2).max(3), 1.0), semi_axes),
+            Self::Box => shapes::cuboid(semi_axes),
+            Self::Superellipsoid => scaled(shapes::superellipsoid(n, 4.0), semi_axes),
+            Self::HalfEllipsoid => scaled(shapes::half_sphere(n), semi_axes),
+            Self::Prism => scaled(shapes::prism((n / 2).max(3), 1.0), semi_axes),
         })
     }
 }

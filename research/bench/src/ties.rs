@@ -9,7 +9,7 @@ use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes as kit;
+use colltrans_testkit::shapes;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::shapes::body;
@@ -64,28 +64,30 @@ impl Tie {
     /// Never: they are convex.
     pub fn bodies(self, random: &mut Random) -> Bodies {
         let mut half = || DVec3::from_array([0; 3].map(|_| random.range(0.3, 1.0)));
-        let cube = || kit::cuboid(DVec3::splat(0.5));
+        let cube = || shapes::cuboid(DVec3::splat(0.5));
         let roof = |turn: DMat3| {
             let points =
                 [(-1.0, -1.0, -1.0), (1.0, -1.0, -1.0), (1.0, 1.0, -1.0), (-1.0, 1.0, -1.0)];
             let ridge = [(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)];
             let all = points.into_iter().chain(ridge).map(|(x, y, z)| turn * DVec3::new(x, y, z));
-            kit::Mesh::of_points(all.collect())
+            shapes::Mesh::of_points(all.collect())
         };
         let upside_down = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
         let quarter = DMat3::from_cols(DVec3::Y, DVec3::NEG_X, DVec3::Z);
         let octahedron = || {
             let axes = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
-            kit::Mesh::of_points(axes.collect())
+            shapes::Mesh::of_points(axes.collect())
         };
         let pair = match self {
-            Self::UprightBoxes => [kit::cuboid(half()), kit::cuboid(half())],
+            Self::UprightBoxes => [shapes::cuboid(half()), shapes::cuboid(half())],
             Self::CubesFaceOnFace => [cube(), cube()],
             Self::EdgesCrossing => [roof(upside_down), roof(quarter)],
             Self::EdgesLinedUp => [roof(upside_down), roof(DMat3::IDENTITY)],
             Self::VertexOverVertex => [octahedron(), octahedron()],
-            Self::AlignedPrisms => [kit::prism(24, 0.5), kit::prism(24, 0.5)],
-            Self::ZeroClearance => [kit::prism(25, 0.5), kit::cuboid(DVec3::new(0.5, 4.0, 4.0))],
+            Self::AlignedPrisms => [shapes::prism(24, 0.5), shapes::prism(24, 0.5)],
+            Self::ZeroClearance => {
+                [shapes::prism(25, 0.5), shapes::cuboid(DVec3::new(0.5, 4.0, 4.0))]
+            }
         };
         Bodies::new(pair.map(|mesh| body(&mesh).expect("a convex body")))
     }

@@ -4,15 +4,14 @@
 //! Collision Translations of Convex Polyhedra", IEEE Transactions on Robotics 23(3), 2007. Its
 //! section V reports nine figures (11 to 19) and a table; each is an [`Experiment`] here.
 //!
-//! The data's way: [`claims`] (what is to be tested) and [`plan`] (how much) -> `shapes`, `shadow`,
-//! `settings` (what on) -> `experiments` (what is measured, by `contestants`) -> [`statistics`]
+//! Data flow: [`claims`] (what is to be tested) and [`plan`] (how much) -> `shapes`, `shadow`,
+//! `settings` (what on) -> `experiments` (what is measured, by `solvers`) -> [`statistics`]
 //! (intervals) -> [`finding`] (figures, tables, claims with verdicts)
 //! -> [`draw`], [`csv`], `claims_json`, [`report`] (what a reader sees). [`run()`] goes all the way and writes the
 //! files.
 
 pub mod claims;
 mod claims_json;
-mod contestants;
 pub mod csv;
 pub mod draw;
 mod error;
@@ -24,6 +23,7 @@ mod run;
 pub mod settings;
 mod shadow;
 pub mod shapes;
+mod solvers;
 pub mod statistics;
 
 use finding::Finding;

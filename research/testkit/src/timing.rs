@@ -1,4 +1,4 @@
-//! Time of single queries, and what many of them come to.
+//! Times single queries, and sums many times up.
 
 use std::hint::black_box;
 use std::time::Instant;

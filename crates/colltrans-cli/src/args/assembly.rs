@@ -34,7 +34,7 @@ pub(crate) struct AssemblyArguments {
     /// Ask only the directions that are given
     #[arg(long)]
     pub(crate) only: bool,
-    /// Map the room of a part over the whole sphere; several names with commas between them, or a
+    /// Map the free travel of a part over the whole sphere; several names with commas between them, or a
     /// name that ends with `*`, are one group
     #[arg(long, value_name = "PART")]
     pub(crate) map: Vec<String>,

@@ -1,4 +1,4 @@
-//! What people write behind an option, read into what it means.
+//! Parses the values of options: what people write behind one, read into what it means.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -134,7 +134,7 @@ pub(crate) fn length(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(length) if length.is_finite() && length >= 0.0 => Ok(length),
         Ok(_) => Err("must be finite and not negative".into()),
-        Err(_) => Err("is no number".into()),
+        Err(_) => Err("is not a number".into()),
     }
 }
 
@@ -143,7 +143,7 @@ pub(crate) fn factor(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(factor),
         Ok(_) => Err("must be finite and positive".into()),
-        Err(_) => Err("is no number".into()),
+        Err(_) => Err("is not a number".into()),
     }
 }
 
@@ -180,7 +180,7 @@ pub(crate) fn bytes(text: &str) -> Result<usize, String> {
             ));
         }
     };
-    let number: f64 = number.parse().map_err(|_| "is no number of bytes, like 500MB or 2GiB")?;
+    let number: f64 = number.parse().map_err(|_| "is not a number of bytes, like 500MB or 2GiB")?;
     // The cast saturates.
     Ok((number * factor).round() as usize)
 }
@@ -207,7 +207,7 @@ pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
 
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
-        .map(|word| word.trim().parse().map_err(|_| format!("`{}` is no number", word.trim())))
+        .map(|word| word.trim().parse().map_err(|_| format!("`{}` is not a number", word.trim())))
         .collect()
 }
 

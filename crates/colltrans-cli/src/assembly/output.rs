@@ -1,4 +1,4 @@
-//! What is printed, and the files of `-o`.
+//! Prints the result of `assembly`, and writes the files of `-o`.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

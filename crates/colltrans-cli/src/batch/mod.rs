@@ -1,17 +1,17 @@
 //! `colltrans batch`: a query per line in, a result per line out, in the same order.
 //!
-//! The data's way: [`pipeline`] hands chunks of lines to threads and puts their results back in
+//! Data flow: [`pipeline`] hands chunks of lines to threads and puts their results back in
 //! order, holding only a bounded number of chunks; [`query`] reads and answers one line, with
-//! [`usual`] for lines of the usual form;
+//! [`fast_path`] for lines of the usual form;
 //! [`cache`] builds bodies that occur again once, [`recent`] finds them by their words; [`results`]
 //! keeps what is read from being overwritten.
 
 mod cache;
+mod fast_path;
 mod pipeline;
 mod query;
 mod recent;
 mod results;
-mod usual;
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -26,7 +26,7 @@ use crate::inputs::overwritten;
 use crate::progress;
 use cache::Cache;
 use pipeline::{Line, Pipeline};
-use query::Desk;
+use query::Batch;
 use recent::Recent;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         .threads
         .or_else(|| std::thread::available_parallelism().ok())
         .map_or(1, NonZeroUsize::get);
-    let desk = Desk {
+    let batch = Batch {
         folder,
         hull: arguments.hull,
         body: arguments.body,
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let work = || {
         let mut recent = Recent::default();
         let answer = |number, line: Line<'_>, results: &mut Vec<u8>| {
-            desk.answer(number, line, &mut recent, results)
+            batch.answer(number, line, &mut recent, results)
         };
         pipeline.work(answer, &bar);
     };
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         let name = arguments.queries.display();
         return Err(results.leave(&format!("not whole: {name} cannot be read: {error}")));
     }
-    results.finish(&desk.watched)?;
+    results.finish(&batch.watched)?;
     if end.failed > 0 {
         let message = format!("{} of {} queries have no answer", end.failed, end.answered);
         return Err(Failure::new(Code::Lines, message));

@@ -12,9 +12,9 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 
 use super::cache::{Built, Cache, Key, Shape};
+use super::fast_path;
 use super::pipeline::Line;
 use super::recent::Recent;
-use super::usual;
 use crate::args::{BodyArguments, SolverName};
 use crate::body::{self, Part};
 use crate::inputs::Watched;
@@ -22,8 +22,8 @@ use crate::record::{Hulls, Name, Record};
 use crate::replay;
 use crate::solid::{self, Question};
 
-/// Where lines are answered.
-pub(crate) struct Desk {
+/// What all lines of a batch have in common.
+pub(crate) struct Batch {
     /// What mesh paths are relative to.
     pub(crate) folder: PathBuf,
     /// Whether the hull is taken of meshes that do not say.
@@ -94,7 +94,7 @@ struct IdOnly<'a> {
     id: Option<&'a RawValue>,
 }
 
-impl Desk {
+impl Batch {
     /// Appends the result of a line as JSON; whether it is an answer.
     pub(crate) fn answer(
         &self,
@@ -121,7 +121,7 @@ impl Desk {
     ) -> (Option<&'a RawValue>, Result<Record, String>) {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-        let usual = str::from_utf8(text).ok().and_then(usual::read);
+        let usual = str::from_utf8(text).ok().and_then(fast_path::read);
         if let Some(query) = usual
             && let Some(answer) = self.answer_by_words(number, &query, recent)
         {

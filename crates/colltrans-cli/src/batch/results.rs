@@ -1,4 +1,4 @@
-//! Where the results go, without harm to a file that the queries read.
+//! Writes the results of a batch, without harm to a file that the queries read.
 //!
 //! Which meshes the queries read is known only when all of them are. The results are written beside
 //! their place (see [`crate::outputs`]) and put there at the end, unless the file whose place they would

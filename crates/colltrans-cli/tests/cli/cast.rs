@@ -128,7 +128,7 @@ fn wrong_command_lines() {
     let cast = |more: &[&str]| run(&[&["cast", "cube.off", "cube.off"], more].concat());
     assert_error(&cast(&[]), 2, &["--direction"]);
     assert_error(&cast(&["--direction", "1,2"]), 2, &["2 numbers, not 3"]);
-    assert_error(&cast(&["--direction", "1,2,x"]), 2, &["`x` is no number"]);
+    assert_error(&cast(&["--direction", "1,2,x"]), 2, &["`x` is not a number"]);
     assert_error(&cast(&["--direction", "0,0,0"]), 2, &["direction"]);
     assert_error(&cast(&["--direction", "nan,0,0"]), 2, &["direction"]);
     assert_error(

@@ -1,3 +1,3 @@
-//! The module that a page reads for assemblies: the names that the door exports, and what they need.
+//! The module that a page reads for assemblies: the names that the library exports, and what they need.
 
 use colltrans_wasm_assembly as _;

@@ -115,7 +115,7 @@ pub enum CertificateError {
         /// The upper bound.
         upper: f64,
     },
-    /// What is said of rounding is negative, no number, or more than it explains.
+    /// What is said of rounding is negative, not a number, or more than it explains.
     #[error("the rounding {claimed:e} is not between 0 and what rounding explains, {derived:e}")]
     Rounding {
         /// The one claimed.

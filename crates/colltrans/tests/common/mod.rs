@@ -1,4 +1,4 @@
-//! Bodies and poses of the tests, from the kit's meshes and points.
+//! Bodies and poses of the tests, from the test kit's meshes and points.
 
 #![allow(dead_code, unreachable_pub, reason = "each test program uses a part of it")]
 

@@ -1,4 +1,4 @@
-//! Axes to fit volumes along.
+//! Axes to fit bounding volumes along.
 //!
 //! The axes are the columns of a rotation, in the order of decreasing extent. For many triangles
 //! they are the eigenvectors of the covariance of their corners (Larsen et al. 1999),

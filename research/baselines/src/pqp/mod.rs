@@ -5,7 +5,7 @@
 //! swept spheres* bound distances from below, *oriented boxes* decide that there is no contact. A
 //! query descends both trees at once and compares triangles at the leaves.
 //!
-//! The data's way: `triangle` (two triangles) -> `frame` (principal axes) -> `rss` and `obb` (one
+//! Data flow: `triangle` (two triangles) -> `frame` (principal axes) -> `rss` and `obb` (one
 //! volume, two volumes) -> `tree` (all volumes of a soup) -> `soup` -> `query`.
 //!
 //! What is as published: both volumes, their axes from the covariance of the vertices, nodes split

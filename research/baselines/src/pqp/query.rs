@@ -107,7 +107,7 @@ impl<'a> Pqp<'a> {
     /// A pair of points nearly as near as the nearest ones: their distance exceeds that of the
     /// surfaces by at most `absolute_error`, *and* by at most `relative_error` times that distance.
     /// As published, so the smaller of the two counts; pass infinity for one to use the other.
-    /// Negative errors, and those that are no number, count as 0.
+    /// Negative errors, and those that are not a number, count as 0.
     pub fn distance_within(
         &mut self,
         moving_pose: &Pose,

@@ -1,4 +1,4 @@
-//! Triangles without structure.
+//! Triangle soups: triangles without structure.
 
 use std::fmt;
 
@@ -31,7 +31,7 @@ pub enum SoupError {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// A coordinate is infinite or no number.
+    /// A coordinate is infinite or not a number.
     NotFinite {
         /// The vertex.
         vertex: usize,

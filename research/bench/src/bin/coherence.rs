@@ -1,7 +1,7 @@
 //! `coherence`: trackers against casts from scratch, on the same sequences in the same run, with
 //! parry's cast of bodies of 8 vertices beside them for scale.
 //!
-//! Every contestant works through a whole sequence before the next takes its turn; the order
+//! Every solver works through a whole sequence before the next takes its turn; the order
 //! changes from sequence to sequence. A query is timed alone, with the clock's own cost taken off.
 
 use std::process::ExitCode;
@@ -42,20 +42,20 @@ const ALPHAS_DEG: [f64; 10] = [0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 90.0, 
 
 /// Who answers the queries of a sequence.
 #[derive(Debug, Clone, Copy)]
-struct Contestant {
+struct Compared {
     name: &'static str,
     solver: Solver,
     focus: Focus,
     narrowing: Narrowing,
 }
 
-const CONTESTANTS: [Contestant; 6] = [
-    Contestant { name: "scratch", solver: Solver::Auto, focus: Focus::NONE, narrowing: SHIPPED },
-    Contestant { name: "tracker", solver: Solver::Auto, focus: BOTH, narrowing: SHIPPED },
-    Contestant { name: "cta", solver: Solver::Cta, focus: Focus::NONE, narrowing: SHIPPED },
-    Contestant { name: "cta tracker", solver: Solver::Cta, focus: BOTH, narrowing: SHIPPED },
-    Contestant { name: "paper", solver: Solver::Cta, focus: Focus::NONE, narrowing: PAPER },
-    Contestant { name: "paper region", solver: Solver::Cta, focus: REGION, narrowing: PAPER },
+const COMPARED: [Compared; 6] = [
+    Compared { name: "scratch", solver: Solver::Auto, focus: Focus::NONE, narrowing: SHIPPED },
+    Compared { name: "tracker", solver: Solver::Auto, focus: BOTH, narrowing: SHIPPED },
+    Compared { name: "cta", solver: Solver::Cta, focus: Focus::NONE, narrowing: SHIPPED },
+    Compared { name: "cta tracker", solver: Solver::Cta, focus: BOTH, narrowing: SHIPPED },
+    Compared { name: "paper", solver: Solver::Cta, focus: Focus::NONE, narrowing: PAPER },
+    Compared { name: "paper region", solver: Solver::Cta, focus: REGION, narrowing: PAPER },
 ];
 
 const REGION: Focus = Focus { features: false, region: Region::Automatic };
@@ -134,7 +134,7 @@ fn in_turn(
     bodies.iter().cycle().take(count).map(|bodies| (bodies, draw(bodies))).collect()
 }
 
-/// Measurements of one contestant in one row.
+/// Measurements of one solver in one row.
 #[derive(Default)]
 struct Measured {
     times: Times,
@@ -146,12 +146,12 @@ struct Measured {
 impl Measured {
     fn follow(
         &mut self,
-        contestant: &Contestant,
+        compared: &Compared,
         bodies: &Bodies,
         sequence: &[Setting],
     ) -> Vec<Result<Outcome, QueryError>> {
         let stopwatch = Stopwatch::new();
-        let Contestant { solver, narrowing, focus, .. } = *contestant;
+        let Compared { solver, narrowing, focus, .. } = *compared;
         let options = Options { solver, narrowing, ..Options::default() };
         let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
         let mut outcomes = Vec::with_capacity(sequence.len());
@@ -210,16 +210,16 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Lets every contestant follow every sequence, prints a row and keeps it.
+    /// Lets every solver follow every sequence, prints a row and keeps it.
     fn add(&mut self, name: &str, sequences: &[(&Bodies, Vec<Setting>)]) {
-        let mut measured: [Measured; CONTESTANTS.len()] = Default::default();
+        let mut measured: [Measured; COMPARED.len()] = Default::default();
         let mut parry = Times::default();
         let mut differences = 0;
         for (turn, (bodies, sequence)) in sequences.iter().enumerate() {
-            let mut answers: [Vec<_>; CONTESTANTS.len()] = Default::default();
-            for k in 0..CONTESTANTS.len() {
-                let who = (turn + k) % CONTESTANTS.len();
-                answers[who] = measured[who].follow(&CONTESTANTS[who], bodies, sequence);
+            let mut answers: [Vec<_>; COMPARED.len()] = Default::default();
+            for k in 0..COMPARED.len() {
+                let who = (turn + k) % COMPARED.len();
+                answers[who] = measured[who].follow(&COMPARED[who], bodies, sequence);
             }
             self.scale.measure(&mut parry);
             let [reference, others @ ..] = &answers;
@@ -233,10 +233,10 @@ impl Table<'_> {
             measured.times.sort();
         }
         print_row(name, self.n, &measured, &parry, differences);
-        let contestants: serde_json::Map<String, Value> = CONTESTANTS
+        let contestants: serde_json::Map<String, Value> = COMPARED
             .iter()
             .zip(&measured)
-            .map(|(contestant, measured)| (contestant.name.into(), measured.to_json()))
+            .map(|(compared, measured)| (compared.name.into(), measured.to_json()))
             .collect();
         self.rows.push(json!({
             "sequences": name,
@@ -269,10 +269,10 @@ fn print_header() {
          means; mean of the tracker over parry's mean at 8 vertices"
     );
     print!("{:<18} {:>7}", "sequences", "n");
-    for contestant in &CONTESTANTS {
+    for compared in &COMPARED {
         print!(
             " | {:>11} {:>6} {:>3} {:>6} {:>5} {:>5}",
-            contestant.name, "mean", "%", "planar", "sup", "piv"
+            compared.name, "mean", "%", "planar", "sup", "piv"
         );
     }
     println!(" | ratio means parry, diff fail");

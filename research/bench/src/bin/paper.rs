@@ -1,7 +1,7 @@
 //! `paper`: the collision translation algorithm against portal refinement, on the paper's bodies,
 //! in the same run.
 //!
-//! Every contestant answers a block of settings twice, and its second pass is timed: caches hold
+//! Every solver answers a block of settings twice, and its second pass is timed: caches hold
 //! what the block needs, for all of them alike. The order changes from block to block. A query is
 //! timed alone, with the clock's own cost taken off. Parry's cast of bodies of 8 vertices stands
 //! beside every row, so that rows of different runs can be compared. Where the time goes is asked in
@@ -45,8 +45,8 @@ const BLOCK: usize = 20;
 const LENGTH: usize = 50;
 const CHANGES: [f64; 3] = [0.01, 0.0025, 0.000_625];
 
-/// How a contestant narrows the search: `None` is portal refinement alone.
-const CONTESTANTS: [(&str, Option<Narrowing>); 4] = [
+/// How a solver narrows the search: `None` is portal refinement alone.
+const COMPARED: [(&str, Option<Narrowing>); 4] = [
     ("portal", None),
     ("cta", Some(Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2, keeps_to_cell: false })),
     ("centre 1%", Some(Narrowing { start: NarrowFrom::Center, gap: 0.01, keeps_to_cell: false })),
@@ -139,7 +139,7 @@ fn measure_size(
             let (measured, parry) = one_off(&blocks, &scale);
             let unit = *unit.get_or_insert(measured[0].times.median());
             let name = format!("{}, {name}", kind.name());
-            let mut row = row(&name, n, &CONTESTANTS.map(|c| c.0), &measured, (unit, &parry));
+            let mut row = row(&name, n, &COMPARED.map(|c| c.0), &measured, (unit, &parry));
             row["phases"] = phases(&blocks);
             rows.push(row);
         }
@@ -184,7 +184,7 @@ fn sequences<'a>(
     in_turn.map(|bodies| (bodies, draw(bodies))).collect()
 }
 
-/// Measurements of one contestant in one row.
+/// Measurements of one solver in one row.
 #[derive(Default)]
 struct Measured {
     times: Times,
@@ -233,15 +233,15 @@ fn options(narrowing: Option<Narrowing>) -> Options {
     }
 }
 
-/// All contestants on all blocks, without a memory.
+/// All solvers on all blocks, without a memory.
 fn one_off(blocks: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
     let stopwatch = Stopwatch::new();
-    let mut measured: Vec<Measured> = CONTESTANTS.iter().map(|_| Measured::default()).collect();
+    let mut measured: Vec<Measured> = COMPARED.iter().map(|_| Measured::default()).collect();
     let mut parry = Times::default();
     for (turn, (bodies, settings)) in blocks.iter().enumerate() {
-        for k in 0..CONTESTANTS.len() {
-            let who = (turn + k) % CONTESTANTS.len();
-            let options = options(CONTESTANTS[who].1);
+        for k in 0..COMPARED.len() {
+            let who = (turn + k) % COMPARED.len();
+            let options = options(COMPARED[who].1);
             let cast = |s: &Setting| s.cast(bodies, &options)?.first_contact();
             for setting in settings {
                 std::hint::black_box(cast(setting).is_ok());
@@ -258,7 +258,7 @@ fn one_off(blocks: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
 
 /// Median nanoseconds of each phase of a search from the centre to the end, on all blocks.
 fn phases(blocks: &Blocks) -> Value {
-    let options = options(CONTESTANTS[CONTESTANTS.len() - 1].1);
+    let options = options(COMPARED[COMPARED.len() - 1].1);
     let mut spent = Spent::default();
     for (bodies, settings) in blocks {
         for pass in 0..2 {
@@ -320,13 +320,13 @@ impl Spent {
 /// Region focus to a gap of 1 % and to the end, and the same without focus.
 fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
     let stopwatch = Stopwatch::new();
-    let contestants = [(0.01, REGION), (0.0, REGION), (0.0, Focus::NONE)];
-    let mut measured: Vec<Measured> = contestants.iter().map(|_| Measured::default()).collect();
+    let compared = [(0.01, REGION), (0.0, REGION), (0.0, Focus::NONE)];
+    let mut measured: Vec<Measured> = compared.iter().map(|_| Measured::default()).collect();
     let mut parry = Times::default();
     for (turn, (bodies, sequence)) in sequences.iter().enumerate() {
-        for k in 0..contestants.len() {
-            let who = (turn + k) % contestants.len();
-            let (gap, focus) = contestants[who];
+        for k in 0..compared.len() {
+            let who = (turn + k) % compared.len();
+            let (gap, focus) = compared[who];
             let options =
                 options(Some(Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell: false }));
             let mut tracker = Tracker::new().with_focus(focus).expect("a focus");

@@ -48,7 +48,7 @@ const SIZES: [usize; 8] = [8, 32, 128, 512, 2_000, 10_000, 50_000, 200_000];
 const BLOCK: usize = 25;
 
 /// Our solvers and parry.
-const CONTESTANTS: usize = SOLVERS.len() + 1;
+const COMPARED: usize = SOLVERS.len() + 1;
 
 /// Two answers agree when they differ by less than this share of the bodies' length; parry stops at
 /// about as much.
@@ -257,8 +257,8 @@ impl Row {
         let blocks: Vec<_> = cases.settings.chunks(BLOCK).collect();
         for pass in 0..passes {
             for turn in 0..blocks.len() {
-                let block = |contestant: usize| {
-                    blocks[(turn + contestant * blocks.len() / CONTESTANTS) % blocks.len()]
+                let block = |compared: usize| {
+                    blocks[(turn + compared * blocks.len() / COMPARED) % blocks.len()]
                 };
                 for (index, (_, solver)) in SOLVERS.into_iter().enumerate() {
                     self.ours[index].measure(cases, solver, block(index));

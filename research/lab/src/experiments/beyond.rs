@@ -9,11 +9,11 @@ use colltrans::ConvexPolyhedron;
 use super::rivals::WHO;
 use super::{Coherence, Parts, Race, Results, against_size, axis, series, share, thousands, time};
 use crate::Experiment;
-use crate::contestants::{Until, Who};
 use crate::finding::{Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::{Bodies, Kind};
+use crate::solvers::{Until, Who};
 use crate::statistics::{mean, short};
 use colltrans_testkit::timing::median;
 

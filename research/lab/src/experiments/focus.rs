@@ -7,11 +7,11 @@ use super::{
 };
 use crate::Experiment;
 use crate::claims::judged;
-use crate::contestants::{PAPER_GAP, Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point};
 use crate::plan::{Plan, Progress};
 use crate::settings::{MOTIONS, Meeting, Setting};
 use crate::shapes::Kind;
+use crate::solvers::{PAPER_GAP, Until, Who};
 use crate::statistics::{Estimate, Sample, estimate, mean, short};
 
 pub(super) const FIGURE_13: Experiment = Experiment {

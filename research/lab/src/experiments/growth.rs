@@ -6,11 +6,11 @@ use super::{
 };
 use crate::Experiment;
 use crate::claims::judged;
-use crate::contestants::{PAPER_GAP, Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point, Series};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
+use crate::solvers::{PAPER_GAP, Until, Who};
 use crate::statistics::{Sample, estimate, mean};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::{Stopwatch, exponent, median};

@@ -1,6 +1,6 @@
 //! The experiments, one file per family, and what they have in common: sizes, races, figures.
 //!
-//! A *race*: on the same blocks of settings of the same bodies every contestant takes its turn,
+//! A *race*: on the same blocks of settings of the same bodies every solver takes its turn,
 //! block by block, the order rotating; each query is timed alone. Queries from scratch are each a
 //! group of their own for the intervals, those of a sequence are one group.
 
@@ -16,11 +16,11 @@ mod variable;
 use std::sync::Arc;
 
 use crate::Experiment;
-use crate::contestants::{Answer, Contestant, Who, Work};
 use crate::finding::{Axis, Figure, Point, Series};
 use crate::plan::{Plan, Progress, Scale};
 use crate::settings::Setting;
 use crate::shapes::{self, Bodies, Kind};
+use crate::solvers::{Algorithm, Answer, Who, Work};
 use crate::statistics::{Sample, mean};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::{Stopwatch, exponent, median};
@@ -86,7 +86,7 @@ enum Coherence {
     Blocks,
 }
 
-/// One query of one contestant.
+/// One query of one solver.
 #[derive(Debug, Clone, Copy)]
 struct Measured {
     nanoseconds: f64,
@@ -113,7 +113,7 @@ struct Race<'a> {
     blocks: usize,
 }
 
-/// What a race brought: for each contestant its queries, in the same order.
+/// What a race brought: for each solver its queries, in the same order.
 struct Results {
     /// Vertices of a body, on average.
     vertices: f64,
@@ -178,10 +178,10 @@ impl Race<'_> {
         self.given.clone().unwrap_or_else(build)
     }
 
-    /// One contestant's turn at a block.
+    /// One solver's turn at a block.
     fn follow(
         &self,
-        who: &mut dyn Contestant,
+        who: &mut dyn Algorithm,
         block: &[Setting],
         first: u32,
         lane: &mut Vec<Measured>,
@@ -190,7 +190,7 @@ impl Race<'_> {
         let scratch = self.coherence == Coherence::Scratch;
         who.forget();
         if scratch && let Some(first) = block.first() {
-            // Warms up: code and tables that the contestant before has pushed out of the caches.
+            // Warms up: code and tables that the solver before has pushed out of the caches.
             who.ask(first);
         }
         for (k, setting) in block.iter().enumerate() {
@@ -207,12 +207,12 @@ impl Race<'_> {
 }
 
 impl Results {
-    /// The times of a contestant, in nanoseconds.
+    /// The times of a solver, in nanoseconds.
     fn times(&self, who: usize) -> Vec<f64> {
         self.lanes[who].iter().map(|m| m.nanoseconds).collect()
     }
 
-    /// A number of every query of a contestant, in groups.
+    /// A number of every query of a solver, in groups.
     fn sample(&self, who: usize, number: impl Fn(&Measured) -> f64) -> Sample {
         Sample::of(self.lanes[who].iter().map(|m| (m.group, number(m))))
     }
@@ -230,13 +230,13 @@ impl Results {
         self.sample(who, |m| m.nanoseconds)
     }
 
-    /// Query by query, how many times as long one contestant took as another.
+    /// Query by query, how many times as long one solver took as another.
     fn ratios(&self, who: usize, other: usize) -> Sample {
         let pairs = self.lanes[who].iter().zip(&self.lanes[other]);
         Sample::of(pairs.map(|(a, b)| (a.group, a.nanoseconds / b.nanoseconds)))
     }
 
-    /// How often a contestant failed or contradicted the first who answered the same question.
+    /// How often a solver failed or contradicted the first who answered the same question.
     fn contradictions(&self, who: usize) -> usize {
         let differs = |query: usize| {
             let answer = |lane: &Vec<Measured>| lane[query].work.answer;

@@ -7,11 +7,11 @@ use colltrans::observe::{Clock, Profile};
 use super::{Parts, share, shares, thousands};
 use crate::Experiment;
 use crate::claims::judged;
-use crate::contestants::{PAPER_GAP, Until};
 use crate::finding::{Claim, Finding, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::{Kind, bodies};
+use crate::solvers::{PAPER_GAP, Until};
 use crate::statistics::{Estimate, Sample, estimate};
 use colltrans_testkit::random::Random;
 

@@ -9,11 +9,11 @@ use super::{
 };
 use crate::Experiment;
 use crate::claims::judged;
-use crate::contestants::{Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
+use crate::solvers::{Until, Who};
 use crate::statistics::{Estimate, Sample, estimate, mean};
 use colltrans_testkit::timing::median;
 

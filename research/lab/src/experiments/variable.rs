@@ -10,11 +10,11 @@ use colltrans::Region;
 use super::{Coherence, Parts, Race, Results, axis, means, series, share, shares, thousands, time};
 use crate::Experiment;
 use crate::claims::judged;
-use crate::contestants::{Until, Who};
 use crate::finding::{Claim, Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::Setting;
 use crate::shapes::Kind;
+use crate::solvers::{Until, Who};
 use crate::statistics::{Estimate, Sample, estimate, mean, short};
 use colltrans_testkit::timing::{mean_and_deviation, median};
 

@@ -1,7 +1,7 @@
 //! What the tests of `colltrans` are judged by: an oracle in exact rational arithmetic, an exact
 //! checker of certificates, and settings that are hard on purpose.
 //!
-//! The data's way: [`settings`] -> the library -> [`input`], which holds bodies against the points that
+//! Data flow: [`settings`] -> the library -> [`input`], which holds bodies against the points that
 //! they were made of -> [`check`], which reads the answer against the
 //! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are

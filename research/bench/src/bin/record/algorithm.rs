@@ -58,7 +58,7 @@ fn of(row: &Value, who: &str, key: &str) -> f64 {
     number(row, &["contestants", who, key])
 }
 
-/// Ratio, planar problems and exchanges of one contestant.
+/// Ratio, planar problems and exchanges of one solver.
 fn trio(row: &Value, who: &str) -> String {
     let [ratio, planar, left] = ["ratio", "planar_problems", "pivots"].map(|key| of(row, who, key));
     format!("{} | {planar:.2} | {left:.2}", rounded(ratio))

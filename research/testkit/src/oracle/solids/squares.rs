@@ -167,7 +167,7 @@ impl Mixed {
     /// The body as a solid, its grid under a linear map.
     ///
     /// # Errors
-    /// As the door of the library has them.
+    /// As the library's validation has them.
     pub fn solid(&self, map: DMat3, rng: &mut Random) -> Result<Solid, SolidError> {
         let mut pieces = Vec::new();
         if let Some(cubes) = &self.cubes {

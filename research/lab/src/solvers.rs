@@ -1,4 +1,4 @@
-//! Who is measured: every algorithm behind the same three words.
+//! The solvers compared: every algorithm behind one trait.
 
 use colltrans::{Focus, NarrowFrom, Narrowing, Options, Outcome, Region, Solver, Steps, Tracker};
 use colltrans_baselines::egjk::{Egjk, SupportSearch};
@@ -64,7 +64,7 @@ impl Until {
     }
 }
 
-/// What a contestant said.
+/// What a solver said.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Answer {
     /// The bodies meet after this translation.
@@ -86,12 +86,12 @@ pub(crate) struct Work {
     /// The algorithm's own steps: planar problems of the collision translation algorithm, portals,
     /// simplices, pairs of bounding volumes or features.
     pub(crate) steps: u32,
-    /// Iterations of all loops, outer and inner, where they are counted (`ARCHITECTURE.md`).
+    /// Iterations of all loops, outer and inner, where they are counted (`docs/laboratory.md`).
     pub(crate) iterations: u32,
 }
 
 /// An algorithm at work on two bodies.
-pub(crate) trait Contestant {
+pub(crate) trait Algorithm {
     /// The next query starts from scratch.
     fn forget(&mut self);
     /// A query; it may start from the one before.
@@ -120,8 +120,8 @@ impl Who {
         }
     }
 
-    /// Takes the field. What is made of the bodies beforehand is made here.
-    pub(crate) fn enter(self, bodies: &Bodies) -> Box<dyn Contestant + '_> {
+    /// Ready to answer. What is made of the bodies beforehand is made here.
+    pub(crate) fn enter(self, bodies: &Bodies) -> Box<dyn Algorithm + '_> {
         let [moving, fixed] = &bodies.pair;
         match self {
             Self::Cta(until) => Box::new(Scratch { bodies, options: until.options() }),
@@ -156,7 +156,7 @@ struct Scratch<'a> {
     options: Options,
 }
 
-impl Contestant for Scratch<'_> {
+impl Algorithm for Scratch<'_> {
     fn forget(&mut self) {}
 
     fn ask(&mut self, setting: &Setting) -> Work {
@@ -178,7 +178,7 @@ impl<'a> Tracked<'a> {
     }
 }
 
-impl Contestant for Tracked<'_> {
+impl Algorithm for Tracked<'_> {
     fn forget(&mut self) {
         self.tracker.reset();
     }
@@ -202,7 +202,7 @@ fn work<E>(outcome: &Result<Outcome, E>) -> Work {
     Work { answer, steps, iterations: iterations + planar_problems + pivots + supports }
 }
 
-impl Contestant for Egjk<'_> {
+impl Algorithm for Egjk<'_> {
     fn forget(&mut self) {
         self.reset();
     }
@@ -215,7 +215,7 @@ impl Contestant for Egjk<'_> {
     }
 }
 
-impl Contestant for RayCast<'_> {
+impl Algorithm for RayCast<'_> {
     fn forget(&mut self) {
         self.reset();
     }
@@ -232,7 +232,7 @@ impl Contestant for RayCast<'_> {
     }
 }
 
-impl Contestant for Pqp<'_> {
+impl Algorithm for Pqp<'_> {
     fn forget(&mut self) {
         self.reset();
     }
@@ -244,7 +244,7 @@ impl Contestant for Pqp<'_> {
     }
 }
 
-impl Contestant for HWalk<'_> {
+impl Algorithm for HWalk<'_> {
     fn forget(&mut self) {
         self.reset();
     }

@@ -1,6 +1,6 @@
 //! What the page calls: seven exported names.
 //!
-//! A question is written to the memory that [`question_room`] returns: first its text (JSON), then
+//! A question is written to the memory that [`question_buffer`] returns: first its text (JSON), then
 //! the bytes of a file if there is one. [`ask`] answers it; text and numbers of the answer are read
 //! where [`text`] and [`numbers`] say, until the next question. Each of these places is returned as
 //! an address, and its length by [`text_length`] and [`numbers_length`].
@@ -15,17 +15,17 @@ use std::cell::RefCell;
 use std::sync::{Mutex, Once, PoisonError};
 
 use crate::answer::Answer;
-use crate::desk::Desk;
+use crate::state::State;
 
 #[derive(Default)]
-struct Door {
-    room: Vec<u8>,
-    desk: Desk,
+struct Exchange {
+    buffer: Vec<u8>,
+    state: State,
     answer: Answer,
 }
 
 thread_local! {
-    static DOOR: RefCell<Door> = RefCell::default();
+    static EXCHANGE: RefCell<Exchange> = RefCell::default();
 }
 
 static LAST_WORDS: Mutex<String> = Mutex::new(String::new());
@@ -39,55 +39,55 @@ fn listen() {
     });
 }
 
-fn with<T>(f: impl FnOnce(&mut Door) -> T) -> T {
-    DOOR.with(|door| f(&mut door.borrow_mut()))
+fn with<T>(f: impl FnOnce(&mut Exchange) -> T) -> T {
+    EXCHANGE.with(|exchange| f(&mut exchange.borrow_mut()))
 }
 
-/// Room for a question of this many bytes.
+/// A buffer for a question of this many bytes.
 #[unsafe(no_mangle)]
-extern "C" fn question_room(bytes: usize) -> *mut u8 {
-    with(|door| {
-        door.room.clear();
-        door.room.resize(bytes, 0);
-        door.room.as_mut_ptr()
+extern "C" fn question_buffer(bytes: usize) -> *mut u8 {
+    with(|exchange| {
+        exchange.buffer.clear();
+        exchange.buffer.resize(bytes, 0);
+        exchange.buffer.as_mut_ptr()
     })
 }
 
-/// Answers the question in the room: its first `text` bytes are JSON, the rest is a file.
+/// Answers the question in the buffer: its first `text` bytes are JSON, the rest is a file.
 #[unsafe(no_mangle)]
 extern "C" fn ask(text: usize) {
     listen();
-    with(|door| {
-        let mut room = std::mem::take(&mut door.room);
-        let file = room.split_off(text.min(room.len()));
+    with(|exchange| {
+        let mut buffer = std::mem::take(&mut exchange.buffer);
+        let file = buffer.split_off(text.min(buffer.len()));
         // What the last answer held is given back before the next one is made.
-        door.answer = Answer::default();
-        door.answer = door.desk.ask(&room, file);
+        exchange.answer = Answer::default();
+        exchange.answer = exchange.state.ask(&buffer, file);
     });
 }
 
 /// Where the answer's text begins.
 #[unsafe(no_mangle)]
 extern "C" fn text() -> *const u8 {
-    with(|door| door.answer.text.as_ptr())
+    with(|exchange| exchange.answer.text.as_ptr())
 }
 
 /// How long it is.
 #[unsafe(no_mangle)]
 extern "C" fn text_length() -> usize {
-    with(|door| door.answer.text.len())
+    with(|exchange| exchange.answer.text.len())
 }
 
 /// Where the answer's numbers begin.
 #[unsafe(no_mangle)]
 extern "C" fn numbers() -> *const u8 {
-    with(|door| door.answer.numbers.as_ptr())
+    with(|exchange| exchange.answer.numbers.as_ptr())
 }
 
 /// How many bytes they are.
 #[unsafe(no_mangle)]
 extern "C" fn numbers_length() -> usize {
-    with(|door| door.answer.numbers.len())
+    with(|exchange| exchange.answer.numbers.len())
 }
 
 /// Where the reason begins why the library stopped.

@@ -1,13 +1,14 @@
-//! The door's answers against the library itself, and the grid of `phi` against the minimisation.
+//! Answers to the page's questions against the library itself, and the grid of `phi` against the minimisation.
 
-use colltrans_wasm::{Answer, Desk};
+use colltrans_mesh::Format;
+use colltrans_wasm::{Answer, State};
 use serde_json::{Value, json};
 
 const TILTED: [f64; 7] = [6.0, 1.0, 9.0, 0.2, 0.3, 0.1, 0.927_361_849_549_570_4];
 const HOME: [f64; 7] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
-fn ask(desk: &mut Desk, question: &Value, file: Vec<u8>) -> (Value, Vec<f64>) {
-    let Answer { text, numbers } = desk.ask(question.to_string().as_bytes(), file);
+fn ask(state: &mut State, question: &Value, file: Vec<u8>) -> (Value, Vec<f64>) {
+    let Answer { text, numbers } = state.ask(question.to_string().as_bytes(), file);
     let numbers = numbers.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
     (serde_json::from_slice(&text).unwrap(), numbers.collect())
 }
@@ -16,14 +17,14 @@ fn data(name: &str) -> Vec<u8> {
     std::fs::read(format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
-fn loaded(moving: &str, fixed: &str, take: &str) -> Desk {
-    let mut desk = Desk::default();
+fn loaded(moving: &str, fixed: &str, take: &str) -> State {
+    let mut state = State::default();
     for (slot, name) in [("moving", moving), ("fixed", fixed)] {
         let question = json!({ "do": "load", "slot": slot, "name": name, "take": take });
-        let (answer, _) = ask(&mut desk, &question, data(name));
+        let (answer, _) = ask(&mut state, &question, data(name));
         assert!(answer["body"]["vertices"].as_u64().unwrap() > 0, "{answer}");
     }
-    desk
+    state
 }
 
 fn pair(what: &str, direction: [f64; 3]) -> Value {
@@ -35,8 +36,8 @@ fn a_cast_is_the_library_s() {
     use colltrans::glam::{DQuat, DVec3};
     use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 
-    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
-    let (answer, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+    let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let (answer, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
     let body = |name: &str| {
         let path = format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"));
         let mesh = colltrans_mesh::read(path).unwrap();
@@ -63,12 +64,12 @@ fn phi_is_what_the_minimisation_says() {
         ("ellipsoid_a.obj", "ellipsoid_b.off", [-0.6, -0.1, -0.9]),
     ];
     for (moving, fixed, direction) in settings {
-        let mut desk = loaded(moving, fixed, "convex");
+        let mut state = loaded(moving, fixed, "convex");
         let length = direction.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
         let mut question = pair("search", direction);
         question["solver"] = json!("cta");
         question["from_center"] = json!(1e-9);
-        let (answer, _) = ask(&mut desk, &question, Vec::new());
+        let (answer, _) = ask(&mut state, &question, Vec::new());
         let events = answer["events"].as_array().unwrap();
         let sections = events.iter().find(|e| e.get("sections").is_some()).unwrap();
         let mut problems = 0;
@@ -78,7 +79,7 @@ fn phi_is_what_the_minimisation_says() {
             grid["fixed_axis"] = sections["sections"][1].clone();
             grid["moving_levels"] = json!([problem["planar"][0]]);
             grid["fixed_levels"] = json!([problem["planar"][1]]);
-            let (_, numbers) = ask(&mut desk, &grid, Vec::new());
+            let (_, numbers) = ask(&mut state, &grid, Vec::new());
             let value = problem["value"].as_f64().unwrap();
             let phi = numbers[0] * length;
             assert!((phi - value).abs() < 1e-12 * (1.0 + value.abs()), "{phi} {value}");
@@ -94,13 +95,13 @@ fn phi_is_what_the_minimisation_says() {
 fn what_a_solid_touches_with() {
     let file = "OFF\n5 4 0\n50 50 50\n-1 -1 1\n1 -1 1\n0 1 1\n0.25 0 0\n\
                 3 1 2 3\n3 2 1 4\n3 3 2 4\n3 1 3 4\n";
-    let mut desk = loaded("dodecahedron.off", "plate.off", "solid");
+    let mut state = loaded("dodecahedron.off", "plate.off", "solid");
     let load = json!({ "do": "load", "slot": "moving", "name": "tip.off", "take": "solid" });
-    let (body, numbers) = ask(&mut desk, &load, file.into());
+    let (body, numbers) = ask(&mut state, &load, file.into());
     assert_eq!(body["body"]["vertices"], 4, "{body}");
     let mut question = pair("cast", [0.0, 0.0, -1.0]);
     question["moving_pose"] = json!([6.0, 5.0, 4.0, 0.0, 0.0, 0.0, 1.0]);
-    let (answer, _) = ask(&mut desk, &question, Vec::new());
+    let (answer, _) = ask(&mut state, &question, Vec::new());
     let first = &answer["first"];
     assert_eq!(
         first["moving"],
@@ -127,9 +128,9 @@ fn what_a_solid_touches_with() {
 
 #[test]
 fn what_cannot_be_answered_is_said() {
-    let mut desk = Desk::default();
+    let mut state = State::default();
     let mut refused = |question: Value, file: Vec<u8>, part: &str| {
-        let (answer, _) = ask(&mut desk, &question, file);
+        let (answer, _) = ask(&mut state, &question, file);
         let error = answer["error"].as_str().unwrap().to_owned();
         assert!(error.contains(part), "{error}");
         answer["instead"].clone()
@@ -146,47 +147,47 @@ fn what_cannot_be_answered_is_said() {
     assert!(instead.as_array().unwrap().contains(&json!("solid")));
     // The file is kept: it can be taken in another way.
     let again = json!({ "do": "load", "slot": "moving", "name": "plate.off", "take": "solid" });
-    let (answer, _) = ask(&mut desk, &again, Vec::new());
+    let (answer, _) = ask(&mut state, &again, Vec::new());
     assert_eq!(answer["body"]["kind"], "solid");
 
-    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
-    let (before, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+    let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let (before, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
     assert_eq!(before["outcome"], "contact");
     // What was there is still answered about when a file is refused, because of its text or of its shape.
     for (name, file) in [("a.off", b"OFF\n1 0 0\n0 0".to_vec()), ("plate.off", data("plate.off"))] {
-        let (refused, _) = ask(&mut desk, &load(name), file);
+        let (refused, _) = ask(&mut state, &load(name), file);
         assert!(refused["error"].is_string() && refused["gone"] == false, "{refused}");
-        let (after, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+        let (after, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
         assert_eq!(after, before);
     }
-    let (answer, _) = ask(&mut desk, &again, Vec::new());
+    let (answer, _) = ask(&mut state, &again, Vec::new());
     assert_eq!(answer["body"]["kind"], "solid");
-    let (answer, _) = ask(&mut desk, &load("dodecahedron.off"), data("dodecahedron.off"));
+    let (answer, _) = ask(&mut state, &load("dodecahedron.off"), data("dodecahedron.off"));
     assert_eq!(answer["body"]["kind"], "convex");
-    let (answer, _) = ask(&mut desk, &pair("cast", [0.0, 0.0, 0.0]), Vec::new());
+    let (answer, _) = ask(&mut state, &pair("cast", [0.0, 0.0, 0.0]), Vec::new());
     assert!(answer["error"].as_str().unwrap().contains("direction"), "{answer}");
 }
 
 #[test]
 fn a_lie_is_no_proof() {
-    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
-    let (answer, _) = ask(&mut desk, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
+    let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let (answer, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
     let mut question = pair("verify", [-0.3, 0.1, -1.0]);
     question["proof"] = json!({ "contact": answer["first"]["proof"] });
-    let (checked, _) = ask(&mut desk, &question, Vec::new());
+    let (checked, _) = ask(&mut state, &question, Vec::new());
     assert_eq!(checked["holds"], true, "{checked}");
     let lower = &mut question["proof"]["contact"]["lower"];
     *lower = json!(lower.as_f64().unwrap() + 1e-6);
-    let (checked, _) = ask(&mut desk, &question, Vec::new());
+    let (checked, _) = ask(&mut state, &question, Vec::new());
     assert_eq!(checked["holds"], false, "{checked}");
 }
 
 #[test]
 fn a_tracker_starts_from_the_last_answer() {
-    let mut desk = loaded("dodecahedron.off", "bracket.obj", "convex");
+    let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
     let mut question = pair("search", [-0.3, 0.1, -1.0]);
     question["after"] = pair("cast", [-0.3, 0.101, -1.0]);
-    let (answer, _) = ask(&mut desk, &question, Vec::new());
+    let (answer, _) = ask(&mut state, &question, Vec::new());
     assert_eq!(answer["tracked"]["from"], "features");
 }
 
@@ -199,17 +200,17 @@ fn proofs_between_solids_are_checked_as_they_were_told() {
         (solids("bolt.stl", "plate.off"), [0.3, 0.2, 7.0], [0.0, 0.0, 1.0], "free"),
         (solids("dodecahedron.off", "plate.off"), [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], "overlap"),
     ];
-    for (mut desk, [x, y, z], direction, kind) in cases {
+    for (mut state, [x, y, z], direction, kind) in cases {
         let mut question = pair("certify", direction);
         question["moving_pose"] = json!([x, y, z, 0.0, 0.0, 0.0, 1.0]);
-        let Answer { text, numbers } = desk.ask(question.to_string().as_bytes(), Vec::new());
+        let Answer { text, numbers } = state.ask(question.to_string().as_bytes(), Vec::new());
         let told: Value = serde_json::from_slice(&text).unwrap();
         assert_eq!(told["stop"].is_object(), kind == "stop", "{told}");
         assert_eq!(told["overlap"].is_object(), kind == "overlap", "{told}");
         let mut check = |proof: &Value, entries: &[u8]| {
             question["do"] = json!("verify");
             question["proof"] = json!({ "clearance": proof });
-            let answer = desk.ask(question.to_string().as_bytes(), entries.to_vec());
+            let answer = state.ask(question.to_string().as_bytes(), entries.to_vec());
             serde_json::from_slice::<Value>(&answer.text).unwrap()
         };
         assert_eq!(check(&told, &numbers)["holds"], true, "{told}");
@@ -232,13 +233,13 @@ fn proofs_between_solids_are_checked_as_they_were_told() {
 /// The square lies around the last solution, and fewer planar problems are solved in it.
 #[test]
 fn the_neighbourhood_of_the_last_solution_saves_planar_problems() {
-    let mut desk = loaded("ellipsoid_a.obj", "ellipsoid_b.off", "convex");
+    let mut state = loaded("ellipsoid_a.obj", "ellipsoid_b.off", "convex");
     let direction = [-0.6, -0.1, -0.9];
     let mut question = pair("search", direction);
     question["solver"] = json!("cta");
     question["from_center"] = json!(1e-9);
     question["after"] = pair("cast", [-0.6, -0.101, -0.9]);
-    let (answer, _) = ask(&mut desk, &question, Vec::new());
+    let (answer, _) = ask(&mut state, &question, Vec::new());
     let region = &answer["region"];
     let problems = |steps: &Value| steps["planar_problems"].as_u64().unwrap();
     let (scratch, near) = (problems(&answer["steps"]), problems(&region["steps"]));
@@ -253,4 +254,14 @@ fn the_neighbourhood_of_the_last_solution_saves_planar_problems() {
     assert!(delta > 0.0 && delta < 0.05, "{delta}");
     let times = region["half"].as_f64().unwrap() / delta;
     assert!((times - 3.0_f64.sqrt()).abs() < 1e-9, "{times}");
+}
+
+/// The page offers files of all formats that are read, and of no other.
+#[test]
+fn the_page_lists_the_formats_of_the_library() {
+    let list = format!("{}/../../web/src/formats.ts", env!("CARGO_MANIFEST_DIR"));
+    let expected = Format::ALL.map(|format| format!("{:?}", format.extension())).join(", ");
+    assert!(
+        std::fs::read_to_string(list).unwrap().contains(&format!("EXTENSIONS = [{expected}];"))
+    );
 }

@@ -13,7 +13,7 @@ const LARGE: usize = 64 << 20;
 
 /// Two bodies, as files made them.
 #[derive(Debug, Default)]
-pub struct Desk {
+pub struct State {
     moving: Place,
     fixed: Place,
 }
@@ -41,7 +41,7 @@ impl Place {
         let known = self.offered.as_ref().or(used).is_some_and(|file| file.name == load.name);
         if !bytes.is_empty() || !known {
             self.offered = None;
-            self.make_room();
+            self.drop_large();
             let length = bytes.len();
             let mesh = body::read(&load.name, bytes)?;
             self.offered = Some(File { name: load.name, bytes: length, mesh });
@@ -66,14 +66,14 @@ impl Place {
         }
     }
 
-    fn make_room(&mut self) {
+    fn drop_large(&mut self) {
         if self.body.as_ref().is_some_and(|(file, _)| file.bytes > LARGE) {
             self.body = None;
         }
     }
 }
 
-impl Desk {
+impl State {
     /// Answers one question; `file` holds the bytes that come with it, if any.
     pub fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
         let answer = match Question::read(question) {

@@ -1,16 +1,16 @@
-//! The door's answers about the small gearbox, against the library itself.
+//! Answers to the page's questions about the small gearbox, against the library itself.
 
 use std::path::PathBuf;
 
 use colltrans::StartOverlap;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
-use colltrans_wasm_assembly::{Answer, Desk};
+use colltrans_wasm_assembly::{Answer, State};
 use glam::DAffine3;
 use serde_json::{Value, json};
 
-fn ask(desk: &mut Desk, question: &Value, file: Vec<u8>) -> (Value, Vec<u8>) {
-    let Answer { text, numbers } = desk.ask(question.to_string().as_bytes(), file);
+fn ask(state: &mut State, question: &Value, file: Vec<u8>) -> (Value, Vec<u8>) {
+    let Answer { text, numbers } = state.ask(question.to_string().as_bytes(), file);
     (serde_json::from_slice(&text).unwrap(), numbers)
 }
 
@@ -27,36 +27,36 @@ fn stem(file: &std::path::Path) -> String {
     file.file_stem().unwrap().to_string_lossy().into_owned()
 }
 
-fn gearbox() -> Desk {
-    let mut desk = Desk::default();
+fn gearbox() -> State {
+    let mut state = State::default();
     for file in files() {
         let name = file.file_name().unwrap().to_string_lossy();
         let question = json!({ "do": "add", "name": name });
-        let (answer, _) = ask(&mut desk, &question, std::fs::read(&file).unwrap());
+        let (answer, _) = ask(&mut state, &question, std::fs::read(&file).unwrap());
         assert!(answer["parts"].is_u64(), "{answer}");
     }
-    desk
+    state
 }
 
 #[test]
 fn the_gearbox_comes_apart() {
-    let mut desk = gearbox();
-    let (parts, numbers) = ask(&mut desk, &json!({ "do": "parts" }), Vec::new());
+    let mut state = gearbox();
+    let (parts, numbers) = ask(&mut state, &json!({ "do": "parts" }), Vec::new());
     let all = parts["parts"].as_array().unwrap();
     assert_eq!(all.len(), files().len());
     let count = |key: &str| all.iter().map(|p| p[key].as_u64().unwrap()).sum::<u64>();
     assert_eq!(numbers.len() as u64, 12 * (count("vertices") + count("triangles")));
-    let (fit, _) = ask(&mut desk, &json!({ "do": "fit", "tolerance": 0.1 }), Vec::new());
+    let (fit, _) = ask(&mut state, &json!({ "do": "fit", "tolerance": 0.1 }), Vec::new());
     assert_eq!(fit["tolerance"], 0.1);
     assert!(!fit["touches"].as_array().unwrap().is_empty());
-    let (plan, _) = ask(&mut desk, &json!({ "do": "plan" }), Vec::new());
+    let (plan, _) = ask(&mut state, &json!({ "do": "plan" }), Vec::new());
     let mut moved: Vec<u64> = Vec::new();
     for step in plan["steps"].as_array().unwrap().iter().filter(|s| s["within"].is_null()) {
         moved.extend(step["parts"].as_array().unwrap().iter().map(|p| p.as_u64().unwrap()));
     }
     moved.sort_unstable();
     assert_eq!(moved, (0..all.len() as u64).collect::<Vec<_>>(), "{plan}");
-    let (along, _) = ask(&mut desk, &json!({ "do": "along", "direction": [0, 0, 2] }), Vec::new());
+    let (along, _) = ask(&mut state, &json!({ "do": "along", "direction": [0, 0, 2] }), Vec::new());
     // Who is free along it comes out alone.
     for (k, first) in along["first"].as_array().unwrap().iter().enumerate() {
         let alone = along["removable"].as_array().unwrap().contains(&json!([k]));
@@ -67,11 +67,11 @@ fn the_gearbox_comes_apart() {
 
 #[test]
 fn a_map_is_the_library_s() {
-    let mut desk = gearbox();
-    ask(&mut desk, &json!({ "do": "parts" }), Vec::new());
-    ask(&mut desk, &json!({ "do": "fit", "tolerance": 0.1 }), Vec::new());
+    let mut state = gearbox();
+    ask(&mut state, &json!({ "do": "parts" }), Vec::new());
+    ask(&mut state, &json!({ "do": "fit", "tolerance": 0.1 }), Vec::new());
     let bolt = files().iter().position(|file| stem(file) == "bolt_0").unwrap();
-    let (told, numbers) = ask(&mut desk, &json!({ "do": "map", "group": [bolt] }), Vec::new());
+    let (told, numbers) = ask(&mut state, &json!({ "do": "map", "group": [bolt] }), Vec::new());
     let numbers: Vec<f32> =
         numbers.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
     let parts = files().into_iter().map(|file| {
@@ -96,9 +96,9 @@ fn a_map_is_the_library_s() {
 
 #[test]
 fn what_cannot_be_answered_is_said() {
-    let mut desk = Desk::default();
+    let mut state = State::default();
     let mut refused = |question: Value, file: &[u8], part: &str| {
-        let (answer, _) = ask(&mut desk, &question, file.to_vec());
+        let (answer, _) = ask(&mut state, &question, file.to_vec());
         let error = answer["error"].as_str().unwrap().to_owned();
         assert!(error.contains(part), "{error}");
     };
@@ -110,11 +110,11 @@ fn what_cannot_be_answered_is_said() {
     refused(json!({ "do": "add", "name": "a.txt" }), b"x", "a.txt");
     refused(json!({ "do": "add", "name": "a.glb" }), b"glTF", "a.glb: glTF: ");
     refused(json!({ "do": "add", "name": "a.off" }), b"OFF\n1 0 0\n0 0", "a.off");
-    let mut desk = gearbox();
-    ask(&mut desk, &json!({ "do": "parts" }), Vec::new());
-    ask(&mut desk, &json!({ "do": "fit" }), Vec::new());
+    let mut state = gearbox();
+    ask(&mut state, &json!({ "do": "parts" }), Vec::new());
+    ask(&mut state, &json!({ "do": "fit" }), Vec::new());
     let mut refused = |question: Value, part: &str| {
-        let (answer, _) = ask(&mut desk, &question, Vec::new());
+        let (answer, _) = ask(&mut state, &question, Vec::new());
         let error = answer["error"].as_str().unwrap().to_owned();
         assert!(error.contains(part), "{error}");
     };
@@ -158,13 +158,13 @@ fn parts_come_from_glb() {
         glb.extend(x.to_le_bytes());
     }
     glb.extend(&binary);
-    let mut desk = Desk::default();
-    let (added, _) = ask(&mut desk, &json!({ "do": "add", "name": "two.glb" }), glb);
+    let mut state = State::default();
+    let (added, _) = ask(&mut state, &json!({ "do": "add", "name": "two.glb" }), glb);
     assert_eq!(added["parts"], 2, "{added}");
-    let (parts, _) = ask(&mut desk, &json!({ "do": "parts" }), Vec::new());
+    let (parts, _) = ask(&mut state, &json!({ "do": "parts" }), Vec::new());
     assert_eq!(parts["unit"], "m");
-    ask(&mut desk, &json!({ "do": "fit" }), Vec::new());
-    let (along, _) = ask(&mut desk, &json!({ "do": "along", "direction": [1, 0, 0] }), Vec::new());
+    ask(&mut state, &json!({ "do": "fit" }), Vec::new());
+    let (along, _) = ask(&mut state, &json!({ "do": "along", "direction": [1, 0, 0] }), Vec::new());
     assert_eq!(along["first"][0]["outcome"], "blocked");
     assert_eq!(along["first"][1]["outcome"], "free");
 }

@@ -6,7 +6,7 @@
 //! - `fit`: with `tolerance` (the default one without) and `ignore_overlaps`; what overlaps, who
 //!   touches whom;
 //! - `along` a `direction`: who stops whom, and what comes out;
-//! - `map` of the parts `group`: their room in all directions;
+//! - `map` of the parts `group`: their free travel in all directions;
 //! - `plan`: how everything comes apart.
 
 use std::path::Path;
@@ -38,7 +38,7 @@ const BORDER: f64 = 0.04;
 
 /// An assembly, as files made it.
 #[derive(Default)]
-pub struct Desk {
+pub struct State {
     gathered: Vec<Part>,
     unit: Option<String>,
     set: Option<Set>,
@@ -57,7 +57,7 @@ struct Fitted {
     candidates: Candidates,
 }
 
-impl Desk {
+impl State {
     /// Answers one question; `file` holds the bytes that come with it, if any.
     pub fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
         let asked: Result<Value, _> = serde_json::from_slice(question);

@@ -99,6 +99,15 @@
 //! bodies together costs the translation nothing. The same input gives the same bits on every run,
 //! thread and platform.
 //!
+//! # As data
+//!
+//! With the feature `serde` answers, proofs, features, poses and choices can be written and read in any
+//! of its formats. A case of several is written as its name in lower case (`blocked`, with what it
+//! holds), choices by the names that they print and parse, a pose column by column, an infinite bound as
+//! nothing (`null`). Numbers come back as the same bits. What is read is checked where it is a pose or a
+//! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. The feature `json`
+//! adds whole queries as files (`Case`).
+//!
 //! # How it works
 //!
 //! The Minkowski difference `M = {q - p}` is never built. A search narrows down which face of `M`
@@ -114,7 +123,7 @@
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, and [`observe`]), `cast` (the queries) and
-//! `tracker`.
+//! `tracker`. `written` says how all of them are written.
 
 mod answer;
 mod body;
@@ -124,6 +133,7 @@ mod setting;
 mod solve;
 mod tracker;
 mod work;
+mod written;
 
 pub use answer::{
     Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth,
@@ -151,6 +161,7 @@ pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
 pub use solve::solid::{Overlap, Reason, SolidContact, Workspace};
 pub use tracker::Tracker;
+pub use written::UnknownName;
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

@@ -3,12 +3,15 @@
 /// A number and what is proven of it: `lower <= value <= upper`, and the true one lies between the
 /// same bounds. An infinite bound claims nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounded {
     /// The best estimate.
     pub value: f64,
     /// Not more than the true number.
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_minus_infinite"))]
     pub lower: f64,
     /// Not less than the true number.
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
     pub upper: f64,
 }
 

@@ -32,6 +32,7 @@ use crate::setting::{Setting, VertexPair};
 /// their [`vertices`](crate::ConvexPolyhedron::vertices), in poses as their nine entries and their
 /// translations. Both are rounded outwards by what their computation can be off.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certificate {
     /// Unit normal of the supporting plane that proves the lower bound, in the world;
     /// `normal . d > 0`.
@@ -47,6 +48,7 @@ pub struct Certificate {
     /// The upper bound they prove, in multiples of the direction. Infinite in a
     /// [`Grazing`](crate::Grazing) whose shadows rounding cannot tell to overlap: such a one claims
     /// `lower` only.
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
     pub upper: f64,
     /// What rounding alone can make of `upper - lower` at the size of this configuration: fifteen
     /// noises (see [the crate's introduction](crate#accuracy)) and what the bodies may reach beyond
@@ -58,6 +60,7 @@ pub struct Certificate {
 /// The proof that two bodies never meet along the direction: a plane parallel to it lies between
 /// them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Separation {
     /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed
     /// one.

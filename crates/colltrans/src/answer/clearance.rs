@@ -14,6 +14,19 @@ use crate::body::{Body, ConvexPolyhedron};
 /// | `Blocked` | [`Contact`] | [`SolidContact`](crate::SolidContact) |
 /// | `Free` | [`WhyFree`] | a separating plane, where one was found |
 /// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::SolidOverlap) |
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(
+        rename_all = "snake_case",
+        bound(
+            serialize = "B::Contact: serde::Serialize, B::Free: serde::Serialize, \
+                B::Overlap: serde::Serialize",
+            deserialize = "B::Contact: serde::Deserialize<'de>, B::Free: serde::Deserialize<'de>, \
+                B::Overlap: serde::Deserialize<'de>"
+        )
+    )
+)]
 pub enum Clearance<B: Body = ConvexPolyhedron> {
     /// Until it touches.
     Blocked {
@@ -32,6 +45,11 @@ pub enum Clearance<B: Body = ConvexPolyhedron> {
 
 /// Why nothing stops a convex body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum WhyFree {
     /// It slides along the other body or past it within the graze tolerance.
     Slides(Grazing),
@@ -44,6 +62,7 @@ pub enum WhyFree {
 
 /// The overlap of two convex bodies, by the contacts at its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OverlapAhead {
     /// The first contact, behind.
     pub first: Contact,

@@ -12,6 +12,11 @@ use crate::setting::VertexPair;
 /// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
 /// the graze tolerance, by no more than it, or not at all.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Outcome {
     /// The moving body meets the fixed one at some translation (which may be negative).
     Contact(Contact),
@@ -34,6 +39,7 @@ impl Outcome {
 
 /// Where the bodies first meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact {
     /// The collision translation in multiples of the direction (a length if the direction is a
     /// unit vector): the smallest `t` at which the moving body, moved by `t * direction`, meets the
@@ -71,6 +77,7 @@ impl Contact {
 
 /// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Grazing {
     /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the
     /// fixed one's.
@@ -88,6 +95,7 @@ pub struct Grazing {
 
 /// The bodies never meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Separated {
     /// The proof: a unit normal orthogonal to the direction, and the margin along it.
     pub certificate: Separation,

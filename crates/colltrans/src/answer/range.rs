@@ -8,6 +8,11 @@ use super::outcome::{Contact, Grazing, Outcome, Separated};
 /// The answer of [`Cast::contact_range`](crate::Cast::contact_range): all translations at which the
 /// bodies meet, an interval, with the contact at either end.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum ContactRange {
     /// The bodies meet exactly for the translations in [`ContactRange::interval`].
     Contact {
@@ -58,6 +63,7 @@ impl ContactRange {
 
 /// The answer of [`Cast::directional_depth`](crate::Cast::directional_depth).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DirectionalDepth {
     /// How far the moving body has to go back, in multiples of the direction, until the overlap has
     /// ended: never less than the true depth; 0 if the bodies do not overlap.
@@ -68,6 +74,7 @@ pub struct DirectionalDepth {
 
 /// The answer of [`Cast::intersects`](crate::Cast::intersects).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intersection {
     /// Whether the bodies, as closed sets and to within rounding error, have a point in common.
     pub meets: bool,

@@ -2,6 +2,11 @@
 
 /// How the search is narrowed. The answer, its certificate and its accuracy are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Solver {
     /// Whichever was measured to be fastest: at present portal refinement, for all bodies.
     #[default]
@@ -18,6 +23,7 @@ pub enum Solver {
 
 /// Work done for one answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Steps {
     /// Planar problems solved (minimisation steps of the collision translation algorithm).
     pub planar_problems: u32,
@@ -45,6 +51,11 @@ impl Steps {
 
 /// What the search for an answer began with, from the least work to the most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum StartedFrom {
     /// The last answer's contact features or separating direction ([`Tracker`](crate::Tracker)
     /// only).

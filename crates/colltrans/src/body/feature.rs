@@ -12,6 +12,11 @@ use super::placed::{Body, sealed};
 /// [`Solid`](crate::Solid) runs from corner to corner, however finely its mesh divides it, and a face
 /// is the whole polygon that its coplanar facets make up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Feature {
     /// A vertex.
     Vertex(u32),

@@ -6,7 +6,7 @@ pub(crate) mod error;
 mod feature;
 pub(crate) mod inertia;
 pub(crate) mod placed;
-mod pose;
+pub(crate) mod pose;
 pub(crate) mod solid;
 pub(crate) mod topology;
 

@@ -33,6 +33,11 @@ const TOLERANCE: f64 = 1e-6;
 /// # Ok::<(), colltrans::PoseError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(into = "PoseRecord", try_from = "PoseRecord")
+)]
 pub struct Pose {
     matrix: DMat3,
     translation: DVec3,
@@ -164,6 +169,33 @@ impl Pose {
     /// The new translation is out of range.
     pub fn translated(&self, offset: DVec3) -> Result<Self, PoseError> {
         self.moved_to(self.translation + offset)
+    }
+}
+
+/// A pose as it is written; read, it is checked like any other.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PoseRecord {
+    /// Column by column.
+    matrix: [f64; 9],
+    translation: [f64; 3],
+}
+
+#[cfg(feature = "serde")]
+impl From<Pose> for PoseRecord {
+    fn from(pose: Pose) -> Self {
+        Self { matrix: pose.matrix.to_cols_array(), translation: pose.translation.to_array() }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<PoseRecord> for Pose {
+    type Error = PoseError;
+
+    fn try_from(record: PoseRecord) -> Result<Self, PoseError> {
+        let translation = DVec3::from_array(record.translation);
+        Self::from_matrix(DMat3::from_cols_array(&record.matrix), translation)
     }
 }
 

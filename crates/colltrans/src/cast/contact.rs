@@ -9,6 +9,7 @@ use crate::body::{Feature, Pose, feature};
 
 /// A contact point on each body, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WitnessPoints {
     /// On the moving body, at its *start* pose.
     pub on_moving: DVec3,
@@ -19,6 +20,7 @@ pub struct WitnessPoints {
 
 /// The vertex, edge or face of each body that lies in the contact plane, to within rounding error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Features {
     /// Of the moving body.
     pub moving: Feature,

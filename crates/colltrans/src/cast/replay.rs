@@ -4,16 +4,16 @@
 //! its faces, not as what it was made from: its vertices and half-edges come back in the same order,
 //! so that the same query takes the same way to the same bits. What is read is checked like a mesh.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Cast;
-use crate::answer::Solver;
 use crate::body::error::{BuildError, PoseError};
+use crate::body::pose::PoseRecord;
 use crate::body::{ConvexPolyhedron, Pose};
 use crate::setting::error::QueryError;
-use crate::solve::options::{NarrowFrom, Narrowing, Options};
+use crate::solve::options::{Options, OptionsRecord};
 
 /// Why a file is no query.
 #[derive(Debug, Error)]
@@ -23,10 +23,12 @@ pub enum CaseError {
     #[error("not a saved query: {}", what_is_wrong(.0))]
     Syntax(#[from] serde_json::Error),
     /// It was written by another version.
-    #[error("the format is {found:?}, not {FORMAT:?}")]
+    #[error("the format is {found:?}, not {known:?}")]
     Format {
         /// The format that the file names.
         found: String,
+        /// The one of this version.
+        known: &'static str,
     },
     /// A body is none.
     #[error("{which} body: {error}")]
@@ -39,12 +41,6 @@ pub enum CaseError {
     /// A pose is none.
     #[error(transparent)]
     Pose(#[from] PoseError),
-    /// A letter that stands for nothing.
-    #[error("the letter {letter:?} stands for nothing in a cover")]
-    Letter {
-        /// The letter.
-        letter: char,
-    },
     /// The direction or a choice is refused.
     #[error(transparent)]
     Query(#[from] QueryError),
@@ -98,16 +94,16 @@ impl Case {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file: File = serde_json::from_str(text)?;
         if file.format != FORMAT {
-            return Err(CaseError::Format { found: file.format });
+            return Err(CaseError::Format { found: file.format, known: FORMAT });
         }
         let body = |record: &BodyRecord, which| {
             record.body().map_err(|error| CaseError::Body { which, error })
         };
         let case = Self {
             bodies: [body(&file.moving, "moving")?, body(&file.fixed, "fixed")?],
-            poses: [file.moving_pose.pose()?, file.fixed_pose.pose()?],
+            poses: [file.moving_pose.try_into()?, file.fixed_pose.try_into()?],
             direction: DVec3::from_array(file.direction),
-            options: file.options.options(),
+            options: file.options.try_into()?,
         };
         case.cast()?;
         Ok(case)
@@ -135,11 +131,11 @@ impl Cast<'_> {
         let file = File {
             format: FORMAT.into(),
             moving: BodyRecord::of(self.moving()),
-            moving_pose: PoseRecord::of(&self.moving_pose()),
+            moving_pose: self.moving_pose().into(),
             fixed: BodyRecord::of(self.fixed()),
-            fixed_pose: PoseRecord::of(&self.fixed_pose()),
+            fixed_pose: self.fixed_pose().into(),
             direction: self.direction().to_array(),
-            options: OptionsRecord::of(&self.options()),
+            options: self.options().into(),
         };
         serde_json::to_string(&file).expect("numbers and names")
     }
@@ -188,7 +184,7 @@ struct File {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct BodyRecord {
+pub(super) struct BodyRecord {
     vertices: Vec<[f64; 3]>,
     /// None for a segment or a point; front and back for a flat polygon.
     faces: Vec<Vec<u32>>,
@@ -197,7 +193,7 @@ struct BodyRecord {
 }
 
 impl BodyRecord {
-    fn of(body: &ConvexPolyhedron) -> Self {
+    pub(super) fn of(body: &ConvexPolyhedron) -> Self {
         Self {
             vertices: body.vertices().iter().map(DVec3::to_array).collect(),
             faces: (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect(),
@@ -206,7 +202,7 @@ impl BodyRecord {
         }
     }
 
-    fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
+    pub(super) fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
         let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
         ConvexPolyhedron::from_own_faces(
             &vertices,
@@ -214,89 +210,5 @@ impl BodyRecord {
             &self.input_indices,
             self.hull_error,
         )
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PoseRecord {
-    /// Column by column.
-    matrix: [f64; 9],
-    translation: [f64; 3],
-}
-
-impl PoseRecord {
-    fn of(pose: &Pose) -> Self {
-        Self { matrix: pose.matrix().to_cols_array(), translation: pose.translation().to_array() }
-    }
-
-    fn pose(&self) -> Result<Pose, PoseError> {
-        let translation = DVec3::from_array(self.translation);
-        Pose::from_matrix(DMat3::from_cols_array(&self.matrix), translation)
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OptionsRecord {
-    solver: SolverName,
-    graze_tolerance: f64,
-    narrow_from: NarrowFromName,
-    /// Infinite if there is none.
-    narrowing_gap: Option<f64>,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    keeps_to_cell: bool,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum SolverName {
-    Auto,
-    Cta,
-    Portal,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum NarrowFromName {
-    Ellipsoids,
-    Center,
-}
-
-impl OptionsRecord {
-    fn of(options: &Options) -> Self {
-        Self {
-            solver: match options.solver {
-                Solver::Auto => SolverName::Auto,
-                Solver::Cta => SolverName::Cta,
-                Solver::Portal => SolverName::Portal,
-            },
-            graze_tolerance: options.graze_tolerance,
-            narrow_from: match options.narrowing.start {
-                NarrowFrom::Ellipsoids => NarrowFromName::Ellipsoids,
-                NarrowFrom::Center => NarrowFromName::Center,
-            },
-            narrowing_gap: Some(options.narrowing.gap).filter(|gap| gap.is_finite()),
-            keeps_to_cell: options.narrowing.keeps_to_cell,
-        }
-    }
-
-    fn options(&self) -> Options {
-        Options {
-            solver: match self.solver {
-                SolverName::Auto => Solver::Auto,
-                SolverName::Cta => Solver::Cta,
-                SolverName::Portal => Solver::Portal,
-            },
-            graze_tolerance: self.graze_tolerance,
-            narrowing: Narrowing {
-                start: match self.narrow_from {
-                    NarrowFromName::Ellipsoids => NarrowFrom::Ellipsoids,
-                    NarrowFromName::Center => NarrowFrom::Center,
-                },
-                gap: self.narrowing_gap.unwrap_or(f64::INFINITY),
-                keeps_to_cell: self.keeps_to_cell,
-            },
-        }
     }
 }

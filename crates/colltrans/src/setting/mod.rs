@@ -18,6 +18,7 @@ use crate::setting::error::QueryError;
 
 /// One vertex of each body, by index into [`ConvexPolyhedron::vertices`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VertexPair {
     /// Index into the moving body's vertices.
     pub moving: u32,

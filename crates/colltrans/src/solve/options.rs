@@ -6,6 +6,11 @@ use crate::setting::error::QueryError;
 
 /// Choices of a query; the default is right for most.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(into = "OptionsRecord", try_from = "OptionsRecord")
+)]
 pub struct Options {
     /// How the search is narrowed.
     pub solver: Solver,
@@ -67,6 +72,11 @@ impl Default for Narrowing {
 
 /// Where a minimisation starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum NarrowFrom {
     /// Where the bodies would meet if they were ellipsoids: portal refinement begins there, and
     /// planar problems are solved only if the ellipsoids pass each other and the bodies may not.
@@ -79,6 +89,7 @@ pub enum NarrowFrom {
 /// What a [`Tracker`](crate::Tracker) makes of its last answer. Answers and certificates do not
 /// depend on it, only the work does.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Focus {
     /// Feature focus (the paper, section V-F): try first to end with the last contact features or
     /// their neighbours, and with the last separating direction.
@@ -103,6 +114,11 @@ impl Default for Focus {
 /// The neighbourhood `N(p)` of the last solution `p`, a square in the plane of the two section
 /// levels, to which the minimisation is confined while nothing speaks against it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Region {
     /// All levels: no focus.
     Everywhere,
@@ -112,4 +128,40 @@ pub enum Region {
     Automatic,
     /// This half-side `delta`, in world units along the section axes.
     Fixed(f64),
+}
+
+/// Choices as they are written; read, they are checked like any others.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OptionsRecord {
+    solver: Solver,
+    graze_tolerance: f64,
+    narrow_from: NarrowFrom,
+    #[serde(with = "crate::written::or_infinite")]
+    narrowing_gap: f64,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    keeps_to_cell: bool,
+}
+
+#[cfg(feature = "serde")]
+impl From<Options> for OptionsRecord {
+    fn from(Options { solver, graze_tolerance, narrowing }: Options) -> Self {
+        let Narrowing { start: narrow_from, gap: narrowing_gap, keeps_to_cell } = narrowing;
+        Self { solver, graze_tolerance, narrow_from, narrowing_gap, keeps_to_cell }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<OptionsRecord> for Options {
+    type Error = QueryError;
+
+    fn try_from(record: OptionsRecord) -> Result<Self, QueryError> {
+        let OptionsRecord { solver, graze_tolerance, narrow_from, narrowing_gap, keeps_to_cell } =
+            record;
+        let narrowing = Narrowing { start: narrow_from, gap: narrowing_gap, keeps_to_cell };
+        let options = Self { solver, graze_tolerance, narrowing };
+        options.check()?;
+        Ok(options)
+    }
 }

@@ -5,7 +5,7 @@
 //! there is one, then halved between the two.
 
 mod proof;
-#[cfg(feature = "json")]
+#[cfg(feature = "serde")]
 mod saved;
 mod verify;
 
@@ -33,6 +33,11 @@ const MOST_HALVINGS: usize = 128;
 
 /// What an overlap at the start means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum StartOverlap {
     /// It is the answer.
     #[default]
@@ -44,6 +49,7 @@ pub enum StartOverlap {
 
 /// Choices of a query between solids.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolidOptions {
     /// What an overlap at the start means.
     pub start_overlap: StartOverlap,
@@ -61,6 +67,7 @@ pub struct SolidOptions {
 
 /// The overlap of two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolidOverlap {
     /// One of the places where the bodies, shrunk by half the tolerance each, overlap: facets that
     /// cross, or a shell that is inside.

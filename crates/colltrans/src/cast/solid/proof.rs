@@ -28,6 +28,7 @@ use crate::solve::solid::separating_axes::SeparatingAxes;
 /// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
 /// itself.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolidCertificate {
     /// The tolerance: both bodies are shrunk by half of it.
     pub tolerance: f64,
@@ -35,6 +36,7 @@ pub struct SolidCertificate {
     pub start: StartProof,
     /// No pair of facets of the shrunk bodies stops them before, in multiples of the direction; infinite if none ever
     /// does, 0 for an overlap that is the answer.
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
     pub lower: f64,
     /// What stops it.
     pub stop: Option<StopProof>,
@@ -44,6 +46,11 @@ pub struct SolidCertificate {
 
 /// The proof of what the bodies do where they are.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(into = "super::saved::Start", from = "super::saved::Start")
+)]
 pub enum StartProof {
     /// The caller has said it: [`SolidOptions::overlapping`].
     Assumed,
@@ -55,9 +62,11 @@ pub enum StartProof {
 
 /// The pair of facets that stops the moving body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StopProof {
     /// Their least gap, of the shrunk bodies, in multiples of the direction, or 0: the value of
     /// [`SolidContact::shrunk_distance`](crate::SolidContact::shrunk_distance).
+    #[cfg_attr(feature = "serde", serde(rename = "distance"))]
     pub shrunk_distance: f64,
     /// Positions in [`Solid::triangles`] of the moving and of the fixed body.
     pub triangles: [u32; 2],
@@ -68,6 +77,11 @@ pub struct StopProof {
 /// Split is the node with the longer diagonal of its box, the moving one if they are equal, and never
 /// a leaf.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(into = "String", try_from = "String")
+)]
 pub struct Cover(pub(crate) Vec<Option<Reason>>);
 
 impl From<Vec<Option<Reason>>> for Cover {
@@ -78,6 +92,7 @@ impl From<Vec<Option<Reason>>> for Cover {
 
 /// One entry of a cover: what is said of all pairs of some facets.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Claim {
     /// Positions in [`Solid::triangles`] of the moving body.
     pub moving: std::ops::Range<usize>,

@@ -11,6 +11,11 @@ use super::separating_axes::Reach;
 
 /// Why no two facets of a pair of nodes need a further look: what a proof says of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Reason {
     /// No facet of the moving body looks along the direction.
     MovingFacesAway,

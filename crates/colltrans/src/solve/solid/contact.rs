@@ -48,6 +48,7 @@ use crate::body::solid::Solid;
 /// What of a body meets there: of all that holds the contact point the face that lies in the contact
 /// plane, else the edge that does, else the smallest, be it a corner, an edge or a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolidContact {
     /// Where the facets that stop the shrunk bodies meet in their true place, in multiples of the
     /// direction: 7 for a head that stops at 7. Negative where these facets, as they are, overlap.

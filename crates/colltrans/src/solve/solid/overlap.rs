@@ -35,6 +35,11 @@ use crate::body::solid::wedge::{Axis, Ray, Wedge};
 /// Where the solids overlap: positions in [`Solid::triangles`](crate::Solid::triangles);
 /// [`Solid::facet_indices`](crate::Solid::facet_indices) leads to the facets of the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Overlap {
     /// Around these two triangles, of the moving and of the fixed body.
     Facets(u32, u32),

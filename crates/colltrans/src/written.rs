@@ -1,0 +1,83 @@
+//! How values are written wherever they are: names of choices, and numbers that may be infinite.
+
+use thiserror::Error;
+
+use crate::answer::{Solver, StartedFrom};
+use crate::cast::solid::StartOverlap;
+use crate::solve::options::NarrowFrom;
+
+/// A text that names none of the choices.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("there is no {what} {name:?}; there are {}", .known.join(", "))]
+pub struct UnknownName {
+    /// What it should name.
+    pub what: &'static str,
+    /// The text.
+    pub name: String,
+    /// The names that there are.
+    pub known: &'static [&'static str],
+}
+
+/// A choice and its names: those that serde writes, as `Display`, and back.
+macro_rules! named {
+    ($what:literal, $choice:ident { $($variant:ident: $name:literal),+ }) => {
+        impl $choice {
+            /// As it is written.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name),+
+                }
+            }
+        }
+
+        impl std::fmt::Display for $choice {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $choice {
+            type Err = UnknownName;
+
+            fn from_str(name: &str) -> Result<Self, UnknownName> {
+                match name {
+                    $($name => Ok(Self::$variant),)+
+                    _ => Err(UnknownName { what: $what, name: name.into(), known: &[$($name),+] }),
+                }
+            }
+        }
+    };
+}
+
+named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
+named!("start", StartedFrom { Features: "features", Region: "region", Scratch: "scratch" });
+named!("start", NarrowFrom { Ellipsoids: "ellipsoids", Center: "center" });
+named!("meaning of an overlap", StartOverlap { Refuse: "refuse", Ignore: "ignore" });
+
+/// A number that is infinite where nothing is known or nothing stops: JSON has no such number, so it
+/// is written as nothing (`null`), in every format.
+#[cfg(feature = "serde")]
+pub(crate) mod or_infinite {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+    pub(crate) fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
+        Some(value).filter(|value| value.is_finite()).serialize(to)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
+    }
+}
+
+/// The same of a lower bound.
+#[cfg(feature = "serde")]
+pub(crate) mod or_minus_infinite {
+    use serde::{Deserialize, Deserializer};
+
+    pub(crate) use super::or_infinite::serialize;
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(from)?.unwrap_or(f64::NEG_INFINITY))
+    }
+}

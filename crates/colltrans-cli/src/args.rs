@@ -71,6 +71,11 @@ pub(crate) enum Command {
     /// A query that ends without an answer is saved as colltrans-case-1.json, exact in bits.
     #[command(after_help = fitted(&[EXIT_CODES]))]
     Replay(ReplayArguments),
+    /// Check a proof that --save-proof has written, without a search
+    ///
+    /// Says in one line what is proven of the bodies in the file; exit code 6 if it does not hold.
+    #[command(after_help = fitted(&[EXIT_CODES]))]
+    Verify(VerifyArguments),
 }
 
 #[derive(Debug, Args)]
@@ -95,6 +100,10 @@ pub(crate) struct PairArguments {
     /// Draw both bodies and the contact as an SVG picture
     #[arg(long, value_name = "OUT.svg", value_parser = picture)]
     pub(crate) picture: Option<PathBuf>,
+    /// Write the proof of the answer, with the bodies and where they are, as one file that `colltrans
+    /// verify` checks
+    #[arg(long, value_name = "OUT.json", conflicts_with = "directions")]
+    pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,
     #[command(flatten)]
@@ -133,6 +142,10 @@ pub(crate) struct ClearArguments {
     /// Draw the parts and what stops them as an SVG picture
     #[arg(long, value_name = "OUT.svg", value_parser = picture)]
     pub(crate) picture: Option<PathBuf>,
+    /// Write the proof of the answer, with the bodies and where they are, as one file that `colltrans
+    /// verify` checks
+    #[arg(long, value_name = "OUT.json", conflicts_with = "directions")]
+    pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,
     /// Take surfaces that are not closed, as sheets and scans are: they block from both sides and with
@@ -316,6 +329,16 @@ pub(crate) struct ReplayArguments {
     /// The saved query
     #[arg(value_name = "CASE.json")]
     pub(crate) case: PathBuf,
+    /// Answer as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArguments {
+    /// The saved proof
+    #[arg(value_name = "PROOF.json")]
+    pub(crate) proof: PathBuf,
     /// Answer as JSON
     #[arg(long)]
     pub(crate) json: bool,

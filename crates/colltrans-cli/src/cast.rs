@@ -4,7 +4,7 @@ use std::io::{self, Read as _};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{Cast, Clearance, ContactRange, Options, QueryError};
+use colltrans::{Cast, Clearance, ContactRange, Options, ProofFile, QueryError};
 
 use crate::args::{self, DirectionArguments, PairArguments};
 use crate::body::{self, Part};
@@ -12,6 +12,7 @@ use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
 use crate::outputs;
 use crate::picture::{Scene, draw};
+use crate::proof::{self, refuse_proof};
 use crate::record::{Hulls, Name, Record};
 use crate::replay;
 use crate::report;
@@ -32,7 +33,9 @@ enum Answer {
 }
 
 pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure> {
-    refuse_picture(arguments.picture.as_deref(), &[&arguments.moving, &arguments.fixed])?;
+    let (picture, inputs) = (arguments.picture.as_deref(), [&*arguments.moving, &*arguments.fixed]);
+    refuse_picture(picture, &inputs)?;
+    refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
     let places = &arguments.places;
     let [moving_pose, fixed_pose] = places.poses()?;
     let directions = directions(&arguments.directions)?;
@@ -144,6 +147,13 @@ fn answer_one(
         }
     };
     print(&text)?;
+    if let Some(path) = &arguments.save_proof {
+        let proof = match &answer {
+            Answer::Contact(range) => ProofFile::of_range(cast, range),
+            Answer::Clearance(clearance) => ProofFile::of_clearance(cast, clearance),
+        };
+        proof::save(path, &proof)?;
+    }
     let Some(path) = &arguments.picture else { return Ok(()) };
     let range = match answer {
         Answer::Contact(range) => range,

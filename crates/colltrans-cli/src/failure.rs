@@ -19,6 +19,8 @@ pub(crate) enum Code {
     Query = 4,
     /// The answer cannot be written.
     Output = 5,
+    /// A proof does not hold.
+    Refused = 6,
 }
 
 /// Says something on standard error that does not end the command.

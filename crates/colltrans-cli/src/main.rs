@@ -6,7 +6,8 @@
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read, [`outputs`]
 //! writes files whole or not at all, [`terminal`] keeps names from steering it.
 //! [`info`] looks at one mesh, [`assembly`] at many parts. Parts that need not be convex go from [`solid`] (mesh files to
-//! solids, and the library's part) by way of [`clear`]; [`progress`] shows how far work is.
+//! solids, and the library's part) by way of [`clear`]; [`progress`] shows how far work is. [`proof`]
+//! saves proofs and checks saved ones.
 
 mod args;
 mod assembly;
@@ -21,6 +22,7 @@ mod numbers;
 mod outputs;
 mod picture;
 mod progress;
+mod proof;
 mod record;
 mod replay;
 mod report;
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::Verify(arguments) => proof::verify(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

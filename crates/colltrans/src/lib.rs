@@ -106,7 +106,7 @@
 //! holds), choices by the names that they print and parse, a pose column by column, an infinite bound as
 //! nothing (`null`). Numbers come back as the same bits. What is read is checked where it is a pose or a
 //! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. The feature `json`
-//! adds whole queries as files (`Case`).
+//! adds whole queries and proofs as files (`Case`, `ProofFile`).
 //!
 //! # How it works
 //!
@@ -151,7 +151,7 @@ pub use cast::solid::{
     StartProof, StopProof,
 };
 #[cfg(feature = "json")]
-pub use cast::{Case, CaseError};
+pub use cast::{Case, CaseError, Contacts, ProofFile, SolidStatement, Statement, Stop};
 pub use cast::{Cast, Features, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};

@@ -99,7 +99,8 @@ Exit codes:
   3  an input file cannot be read, a body is not what it should be, or an output would overwrite an
      input
   4  the query has no certified answer (please report the case)
-  5  the output cannot be written";
+  5  the output cannot be written
+  6  verify: the proof does not hold";
 
 /// Which mesh files are read, and how their numbers are meant.
 pub(super) fn formats() -> String {

@@ -11,13 +11,16 @@ use crate::inputs::refuse_picture;
 use crate::outputs;
 use crate::picture::draw_solids;
 use crate::progress;
+use crate::proof::{self, refuse_proof};
 use crate::record::{Name, Record};
 use crate::solid::{Body, Question};
 
 pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
     let files = arguments.moving.iter().chain(&arguments.from);
     let inputs: Vec<&Path> = files.map(AsRef::as_ref).collect();
-    refuse_picture(arguments.picture.as_deref(), &inputs)?;
+    let picture = arguments.picture.as_deref();
+    refuse_picture(picture, &inputs)?;
+    refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
     let places = &arguments.places;
     let [moving_pose, fixed_pose] = places.poses()?;
     let directions = directions(&arguments.directions)?;
@@ -53,6 +56,9 @@ fn answer_one(arguments: &ClearArguments, question: &Question<'_>) -> Result<(),
         words::answer(&answer, question.direction, is_default)
     };
     print(&text)?;
+    if let Some(path) = &arguments.save_proof {
+        proof::save(path, &question.prove(answer.tolerance)?)?;
+    }
     match &arguments.picture {
         Some(path) => outputs::write(path, draw_solids(question, &answer).as_bytes()),
         None => Ok(()),

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Bounded, Cast, Clearance, Feature, Pose, QueryError, Solid, SolidContact, SolidOverlap,
-    StartOverlap,
+    Bounded, Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid, SolidContact,
+    SolidOverlap, StartOverlap,
 };
 use colltrans_mesh::body::between;
 
 use super::{Body, Piece};
+use crate::failure::{Code, Failure};
 use crate::numbers::counted;
 use crate::record::FeatureRecord;
 
@@ -123,6 +124,15 @@ impl<'a> Question<'a> {
             notes: self.unshrunk(tolerance),
             error: precisions[0] + precisions[1] + ROUNDING * self.size(),
         })
+    }
+
+    /// The proof of the answer with a tolerance.
+    pub(crate) fn prove(&self, tolerance: f64) -> Result<ProofFile, Failure> {
+        let cast = self.cast(self.moving.solid(), self.fixed.solid(), tolerance)?;
+        let [moving, fixed] = [self.moving, self.fixed]
+            .map(|body| body.pieces.iter().map(|piece| &piece.solid).collect::<Vec<_>>());
+        ProofFile::of_solids(&cast, [&moving, &fixed])
+            .map_err(|error| Failure::new(Code::Query, error.to_string()))
     }
 
     fn cast<'s>(

@@ -7,6 +7,7 @@ mod clear;
 mod example_parts;
 mod newcomers;
 mod picture;
+mod proof;
 mod readme;
 mod replay;
 mod support;

@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::Cast;
 use crate::body::error::{BuildError, PoseError};
 use crate::body::pose::PoseRecord;
+use crate::body::solid::SolidError;
 use crate::body::{ConvexPolyhedron, Pose};
 use crate::setting::error::QueryError;
 use crate::solve::options::{Options, OptionsRecord};
@@ -20,7 +21,7 @@ use crate::solve::options::{Options, OptionsRecord};
 #[non_exhaustive]
 pub enum CaseError {
     /// It is not JSON, or lacks something.
-    #[error("not a saved query: {}", what_is_wrong(.0))]
+    #[error("not a saved query: {}", what_is_wrong(.0, "a saved query"))]
     Syntax(#[from] serde_json::Error),
     /// It was written by another version.
     #[error("the format is {found:?}, not {known:?}")]
@@ -44,16 +45,36 @@ pub enum CaseError {
     /// The direction or a choice is refused.
     #[error(transparent)]
     Query(#[from] QueryError),
+    /// It is no proof: no JSON, or it lacks something.
+    #[error("not a saved proof: {}", what_is_wrong(.0, "a saved proof"))]
+    Proof(serde_json::Error),
+    /// A body is no solid.
+    #[error("{which} body: {error}")]
+    Solid {
+        /// `"moving"` or `"fixed"`.
+        which: &'static str,
+        /// What is wrong with it.
+        error: SolidError,
+    },
+    /// One body is convex, the other a solid.
+    #[error("one body is convex, the other is made of pieces")]
+    Mixed,
+    /// A solid that its own facets do not make once more.
+    #[error("{which} body: its facets alone do not say what it is")]
+    Changed {
+        /// `"moving"` or `"fixed"`.
+        which: &'static str,
+    },
 }
 
 /// In words of the file, not of its parser.
-fn what_is_wrong(error: &serde_json::Error) -> String {
+fn what_is_wrong(error: &serde_json::Error, file: &str) -> String {
     use serde_json::error::Category;
     let what = match error.classify() {
         Category::Io => return error.to_string(),
-        Category::Syntax => "it is no JSON",
-        Category::Eof => "it ends too early",
-        Category::Data => "something is missing, or is not what a saved query has there",
+        Category::Syntax => "it is no JSON".into(),
+        Category::Eof => "it ends too early".into(),
+        Category::Data => format!("something is missing, or is not what {file} has there"),
     };
     format!("line {}, column {}: {what}", error.line(), error.column())
 }

@@ -26,6 +26,16 @@ pub struct VertexPair {
     pub fixed: u32,
 }
 
+/// # Errors
+/// A direction that is zero, not finite or out of range.
+#[inline]
+pub(crate) fn check_direction(direction: DVec3) -> Result<(), QueryError> {
+    if direction == DVec3::ZERO || !in_exact_range(direction) {
+        return Err(QueryError::Direction { direction });
+    }
+    Ok(())
+}
+
 /// Two placed bodies and a direction.
 #[derive(Debug)]
 pub(crate) struct Setting<'a, B = ConvexPolyhedron> {
@@ -69,9 +79,7 @@ impl<'a, B> Setting<'a, B> {
         fixed: Placed<'a, B>,
         direction: DVec3,
     ) -> Result<Self, QueryError> {
-        if direction == DVec3::ZERO || !in_exact_range(direction) {
-            return Err(QueryError::Direction { direction });
-        }
+        check_direction(direction)?;
         let length = direction.length();
         let translations = [moving.pose.translation(), fixed.pose.translation()];
         let [t_p, t_q] = translations;

@@ -1,0 +1,74 @@
+//! Proofs as files: what `--save-proof` writes and `colltrans verify` checks.
+
+use std::path::Path;
+
+use colltrans::{ProofFile, Statement};
+use serde_json::{Map, Value, json};
+
+use crate::args::VerifyArguments;
+use crate::failure::{Code, Failure, print, print_json};
+use crate::inputs::refuse_overwriting;
+use crate::outputs;
+
+/// A proof must not take the place of what is read, nor of the picture.
+pub(crate) fn refuse_proof(
+    proof: Option<&Path>,
+    picture: Option<&Path>,
+    inputs: &[&Path],
+) -> Result<(), Failure> {
+    let Some(proof) = proof else { return Ok(()) };
+    if picture == Some(proof) {
+        return Err(Failure::new(Code::Usage, "--save-proof and --picture name one file"));
+    }
+    refuse_overwriting(proof, inputs, "give the proof another name")
+}
+
+pub(crate) fn save(path: &Path, proof: &ProofFile) -> Result<(), Failure> {
+    outputs::write(path, format!("{}\n", proof.to_json()).as_bytes())
+}
+
+pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
+    let place = arguments.proof.display();
+    let input = |what: String| Failure::new(Code::Input, format!("{place}: {what}"));
+    let text = colltrans_mesh::file::text(&arguments.proof)
+        .map_err(|error| input(format!("cannot be read: {error}")))?;
+    let proof = ProofFile::from_json(&text).map_err(|error| input(error.to_string()))?;
+    match proof.check() {
+        Ok(()) if arguments.json => print_json(&format!("{}\n", told(proof.statement()))),
+        Ok(()) => print(&format!("holds: {}\n", proof.statement())),
+        Err(error) => {
+            if arguments.json {
+                let told = json!({ "holds": false, "message": error.to_string() });
+                print_json(&format!("{told}\n"))?;
+            }
+            Err(Failure::new(Code::Refused, format!("{place}: the proof does not hold: {error}")))
+        }
+    }
+}
+
+/// What is proven, in the fields of answers.
+fn told(statement: &Statement) -> Value {
+    let mut fields = Map::new();
+    let mut say = |name: &str, value: Value| fields.insert(name.into(), value);
+    say("holds", json!(true));
+    match statement {
+        Statement::Contacts(contacts) => {
+            let [first, last] = contacts.bounds();
+            first.map(|bounds| say("translation_bounds", json!(bounds)));
+            last.map(|bounds| say("exit_bounds", json!(bounds)));
+        }
+        Statement::Separation(separation) => {
+            say("margin", json!(separation.margin));
+        }
+        Statement::Clearance(statement) => {
+            say("tolerance", json!(statement.certificate.tolerance));
+            if let Some(stop) = statement.stop {
+                say("translation_bounds", json!(stop.translation.bounds()));
+                say("facets", json!(stop.facets));
+            }
+            statement.separation.map(|plane| say("margin", json!(plane.margin)));
+        }
+    }
+    say("statement", json!(statement.to_string()));
+    Value::Object(fields)
+}

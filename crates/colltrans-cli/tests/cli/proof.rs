@@ -1,0 +1,129 @@
+//! `--save-proof` and `colltrans verify`.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::{Value, json};
+
+use crate::support::{CAST, answered, data, folder, json as read, refused, run, stderr, stdout};
+
+/// The checker in fractions agrees, where there is a Python to run it.
+fn checked_in_fractions(folder: &Path) {
+    let checker = data().join("../python/src/colltrans/check.py");
+    let mut python = Command::new("python3");
+    python.args(["-I", "-S"]).arg(checker).arg("proof.json").current_dir(folder);
+    let Ok(output) = python.output() else { return };
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with("holds: "), "{}", stdout(&output));
+}
+
+fn saved(folder: &Path, arguments: &[&str]) -> Value {
+    let mut all = arguments.to_vec();
+    all.extend(["--save-proof", "proof.json"]);
+    answered(folder, &all);
+    read(&fs::read_to_string(folder.join("proof.json")).unwrap())
+}
+
+#[test]
+fn a_saved_proof_holds_and_is_told_in_one_line() {
+    let folder = folder();
+    let folder = folder.path();
+    let pair = |command, y| {
+        let pose = format!("-3,{y},-0.5");
+        [command, "cube.off", "cube.off", "--direction", "x", "--moving-pose"]
+            .map(str::to_owned)
+            .into_iter()
+            .chain([pose])
+            .collect::<Vec<_>>()
+    };
+    for (command, y, said, field) in [
+        ("cast", "0.25", "the bodies meet from a translation between 1.9", "exit_bounds"),
+        ("cast", "3", "the bodies never meet along the direction", "margin"),
+        (
+            "clearance",
+            "0.25",
+            "the bodies first meet at a translation between 1.9",
+            "translation_bounds",
+        ),
+        ("clearance", "1", "the bodies meet at no translation below 1.9", "translation_bounds"),
+    ] {
+        let arguments = pair(command, y);
+        let plain = answered(folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
+        let mut all: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        all.extend(["--save-proof", "proof.json"]);
+        assert_eq!(answered(folder, &all), plain, "the answer is the same");
+        let text = answered(folder, &["verify", "proof.json"]);
+        assert!(text.starts_with(&format!("holds: {said}")), "{text}");
+        assert_eq!(text.lines().count(), 1);
+        let told = read(&answered(folder, &["verify", "proof.json", "--json"]));
+        assert!(told["holds"] == true && told.get(field).is_some(), "{told}");
+        checked_in_fractions(folder);
+    }
+}
+
+#[test]
+fn a_proof_between_solids_holds() {
+    let folder = folder();
+    let folder = folder.path();
+    let clear = ["clear", "dent.off", "--from", "cube.off", "dent.off", "--direction", "-z"];
+    for (pose, said) in [
+        ("0,0,5", "stops the moving one before a translation of 3.99999"),
+        ("5,0,5", "nothing ever stops the moving one"),
+        ("0.2,0.1,0.3", "the bodies overlap where they are"),
+    ] {
+        let mut all = clear.to_vec();
+        all.extend(["--moving-pose", pose]);
+        saved(folder, &all);
+        let text = answered(folder, &["verify", "proof.json"]);
+        assert!(text.contains(said), "{text}");
+    }
+}
+
+#[test]
+fn what_does_not_hold_has_a_code_of_its_own() {
+    let folder = folder();
+    let folder = folder.path();
+    let file = saved(folder, &CAST);
+    let mut wrong = file.clone();
+    let lower = wrong.pointer_mut("/statement/contacts/first/lower").unwrap();
+    *lower = json!(lower.as_f64().unwrap() + 1e-6);
+    fs::write(folder.join("wrong.json"), wrong.to_string()).unwrap();
+    refused(folder, &["verify", "wrong.json"], 6, &["wrong.json: the proof does not hold"]);
+    let output = run(folder, &["verify", "wrong.json", "--json"]);
+    assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
+    assert_eq!(read(&stdout(&output))["holds"], false);
+}
+
+#[test]
+fn other_files_are_no_proofs() {
+    let folder = folder();
+    let folder = folder.path();
+    let text = saved(folder, &CAST).to_string();
+    fs::write(folder.join("half.json"), &text[..text.len() / 2]).unwrap();
+    refused(
+        folder,
+        &["verify", "half.json"],
+        3,
+        &["half.json: not a saved proof", "ends too early"],
+    );
+    refused(folder, &["verify", "cube.off"], 3, &["cube.off: not a saved proof", "it is no JSON"]);
+    refused(folder, &["verify", "none.json"], 3, &["none.json: cannot be read"]);
+    refused(folder, &["verify"], 2, &["PROOF.json"]);
+    refused(folder, &["verify", "half.json", "--search"], 2, &["--search"]);
+    let with = |more: &[&'static str]| [&CAST[..], more].concat();
+    refused(folder, &with(&["--save-proof", "cube.off"]), 3, &["is the same file", "another name"]);
+    let one = with(&["--save-proof", "a.svg", "--picture", "a.svg"]);
+    refused(folder, &one, 2, &["--save-proof and --picture name one file"]);
+    let many = ["cast", "cube.off", "cube.off", "--directions", "-", "--save-proof", "a.json"];
+    refused(folder, &many, 2, &["--directions"]);
+}
+
+#[test]
+fn the_example_parts_are_proven() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = |name: &str| data().join("gearbox_small").join(name).display().to_string();
+    let (cover, housing, gear) = (part("cover.off"), part("housing.off"), part("gear.off"));
+    saved(folder.path(), &["clear", &cover, "--from", &housing, &gear, "--direction", "1,0.1,0"]);
+    answered(folder.path(), &["verify", "proof.json"]);
+}

@@ -1,0 +1,486 @@
+//! A proof with all that it is about, as one file.
+//!
+//! Bodies are written as they are, exact in bits, with their poses and the direction; then what is
+//! claimed of them, with its certificates. A certificate between solids tells facets by their place
+//! in a tree, so it is made for the bodies as they are read back from the file.
+
+use std::fmt;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::replay::BodyRecord;
+use super::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use super::{CaseError, Cast};
+use crate::answer::{
+    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, OverlapAhead,
+    Separation, WhyFree,
+};
+use crate::body::pose::PoseRecord;
+use crate::body::solid::{Solid, SolidError};
+use crate::body::{ConvexPolyhedron, Pose};
+
+/// What a file of this version calls itself.
+const FORMAT: &str = "colltrans proof 1";
+
+/// A proof that owns its bodies: whoever has the file can check what it says, without a search.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::{Cast, ConvexPolyhedron, Pose, ProofFile};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+/// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+///
+/// let saved = ProofFile::of_range(&cast, &cast.contact_range()?).to_json();
+/// let proof = ProofFile::from_json(&saved)?;
+/// proof.check()?;
+/// assert!(proof.statement().to_string().starts_with("the bodies meet from a translation"));
+/// assert!(ProofFile::from_json(&saved.replace("[-3.0,", "[-3.1,"))?.check().is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ProofFile {
+    bodies: Bodies,
+    poses: [Pose; 2],
+    direction: DVec3,
+    statement: Statement,
+}
+
+#[derive(Debug, Clone)]
+enum Bodies {
+    Convex(Box<[ConvexPolyhedron; 2]>),
+    Solids { made: Box<[Solid; 2]>, of: [Vec<PieceRecord>; 2] },
+}
+
+/// What a [`ProofFile`] says of its bodies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Statement {
+    /// Where convex bodies meet first, or last, or both.
+    Contacts(Contacts),
+    /// That convex bodies never meet.
+    Separation(Separation),
+    /// How far a solid can move from where it is.
+    Clearance(SolidStatement),
+}
+
+/// The ends of the translations at which two convex bodies meet; one of them may be missing.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contacts {
+    /// Of the first contact, along the direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first: Option<Certificate>,
+    /// Of the last one: the first of the [reversed](Cast::reversed) cast.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<Certificate>,
+}
+
+/// What is said of two solids.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolidStatement {
+    /// What an overlap at the start means.
+    pub start_overlap: StartOverlap,
+    /// The proof for the bodies shrunk by half of its tolerance.
+    pub certificate: SolidCertificate,
+    /// What stops the moving body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stop: Option<Stop>,
+    /// A plane between the shrunk bodies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub separation: Option<Separation>,
+}
+
+/// Two facets, and where they meet as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stop {
+    /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
+    pub facets: [u32; 2],
+    /// Where they meet in their true place: [`SolidContact::translation`](crate::SolidContact::translation).
+    pub translation: Bounded,
+}
+
+impl Contacts {
+    /// The translation at which the bodies first meet, and the one at which they last do: at least,
+    /// and at most.
+    pub fn bounds(&self) -> [Option<[f64; 2]>; 2] {
+        let first = self.first.map(|first| [first.lower, first.upper]);
+        // Not -0.
+        [first, self.last.map(|last| [0.0 - last.upper, 0.0 - last.lower])]
+    }
+}
+
+impl ProofFile {
+    /// Of an answer of [`Cast::contact_range`]; `cast` is the one that was asked.
+    pub fn of_range(cast: &Cast<'_>, range: &ContactRange) -> Self {
+        Self::of_convex(
+            cast,
+            match range {
+                ContactRange::Contact { first, last } => between(Some(first), Some(last)),
+                ContactRange::Grazing { first, last } => {
+                    between(Some(&first.contact), Some(&last.contact))
+                }
+                ContactRange::Separated(separated) => Statement::Separation(separated.certificate),
+            },
+        )
+    }
+
+    /// Of an answer of [`Cast::clearance`]; `cast` is the one that was asked.
+    pub fn of_clearance(cast: &Cast<'_>, clearance: &Clearance) -> Self {
+        Self::of_convex(
+            cast,
+            match clearance {
+                Clearance::Blocked { contact, .. } => between(Some(contact), None),
+                Clearance::Free(WhyFree::Slides(grazing)) => between(Some(&grazing.contact), None),
+                Clearance::Free(WhyFree::Behind(last)) => between(None, Some(last)),
+                Clearance::Free(WhyFree::Separated(separated)) => {
+                    Statement::Separation(separated.certificate)
+                }
+                Clearance::Overlapping(OverlapAhead { first, last }) => {
+                    between(Some(first), Some(last))
+                }
+            },
+        )
+    }
+
+    fn of_convex(cast: &Cast<'_>, statement: Statement) -> Self {
+        Self {
+            bodies: Bodies::Convex(Box::new([cast.moving().clone(), cast.fixed().clone()])),
+            poses: [cast.moving_pose(), cast.fixed_pose()],
+            direction: cast.direction(),
+            statement,
+        }
+    }
+
+    /// Of [`Cast::clearance`] between solids, asked once more with its proof. `pieces` are those that
+    /// each body is the union of ([`Solid::from_pieces`]), or the body itself. Of the choices, the
+    /// tolerance and what an overlap means count.
+    ///
+    /// # Errors
+    /// A body that its own facets do not make once more.
+    pub fn of_solids(cast: &Cast<'_, Solid>, pieces: [&[&Solid]; 2]) -> Result<Self, CaseError> {
+        let of: [Vec<PieceRecord>; 2] =
+            pieces.map(|pieces| pieces.iter().map(|piece| PieceRecord::of(piece)).collect());
+        let made = Box::new([union(&of[0], "moving")?, union(&of[1], "fixed")?]);
+        for (which, made, asked) in
+            [("moving", &made[0], cast.moving()), ("fixed", &made[1], cast.fixed())]
+        {
+            if !is_same(made, asked) {
+                return Err(CaseError::Changed { which });
+            }
+        }
+        let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
+        let options = options(cast.options().start_overlap, cast.tolerance());
+        let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
+        let statement = SolidStatement::of(&again.with_options(options)?);
+        let bodies = Bodies::Solids { made, of };
+        Ok(Self { bodies, poses, direction, statement: Statement::Clearance(statement) })
+    }
+
+    /// What it says; true if [`Self::check`] does not object.
+    pub const fn statement(&self) -> &Statement {
+        &self.statement
+    }
+
+    /// Checks it as [`Cast::verify`] does, without a search.
+    ///
+    /// # Errors
+    /// The first thing that is not proven.
+    pub fn check(&self) -> Result<(), CertificateError> {
+        let impossible = |_| CertificateError::Start;
+        let [moving, fixed] = self.poses;
+        match (&self.bodies, &self.statement) {
+            (Bodies::Convex(bodies), statement) => {
+                let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
+                let cast = Cast::new(placed[0], placed[1], self.direction).map_err(impossible)?;
+                statement.check(&cast)
+            }
+            (Bodies::Solids { made, .. }, Statement::Clearance(statement)) => {
+                let placed = [made[0].at(moving), made[1].at(fixed)];
+                let cast = Cast::new(placed[0], placed[1], self.direction).map_err(impossible)?;
+                let options = options(statement.start_overlap, statement.certificate.tolerance);
+                statement.check(&cast.with_options(options).map_err(impossible)?)
+            }
+            (Bodies::Solids { .. }, _) => Err(CertificateError::Start),
+        }
+    }
+
+    /// As a file: numbers that read back as the same bits.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        let [moving, fixed] = match &self.bodies {
+            Bodies::Convex(bodies) => {
+                bodies.each_ref().map(|body| BodyFile::Convex(BodyRecord::of(body)))
+            }
+            Bodies::Solids { of, .. } => of.each_ref().map(|of| BodyFile::Pieces(of.clone())),
+        };
+        let [moving_pose, fixed_pose] = self.poses.map(PoseRecord::from);
+        let file = File {
+            format: FORMAT.into(),
+            moving,
+            moving_pose,
+            fixed,
+            fixed_pose,
+            direction: self.direction.to_array(),
+            statement: self.statement.clone(),
+        };
+        serde_json::to_string(&file).expect("numbers and names")
+    }
+
+    /// From what [`Self::to_json`] has written. It is read, not believed: see [`Self::check`].
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        #[derive(Deserialize)]
+        struct Named {
+            format: String,
+        }
+        // Some editors begin a file with a byte-order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let Named { format } = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        if format != FORMAT {
+            return Err(CaseError::Format { found: format, known: FORMAT });
+        }
+        let file: File = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let bodies = match (file.moving, file.fixed) {
+            (BodyFile::Convex(moving), BodyFile::Convex(fixed)) => {
+                let body = |record: BodyRecord, which| {
+                    record.body().map_err(|error| CaseError::Body { which, error })
+                };
+                Bodies::Convex(Box::new([body(moving, "moving")?, body(fixed, "fixed")?]))
+            }
+            (BodyFile::Pieces(moving), BodyFile::Pieces(fixed)) => Bodies::Solids {
+                made: Box::new([union(&moving, "moving")?, union(&fixed, "fixed")?]),
+                of: [moving, fixed],
+            },
+            _ => return Err(CaseError::Mixed),
+        };
+        let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
+        let direction = DVec3::from_array(file.direction);
+        crate::setting::check_direction(direction)?;
+        Ok(Self { bodies, poses, direction, statement: file.statement })
+    }
+}
+
+/// The contacts at the ends, those that there are.
+fn between(first: Option<&Contact>, last: Option<&Contact>) -> Statement {
+    let [first, last] = [first, last].map(|end| end.map(|contact| contact.certificate));
+    Statement::Contacts(Contacts { first, last })
+}
+
+fn options(start_overlap: StartOverlap, tolerance: f64) -> SolidOptions {
+    SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() }
+}
+
+impl Statement {
+    /// Of convex bodies.
+    fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
+        match self {
+            Self::Contacts(Contacts { first: None, last: None }) | Self::Clearance(_) => {
+                Err(CertificateError::Start)
+            }
+            Self::Contacts(Contacts { first, last }) => {
+                first.map_or(Ok(0.0), |first| cast.verify(&first))?;
+                last.map_or(Ok(0.0), |last| cast.reversed().verify(&last))?;
+                Ok(())
+            }
+            Self::Separation(separation) => cast.verify(separation).map(|_| ()),
+        }
+    }
+}
+
+impl SolidStatement {
+    fn of(cast: &Cast<'_, Solid>) -> Self {
+        let (clearance, certificate) = cast.certified_clearance();
+        let (stop, separation) = match clearance {
+            Clearance::Blocked { contact, .. } => {
+                let facets = facets(cast, contact.triangles);
+                (facets.map(|facets| Stop { facets, translation: contact.translation }), None)
+            }
+            Clearance::Free(plane) => (None, plane),
+            Clearance::Overlapping(_) => (None, None),
+        };
+        let start_overlap = cast.options().start_overlap;
+        Self { start_overlap, certificate, stop, separation }
+    }
+
+    fn check(&self, cast: &Cast<'_, Solid>) -> Result<(), CertificateError> {
+        cast.verify(&self.certificate)?;
+        if let Some(separation) = &self.separation {
+            cast.verify(separation)?;
+        }
+        let (stop, triangles) = match (self.stop, self.certificate.stop) {
+            (None, None) => return Ok(()),
+            (Some(stop), Some(proof)) => (stop, proof.triangles),
+            _ => return Err(CertificateError::Start),
+        };
+        let [moving, fixed] = stop.facets;
+        let overlapping = Some(!matches!(self.certificate.start, StartProof::Apart(_)));
+        let of_pair = Cast { options: SolidOptions { overlapping, ..cast.options }, ..*cast };
+        let found =
+            of_pair.stop_by(triangles).filter(|_| facets(cast, triangles) == Some(stop.facets));
+        let Some(found) = found else { return Err(CertificateError::Facets { moving, fixed }) };
+        let (claimed, proven) = (stop.translation, found.translation);
+        if !(claimed.lower <= proven.lower && claimed.lower <= claimed.value) {
+            return Err(CertificateError::Bound { proven: proven.lower, claimed: claimed.lower });
+        }
+        if !(claimed.upper >= proven.upper && claimed.upper >= claimed.value) {
+            return Err(CertificateError::Bound { proven: proven.upper, claimed: claimed.upper });
+        }
+        Ok(())
+    }
+}
+
+/// The facets of the input that two triangles are parts of.
+fn facets(cast: &Cast<'_, Solid>, [s, t]: [u32; 2]) -> Option<[u32; 2]> {
+    let of = |body: &Solid, at: u32| body.facet_indices().get(at as usize).copied();
+    Some([of(cast.moving(), s)?, of(cast.fixed(), t)?])
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    format: String,
+    moving: BodyFile,
+    moving_pose: PoseRecord,
+    fixed: BodyFile,
+    fixed_pose: PoseRecord,
+    direction: [f64; 3],
+    statement: Statement,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum BodyFile {
+    Convex(BodyRecord),
+    Pieces(Vec<PieceRecord>),
+}
+
+/// A mesh that a solid is made of.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PieceRecord {
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    open: bool,
+}
+
+impl PieceRecord {
+    fn of(solid: &Solid) -> Self {
+        Self {
+            vertices: solid.vertices().iter().map(DVec3::to_array).collect(),
+            triangles: solid.triangles().to_vec(),
+            open: !solid.is_closed(),
+        }
+    }
+
+    fn solid(&self) -> Result<Solid, SolidError> {
+        let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
+        if self.open {
+            Solid::from_open_mesh(&vertices, &self.triangles)
+        } else {
+            Solid::from_mesh(&vertices, &self.triangles)
+        }
+    }
+}
+
+fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError> {
+    let refused = |error| CaseError::Solid { which, error };
+    let solids: Result<Vec<Solid>, SolidError> = pieces.iter().map(PieceRecord::solid).collect();
+    let mut solids = solids.map_err(refused)?;
+    if solids.len() == 1 {
+        return Ok(solids.remove(0));
+    }
+    Solid::from_pieces(&solids).map_err(refused)
+}
+
+/// Whether two solids have the same facets, in whatever order.
+fn is_same(a: &Solid, b: &Solid) -> bool {
+    let facets = |solid: &Solid| {
+        // Without -0.
+        let corner = |v: u32| (solid.vertices()[v as usize] + 0.0).to_array().map(f64::to_bits);
+        let turned = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(corner);
+            [[a, b, c], [b, c, a], [c, a, b]].into_iter().min()
+        };
+        let mut all: Vec<_> = solid.triangles().iter().map(turned).collect();
+        all.sort_unstable();
+        all
+    };
+    a.is_closed() == b.is_closed() && facets(a) == facets(b)
+}
+
+impl fmt::Display for Statement {
+    /// In words, in one line; translations in multiples of the direction.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Contacts(contacts) => contacts.fmt(f),
+            Self::Separation(Separation { margin, .. }) => {
+                write!(
+                    f,
+                    "the bodies never meet along the direction: seen along it, a gap of {margin:?} lies between them"
+                )
+            }
+            Self::Clearance(statement) => statement.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for Contacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.bounds() {
+            [Some([a, b]), Some([c, d])] if b.is_finite() && c.is_finite() => {
+                write!(
+                    f,
+                    "the bodies meet from a translation between {a:?} and {b:?} to one between {c:?} and {d:?}"
+                )
+            }
+            [Some([a, _]), Some([_, d])] => {
+                write!(f, "the bodies meet at no translation below {a:?} or above {d:?}")
+            }
+            [Some([a, b]), None] if b.is_finite() => {
+                write!(f, "the bodies first meet at a translation between {a:?} and {b:?}")
+            }
+            [Some([a, _]), None] => write!(f, "the bodies meet at no translation below {a:?}"),
+            [None, Some([c, d])] if c.is_finite() => {
+                write!(f, "the bodies last meet at a translation between {c:?} and {d:?}")
+            }
+            [None, Some([_, d])] => write!(f, "the bodies meet at no translation above {d:?}"),
+            [None, None] => write!(f, "nothing"),
+        }
+    }
+}
+
+impl fmt::Display for SolidStatement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let SolidCertificate { tolerance, start, lower, .. } = &self.certificate;
+        if *tolerance > 0.0 {
+            write!(f, "shrunk by {:?} each, ", tolerance / 2.0)?;
+        }
+        let overlapping = matches!(start, StartProof::Overlapping(_));
+        f.write_str(if overlapping {
+            "the bodies overlap where they are"
+        } else {
+            "the bodies do not overlap where they are"
+        })?;
+        if overlapping && self.start_overlap == StartOverlap::Refuse {
+            return Ok(());
+        }
+        let later = if overlapping { " that touches later" } else { "" };
+        match self.stop {
+            None => write!(f, ", and nothing{later} ever stops the moving one"),
+            Some(Stop { translation: Bounded { lower: a, upper: b, .. }, .. }) => write!(
+                f,
+                ", and nothing{later} stops the moving one before a translation of {lower:?}; the facets that do meet, as they are, between {a:?} and {b:?}"
+            ),
+        }
+    }
+}

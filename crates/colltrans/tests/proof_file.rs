@@ -1,0 +1,212 @@
+//! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
+#![cfg(feature = "json")]
+
+use colltrans::{
+    CaseError, Cast, ConvexPolyhedron, Pose, ProofFile, Solid, StartOverlap, Statement,
+};
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::solids::{bolt, washer};
+use glam::{DQuat, DVec3};
+use serde_json::{Value, json};
+
+use self::common::solid;
+
+mod common;
+
+/// Written, read, checked.
+fn holds(proof: &ProofFile, of: &str) -> Value {
+    let text = proof.to_json();
+    let read = ProofFile::from_json(&text).unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
+    read.check().unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
+    assert_eq!(read.to_json(), text);
+    serde_json::from_str(&text).expect("JSON")
+}
+
+#[test]
+fn proofs_of_every_family_hold() {
+    for (family, ..) in FAMILIES {
+        for seed in 0..20 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let cast = setting.query(&bodies).expect("a query");
+            let range = cast.contact_range().expect("an answer");
+            holds(&ProofFile::of_range(&cast, &range), family);
+            let clearance = cast.clearance().expect("an answer");
+            holds(&ProofFile::of_clearance(&cast, &clearance), family);
+        }
+    }
+}
+
+fn refused(file: &Value) -> bool {
+    ProofFile::from_json(&file.to_string()).map_or(true, |proof| proof.check().is_err())
+}
+
+/// Changes of every number below a pointer, one at a time; names of those that are still believed.
+fn believed(file: &Value, pointer: &str, changes: &[fn(f64) -> f64]) -> Vec<String> {
+    let mut found = Vec::new();
+    match file.pointer(pointer).expect("it is there") {
+        Value::Object(fields) => {
+            for name in fields.keys() {
+                found.extend(believed(file, &format!("{pointer}/{name}"), changes));
+            }
+        }
+        Value::Array(list) => {
+            for k in 0..list.len() {
+                found.extend(believed(file, &format!("{pointer}/{k}"), changes));
+            }
+        }
+        Value::Number(number) => {
+            let whole = number.is_u64();
+            let number = number.as_f64().expect("a number");
+            for change in changes {
+                let mut wrong = file.clone();
+                let changed = change(number);
+                *wrong.pointer_mut(pointer).expect("it is there") =
+                    if whole { json!(number as u64 + 1) } else { json!(changed) };
+                if !refused(&wrong) {
+                    found.push(format!("{pointer}: {changed:?} for {number:?}"));
+                }
+            }
+        }
+        _ => {}
+    }
+    found
+}
+
+fn cube_cast(body: &ConvexPolyhedron, y: f64) -> Value {
+    let turn = DQuat::from_rotation_x(0.3) * DQuat::from_rotation_z(0.2);
+    let start = Pose::new(turn, DVec3::new(-3.1, y, 0.1)).expect("a pose");
+    let cast = Cast::new(body.at(start), body.at(Pose::IDENTITY), DVec3::new(1.0, 0.1, 0.2))
+        .expect("a direction");
+    holds(&ProofFile::of_range(&cast, &cast.contact_range().expect("an answer")), "cubes")
+}
+
+#[test]
+fn a_number_that_is_changed_is_noticed() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    let file = cube_cast(&cube, 0.3);
+    let both: [fn(f64) -> f64; 2] = [|x| x * 1.001 + 1e-3, |x| x * 0.999 - 1e-3];
+    for place in ["/moving_pose", "/fixed_pose", "/direction"] {
+        assert_eq!(believed(&file, place, &both), [""; 0], "{place}");
+    }
+    for end in ["first", "last"] {
+        let end = format!("/statement/contacts/{end}");
+        for place in ["normal", "pairs", "weights"] {
+            assert_eq!(believed(&file, &format!("{end}/{place}"), &both), [""; 0], "{place}");
+        }
+        // Less than is proven is proven, too.
+        let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
+        let down: [fn(f64) -> f64; 1] = [|x| x - 1e-9];
+        assert_eq!(believed(&file, &format!("{end}/lower"), &up), [""; 0]);
+        assert_eq!(believed(&file, &format!("{end}/rounding"), &up), [""; 0]);
+        assert_eq!(believed(&file, &format!("{end}/upper"), &down), [""; 0]);
+    }
+    let apart = cube_cast(&cube, 3.0);
+    let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
+    assert_eq!(believed(&apart, "/statement/separation/margin", &up), [""; 0]);
+    assert_eq!(believed(&apart, "/statement/separation/normal", &both), [""; 0]);
+}
+
+/// A vertex of the face that touches, pulled out of its body, or the bodies exchanged.
+#[test]
+fn another_body_is_noticed() {
+    let small = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    let file = cube_cast(&small, 0.3);
+    let mut wrong = file.clone();
+    for k in 0..8 {
+        let x = wrong.pointer_mut(&format!("/moving/convex/vertices/{k}/0")).expect("a vertex");
+        *x = json!(x.as_f64().expect("a number") * 1.001);
+    }
+    assert!(refused(&wrong));
+    let mut wrong = file;
+    wrong["statement"] = json!({"contacts": {}});
+    assert!(refused(&wrong), "it claims nothing");
+}
+
+fn parts() -> [Solid; 2] {
+    [solid(&bolt([1.0, 2.0], [-5.0, 8.0, 9.0], 12)), solid(&washer([1.5, 4.0], [0.0, 1.0], 9))]
+}
+
+fn of_parts([a, b]: &[Solid; 2], at: DVec3, direction: DVec3, tolerance: f64) -> Value {
+    let pose = Pose::from_translation(at).expect("in range");
+    let cast = Cast::new(a.at(pose), b.at(Pose::IDENTITY), direction).expect("a direction");
+    let cast = cast.with_tolerance(tolerance).expect("a tolerance");
+    let proof = ProofFile::of_solids(&cast, [&[a], &[b]]).expect("their own facets");
+    let Statement::Clearance(said) = proof.statement() else { panic!("solids") };
+    assert_eq!(
+        said.stop.is_some(),
+        matches!(cast.clearance(), colltrans::Clearance::Blocked { .. })
+    );
+    holds(&proof, "parts")
+}
+
+#[test]
+fn proofs_between_solids_hold_and_their_numbers_count() {
+    let parts = parts();
+    for tolerance in [0.0, 1e-6] {
+        let down = of_parts(&parts, DVec3::new(0.01, 0.02, 0.0), DVec3::NEG_Z, tolerance);
+        let far: [fn(f64) -> f64; 1] = [|x| x + 0.01];
+        for place in
+            ["/moving_pose", "/fixed_pose", "/direction", "/statement/clearance/certificate"]
+        {
+            // Aside the bolt has play, and what stops it is no other.
+            let mut found = believed(&down, place, &far);
+            found.retain(|place| {
+                !place.contains("translation/0") && !place.contains("translation/1")
+            });
+            assert_eq!(found, [""; 0], "{place}");
+        }
+        assert_eq!(believed(&down, "/statement/clearance/stop/facets", &far), [""; 0]);
+        assert_eq!(believed(&down, "/statement/clearance/stop/translation/lower", &far), [""; 0]);
+        let lost: [fn(f64) -> f64; 1] = [|x| x - 0.01];
+        assert_eq!(believed(&down, "/statement/clearance/stop/translation/upper", &lost), [""; 0]);
+        of_parts(&parts, DVec3::X, DVec3::Z, tolerance);
+        let free = of_parts(&parts, DVec3::X * 9.0, DVec3::Z, tolerance);
+        assert!(free.pointer("/statement/clearance/separation").is_some());
+        assert_eq!(believed(&free, "/statement/clearance/separation", &far), [""; 0]);
+        let mut wrong = free;
+        wrong["statement"]["clearance"]["certificate"]["cover"] = json!("s");
+        assert!(refused(&wrong));
+    }
+}
+
+#[test]
+fn unions_and_turned_solids_are_proven() {
+    let [bolt, washer] = parts();
+    let cube = ConvexPolyhedron::cuboid(DVec3::new(-0.5, -0.5, 8.5), DVec3::new(0.5, 0.5, 12.0));
+    let cube = Solid::from_convex(&cube.expect("a cube")).expect("closed");
+    let union = Solid::from_pieces([&bolt, &cube]).expect("pieces");
+    let turn = DQuat::from_rotation_z(0.4) * DQuat::from_rotation_x(0.2);
+    for (at, ignore) in [(DVec3::Z * 20.0, false), (DVec3::X, true)] {
+        let pose = Pose::new(turn, at).expect("a pose");
+        let mut cast = Cast::new(union.at(pose), washer.at(Pose::IDENTITY), DVec3::NEG_Z)
+            .expect("a direction");
+        if ignore {
+            cast = cast.with_start_overlap(StartOverlap::Ignore);
+        }
+        let proof = ProofFile::of_solids(&cast, [&[&bolt, &cube], &[&washer]]).expect("a proof");
+        holds(&proof, "a union");
+        let wrong = ProofFile::of_solids(&cast, [&[&bolt], &[&washer]]);
+        assert!(matches!(wrong, Err(CaseError::Changed { which: "moving" })));
+    }
+}
+
+#[test]
+fn other_files_are_refused_in_words() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    let file = cube_cast(&cube, 0.3);
+    let text = file.to_string();
+    let said = |text: &str| ProofFile::from_json(text).expect_err("no proof").to_string();
+    assert!(said(&text[..text.len() / 2]).contains("it ends too early"));
+    assert!(said("solid cube").contains("it is no JSON"));
+    assert!(said("{}").contains("a saved proof"));
+    assert!(said(&text.replace("proof 1", "proof 9")).contains("\"colltrans proof 9\""));
+    let mut mixed = file.clone();
+    mixed["moving"] = json!({"pieces": []});
+    assert_eq!(said(&mixed.to_string()), "one body is convex, the other is made of pieces");
+    mixed["fixed"] = json!({"pieces": []});
+    assert!(said(&mixed.to_string()).starts_with("moving body: "));
+    let mut still = file;
+    still["direction"] = json!([0.0, 0.0, 0.0]);
+    assert!(said(&still.to_string()).contains("direction"));
+}

@@ -1,0 +1,426 @@
+"""``python -m colltrans.check PROOF``: checks what ``--save-proof`` has written, in fractions.
+
+Nothing of the library is used and nothing is rounded: every number of the file is the fraction
+that its 64 bits are, and bodies stand where the nine entries of their poses put them. It needs no
+other package: ``python check.py PROOF`` does without the extension, too.
+
+With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points in the world:
+
+- *Lower bound.* ``(min_Q n.q - max_P n.p) / n.d`` over all vertices, for ``n.d > 0``: no earlier
+  translation makes the bodies meet. The one claimed must not be larger.
+- *Upper bound.* Where the line ``t d`` meets the triangle of the three differences ``q - p`` of the
+  certificate, the bodies meet. The bound claimed must not be smaller. Where rounding makes the line
+  miss that triangle (a contact at a vertex, an edge or a rim), the weighted mean of the pairs has
+  to come as near to the line as rounding explains; that is said.
+- *Separation.* ``n' = n (d.d) - d (n.d)`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p``
+  proves that the bodies never meet. The margin is checked along ``n``.
+- *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
+  said of all other facets (the covers) is not checked here: ``colltrans verify`` does that.
+
+Exit codes: 0 what was checked holds, 6 something does not, 3 the file is no proof, 1 there is
+nothing in it that can be checked here, 2 usage.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import combinations, product
+from pathlib import Path
+from typing import Any, TypeAlias
+
+FORMAT = "colltrans proof 1"
+Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
+Matrix: TypeAlias = tuple[Vector, Vector, Vector]
+Triangle: TypeAlias = tuple[Vector, Vector, Vector]
+
+#: Rounding of one operation.
+_U = Fraction(1, 2**53)
+#: How far the length of a unit vector may be from 1, as the library has it.
+_UNIT_VECTOR = 32 * _U
+#: Rounding of a coordinate, in sizes of the configuration: the library's noise.
+_NOISE = 32 * _U
+#: How far a pose may be from a rotation.
+_TURN = Fraction(1, 10**6)
+
+
+class NoProofError(ValueError):
+    """The file is not what ``--save-proof`` writes."""
+
+
+class RefusedError(Exception):
+    """Something that is claimed does not hold."""
+
+
+@dataclass
+class Report:
+    """What was found out about a proof."""
+
+    holds: list[str] = field(default_factory=list)
+    unchecked: list[str] = field(default_factory=list)
+
+
+def number(value: Any) -> Fraction:
+    """The fraction that a number of the file is."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise NoProofError(f"{value!r} is no number")
+    if not math.isfinite(value):
+        raise NoProofError(f"{value!r} is not finite")
+    return Fraction(float(value))
+
+
+def whole(value: Any, end: int) -> int:
+    """An index below ``end``."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise NoProofError(f"{value!r} is no index")
+    if not 0 <= value < end:
+        raise RefusedError(f"there is no number {value} of {end}")
+    return value
+
+
+def vector(values: Any) -> Vector:
+    x, y, z = values
+    return number(x), number(y), number(z)
+
+
+def dot(a: Vector, b: Vector) -> Fraction:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def scaled(a: Vector, by: Fraction) -> Vector:
+    return a[0] * by, a[1] * by, a[2] * by
+
+
+def plus(a: Vector, b: Vector) -> Vector:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@dataclass(frozen=True)
+class Body:
+    """Points in their frame, and the pose: ``R x + t``. Facets of a solid by their corners."""
+
+    points: list[Vector]
+    rows: Matrix
+    offset: Vector
+    facets: list[tuple[int, int, int]]
+
+    @classmethod
+    def read(cls, shape: Any, pose: Any) -> Body:
+        points, facets = [], []
+        ((kind, content),) = shape.items()
+        if kind == "convex":
+            points = [vector(v) for v in content["vertices"]]
+        elif kind == "pieces":
+            for piece in content:
+                base = len(points)
+                points += [vector(v) for v in piece["vertices"]]
+                for a, b, c in piece["triangles"]:
+                    corners = [base + whole(k, len(points) - base) for k in (a, b, c)]
+                    facets.append((corners[0], corners[1], corners[2]))
+        else:
+            raise NoProofError(f"a body is convex or made of pieces, not {kind!r}")
+        if not points:
+            raise NoProofError("a body without points")
+        columns = [number(x) for x in pose["matrix"]]
+        if len(columns) != 9:
+            raise NoProofError("a pose has nine entries")
+        x, y, z = (tuple(columns[k::3]) for k in range(3))
+        rows: Matrix = ((x[0], x[1], x[2]), (y[0], y[1], y[2]), (z[0], z[1], z[2]))
+        for i, j in product(range(3), repeat=2):
+            entry = sum((row[i] * row[j] for row in rows), Fraction())
+            if abs(entry - (i == j)) > _TURN:
+                raise NoProofError("a pose is no rotation")
+        if dot(rows[0], cross(rows[1], rows[2])) < 0:
+            raise NoProofError("a pose is a reflection")
+        return cls(points, rows, vector(pose["translation"]), facets)
+
+    def at(self, k: int) -> Vector:
+        """A point in the world."""
+        v = self.points[k]
+        x, y, z = (dot(row, v) for row in self.rows)
+        return plus((x, y, z), self.offset)
+
+    def facet(self, k: int) -> Triangle:
+        a, b, c = self.facets[k]
+        return self.at(a), self.at(b), self.at(c)
+
+    def heights(self, normal: Vector) -> Iterator[Fraction]:
+        """Of all points along a normal of the world."""
+        columns = [
+            sum((normal[r] * self.rows[r][c] for r in range(3)), Fraction()) for c in range(3)
+        ]
+        local = (columns[0], columns[1], columns[2])
+        base = dot(normal, self.offset)
+        for v in self.points:
+            yield dot(local, v) + base
+
+    def reach(self) -> float:
+        """The largest distance of a point from the origin of the frame, nearly."""
+        return math.sqrt(max(float(dot(v, v)) for v in self.points))
+
+
+def entry(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | None:
+    """The least and the largest ``t`` at which ``t d`` is in the convex hull of points.
+
+    Both are taken at corners, on edges or in triangles of the points.
+    """
+    square = dot(d, d)
+    axis: Vector = min(
+        ((Fraction(1), Fraction(0), Fraction(0)), (Fraction(0), Fraction(1), Fraction(0)),
+         (Fraction(0), Fraction(0), Fraction(1))),
+        key=lambda e: abs(dot(e, d)),
+    )  # fmt: skip
+    e1 = cross(d, axis)
+    e2 = cross(d, e1)
+    shadows = [(dot(e1, m), dot(e2, m)) for m in points]
+    times = [dot(d, m) / square for m in points]
+    found = [t for s, t in zip(shadows, times, strict=True) if not any(s)]
+
+    def turn(i: int, j: int) -> Fraction:
+        (a, b), (x, y) = shadows[i], shadows[j]
+        return a * y - b * x
+
+    for i, j in combinations(range(len(points)), 2):
+        a, b = shadows[i], shadows[j]
+        if turn(i, j) == 0 and a[0] * b[0] + a[1] * b[1] < 0:
+            # The origin is between the two: by the coordinate that tells them apart.
+            k = 0 if a[0] != b[0] else 1
+            share = a[k] / (a[k] - b[k])
+            found.append(times[i] + share * (times[j] - times[i]))
+    for i, j, k in combinations(range(len(points)), 3):
+        u, v, w = turn(j, k), turn(k, i), turn(i, j)
+        if (u > 0 and v > 0 and w > 0) or (u < 0 and v < 0 and w < 0):
+            found.append((u * times[i] + v * times[j] + w * times[k]) / (u + v + w))
+    return (min(found), max(found)) if found else None
+
+
+def unit(normal: Vector) -> None:
+    if not (1 - _UNIT_VECTOR) ** 2 <= dot(normal, normal) <= (1 + _UNIT_VECTOR) ** 2:
+        raise RefusedError("the normal is no unit vector")
+
+
+def contact(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, which: str) -> None:
+    """Both bounds of a certificate between convex bodies."""
+    normal = vector(proof["normal"])
+    unit(normal)
+    along = dot(normal, d)
+    if along <= 0:
+        raise RefusedError(f"{which}: the normal does not point along the direction")
+    lower = number(proof["lower"])
+    proven = (min(fixed.heights(normal)) - max(moving.heights(normal))) / along
+    if lower > proven:
+        raise RefusedError(f"{which}: the plane proves {float(proven)!r}, not {float(lower)!r}")
+    report.holds.append(f"{which}: the bodies meet at no translation below {float(lower)!r}")
+
+    weights: list[Fraction] = [number(w) for w in proof["weights"]]
+    total = sum(weights, Fraction())
+    if len(weights) != 3 or min(weights) < 0 or abs(total - 1) > _UNIT_VECTOR:
+        raise RefusedError(f"{which}: the weights are not those of a mean")
+    ends = [
+        (whole(pair["moving"], len(moving.points)), whole(pair["fixed"], len(fixed.points)))
+        for pair in proof["pairs"]
+    ]
+    if len(ends) != 3:
+        raise NoProofError("a certificate has three pairs")
+    if proof["upper"] is None:
+        report.unchecked.append(f"{which}: no upper bound is claimed")
+        return
+    upper = number(proof["upper"])
+    if upper < lower:
+        raise RefusedError(f"{which}: the bounds are in the wrong order")
+    corners = [minus(fixed.at(q), moving.at(p)) for p, q in ends]
+    noise = _NOISE * Fraction(size(moving, fixed))
+    mean = (Fraction(), Fraction(), Fraction())
+    for corner, weight in zip(corners, weights, strict=True):
+        mean = plus(mean, scaled(corner, weight / total))
+    estimate = dot(mean, d) / dot(d, d)
+    off = minus(mean, scaled(d, estimate))
+    if dot(off, off) > (3 * noise) ** 2:
+        raise RefusedError(f"{which}: the witness points miss each other")
+    met = entry(corners, d)
+    if met is not None:
+        if met[0] > upper:
+            raise RefusedError(f"{which}: they meet at {float(met[0])!r}, not by {float(upper)!r}")
+        report.holds.append(f"{which}: the bodies do meet at one of at most {float(upper)!r}")
+    elif upper >= estimate + Fraction(299, 100) * noise / along:
+        report.holds.append(
+            f"{which}: the bodies meet at one of at most {float(upper)!r}, as far as rounding can "
+            f"tell (the witness points come within {math.sqrt(float(dot(off, off))):.1e})"
+        )
+    else:
+        raise RefusedError(f"{which}: the pairs do not prove an upper bound of {float(upper)!r}")
+
+
+def size(moving: Body, fixed: Body) -> float:
+    """No two points are farther apart."""
+    between = minus(fixed.offset, moving.offset)
+    return moving.reach() + fixed.reach() + math.sqrt(float(dot(between, between)))
+
+
+def gaps(moving: Body, fixed: Body, d: Vector, normal: Vector) -> tuple[Fraction, Fraction]:
+    """Between the bodies along a normal, and along what of it is orthogonal to the direction."""
+    level = minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
+    along = [min(fixed.heights(n)) - max(moving.heights(n)) for n in (normal, level)]
+    return along[0], along[1]
+
+
+def separation(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report) -> None:
+    """A plane between convex bodies."""
+    normal, margin = vector(proof["normal"]), number(proof["margin"])
+    unit(normal)
+    proven, level = gaps(moving, fixed, d, normal)
+    if level <= 0:
+        raise RefusedError("no plane parallel to the direction lies between the bodies")
+    if not 0 < margin <= proven:
+        raise RefusedError(f"the plane proves a margin of {float(proven)!r}, not {float(margin)!r}")
+    report.holds.append(f"the bodies never meet: a gap of {float(margin)!r} is between them")
+
+
+def clearance(moving: Body, fixed: Body, d: Vector, claim: Any, report: Report) -> None:
+    """What can be checked of solids without their trees."""
+    certificate = claim["certificate"]
+    tolerance = number(certificate["tolerance"])
+    plane, stop = claim.get("separation"), claim.get("stop")
+    if plane is not None:
+        normal, margin = vector(plane["normal"]), number(plane["margin"])
+        unit(normal)
+        proven, level = gaps(moving, fixed, d, normal)
+        if margin <= 0 or (tolerance == 0 and (level <= 0 or margin > proven)):
+            raise RefusedError(
+                f"the plane proves a margin of {float(proven)!r}, not {float(margin)!r}"
+            )
+        if level > 0:
+            gap = float(min(margin, proven))
+            report.holds.append(f"the bodies never meet: a gap of {gap!r} is between them")
+        if margin > proven:
+            report.unchecked.append(f"the margin of the shrunk bodies, {float(margin)!r}")
+    if (stop is None) != (certificate["stop"] is None):
+        raise RefusedError("the certificate and the claim do not agree about what stops the body")
+    if stop is not None:
+        facets(moving, fixed, d, stop, tolerance, report)
+    report.unchecked.append("whether the bodies overlap where they are")
+    report.unchecked.append(
+        "that nothing stops the moving body before" if stop else "that no two facets meet"
+    )
+
+
+def facets(
+    moving: Body, fixed: Body, d: Vector, stop: Any, tolerance: Fraction, report: Report
+) -> None:
+    """Where the two facets that stop a solid meet as they are."""
+    f, g = (
+        whole(k, len(body.facets)) for k, body in zip(stop["facets"], (moving, fixed), strict=True)
+    )
+    lower, value, upper = (number(stop["translation"][k]) for k in ("lower", "value", "upper"))
+    if not lower <= value <= upper:
+        raise RefusedError("the translation is not between its bounds")
+    told = f"facet {f} of the moving body and {g} of the fixed one"
+    corners = [minus(q, p) for p in moving.facet(f) for q in fixed.facet(g)]
+    met = entry(corners, d)
+    if met is None:
+        if tolerance == 0:
+            raise RefusedError(f"{told} never meet")
+        report.unchecked.append(f"{told} pass each other as they are")
+        return
+    at = float(met[0])
+    if met[0] < lower:
+        raise RefusedError(f"{told} meet at {at!r}, before {float(lower)!r}")
+    if met[0] > upper:
+        if tolerance == 0:
+            raise RefusedError(f"{told} meet at {at!r}, after {float(upper)!r}")
+        report.unchecked.append(f"the upper bound {float(upper)!r} is one of the shrunk bodies")
+        return
+    bounds = f"between {float(lower)!r} and {float(upper)!r}"
+    report.holds.append(f"{told} first meet at {at!r}, {bounds}")
+
+
+def check(text: str) -> Report:
+    """Checks a proof as it was written.
+
+    Raises
+    ------
+    NoProofError
+        It is no saved proof.
+    RefusedError
+        Something that it claims does not hold.
+    """
+    try:
+        file = json.loads(text.removeprefix("\ufeff"))
+        if file["format"] != FORMAT:
+            raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
+        moving = Body.read(file["moving"], file["moving_pose"])
+        fixed = Body.read(file["fixed"], file["fixed_pose"])
+        if bool(moving.facets) != bool(fixed.facets):
+            raise NoProofError("one body is convex, the other is made of pieces")
+        d = vector(file["direction"])
+        if not any(d):
+            raise NoProofError("the direction is zero")
+        report = Report()
+        ((kind, claim),) = file["statement"].items()
+        _claim(kind, claim, moving, fixed, d, report)
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError, RecursionError) as error:
+        if isinstance(error, NoProofError):
+            raise
+        raise NoProofError(f"{type(error).__name__}: {error}") from error
+    return report
+
+
+def _claim(kind: str, claim: Any, moving: Body, fixed: Body, d: Vector, report: Report) -> None:
+    is_solid = bool(moving.facets)
+    if is_solid != (kind == "clearance"):
+        raise NoProofError(f"{kind!r} is not claimed of such bodies")
+    if kind == "contacts":
+        if not set(claim) <= {"first", "last"} or not claim:
+            raise RefusedError("nothing is claimed")
+        if "first" in claim:
+            contact(moving, fixed, d, claim["first"], report, "along the direction")
+        if "last" in claim:
+            back = scaled(d, Fraction(-1))
+            contact(moving, fixed, back, claim["last"], report, "against the direction")
+        report.unchecked.append("what is said of rounding, which proves nothing")
+    elif kind == "separation":
+        separation(moving, fixed, d, claim, report)
+    elif is_solid:
+        clearance(moving, fixed, d, claim, report)
+    else:
+        raise NoProofError(f"{kind!r} is nothing that is claimed")
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    words = sys.argv[1:] if words is None else words
+    if len(words) != 1 or words[0].startswith("-"):
+        print(__doc__ if words == ["--help"] else "usage: python -m colltrans.check PROOF.json")
+        return 0 if words == ["--help"] else 2
+    try:
+        report = check(Path(words[0]).read_text(encoding="utf-8"))
+    except (OSError, NoProofError, UnicodeDecodeError) as error:
+        print(f"{words[0]}: no proof: {error}", file=sys.stderr)
+        return 3
+    except RefusedError as error:
+        print(f"{words[0]}: the proof does not hold: {error}", file=sys.stderr)
+        return 6
+    for line in report.holds:
+        print(f"holds: {line}")
+    for line in report.unchecked:
+        print(f"not checked: {line}")
+    return 0 if report.holds else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,191 @@
+"""The checker in fractions, on saved proofs.
+
+It needs neither the extension nor what other tests share, and is loaded from its file:
+``python3 -m pytest --noconftest python/tests/test_check.py`` runs anywhere.
+"""
+
+import importlib.util
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+HERE = Path(__file__).parent
+PROOFS = HERE / "proofs"
+FILE = HERE.parent / "src" / "colltrans" / "check.py"
+
+
+def _load() -> Any:
+    spec = importlib.util.spec_from_file_location("colltrans_check", FILE)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+check = _load()
+
+
+def proof(name: str) -> Any:
+    return json.loads((PROOFS / f"{name}.json").read_text())
+
+
+def refused(file: Any) -> bool:
+    try:
+        check.check(json.dumps(file))
+    except (check.RefusedError, check.NoProofError):
+        return True
+    return False
+
+
+def places(value: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where the numbers are."""
+    if isinstance(value, dict | list):
+        items = value.items() if isinstance(value, dict) else enumerate(value)
+        for key, part in items:
+            yield from places(part, (*way, key))
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield way
+
+
+def changed(file: Any, way: tuple[Any, ...], by: Callable[[Any], Any]) -> Any:
+    other = json.loads(json.dumps(file))
+    at = other
+    for key in way[:-1]:
+        at = at[key]
+    at[way[-1]] = by(at[way[-1]])
+    return other
+
+
+def believed(file: Any, under: tuple[Any, ...], by: Callable[[Any], Any]) -> list[Any]:
+    """The numbers that may be changed without being noticed."""
+    ways = [way for way in places(file) if way[: len(under)] == under]
+    assert ways
+    return [way for way in ways if not refused(changed(file, way, by))]
+
+
+@pytest.mark.parametrize(
+    ("name", "holds"),
+    [
+        ("contacts", "against the direction: the bodies do meet at one of at most"),
+        ("separation", "the bodies never meet: a gap of"),
+        ("solids", "first meet at"),
+        ("beside", "the bodies never meet: a gap of"),
+    ],
+)
+def test_a_proof_holds(name: str, holds: str) -> None:
+    report = check.check((PROOFS / f"{name}.json").read_text())
+    assert any(holds in line for line in report.holds)
+    solid = name in {"solids", "beside"}
+    assert any("overlap where they are" in line for line in report.unchecked) == solid
+
+
+def more(x: Any) -> Any:
+    return x + 1 if isinstance(x, int) else x * 1.001 + 1e-3
+
+
+def less(x: Any) -> Any:
+    return x + 1 if isinstance(x, int) else x * 0.999 - 1e-3
+
+
+@pytest.mark.parametrize("by", [more, less])
+def test_every_number_of_a_contact_counts(by: Callable[[Any], Any]) -> None:
+    file = proof("contacts")
+    for place in ["moving_pose", "fixed_pose", "direction"]:
+        assert believed(file, (place,), by) == []
+    for end in ["first", "last"]:
+        for part in ["normal", "weights", "pairs"]:
+            assert believed(file, ("statement", "contacts", end, part), by) == []
+
+
+def inside(x: float, middle: float) -> float:
+    """Nearly as far on the other side."""
+    return middle + 0.98 * (middle - x)
+
+
+def test_no_bound_may_say_more_than_is_proven() -> None:
+    file = proof("contacts")
+    for end in ["first", "last"]:
+        way = ("statement", "contacts", end)
+        tight = file["statement"]["contacts"][end]
+        middle = (tight["upper"] + tight["lower"]) / 2
+        inwards = partial(inside, middle=middle)
+        assert believed(file, (*way, "lower"), inwards) == []
+        assert believed(file, (*way, "upper"), inwards) == []
+        assert believed(file, (*way, "lower"), lambda x: x - 1) == [(*way, "lower")]
+    apart = proof("separation")
+    plane = ("statement", "separation")
+    assert believed(apart, (*plane, "margin"), lambda x: x + 1e-12) == []
+    assert believed(apart, (*plane, "margin"), lambda x: -x) == []
+    assert believed(apart, (*plane, "normal"), more) == []
+
+
+def test_the_stop_of_solids_counts() -> None:
+    file = proof("solids")
+    way = ("statement", "clearance", "stop")
+    assert believed(file, (*way, "translation", "lower"), lambda x: x + 1e-9) == []
+    assert believed(file, (*way, "translation", "upper"), lambda x: x - 1e-9) == []
+    # Facets of one plane meet the others as early; those of other planes do not, nor those missing.
+    assert believed(file, (*way, "facets"), lambda k: k + 10_000) == []
+    assert refused(changed(file, ("moving_pose", "translation", 2), more))
+    beside = proof("beside")
+    assert refused(changed(beside, ("statement", "clearance", "separation", "normal", 0), more))
+
+
+def test_a_contact_that_rounding_hides_is_said_to_be_one() -> None:
+    """A corner that the line misses by the last bit: no triangle is met exactly."""
+    file = proof("contacts")
+    cube = file["fixed"]["convex"]["vertices"]
+    first = file["statement"]["contacts"]["first"]
+    pair = first["pairs"][0]
+    # The pair alone, with the direction rounded from one corner to the other.
+    turn = file["moving_pose"]
+    rows = [turn["matrix"][k::3] for k in range(3)]
+    v = file["moving"]["convex"]["vertices"][pair["moving"]]
+    p = [sum(a * b for a, b in zip(row, v, strict=True)) for row in rows]
+    p = [a + b for a, b in zip(p, turn["translation"], strict=True)]
+    way = [a - b for a, b in zip(cube[pair["fixed"]], p, strict=True)]
+    file["direction"] = [x / 3 for x in way]
+    first.update(pairs=[pair] * 3, lower=-100.0, upper=3.0 + 1e-12)
+    del file["statement"]["contacts"]["last"]
+    report = check.check(json.dumps(file))
+    assert any("as far as rounding can tell" in line for line in report.holds)
+    first["upper"] = 3.0
+    assert refused(file)
+
+
+def test_other_files_are_no_proofs(tmp_path: Path) -> None:
+    text = (PROOFS / "contacts.json").read_text()
+    wrong = {
+        "half": text[: len(text) // 2],
+        "empty": "",
+        "list": "[]",
+        "format": text.replace("proof 1", "proof 2"),
+        "infinite": text.replace('"direction":[', '"direction":[Infinity,'),
+        "still": json.dumps({**proof("contacts"), "direction": [0, 0, 0]}),
+        "mixed": json.dumps({**proof("contacts"), "fixed": proof("solids")["fixed"]}),
+    }
+    for name, content in wrong.items():
+        with pytest.raises(check.NoProofError):
+            check.check(content)
+        (tmp_path / name).write_text(content)
+        assert check.main([str(tmp_path / name)]) == 3
+    assert check.main([str(tmp_path / "none")]) == 3
+    assert check.main([]) == 2
+
+
+def test_it_runs_alone() -> None:
+    """Without the package, and without what the package needs."""
+    command = [sys.executable, "-I", "-S", str(FILE), str(PROOFS / "contacts.json")]
+    told = subprocess.run(command, capture_output=True, text=True)
+    assert told.returncode == 0, told.stderr
+    assert told.stdout.startswith("holds: along the direction")
+    claim = proof("contacts")
+    claim["statement"]["contacts"] = {}
+    assert refused(claim), "it claims nothing"

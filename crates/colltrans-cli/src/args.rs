@@ -7,7 +7,7 @@ mod assembly;
 mod help;
 mod values;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use colltrans::glam::DVec3;
 use colltrans::{Pose, Solver};
 use colltrans_mesh::body::BodyOptions;
@@ -19,7 +19,7 @@ use help::{
     fitted, formats,
 };
 pub(crate) use values::{Angles, Place, direction};
-use values::{angles, bytes, factor, length, picture, place, threads};
+use values::{angles, bytes, factor, length, picture, place, solver, threads};
 
 /// How far can one body move along a direction before it touches another?
 ///
@@ -87,8 +87,8 @@ pub(crate) struct PairArguments {
     #[command(flatten)]
     pub(crate) directions: DirectionArguments,
     /// How the search is narrowed; the answer is the same
-    #[arg(long, value_enum, default_value_t = SolverName::Auto)]
-    pub(crate) solver: SolverName,
+    #[arg(long, value_parser = solver(), default_value_t = Solver::Auto)]
+    pub(crate) solver: Solver,
     /// Sideways overlap up to which bodies slide along each other (grazing) instead of colliding
     ///
     /// In the unit of the meshes. 0 stands for the rounding error of the configuration.
@@ -356,29 +356,6 @@ pub(crate) struct InfoArguments {
     /// largest coordinate]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) merge_tolerance: Option<f64>,
-}
-
-/// The name of a solver, on the command line and in queries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, serde::Deserialize, Default)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum SolverName {
-    /// Whichever was measured to be fastest for bodies of these sizes
-    #[default]
-    Auto,
-    /// The collision translation algorithm
-    Cta,
-    /// Portal refinement
-    Portal,
-}
-
-impl From<SolverName> for Solver {
-    fn from(name: SolverName) -> Self {
-        match name {
-            SolverName::Auto => Self::Auto,
-            SolverName::Cta => Self::Cta,
-            SolverName::Portal => Self::Portal,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure
     let (placed, mended) = (places.notes(), moving.notes.iter().chain(&fixed.notes));
     placed.iter().flatten().chain(mended).for_each(|text| note(text));
     let options = Options {
-        solver: arguments.solver.into(),
+        solver: arguments.solver,
         graze_tolerance: arguments.graze_tolerance,
         ..Options::default()
     };

@@ -7,7 +7,7 @@ use std::path::Path;
 use colltrans::glam::DVec3;
 use colltrans::{
     Bounded, Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing,
-    OverlapAhead, Separated, Solver, Steps, WhyFree,
+    OverlapAhead, Separated, Steps, WhyFree,
 };
 use colltrans_mesh::body::Excess;
 use serde::Serialize;
@@ -236,7 +236,7 @@ impl Record {
             outcome: Name::Separated,
             normal: Some(coordinates(certificate.normal)),
             margin: Some(certificate.margin),
-            solver: Some(solver_name(*solver)),
+            solver: Some(solver.name()),
             steps: Some(StepCounts::of(*steps)),
             ..Self::default()
         }
@@ -262,7 +262,7 @@ impl Record {
                 moving: FeatureRecord::of(features.moving, cast.moving()),
                 fixed: FeatureRecord::of(features.fixed, cast.fixed()),
             }),
-            solver: Some(solver_name(first.solver)),
+            solver: Some(first.solver.name()),
             steps: Some(StepCounts::of(first.steps)),
             ..Self::default()
         }
@@ -291,12 +291,4 @@ fn coordinates(v: DVec3) -> [f64; 3] {
 fn describe(grazing: &Grazing) -> String {
     let (overlap, along) = (six_digits(grazing.overlap), unit_vector(grazing.separating_direction));
     format!("the shadows overlap by {overlap} along [{along}]")
-}
-
-pub(crate) fn solver_name(solver: Solver) -> &'static str {
-    match solver {
-        Solver::Auto => "auto",
-        Solver::Cta => "cta",
-        Solver::Portal => "portal",
-    }
 }

@@ -4,12 +4,13 @@ use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Steps, WhyFree,
+    Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Solver, Steps,
+    WhyFree,
 };
 
 use crate::cast::Asked;
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
-use crate::record::{FeatureRecord, Hulls, Name, Record, solver_name};
+use crate::record::{FeatureRecord, Hulls, Name, Record};
 
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;
@@ -201,7 +202,7 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
         format!("at least {}; whether they touch is beyond rounding", number(proof.lower))
     };
     line(text, "bounds", &bounds);
-    line(text, "solver", &work(solver_name(first.solver), first.steps));
+    line(text, "solver", &work(first.solver, first.steps));
 }
 
 fn overlap(text: &mut String, grazing: &Grazing) {
@@ -216,7 +217,7 @@ fn separated(text: &mut String, separated: &Separated) {
     line(text, "margin", &format!("{shown}, the gap between the shadows along this normal"));
     let normal = unit_vector(separated.certificate.normal);
     line(text, "normal", &format!("{normal} of the separating plane"));
-    line(text, "solver", &work(solver_name(separated.solver), separated.steps));
+    line(text, "solver", &work(separated.solver, separated.steps));
 }
 
 /// By how much hulls exceed their parts, and what the answer then means.
@@ -267,7 +268,7 @@ pub(crate) fn feature(feature: &FeatureRecord) -> String {
     text
 }
 
-fn work(solver: &str, steps: Steps) -> String {
+fn work(solver: Solver, steps: Steps) -> String {
     // One-off queries start from scratch.
     let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
     format!("{solver}: {planar_problems} planar problems, {supports} supports, {pivots} pivots")

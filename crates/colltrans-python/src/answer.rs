@@ -12,7 +12,7 @@ use crate::certificate::{Certificate, Separation};
 use crate::errors::OrRaise;
 use crate::features::{Features, Steps, feature};
 use crate::pose::Pose;
-use crate::query::{Cast, Query, solver_name};
+use crate::query::{Cast, Query};
 use crate::saved::{Saved, proof_parts, saved, step_parts};
 use crate::show::{Options, Shown, show};
 
@@ -90,7 +90,7 @@ impl Contact {
     /// str: The solver that found it.
     #[getter]
     fn solver(&self) -> &'static str {
-        solver_name(self.contact.solver)
+        self.contact.solver.name()
     }
 
     /// Steps: Work done.
@@ -116,7 +116,7 @@ impl Contact {
         let (counts, started_from) = step_parts(c.steps);
         let numbers = (c.translation, c.normal.to_array(), proof_parts(&c.certificate));
         let pair = [c.support.moving, c.support.fixed];
-        saved(py, "Contact", (query, numbers, pair, solver_name(c.solver), counts, started_from))
+        saved(py, "Contact", (query, numbers, pair, c.solver.name(), counts, started_from))
     }
 
     pub(crate) fn __repr__(&self) -> String {
@@ -215,7 +215,7 @@ impl Separated {
     /// str: The solver that found it.
     #[getter]
     fn solver(&self) -> &'static str {
-        solver_name(self.separated.solver)
+        self.separated.solver.name()
     }
 
     /// Steps: Work done.
@@ -240,7 +240,7 @@ impl Separated {
         let (query, s) = (Cast(self.query.copy(py)), &self.separated);
         let (counts, started_from) = step_parts(s.steps);
         let proof = (s.certificate.normal.to_array(), s.certificate.margin);
-        saved(py, "Separated", (query, proof, solver_name(s.solver), counts, started_from))
+        saved(py, "Separated", (query, proof, s.solver.name(), counts, started_from))
     }
 
     pub(crate) fn __repr__(&self) -> String {

@@ -3,7 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::saved::{Saved, saved, started_name};
+use crate::saved::{Saved, saved};
 
 /// Work done for one answer.
 #[pyclass(frozen, get_all, module = "colltrans")]
@@ -24,7 +24,7 @@ impl Steps {
     pub(crate) fn of(steps: colltrans::Steps) -> Self {
         let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
             steps;
-        let started_from = started_name(started_from);
+        let started_from = started_from.name();
         Self { planar_problems, supports, pivots, iterations, started_from }
     }
 }

@@ -91,20 +91,8 @@ pub(crate) fn solver_called(name: Option<&Bound<'_, PyString>>) -> PyResult<Solv
 }
 
 pub(crate) fn solver_called_by(name: &str) -> PyResult<Solver> {
-    match name {
-        "auto" => Ok(Solver::Auto),
-        "cta" => Ok(Solver::Cta),
-        "portal" => Ok(Solver::Portal),
-        other => Err(error("QueryError", format_args!("no solver {other:?}: auto, cta or portal"))),
-    }
-}
-
-pub(crate) fn solver_name(solver: Solver) -> &'static str {
-    match solver {
-        Solver::Auto => "auto",
-        Solver::Cta => "cta",
-        Solver::Portal => "portal",
-    }
+    let unknown = |_| error("QueryError", format_args!("no solver {name:?}: auto, cta or portal"));
+    name.parse().map_err(unknown)
 }
 
 /// A query as a value: two placed bodies and a direction, asked what one likes, saved and replayed.
@@ -279,7 +267,7 @@ impl Cast {
     /// str: How the search is narrowed.
     #[getter]
     fn solver(&self) -> &'static str {
-        solver_name(self.0.options.solver)
+        self.0.options.solver.name()
     }
 
     /// A picture of the bodies and of the first contact: see :func:`colltrans.show`.

@@ -4,7 +4,7 @@
 //! believed, as all that is pickled; a proof in it is checked by `verify` as ever.
 
 use colltrans::glam::DVec3;
-use colltrans::{Bounded, SolidOptions, StartOverlap, StartedFrom, VertexPair};
+use colltrans::{Bounded, SolidOptions, StartOverlap, VertexPair};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -242,23 +242,13 @@ fn separation_of((normal, margin): ([f64; 3], f64)) -> colltrans::Separation {
     colltrans::Separation { normal: normal.into(), margin }
 }
 
-pub(crate) fn started_name(from: StartedFrom) -> &'static str {
-    match from {
-        StartedFrom::Features => "features",
-        StartedFrom::Region => "region",
-        StartedFrom::Scratch => "scratch",
-    }
-}
-
 pub(crate) fn step_parts(steps: colltrans::Steps) -> (Counts, &'static str) {
     let counts = [steps.planar_problems, steps.supports, steps.pivots, steps.iterations];
-    (counts, started_name(steps.started_from))
+    (counts, steps.started_from.name())
 }
 
 fn steps_of(counts: Counts, started_from: &str) -> PyResult<colltrans::Steps> {
-    let all = [StartedFrom::Features, StartedFrom::Region, StartedFrom::Scratch];
-    let known = all.into_iter().find(|from| started_name(*from) == started_from);
-    let started_from = known.ok_or_else(|| unknown(started_from))?;
+    let started_from = started_from.parse().map_err(|_| unknown(started_from))?;
     let [planar_problems, supports, pivots, iterations] = counts;
     Ok(colltrans::Steps { planar_problems, supports, pivots, iterations, started_from })
 }

@@ -4,9 +4,7 @@
 //! start, then for each of the proof that nothing stops the body before: 0 where a pair of nodes was
 //! split, else the reason's number in [`REASONS`], from 1 on.
 
-use colltrans::StopProof;
-use colltrans::{Cast, Cover, Overlap, Reason, Separation, Solid, SolidCertificate, StartProof};
-use glam::DVec3;
+use colltrans::{Cast, Cover, Overlap, Reason, Solid, SolidCertificate, StartProof};
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, Refusal};
@@ -91,9 +89,7 @@ pub(crate) fn verify(
 ) -> Result<Answer, Refusal> {
     let cast = query(facets(bodies)?, pair)?;
     Ok(judged(match proof {
-        Proof::Separation { normal, margin } => {
-            cast.verify(&Separation { normal: DVec3::from_array(*normal), margin: *margin })
-        }
+        Proof::Separation(separation) => cast.verify(separation),
         Proof::Clearance(claimed) => cast.verify(&certificate(claimed, entries)?),
         Proof::Contact(_) => return Err("that is a proof between convex bodies".to_owned().into()),
     }))
@@ -114,9 +110,7 @@ fn certificate(claimed: &Claimed, entries: &[u8]) -> Result<SolidCertificate, Re
         tolerance: claimed.tolerance,
         start,
         lower: claimed.lower,
-        stop: claimed
-            .stop
-            .map(|(shrunk_distance, triangles)| StopProof { shrunk_distance, triangles }),
+        stop: claimed.stop,
         cover: cover(after)?,
     })
 }

@@ -2,8 +2,7 @@
 
 use colltrans::observe::Recording;
 use colltrans::{
-    Cast, Certificate, CertificateError, Clearance, Contact, ContactRange, Options, Solver, Steps,
-    VertexPair, WhyFree,
+    Cast, CertificateError, Clearance, Contact, ContactRange, Options, Solver, Steps, WhyFree,
 };
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -11,25 +10,21 @@ use serde_json::{Value, json};
 use crate::answer::{Answer, Refusal};
 use crate::body::{Hull, Lit};
 use crate::pose::pose;
-use crate::question::{self, Pair, Proof};
+use crate::question::{Pair, Proof};
 
 /// The query that a question asks.
 pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
     let moving = moving.body.at(pose(pair.moving_pose, "moving")?);
     let fixed = fixed.body.at(pose(pair.fixed_pose, "fixed")?);
-    let solver = match pair.solver {
-        question::Solver::Auto => Solver::Auto,
-        question::Solver::Cta => Solver::Cta,
-        question::Solver::Portal => Solver::Portal,
-    };
-    let options = Options { solver, graze_tolerance: pair.graze, ..Options::default() };
+    let options =
+        Options { solver: pair.solver, graze_tolerance: pair.graze, ..Options::default() };
     let cast = Cast::new(moving, fixed, DVec3::from_array(pair.direction));
     Ok(cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())?)
 }
 
 pub(crate) fn work(solver: Solver, steps: &Steps) -> Value {
     json!({
-        "solver": if solver == Solver::Cta { "cta" } else { "portal" },
+        "solver": solver.name(),
         "planar_problems": steps.planar_problems,
         "supports": steps.supports,
         "pivots": steps.pivots,
@@ -124,16 +119,8 @@ fn free(clearance: &Clearance) -> Value {
 pub(crate) fn verify(bodies: [&Hull; 2], pair: &Pair, proof: &Proof) -> Result<Answer, Refusal> {
     let cast = query(bodies, pair)?;
     let checked = match proof {
-        Proof::Contact(given) => cast.verify(&Certificate {
-            normal: DVec3::from_array(given.normal),
-            lower: given.lower,
-            upper: given.upper.unwrap_or(f64::INFINITY),
-            pairs: given.pairs.map(|[moving, fixed]| VertexPair { moving, fixed }),
-            weights: given.weights,
-            rounding: given.rounding,
-        }),
-        Proof::Separation { normal, margin } => cast
-            .verify(&colltrans::Separation { normal: DVec3::from_array(*normal), margin: *margin }),
+        Proof::Contact(certificate) => cast.verify(certificate),
+        Proof::Separation(separation) => cast.verify(separation),
         Proof::Clearance(_) => return Err("that is a proof between solids".to_owned().into()),
     };
     Ok(judged(checked))

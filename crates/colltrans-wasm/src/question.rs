@@ -3,6 +3,8 @@
 //! Read by hand: what derived readers add would be a third of the download.
 
 use colltrans_mesh::body::Take;
+use colltrans::{Certificate, Separation, Solver, StopProof, VertexPair};
+use glam::DVec3;
 use serde_json::Value;
 
 use crate::fields::Fields;
@@ -55,34 +57,13 @@ pub(crate) struct Pair {
     pub(crate) ignore_overlaps: bool,
 }
 
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Solver {
-    Auto,
-    Cta,
-    Portal,
-}
-
 /// A proof to check.
 #[derive(Debug)]
 pub(crate) enum Proof {
     Contact(Certificate),
-    Separation {
-        normal: [f64; 3],
-        margin: f64,
-    },
+    Separation(Separation),
     /// Between solids.
     Clearance(Claimed),
-}
-
-#[derive(Debug)]
-pub(crate) struct Certificate {
-    pub(crate) normal: [f64; 3],
-    pub(crate) lower: f64,
-    /// `None` where there is none.
-    pub(crate) upper: Option<f64>,
-    pub(crate) pairs: [[u32; 2]; 3],
-    pub(crate) weights: [f64; 3],
-    pub(crate) rounding: f64,
 }
 
 /// What a proof between solids says; its entries come as the file, a byte each.
@@ -91,8 +72,7 @@ pub(crate) struct Claimed {
     pub(crate) tolerance: f64,
     /// Infinite where nothing ever stops the body.
     pub(crate) lower: f64,
-    /// The shrunk bodies' distance, and the two triangles.
-    pub(crate) stop: Option<(f64, [u32; 2])>,
+    pub(crate) stop: Option<StopProof>,
     /// Where they overlap at the start: in which way, and the triangles.
     pub(crate) overlap: Option<(String, Vec<u32>)>,
     /// How many of the entries are about the start.
@@ -165,12 +145,9 @@ impl Read for Fields<'_> {
     }
 
     fn pair(&self) -> Result<Pair, String> {
-        let solver = match self.get("solver").and_then(Value::as_str) {
-            None | Some("auto") => Solver::Auto,
-            Some("cta") => Solver::Cta,
-            Some("portal") => Solver::Portal,
-            Some(other) => return Err(format!("there is no solver {other}")),
-        };
+        let solver =
+            self.get("solver").and_then(Value::as_str).map_or(Ok(Solver::Auto), str::parse);
+        let solver = solver.map_err(|error| error.to_string())?;
         Ok(Pair {
             moving_pose: self.array("moving_pose")?,
             fixed_pose: self.array("fixed_pose")?,
@@ -185,7 +162,8 @@ impl Read for Fields<'_> {
     fn proof(&self) -> Result<Proof, String> {
         if let Ok(given) = self.object("separation") {
             let margin = given.number("margin")?.ok_or("margin is missing")?;
-            return Ok(Proof::Separation { normal: given.array("normal")?, margin });
+            let normal = DVec3::from_array(given.array("normal")?);
+            return Ok(Proof::Separation(Separation { normal, margin }));
         }
         if let Ok(given) = self.object("clearance") {
             return given.claimed().map(Proof::Clearance);
@@ -193,9 +171,9 @@ impl Read for Fields<'_> {
         let given = self.object("contact")?;
         let number = |key: &str| given.number(key)?.ok_or_else(|| format!("{key} is missing"));
         Ok(Proof::Contact(Certificate {
-            normal: given.array("normal")?,
+            normal: DVec3::from_array(given.array("normal")?),
             lower: number("lower")?,
-            upper: given.number("upper")?,
+            upper: given.number("upper")?.unwrap_or(f64::INFINITY),
             pairs: pairs(given.need("pairs")?).ok_or("pairs are not three pairs of vertices")?,
             weights: given.array("weights")?,
             rounding: number("rounding")?,
@@ -209,10 +187,11 @@ impl Read for Fields<'_> {
         let missing = |key: &str| format!("{key} is missing");
         let stop = self.get("stop").is_some().then(|| -> Result<_, String> {
             let stop = self.object("stop")?;
-            let distance =
+            let shrunk_distance =
                 stop.number("shrunk_distance")?.ok_or_else(|| missing("shrunk_distance"))?;
             let two = triangles("triangles", &stop)?.try_into();
-            Ok((distance, two.map_err(|_| "triangles are not two".to_owned())?))
+            let triangles = two.map_err(|_| "triangles are not two".to_owned())?;
+            Ok(StopProof { shrunk_distance, triangles })
         });
         let overlap = self.get("overlap").is_some().then(|| -> Result<_, String> {
             let overlap = self.object("overlap")?;
@@ -242,11 +221,11 @@ impl Read for Fields<'_> {
     }
 }
 
-fn pairs(value: &Value) -> Option<[[u32; 2]; 3]> {
-    let pair = |value: &Value| -> Option<[u32; 2]> {
+fn pairs(value: &Value) -> Option<[VertexPair; 3]> {
+    let pair = |value: &Value| -> Option<VertexPair> {
         let [moving, fixed] = value.as_array()?.as_slice() else { return None };
         let vertex = |v: &Value| u32::try_from(v.as_u64()?).ok();
-        Some([vertex(moving)?, vertex(fixed)?])
+        Some(VertexPair { moving: vertex(moving)?, fixed: vertex(fixed)? })
     };
     let [a, b, c] = value.as_array()?.as_slice() else { return None };
     Some([pair(a)?, pair(b)?, pair(c)?])

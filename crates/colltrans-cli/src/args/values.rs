@@ -3,8 +3,9 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use colltrans::Pose;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::{Pose, Solver};
 
 /// How far the length of a quaternion may be from 1 without a remark.
 const UNIT_LENGTH: f64 = 1e-6;
@@ -38,6 +39,17 @@ fn axis(name: &str) -> Option<DVec3> {
     };
     // Not -0 for 0.
     Some(axis * sign + DVec3::ZERO)
+}
+
+/// A solver by its name.
+pub(crate) fn solver() -> impl TypedValueParser<Value = Solver> {
+    let named = |solver: Solver, what| PossibleValue::new(solver.name()).help(what);
+    PossibleValuesParser::new([
+        named(Solver::Auto, "Whichever was measured to be fastest for bodies of these sizes"),
+        named(Solver::Cta, "The collision translation algorithm"),
+        named(Solver::Portal, "Portal refinement"),
+    ])
+    .try_map(|name| name.parse::<Solver>())
 }
 
 /// A translation, and perhaps a rotation before it.

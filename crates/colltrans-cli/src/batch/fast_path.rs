@@ -5,12 +5,12 @@
 //! and `serde_json` reads it and tells what is wrong with it. Invariant: what is read here, `serde_json`
 //! reads in the same way, to the last bit. What is said of a body is handed on as it is written.
 
+use colltrans::Solver;
 use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use serde_json::value::RawValue;
 
 use super::query::{Asked, PoseSource, Query};
-use crate::args::SolverName;
 
 /// The query of a line, if it has the usual form.
 pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
@@ -47,7 +47,7 @@ struct Found<'a> {
     direction: Option<[f64; 3]>,
     asked: Option<Asked>,
     graze_tolerance: Option<f64>,
-    solver: Option<SolverName>,
+    solver: Option<Solver>,
 }
 
 impl<'a> Found<'a> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
+use colltrans::{Cast, ConvexPolyhedron, Options, Pose, Solver};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::BodyOptions;
 use serde::Deserialize;
@@ -15,7 +15,7 @@ use super::cache::{Built, Cache, Key, Shape};
 use super::fast_path;
 use super::pipeline::Line;
 use super::recent::Recent;
-use crate::args::{BodyArguments, SolverName};
+use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
 use crate::record::{Hulls, Name, Record};
@@ -50,7 +50,7 @@ pub(super) struct Query<'a, Body> {
     #[serde(rename = "query")]
     pub(super) asked: Option<Asked>,
     pub(super) graze_tolerance: Option<f64>,
-    pub(super) solver: Option<SolverName>,
+    pub(super) solver: Option<Solver>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
 }
@@ -253,7 +253,7 @@ impl<B> Query<'_, B> {
             return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
         }
         let options = Options {
-            solver: self.solver.unwrap_or_default().into(),
+            solver: self.solver.unwrap_or_default(),
             graze_tolerance: self.graze_tolerance.unwrap_or_default(),
             ..Options::default()
         };

@@ -4,7 +4,7 @@
 //! shadow, seen along the first one's normal, they lie within `reach` of each other. Curved fits are
 //! tessellated differently on either side: hence "nearly", and a reach of the tolerance.
 //!
-//! An area is the sum of what has been clipped, and its rounding is bounded ([`shadow_rounding`]). Which
+//! An area is the sum of what has been clipped, and its rounding is bounded (`shadow_rounding`). Which
 //! facets are in contact, at 25 degrees and at `reach`, is decided as it is computed.
 //! Notation: `n` is the unit normal of the first part's facet, outwards: from the first part to the
 //! second.

@@ -2,8 +2,8 @@
 //!
 //! Read by hand: what derived readers add would be a third of the download.
 
-use colltrans_mesh::body::Take;
 use colltrans::{Certificate, Separation, Solver, StopProof, VertexPair};
+use colltrans_mesh::body::Take;
 use glam::DVec3;
 use serde_json::Value;
 

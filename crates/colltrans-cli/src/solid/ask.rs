@@ -128,7 +128,7 @@ impl<'a> Question<'a> {
 
     /// The proof of the answer with a tolerance.
     pub(crate) fn prove(&self, tolerance: f64) -> Result<ProofFile, Failure> {
-        let cast = self.cast(self.moving.solid(), self.fixed.solid(), tolerance)?;
+        let cast = self.cast(self.moving.solid(), self.fixed.solid(), [0.0; 2], Some(tolerance))?;
         let [moving, fixed] = [self.moving, self.fixed]
             .map(|body| body.pieces.iter().map(|piece| &piece.solid).collect::<Vec<_>>());
         ProofFile::of_solids(&cast, [&moving, &fixed])

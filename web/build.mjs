@@ -44,10 +44,10 @@ mkdirSync(out, { recursive: true });
 const modules = join(built, "wasm32-unknown-unknown/page/examples");
 copyFileSync(join(modules, "page.wasm"), join(out, "colltrans.wasm"));
 copyFileSync(join(modules, "page_assembly.wasm"), join(out, "colltrans_assembly.wasm"));
-for (const file of ["index.html", "style.css"]) copyFileSync(join(here, "src", file), join(out, file));
+copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 await build({
-  entryPoints: [join(here, "src/main.ts"), join(here, "src/worker.ts")],
+  entryPoints: ["main.ts", "worker.ts", "style.css"].map((file) => join(here, "src", file)),
   bundle: true,
   minify: true,
   format: "esm",

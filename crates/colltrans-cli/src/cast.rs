@@ -15,16 +15,7 @@ use crate::picture::{Scene, draw};
 use crate::proof::{self, refuse_proof};
 use crate::record::{Hulls, Name, Record};
 use crate::replay;
-use crate::report;
-
-/// Which question is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Asked {
-    /// Where the bodies meet.
-    Contact,
-    /// How far the moving one can go.
-    Clearance,
-}
+use crate::report::{self, Asked};
 
 /// One answer, to either question.
 enum Answer {

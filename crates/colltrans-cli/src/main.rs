@@ -35,7 +35,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Arguments, Command};
-use cast::Asked;
+use report::Asked;
 
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|bug| {

@@ -8,9 +8,17 @@ use colltrans::{
     WhyFree,
 };
 
-use crate::cast::Asked;
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
 use crate::record::{FeatureRecord, Hulls, Name, Record};
+
+/// Which question is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asked {
+    /// Where the bodies meet.
+    Contact,
+    /// How far the moving one can go.
+    Clearance,
+}
 
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;

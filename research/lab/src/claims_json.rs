@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use crate::finding::Claim;
+use crate::claims::Claim;
 use crate::report::Report;
 
 /// All claims of a run.

@@ -2,8 +2,8 @@
 
 use colltrans_testkit::timing::quantile;
 
-use crate::claims::{PaperClaim, Verdict};
-use crate::statistics::{Estimate, mean};
+use crate::claims::Claim;
+use crate::statistics::mean;
 
 /// The result of an experiment.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,19 +93,4 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Cells, row by row.
     pub rows: Vec<Vec<String>>,
-}
-
-/// Something the paper says, held against the data.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Claim {
-    /// What is claimed, and by what it is judged.
-    pub paper: &'static PaperClaim,
-    /// What was measured, one number for each of the claim's criteria.
-    pub measured: Vec<Estimate>,
-    /// More about it: other numbers, and circumstances.
-    pub details: String,
-    /// Computed from the numbers and the criteria.
-    pub verdict: Verdict,
-    /// Why it does not hold here, or is undecided, as far as the data of this run tell.
-    pub why: Option<String>,
 }

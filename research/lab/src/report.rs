@@ -5,9 +5,9 @@ use std::fmt::{self, Write};
 use std::time::Duration;
 
 use crate::Experiment;
-use crate::claims::{PaperClaim, Verdict};
+use crate::claims::{Claim, PaperClaim, Verdict};
 use crate::draw::Picture;
-use crate::finding::{Claim, Figure, Finding, Table};
+use crate::finding::{Figure, Finding, Table};
 use crate::plan::Plan;
 use colltrans_testkit::provenance::{Provenance, for_people};
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use colltrans_lab::claims::{CLAIMS, Verdict};
+use colltrans_lab::claims::{CLAIMS, Claim, Verdict};
 use colltrans_lab::experiments;
-use colltrans_lab::finding::{Claim, Figure, Finding, Table};
+use colltrans_lab::finding::{Figure, Finding, Table};
 use colltrans_lab::plan::{Plan, Progress, Scale};
 
 const TINY: Plan = Plan { scale: Scale::Tiny, seed: 1, parts: None };

@@ -10,7 +10,7 @@ use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use serde_json::value::RawValue;
 
-use super::query::{Asked, PoseSource, Query};
+use super::source::{Asked, PoseSource, Query};
 
 /// The query of a line, if it has the usual form.
 pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
@@ -224,7 +224,7 @@ fn is_json(number: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::query::BodySource;
+    use super::super::source::BodySource;
     use super::*;
 
     const LINES: [&str; 4] = [

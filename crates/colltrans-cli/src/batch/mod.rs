@@ -12,6 +12,7 @@ mod pipeline;
 mod query;
 mod recent;
 mod results;
+mod source;
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};

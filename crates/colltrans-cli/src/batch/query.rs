@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, ConvexPolyhedron, Options, Pose, Solver};
+use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::BodyOptions;
 use serde::Deserialize;
@@ -15,6 +15,7 @@ use super::cache::{Built, Cache, Key, Shape};
 use super::fast_path;
 use super::pipeline::Line;
 use super::recent::Recent;
+use super::source::{Asked, BodySource, PoseSource, Query};
 use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
@@ -32,59 +33,6 @@ pub(crate) struct Batch {
     pub(crate) cache: Cache,
     /// The file that the results will replace.
     pub(crate) watched: Watched,
-}
-
-/// A line. Its bodies are read, or what is written of them.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds a query")]
-pub(super) struct Query<'a, Body> {
-    #[serde(borrow)]
-    pub(super) id: Option<&'a RawValue>,
-    pub(super) moving: Body,
-    pub(super) fixed: Body,
-    #[serde(default)]
-    pub(super) moving_pose: PoseSource,
-    #[serde(default)]
-    pub(super) fixed_pose: PoseSource,
-    pub(super) direction: [f64; 3],
-    #[serde(rename = "query")]
-    pub(super) asked: Option<Asked>,
-    pub(super) graze_tolerance: Option<f64>,
-    pub(super) solver: Option<Solver>,
-    pub(super) tolerance: Option<f64>,
-    pub(super) ignore_start_overlaps: Option<bool>,
-}
-
-/// Which question is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Asked {
-    Contact,
-    Clearance,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object that holds a body")]
-pub(super) struct BodySource {
-    points: Option<Vec<[f64; 3]>>,
-    mesh: Option<PathBuf>,
-    solid: Option<PathBuf>,
-    open: Option<bool>,
-    hull: Option<bool>,
-    scale: Option<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default, expecting = "an object that holds a pose")]
-pub(super) struct PoseSource {
-    pub(super) translation: [f64; 3],
-    pub(super) rotation: [f64; 4],
-}
-
-impl Default for PoseSource {
-    fn default() -> Self {
-        Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] }
-    }
 }
 
 /// Reads the id of a query that is otherwise wrong.

@@ -17,7 +17,6 @@ mod list;
 
 use std::fmt;
 
-use crate::finding::Claim;
 use crate::statistics::{Estimate, short};
 pub use list::CLAIMS;
 
@@ -148,6 +147,21 @@ pub(crate) fn judged(
     let verdict = paper.judge(&measured);
     let why = (!verdict.is_kept()).then(why);
     Claim { paper, measured, details, verdict, why }
+}
+
+/// Something the paper says, held against the data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// What is claimed, and by what it is judged.
+    pub paper: &'static PaperClaim,
+    /// What was measured, one number for each of the claim's criteria.
+    pub measured: Vec<Estimate>,
+    /// More about it: other numbers, and circumstances.
+    pub details: String,
+    /// Computed from the numbers and the criteria.
+    pub verdict: Verdict,
+    /// Why it does not hold here, or is undecided, as far as the data of this run tell.
+    pub why: Option<String>,
 }
 
 impl PaperClaim {

@@ -6,8 +6,8 @@ use super::{
     Coherence, Parts, Race, Results, axis, means, reference, series, share, shares, thousands,
 };
 use crate::Experiment;
-use crate::claims::judged;
-use crate::finding::{Claim, Figure, Finding, Point};
+use crate::claims::{Claim, judged};
+use crate::finding::{Figure, Finding, Point};
 use crate::plan::{Plan, Progress};
 use crate::settings::{MOTIONS, Meeting, Setting};
 use crate::shapes::Kind;

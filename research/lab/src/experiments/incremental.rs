@@ -8,8 +8,8 @@ use super::{
     series, share, shares, thousands, time,
 };
 use crate::Experiment;
-use crate::claims::judged;
-use crate::finding::{Claim, Figure, Finding, Point};
+use crate::claims::{Claim, judged};
+use crate::finding::{Figure, Finding, Point};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;

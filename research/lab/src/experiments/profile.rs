@@ -6,8 +6,8 @@ use colltrans::observe::{Clock, Profile};
 
 use super::{Parts, share, shares, thousands};
 use crate::Experiment;
-use crate::claims::judged;
-use crate::finding::{Claim, Finding, Table};
+use crate::claims::{Claim, judged};
+use crate::finding::{Finding, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::{Kind, bodies};

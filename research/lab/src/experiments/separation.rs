@@ -5,8 +5,8 @@ use super::{
     shares, thousands, time,
 };
 use crate::Experiment;
-use crate::claims::judged;
-use crate::finding::{Claim, Finding, Point};
+use crate::claims::{Claim, judged};
+use crate::finding::{Finding, Point};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;

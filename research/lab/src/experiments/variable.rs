@@ -9,8 +9,8 @@ use colltrans::Region;
 
 use super::{Coherence, Parts, Race, Results, axis, means, series, share, shares, thousands, time};
 use crate::Experiment;
-use crate::claims::judged;
-use crate::finding::{Claim, Figure, Finding, Point, Table};
+use crate::claims::{Claim, judged};
+use crate::finding::{Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::Setting;
 use crate::shapes::Kind;

@@ -1,8 +1,8 @@
 //! Findings that nobody found.
 
 use colltrans_lab::Experiment;
-use colltrans_lab::claims::{Better, Criterion, PaperClaim};
-use colltrans_lab::finding::{Axis, Claim, Figure, Finding, Point, Series, Table};
+use colltrans_lab::claims::{Better, Claim, Criterion, PaperClaim};
+use colltrans_lab::finding::{Axis, Figure, Finding, Point, Series, Table};
 use colltrans_lab::plan::{Plan, Progress};
 use colltrans_lab::statistics::Estimate;
 

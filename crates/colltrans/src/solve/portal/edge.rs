@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::tied::crossed_or_tied;
 use super::wrap::Tilt;
-use super::{Context, Known, Portal};
+use super::{Context, Known, Line, Portal};
 use crate::number::plane::triangle_normal;
 use crate::setting::minkowski::Point;
 use crate::solve::observe::Observer;
@@ -17,14 +17,6 @@ pub(super) struct Edge {
     pub(super) from: Point,
     pub(super) to: Point,
     pub(super) third: Point,
-}
-
-/// Where the line is, seen from a portal that was reached face by face.
-pub(super) enum Line {
-    /// It has left the portal over the edge that begins at this corner.
-    Beyond(usize),
-    /// It pierces the portal.
-    Inside(Known),
 }
 
 /// Where the line is, seen from a portal.

@@ -9,9 +9,9 @@
 
 use glam::DVec3;
 
-use super::edge::{Edge, Line, left_behind};
+use super::edge::{Edge, left_behind};
 use super::refine::plane_normal;
-use super::{Context, Known, Portal};
+use super::{Context, Known, Line, Portal};
 use crate::body::ConvexPolyhedron;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};

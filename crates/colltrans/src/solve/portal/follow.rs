@@ -16,12 +16,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::edge::{Edge, Line, crossed, left_behind};
+use super::edge::{Edge, crossed, left_behind};
 use super::flat::{Flat, across, has_large_faces};
 use super::start::{continued, slope_per_shadow};
 use super::tied::{Beside, Pointed, beside, pointed};
 use super::wrap::first_met;
-use super::{Context, FirstNormal, Known, Portal, normal_of};
+use super::{Context, FirstNormal, Known, Line, Portal, normal_of};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::{Observer, Support};

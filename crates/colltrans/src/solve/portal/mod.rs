@@ -57,6 +57,14 @@ pub(crate) enum Known {
     Lowest(Face),
 }
 
+/// Where the line is, seen from a portal that was reached face by face.
+enum Line {
+    /// It has left the portal over the edge that begins at this corner.
+    Beyond(usize),
+    /// It pierces the portal.
+    Inside(Known),
+}
+
 /// `(a, 1)`.
 fn normal_of(slope: DVec2) -> DVec3 {
     slope.extend(1.0)

@@ -8,11 +8,10 @@
 
 use glam::{DVec2, DVec3};
 
-use super::edge::Line;
 use super::enclose::nearest_share;
 use super::refine::{Optimum, largest, plane_normal, weights};
 use super::wrap::{Tilt, first_met};
-use super::{Context, Known, Plane, Portal, normal_of};
+use super::{Context, Known, Line, Plane, Portal, normal_of};
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};

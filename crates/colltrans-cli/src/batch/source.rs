@@ -1,0 +1,60 @@
+//! What a line of a batch says, before anything is looked up.
+
+use std::path::PathBuf;
+
+use colltrans::Solver;
+use serde::Deserialize;
+use serde_json::value::RawValue;
+
+/// A line. Its bodies are read, or what is written of them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object that holds a query")]
+pub(super) struct Query<'a, Body> {
+    #[serde(borrow)]
+    pub(super) id: Option<&'a RawValue>,
+    pub(super) moving: Body,
+    pub(super) fixed: Body,
+    #[serde(default)]
+    pub(super) moving_pose: PoseSource,
+    #[serde(default)]
+    pub(super) fixed_pose: PoseSource,
+    pub(super) direction: [f64; 3],
+    #[serde(rename = "query")]
+    pub(super) asked: Option<Asked>,
+    pub(super) graze_tolerance: Option<f64>,
+    pub(super) solver: Option<Solver>,
+    pub(super) tolerance: Option<f64>,
+    pub(super) ignore_start_overlaps: Option<bool>,
+}
+
+/// Which question is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Asked {
+    Contact,
+    Clearance,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object that holds a body")]
+pub(super) struct BodySource {
+    pub(super) points: Option<Vec<[f64; 3]>>,
+    pub(super) mesh: Option<PathBuf>,
+    pub(super) solid: Option<PathBuf>,
+    pub(super) open: Option<bool>,
+    pub(super) hull: Option<bool>,
+    pub(super) scale: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default, expecting = "an object that holds a pose")]
+pub(super) struct PoseSource {
+    pub(super) translation: [f64; 3],
+    pub(super) rotation: [f64; 4],
+}
+
+impl Default for PoseSource {
+    fn default() -> Self {
+        Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] }
+    }
+}

@@ -13,7 +13,7 @@ use crate::errors::OrRaise;
 use crate::features::{Features, Steps, feature};
 use crate::pose::Pose;
 use crate::query::{Cast, Query};
-use crate::saved::{Saved, proof_parts, saved, step_parts};
+use crate::saved::{Saved, saved, written};
 use crate::show::{Options, Shown, show};
 
 /// Where the bodies first meet along the direction.
@@ -112,11 +112,7 @@ impl Contact {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let (query, c) = (Cast(self.query.copy(py)), &self.contact);
-        let (counts, started_from) = step_parts(c.steps);
-        let numbers = (c.translation, c.normal.to_array(), proof_parts(&c.certificate));
-        let pair = [c.support.moving, c.support.fixed];
-        saved(py, "Contact", (query, numbers, pair, c.solver.name(), counts, started_from))
+        saved(py, "Contact", (Cast(self.query.copy(py)), written(&self.contact)?))
     }
 
     pub(crate) fn __repr__(&self) -> String {
@@ -237,10 +233,7 @@ impl Separated {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let (query, s) = (Cast(self.query.copy(py)), &self.separated);
-        let (counts, started_from) = step_parts(s.steps);
-        let proof = (s.certificate.normal.to_array(), s.certificate.margin);
-        saved(py, "Separated", (query, proof, s.solver.name(), counts, started_from))
+        saved(py, "Separated", (Cast(self.query.copy(py)), written(&self.separated)?))
     }
 
     pub(crate) fn __repr__(&self) -> String {

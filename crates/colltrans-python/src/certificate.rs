@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use crate::arrays::{row, table};
 use crate::errors::OrRaise;
 use crate::query::{Cast, Query};
-use crate::saved::{Saved, proof_parts, saved};
+use crate::saved::{Saved, saved, written};
 
 /// The proof of a contact: both bounds of the collision translation, rounded outwards.
 ///
@@ -89,7 +89,7 @@ impl Certificate {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Certificate", (Cast(self.query.copy(py)), proof_parts(&self.proof)))
+        saved(py, "Certificate", (Cast(self.query.copy(py)), written(&self.proof)?))
     }
 
     fn __repr__(&self) -> String {
@@ -147,8 +147,7 @@ impl Separation {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let proof = (self.proof.normal.to_array(), self.proof.margin);
-        saved(py, "Separation", (Cast(self.query.copy(py)), proof))
+        saved(py, "Separation", (Cast(self.query.copy(py)), written(&self.proof)?))
     }
 
     fn __repr__(&self) -> String {

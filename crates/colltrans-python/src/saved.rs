@@ -3,11 +3,12 @@
 //! Every class says what it is made of ([`saved`]), and [`restore`] makes it again. What comes back is
 //! believed, as all that is pickled; a proof in it is checked by `verify` as ever.
 
-use colltrans::glam::DVec3;
-use colltrans::{Bounded, SolidOptions, StartOverlap, VertexPair};
+use colltrans::{SolidOptions, StartOverlap};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::answer::{Contact, ContactRange, Grazing, Separated};
 use crate::certificate::{Certificate, Separation};
@@ -15,7 +16,7 @@ use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapp
 use crate::features::{Feature, Features, Steps};
 use crate::offset::{OffsetReport, ShrinkReport};
 use crate::pose::Pose;
-use crate::query::{Cast, Query, solver_called_by};
+use crate::query::{Cast, Query};
 use crate::solid::Piece;
 use crate::solid_answer::{
     SolidBlocked, SolidCertificate, SolidContact, SolidFree, SolidOverlapping,
@@ -25,8 +26,6 @@ use crate::solid_cast::SolidCast;
 /// What `__reduce__` returns.
 pub(crate) type Saved<'py> = (Bound<'py, PyAny>, (&'static str, Bound<'py, PyTuple>));
 
-/// A proof: normal, lower, upper, tolerance, pairs, weights.
-type Proof = ([f64; 3], [f64; 3], [[u32; 2]; 3], [f64; 3]);
 type Counts = [u32; 4];
 
 /// A thing of this class, made of this.
@@ -37,6 +36,21 @@ pub(crate) fn saved<'py>(
 ) -> PyResult<Saved<'py>> {
     let restore = py.import("colltrans._colltrans")?.getattr("_restore")?;
     Ok((restore, (class, state.into_pyobject(py)?)))
+}
+
+/// What the library says of itself, as text that reads back as the same bits.
+pub(crate) fn written(value: &impl Serialize) -> PyResult<String> {
+    serde_json::to_string(value).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+fn read<T: DeserializeOwned>(text: &str) -> PyResult<T> {
+    serde_json::from_str(text).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// What was asked, and what is [`written`] of the answer.
+fn with_query<T: DeserializeOwned>(state: &Bound<'_, PyTuple>) -> PyResult<(Query, T)> {
+    let (query, text): (Py<Cast>, String) = state.extract()?;
+    Ok((query.get().0.copy(state.py()), read(&text)?))
 }
 
 /// What :func:`pickle.loads` calls.
@@ -55,9 +69,15 @@ where
 
 fn convex<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, PyAny>> {
     match class {
-        "Contact" => object(state, contact(state)?),
+        "Contact" => {
+            let (query, contact) = with_query(state)?;
+            object(state, Contact { contact, query })
+        }
         "Grazing" => object(state, grazing(state)?),
-        "Separated" => object(state, separated(state)?),
+        "Separated" => {
+            let (query, separated) = with_query(state)?;
+            object(state, Separated { separated, query })
+        }
         "ContactRange" => {
             let (interval, first, last) = state.extract()?;
             object(state, ContactRange { interval, first, last })
@@ -81,14 +101,12 @@ fn convex<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, 
             object(state, Intersection { meets, direction, outcome })
         }
         "Certificate" => {
-            let (query, proof): (Py<Cast>, Proof) = state.extract()?;
-            let query = query.get().0.copy(state.py());
-            object(state, Certificate { proof: proof_of(proof), query })
+            let (query, proof) = with_query(state)?;
+            object(state, Certificate { proof, query })
         }
         "Separation" => {
-            let (query, proof): (Py<Cast>, ([f64; 3], f64)) = state.extract()?;
-            let query = query.get().0.copy(state.py());
-            object(state, Separation { proof: separation_of(proof), query })
+            let (query, proof) = with_query(state)?;
+            object(state, Separation { proof, query })
         }
         "Steps" => {
             let (counts, started_from): (Counts, String) = state.extract()?;
@@ -121,7 +139,10 @@ fn unknown(what: &str) -> PyErr {
 fn solids<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, PyAny>> {
     match class {
         "SolidCast" => object(state, solid_cast(state)?),
-        "SolidContact" => object(state, solid_contact(state)?),
+        "SolidContact" => {
+            let (query, contact): (Py<SolidCast>, String) = state.extract()?;
+            object(state, SolidContact { contact: read(&contact)?, query })
+        }
         "SolidBlocked" => {
             let (distance, contact) = state.extract()?;
             object(state, SolidBlocked { distance, contact })
@@ -142,21 +163,6 @@ fn solids<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, 
     }
 }
 
-fn contact(state: &Bound<'_, PyTuple>) -> PyResult<Contact> {
-    type State = (Py<Cast>, (f64, [f64; 3], Proof), [u32; 2], String, Counts, String);
-    let (query, (translation, normal, proof), pair, solver, counts, started_from): State =
-        state.extract()?;
-    let contact = colltrans::Contact {
-        translation,
-        normal: normal.into(),
-        support: pair_of(pair),
-        certificate: proof_of(proof),
-        solver: solver_called_by(&solver)?,
-        steps: steps_of(counts, &started_from)?,
-    };
-    Ok(Contact { contact, query: query.get().0.copy(state.py()) })
-}
-
 fn grazing(state: &Bound<'_, PyTuple>) -> PyResult<Grazing> {
     let (contact, overlap, direction): (Py<Contact>, f64, [f64; 3]) = state.extract()?;
     let grazing = colltrans::Grazing {
@@ -165,18 +171,6 @@ fn grazing(state: &Bound<'_, PyTuple>) -> PyResult<Grazing> {
         contact: contact.get().contact,
     };
     Ok(Grazing { grazing, contact })
-}
-
-fn separated(state: &Bound<'_, PyTuple>) -> PyResult<Separated> {
-    type State = (Py<Cast>, ([f64; 3], f64), String, Counts, String);
-    let (query, proof, solver, counts, started_from): State = state.extract()?;
-    let query: Query = query.get().0.copy(state.py());
-    let separated = colltrans::Separated {
-        certificate: separation_of(proof),
-        solver: solver_called_by(&solver)?,
-        steps: steps_of(counts, &started_from)?,
-    };
-    Ok(Separated { separated, query })
 }
 
 fn solid_cast(state: &Bound<'_, PyTuple>) -> PyResult<SolidCast> {
@@ -191,60 +185,8 @@ fn solid_cast(state: &Bound<'_, PyTuple>) -> PyResult<SolidCast> {
     })
 }
 
-fn solid_contact(state: &Bound<'_, PyTuple>) -> PyResult<SolidContact> {
-    type State = (Py<SolidCast>, [[f64; 3]; 2], [[f64; 3]; 3], [(String, Vec<u32>); 2], [u32; 2]);
-    let (query, numbers, vectors, [moving, fixed], triangles): State = state.extract()?;
-    let [translation, shrunk_distance] =
-        numbers.map(|[value, lower, upper]| Bounded { value, lower, upper });
-    let [normal, point_on_moving, point_on_fixed] = vectors.map(DVec3::from_array);
-    let contact = colltrans::SolidContact {
-        translation,
-        shrunk_distance,
-        normal,
-        point_on_moving,
-        point_on_fixed,
-        moving_feature: feature_of(&moving)?,
-        fixed_feature: feature_of(&fixed)?,
-        triangles,
-    };
-    Ok(SolidContact { contact, query })
-}
-
-fn feature_of((kind, numbers): &(String, Vec<u32>)) -> PyResult<colltrans::Feature> {
-    match (&**kind, &**numbers) {
-        ("vertex", &[v]) => Ok(colltrans::Feature::Vertex(v)),
-        ("edge", &[a, b]) => Ok(colltrans::Feature::Edge([a, b])),
-        ("face", &[face]) => Ok(colltrans::Feature::Face(face)),
-        _ => Err(unknown(kind)),
-    }
-}
-
 fn kind_of(name: &str) -> PyResult<&'static str> {
     ["vertex", "edge", "face"].into_iter().find(|kind| *kind == name).ok_or_else(|| unknown(name))
-}
-
-fn pair_of([moving, fixed]: [u32; 2]) -> VertexPair {
-    VertexPair { moving, fixed }
-}
-
-pub(crate) fn proof_parts(proof: &colltrans::Certificate) -> Proof {
-    let bounds = [proof.lower, proof.upper, proof.rounding];
-    let pairs = proof.pairs.map(|pair| [pair.moving, pair.fixed]);
-    (proof.normal.to_array(), bounds, pairs, proof.weights)
-}
-
-fn proof_of((normal, [lower, upper, rounding], pairs, weights): Proof) -> colltrans::Certificate {
-    let pairs = pairs.map(pair_of);
-    colltrans::Certificate { normal: normal.into(), lower, pairs, weights, upper, rounding }
-}
-
-fn separation_of((normal, margin): ([f64; 3], f64)) -> colltrans::Separation {
-    colltrans::Separation { normal: normal.into(), margin }
-}
-
-pub(crate) fn step_parts(steps: colltrans::Steps) -> (Counts, &'static str) {
-    let counts = [steps.planar_problems, steps.supports, steps.pivots, steps.iterations];
-    (counts, steps.started_from.name())
 }
 
 fn steps_of(counts: Counts, started_from: &str) -> PyResult<colltrans::Steps> {

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::arrays::{coordinates, row};
 use crate::errors::OrRaise;
 use crate::features::Feature;
-use crate::saved::{Saved, saved};
+use crate::saved::{Saved, saved, written};
 use crate::show::{Options, Shown, show};
 use crate::solid::Piece;
 use crate::solid_cast::SolidCast;
@@ -98,28 +98,13 @@ impl SolidContact {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let c = &self.contact;
-        let vectors = [c.normal, c.point_on_moving, c.point_on_fixed].map(|v| v.to_array());
-        let features = [c.moving_feature, c.fixed_feature].map(parts);
-        let query = self.query.clone_ref(py);
-        let numbers = [c.translation, c.shrunk_distance].map(|n| [n.value, n.lower, n.upper]);
-        saved(py, "SolidContact", (query, numbers, vectors, features, c.triangles))
+        saved(py, "SolidContact", (self.query.clone_ref(py), written(&self.contact)?))
     }
 
     fn __repr__(&self) -> String {
         let (t, n) = (self.contact.translation.value, coordinates(self.contact.normal));
         format!("SolidContact(translation={t:?}, normal={n:?})")
     }
-}
-
-/// A feature as its name and numbers.
-fn parts(feature: colltrans::Feature) -> (&'static str, Vec<u32>) {
-    let numbers = match feature {
-        colltrans::Feature::Vertex(v) => vec![v],
-        colltrans::Feature::Edge(ends) => ends.to_vec(),
-        colltrans::Feature::Face(face) => vec![face],
-    };
-    (feature.kind(), numbers)
 }
 
 /// A feature by the numbers of the input.

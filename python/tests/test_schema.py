@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 from conftest import ROOT, Batch, draw
-from jsonschema import Draft202012Validator
 
+Draft202012Validator = pytest.importorskip("jsonschema").Draft202012Validator
 SCHEMA = json.loads((ROOT / "docs" / "answers.schema.json").read_text())
 DATA = ROOT / "data"
 ANSWERS = {"contact", "grazing", "separated", "blocked", "slides", "behind", "overlapping", "error"}

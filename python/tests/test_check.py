@@ -20,6 +20,9 @@ PROOFS = HERE / "proofs"
 FILE = HERE.parent / "src" / "colltrans" / "check.py"
 
 
+FAR = ("moving_pose", "translation", 0)
+
+
 def _load() -> Any:
     spec = importlib.util.spec_from_file_location("colltrans_check", FILE)
     assert spec is not None and spec.loader is not None
@@ -134,6 +137,7 @@ def test_the_stop_of_solids_counts() -> None:
     # Facets of one plane meet the others as early; those of other planes do not, nor those missing.
     assert believed(file, (*way, "facets"), lambda k: k + 10_000) == []
     assert refused(changed(file, ("moving_pose", "translation", 2), more))
+    assert not refused(changed(file, (*way, "translation", "lower"), lambda _: None))
     beside = proof("beside")
     assert refused(changed(beside, ("statement", "clearance", "separation", "normal", 0), more))
 
@@ -167,7 +171,9 @@ def test_other_files_are_no_proofs(tmp_path: Path) -> None:
         "empty": "",
         "list": "[]",
         "format": text.replace("proof 1", "proof 2"),
-        "infinite": text.replace('"direction":[', '"direction":[Infinity,'),
+        "infinite": text.replace('"direction":[1.0', '"direction":[Infinity'),
+        "deep": "[" * 100_000,
+        "far": json.dumps(changed(proof("contacts"), FAR, lambda _: -1e300)),
         "still": json.dumps({**proof("contacts"), "direction": [0, 0, 0]}),
         "mixed": json.dumps({**proof("contacts"), "fixed": proof("solids")["fixed"]}),
     }

@@ -48,6 +48,10 @@ _NOISE = 32 * _U
 _TURN = Fraction(1, 10**6)
 
 
+#: What reading a file that is no proof ends in; the first, numbers out of all range.
+_MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+
+
 class NoProofError(ValueError):
     """The file is not what ``--save-proof`` writes."""
 
@@ -327,8 +331,11 @@ def facets(
     f, g = (
         whole(k, len(body.facets)) for k, body in zip(stop["facets"], (moving, fixed), strict=True)
     )
-    lower, value, upper = (number(stop["translation"][k]) for k in ("lower", "value", "upper"))
-    if not lower <= value <= upper:
+    ends = stop["translation"]
+    value = number(ends["value"])
+    # A bound that is not there claims nothing.
+    lower, upper = (None if ends[k] is None else number(ends[k]) for k in ("lower", "upper"))
+    if (lower is not None and lower > value) or (upper is not None and upper < value):
         raise RefusedError("the translation is not between its bounds")
     told = f"facet {f} of the moving body and {g} of the fixed one"
     corners = [minus(q, p) for p in moving.facet(f) for q in fixed.facet(g)]
@@ -339,15 +346,14 @@ def facets(
         report.unchecked.append(f"{told} pass each other as they are")
         return
     at = float(met[0])
-    if met[0] < lower:
+    if lower is not None and met[0] < lower:
         raise RefusedError(f"{told} meet at {at!r}, before {float(lower)!r}")
-    if met[0] > upper:
+    if upper is not None and met[0] > upper:
         if tolerance == 0:
             raise RefusedError(f"{told} meet at {at!r}, after {float(upper)!r}")
         report.unchecked.append(f"the upper bound {float(upper)!r} is one of the shrunk bodies")
         return
-    bounds = f"between {float(lower)!r} and {float(upper)!r}"
-    report.holds.append(f"{told} first meet at {at!r}, {bounds}")
+    report.holds.append(f"{told} first meet at {at!r}, within the bounds claimed")
 
 
 def check(text: str) -> Report:
@@ -374,7 +380,7 @@ def check(text: str) -> Report:
         report = Report()
         ((kind, claim),) = file["statement"].items()
         _claim(kind, claim, moving, fixed, d, report)
-    except (AttributeError, KeyError, TypeError, ValueError, IndexError, RecursionError) as error:
+    except (*_MALFORMED, RecursionError) as error:
         if isinstance(error, NoProofError):
             raise
         raise NoProofError(f"{type(error).__name__}: {error}") from error

@@ -107,7 +107,7 @@ fn a_number_that_is_changed_is_noticed() {
     assert_eq!(believed(&apart, "/statement/separation/normal", &both), [""; 0]);
 }
 
-/// A vertex of the face that touches, pulled out of its body, or the bodies exchanged.
+/// The moving body a little larger.
 #[test]
 fn another_body_is_noticed() {
     let small = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
@@ -118,9 +118,6 @@ fn another_body_is_noticed() {
         *x = json!(x.as_f64().expect("a number") * 1.001);
     }
     assert!(refused(&wrong));
-    let mut wrong = file;
-    wrong["statement"] = json!({"contacts": {}});
-    assert!(refused(&wrong), "it claims nothing");
 }
 
 fn parts() -> [Solid; 2] {
@@ -164,10 +161,18 @@ fn proofs_between_solids_hold_and_their_numbers_count() {
         let free = of_parts(&parts, DVec3::X * 9.0, DVec3::Z, tolerance);
         assert!(free.pointer("/statement/clearance/separation").is_some());
         assert_eq!(believed(&free, "/statement/clearance/separation", &far), [""; 0]);
+        let mut wrong = down;
+        wrong["statement"]["clearance"].as_object_mut().expect("it").remove("stop");
+        assert!(refused(&wrong), "the certificate names a stop");
         let mut wrong = free;
         wrong["statement"]["clearance"]["certificate"]["cover"] = json!("s");
         assert!(refused(&wrong));
     }
+}
+
+/// What is said of solids.
+fn solid_claim() -> Value {
+    of_parts(&parts(), DVec3::ZERO, DVec3::NEG_Z, 0.0)["statement"].take()
 }
 
 #[test]
@@ -206,6 +211,11 @@ fn other_files_are_refused_in_words() {
     assert_eq!(said(&mixed.to_string()), "one body is convex, the other is made of pieces");
     mixed["fixed"] = json!({"pieces": []});
     assert!(said(&mixed.to_string()).starts_with("moving body: "));
+    for says in [json!({"contacts": {}}), solid_claim()] {
+        let mut wrong = file.clone();
+        wrong["statement"] = says;
+        assert_eq!(said(&wrong.to_string()), "what it says is nothing, or is not of such bodies");
+    }
     let mut still = file;
     still["direction"] = json!([0.0, 0.0, 0.0]);
     assert!(said(&still.to_string()).contains("direction"));

@@ -393,7 +393,7 @@ def _claim(kind: str, claim: Any, moving: Body, fixed: Body, d: Vector, report: 
         raise NoProofError(f"{kind!r} is not claimed of such bodies")
     if kind == "contacts":
         if not set(claim) <= {"first", "last"} or not claim:
-            raise RefusedError("nothing is claimed")
+            raise NoProofError("nothing is claimed")
         if "first" in claim:
             contact(moving, fixed, d, claim["first"], report, "along the direction")
         if "last" in claim:

@@ -262,6 +262,11 @@ impl ProofFile {
             },
             _ => return Err(CaseError::Mixed),
         };
+        let says_nothing = file.statement == Statement::Contacts(Contacts::default());
+        let is_solid = matches!(bodies, Bodies::Solids { .. });
+        if says_nothing || is_solid != matches!(file.statement, Statement::Clearance(_)) {
+            return Err(CaseError::Statement);
+        }
         let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
         let direction = DVec3::from_array(file.direction);
         crate::setting::check_direction(direction)?;
@@ -319,7 +324,11 @@ impl SolidStatement {
         let (stop, triangles) = match (self.stop, self.certificate.stop) {
             (None, None) => return Ok(()),
             (Some(stop), Some(proof)) => (stop, proof.triangles),
-            _ => return Err(CertificateError::Start),
+            (stop, proof) => {
+                let named = stop.map(|stop| stop.facets).or(proof.map(|proof| proof.triangles));
+                let [moving, fixed] = named.unwrap_or_default();
+                return Err(CertificateError::Facets { moving, fixed });
+            }
         };
         let [moving, fixed] = stop.facets;
         let overlapping = Some(!matches!(self.certificate.start, StartProof::Apart(_)));

@@ -59,6 +59,9 @@ pub enum CaseError {
     /// One body is convex, the other a solid.
     #[error("one body is convex, the other is made of pieces")]
     Mixed,
+    /// Nothing is said, or what is said is not of such bodies.
+    #[error("what it says is nothing, or is not of such bodies")]
+    Statement,
     /// A solid that its own facets do not make once more.
     #[error("{which} body: its facets alone do not say what it is")]
     Changed {

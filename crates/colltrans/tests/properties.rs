@@ -148,13 +148,18 @@ proptest! {
             + setting.moving_pose.translation().length();
         let rounding = 64.0 * f64::EPSILON * size / found.normal.dot(setting.direction);
         prop_assume!(step > 4.0 * (found.certificate.rounding + rounding));
-        let meets = |t: f64| {
+        let at = |t: f64| {
             let there = Setting { moving_pose: advanced(&setting, t), ..setting.clone() };
-            there.query(&bodies).and_then(|cast| cast.intersects()).map(|found| found.meets)
+            there.query(&bodies).and_then(|cast| cast.intersects())
         };
-        prop_assert_eq!(meets(before), Ok(false), "{}: before", &setting);
+        // A plane keeps them apart by so much, and it is as far along the line through the centres. Bodies
+        // that are hardly thicker than rounding may meet there within rounding.
+        let gap = step * found.normal.dot(setting.direction);
+        let there = at(before).unwrap();
+        let explained = value(&there.outcome).is_some_and(|(_, rounding)| rounding >= gap);
+        prop_assert!(!there.meets || explained, "{}: before", &setting);
         if after < exit - step {
-            prop_assert_eq!(meets(after), Ok(true), "{}: after", &setting);
+            prop_assert!(at(after).unwrap().meets, "{}: after", &setting);
         }
     }
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::process::ExitCode;
 
+use colltrans::{Outcome, QueryError, StartedFrom, Steps};
 use colltrans_testkit::provenance::Provenance;
 use serde_json::{Value, json};
 
@@ -68,6 +69,62 @@ impl Times {
             ("p99_ns", self.quantile(0.99)),
         ];
         figures.into_iter().map(|(name, value)| (name.into(), json!(value))).collect()
+    }
+}
+
+/// Measurements of one solver in one row: times, work, failures.
+#[derive(Debug, Clone, Default)]
+pub struct Measured {
+    /// Of its queries.
+    pub times: Times,
+    /// Work of all queries that were answered.
+    pub steps: Steps,
+    /// How many of them began with the features of the last answer.
+    pub by_features: u32,
+    /// Queries without an answer.
+    pub failures: u32,
+}
+
+impl Measured {
+    /// The time of a query, and what it came to.
+    pub fn note(&mut self, spent: f64, outcome: &Result<Outcome, QueryError>) {
+        self.times.add(spent);
+        self.count(outcome);
+    }
+
+    /// What a query came to; whether it was answered.
+    pub fn count(&mut self, outcome: &Result<Outcome, QueryError>) -> bool {
+        let Ok(outcome) = outcome else {
+            self.failures += 1;
+            return false;
+        };
+        let steps = outcome.steps();
+        self.steps.planar_problems += steps.planar_problems;
+        self.steps.supports += steps.supports;
+        self.steps.pivots += steps.pivots;
+        self.steps.iterations += steps.iterations;
+        self.by_features += u32::from(steps.started_from == StartedFrom::Features);
+        true
+    }
+
+    /// A count for each time.
+    pub fn average(&self, count: u32) -> f64 {
+        f64::from(count) / self.times.count().max(1) as f64
+    }
+
+    /// The times, the work on average, more counts of this program's, and the failures.
+    pub fn to_json(&self, more: &[(&str, u32)]) -> serde_json::Map<String, Value> {
+        let mut json = self.times.to_json();
+        let counts = [
+            ("planar_problems", self.steps.planar_problems),
+            ("supports", self.steps.supports),
+            ("pivots", self.steps.pivots),
+        ];
+        for &(name, count) in counts.iter().chain(more) {
+            json.insert(name.into(), json!(self.average(count)));
+        }
+        json.insert("failures".into(), json!(self.failures));
+        json
     }
 }
 

@@ -192,3 +192,22 @@ pub fn coherent(placed: &Placed, share: f64, steps: u32, seed: u64) -> Vec<Pose>
     });
     poses.collect()
 }
+
+/// The pairs looked at by a solver that begins anew and by one that goes on, along a walk; `ask` gives the
+/// distance and the pairs of both at a pose. They must agree.
+pub fn pairs_anew_and_after(
+    placed: &Placed,
+    seed: u64,
+    mut ask: impl FnMut(&Pose) -> [(f64, u32); 2],
+) -> [u32; 2] {
+    let poses = coherent(placed, 0.0025, 200, seed);
+    ask(&poses[0]);
+    let mut pairs = [0; 2];
+    for pose in &poses {
+        let [expected, answer] = ask(pose);
+        let difference = (expected.0 - answer.0).abs();
+        assert!(difference <= 1e-14 * placed.size(), "{seed}: {difference:e}");
+        pairs = [pairs[0] + expected.1, pairs[1] + answer.1];
+    }
+    pairs
+}

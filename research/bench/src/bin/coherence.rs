@@ -8,12 +8,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::{
-    Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, StartedFrom, Steps,
-    Tracker,
+    Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Tracker,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::Scale;
-use colltrans_bench::report::{self, Times};
+use colltrans_bench::report::{self, Measured, Times};
 use colltrans_bench::shapes::{Shape, body};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
@@ -134,72 +133,27 @@ fn in_turn(
     bodies.iter().cycle().take(count).map(|bodies| (bodies, draw(bodies))).collect()
 }
 
-/// Measurements of one solver in one row.
-#[derive(Default)]
-struct Measured {
-    times: Times,
-    steps: Steps,
-    by_features: u32,
-    failures: u32,
-}
-
-impl Measured {
-    fn follow(
-        &mut self,
-        compared: &Compared,
-        bodies: &Bodies,
-        sequence: &[Setting],
-    ) -> Vec<Result<Outcome, QueryError>> {
-        let stopwatch = Stopwatch::new();
-        let Compared { solver, narrowing, focus, .. } = *compared;
-        let options = Options { solver, narrowing, ..Options::default() };
-        let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
-        let mut outcomes = Vec::with_capacity(sequence.len());
-        for setting in sequence {
-            let (outcome, spent) = stopwatch.time(|| {
-                let cast = setting.cast(bodies, &options)?;
-                if focus == Focus::NONE {
-                    cast.first_contact()
-                } else {
-                    tracker.first_contact(&cast)
-                }
-            });
-            self.note(spent, &outcome);
-            outcomes.push(outcome);
-        }
-        outcomes
+/// Lets a solver follow a sequence.
+fn follow(
+    measured: &mut Measured,
+    compared: &Compared,
+    bodies: &Bodies,
+    sequence: &[Setting],
+) -> Vec<Result<Outcome, QueryError>> {
+    let stopwatch = Stopwatch::new();
+    let Compared { solver, narrowing, focus, .. } = *compared;
+    let options = Options { solver, narrowing, ..Options::default() };
+    let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
+    let mut outcomes = Vec::with_capacity(sequence.len());
+    for setting in sequence {
+        let (outcome, spent) = stopwatch.time(|| {
+            let cast = setting.cast(bodies, &options)?;
+            if focus == Focus::NONE { cast.first_contact() } else { tracker.first_contact(&cast) }
+        });
+        measured.note(spent, &outcome);
+        outcomes.push(outcome);
     }
-
-    fn note(&mut self, spent: f64, outcome: &Result<Outcome, QueryError>) {
-        self.times.add(spent);
-        let Ok(outcome) = outcome else {
-            self.failures += 1;
-            return;
-        };
-        let steps = outcome.steps();
-        self.steps.planar_problems += steps.planar_problems;
-        self.steps.supports += steps.supports;
-        self.steps.pivots += steps.pivots;
-        self.by_features += u32::from(steps.started_from == StartedFrom::Features);
-    }
-
-    fn average(&self, count: u32) -> f64 {
-        f64::from(count) / self.times.count().max(1) as f64
-    }
-
-    fn to_json(&self) -> Value {
-        let mut json = self.times.to_json();
-        for (name, count) in [
-            ("planar_problems", self.steps.planar_problems),
-            ("supports", self.steps.supports),
-            ("pivots", self.steps.pivots),
-            ("by_features", self.by_features),
-        ] {
-            json.insert(name.into(), json!(self.average(count)));
-        }
-        json.insert("failures".into(), json!(self.failures));
-        json.into()
-    }
+    outcomes
 }
 
 /// The rows of one size.
@@ -219,7 +173,7 @@ impl Table<'_> {
             let mut answers: [Vec<_>; COMPARED.len()] = Default::default();
             for k in 0..COMPARED.len() {
                 let who = (turn + k) % COMPARED.len();
-                answers[who] = measured[who].follow(&COMPARED[who], bodies, sequence);
+                answers[who] = follow(&mut measured[who], &COMPARED[who], bodies, sequence);
             }
             self.scale.measure(&mut parry);
             let [reference, others @ ..] = &answers;
@@ -236,7 +190,10 @@ impl Table<'_> {
         let contestants: serde_json::Map<String, Value> = COMPARED
             .iter()
             .zip(&measured)
-            .map(|(compared, measured)| (compared.name.into(), measured.to_json()))
+            .map(|(compared, measured)| {
+                let by_features = [("by_features", measured.by_features)];
+                (compared.name.into(), measured.to_json(&by_features).into())
+            })
             .collect();
         self.rows.push(json!({
             "sequences": name,

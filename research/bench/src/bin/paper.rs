@@ -11,12 +11,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::{
-    BuildError, Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Steps,
-    Tracker, observe,
+    BuildError, Focus, NarrowFrom, Narrowing, Options, Region, Solver, Tracker, observe,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::Scale;
-use colltrans_bench::report::{self, Times};
+use colltrans_bench::report::{self, Measured, Times};
 use colltrans_bench::shapes::{Shape, body};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
@@ -184,46 +183,10 @@ fn sequences<'a>(
     in_turn.map(|bodies| (bodies, draw(bodies))).collect()
 }
 
-/// Measurements of one solver in one row.
-#[derive(Default)]
-struct Measured {
-    times: Times,
-    steps: Steps,
-    failures: u32,
-}
-
-impl Measured {
-    fn note(&mut self, spent: f64, outcome: &Result<Outcome, QueryError>) {
-        self.times.add(spent);
-        let Ok(outcome) = outcome else {
-            self.failures += 1;
-            return;
-        };
-        let steps = outcome.steps();
-        self.steps.planar_problems += steps.planar_problems;
-        self.steps.supports += steps.supports;
-        self.steps.pivots += steps.pivots;
-        self.steps.iterations += steps.iterations;
-    }
-
-    fn average(&self, count: u32) -> f64 {
-        f64::from(count) / self.times.count().max(1) as f64
-    }
-
-    fn to_json(&self, unit: f64) -> Value {
-        let mut json = self.times.to_json();
-        json.insert("ratio".into(), json!(self.times.median() / unit));
-        for (name, count) in [
-            ("planar_problems", self.steps.planar_problems),
-            ("supports", self.steps.supports),
-            ("pivots", self.steps.pivots),
-            ("iterations", self.steps.iterations),
-        ] {
-            json.insert(name.into(), json!(self.average(count)));
-        }
-        json.insert("failures".into(), json!(self.failures));
-        json.into()
-    }
+fn to_json(measured: &Measured, unit: f64) -> Value {
+    let mut json = measured.to_json(&[("iterations", measured.steps.iterations)]);
+    json.insert("ratio".into(), json!(measured.times.median() / unit));
+    json.into()
 }
 
 fn options(narrowing: Option<Narrowing>) -> Options {
@@ -366,7 +329,7 @@ fn row(
             m.times.median() / unit,
             m.average(m.steps.planar_problems)
         );
-        contestants.insert((*who).into(), m.to_json(unit));
+        contestants.insert((*who).into(), to_json(m, unit));
     }
     let failures: u32 = measured.iter().map(|m| m.failures).sum();
     println!(" | {unit:>5.0} {:>5.0} {failures}", parry.median());

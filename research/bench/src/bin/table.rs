@@ -9,10 +9,10 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
-use colltrans::{BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver, Steps};
+use colltrans::{BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParrySetting};
-use colltrans_bench::report::{self, Times};
+use colltrans_bench::report::{self, Measured};
 use colltrans_bench::shapes::Shape;
 use colltrans_bench::ties::{Placement, Tie};
 use colltrans_lab::settings::{Meeting, Setting};
@@ -165,46 +165,14 @@ fn ask(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, Qu
     setting.cast(bodies, &Options { solver, ..Options::default() })?.first_contact()
 }
 
-/// Measurements of one solver in one row.
-#[derive(Default)]
-struct Measured {
-    times: Times,
-    steps: Steps,
-    failures: u32,
-}
-
-impl Measured {
-    fn measure(&mut self, cases: &Cases, solver: Solver, block: &[(usize, Setting)]) {
-        let stopwatch = Stopwatch::new();
-        for (pair, setting) in block {
-            let (outcome, spent) = stopwatch.time(|| ask(&cases.pairs[*pair], setting, solver));
-            let Ok(outcome) = outcome else {
-                self.failures += 1;
-                continue;
-            };
-            self.times.add(spent);
-            let steps = outcome.steps();
-            self.steps.planar_problems += steps.planar_problems;
-            self.steps.supports += steps.supports;
-            self.steps.pivots += steps.pivots;
+/// Asks all settings of a block.
+fn measure(measured: &mut Measured, cases: &Cases, solver: Solver, block: &[(usize, Setting)]) {
+    let stopwatch = Stopwatch::new();
+    for (pair, setting) in block {
+        let (outcome, spent) = stopwatch.time(|| ask(&cases.pairs[*pair], setting, solver));
+        if measured.count(&outcome) {
+            measured.times.add(spent);
         }
-    }
-
-    fn average(&self, count: u32) -> f64 {
-        f64::from(count) / self.times.count().max(1) as f64
-    }
-
-    fn to_json(&self) -> Value {
-        let mut json = self.times.to_json();
-        for (name, count) in [
-            ("planar_problems", self.steps.planar_problems),
-            ("supports", self.steps.supports),
-            ("pivots", self.steps.pivots),
-        ] {
-            json.insert(name.into(), json!(self.average(count)));
-        }
-        json.insert("failures".into(), json!(self.failures));
-        json.into()
     }
 }
 
@@ -261,7 +229,7 @@ impl Row {
                     blocks[(turn + compared * blocks.len() / COMPARED) % blocks.len()]
                 };
                 for (index, (_, solver)) in SOLVERS.into_iter().enumerate() {
-                    self.ours[index].measure(cases, solver, block(index));
+                    measure(&mut self.ours[index], cases, solver, block(index));
                 }
                 // Parry's linear support search at these sizes needs no second look.
                 if pass == 0 || self.vertices < 9_000 {
@@ -335,10 +303,10 @@ impl Row {
             "settings": self.settings,
             "build_ms": self.build.as_secs_f64() * 1e3,
             "bytes_per_vertex": self.bytes_per_vertex,
-            "cta": cta.to_json(),
-            "portal": portal.to_json(),
-            "auto": auto.to_json(),
-            "parry": self.theirs.to_json(),
+            "cta": cta.to_json(&[]),
+            "portal": portal.to_json(&[]),
+            "auto": auto.to_json(&[]),
+            "parry": self.theirs.to_json(&[]),
             "parry_disagreements": self.disagreements,
             "parry_over": { "cta": ratio(0), "portal": ratio(1), "auto": ratio(2) },
         })

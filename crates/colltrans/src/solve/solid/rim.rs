@@ -12,8 +12,8 @@
 //!    the interior of the facet's. It crosses two facets that meet at an edge along the strip if they are
 //!    on different sides of it; to brush a fold, or a rim, is not to cross it;
 //! 3. it meets an upright facet of the other body in its own plane where the interiors of the two do;
-//! 4. it crosses an upright facet of another plane over the one point that their shadows have in common, if it lies
-//!    inside both. At an end of a shadow an upright side may join the facet to the next one: then the two
+//! 4. it crosses an upright facet of another plane over the one point that their shadows have in common, if
+//!    it lies inside both. At an end of a shadow an upright side may join the facet to the next one: then the two
 //!    are looked at as a bend, and bends cross if each has an arm on either side of the other.
 //!
 //! With bodies that do not overlap at the start, the gap of 1 and 2 counts as that of two facets does:
@@ -52,8 +52,8 @@ pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
         .any(|(moving, node)| scene.side(moving).solid.nodes()[node as usize].is_open())
 }
 
-/// The least gap of two triangles of which one is an upright facet, the moving body's first, where they block
-/// each other, and its error.
+/// The least gap of two triangles of which one is an upright facet, the moving body's first, where they
+/// block each other, and its error.
 pub(crate) fn least_gap_of(
     scene: &Scene,
     counts: &dyn Fn(&Gap) -> bool,

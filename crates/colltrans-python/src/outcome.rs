@@ -1,42 +1,28 @@
-//! Answers: frozen, with what they were asked. Arrays, points and features are made on access.
-//!
-//! A *last* contact is the first one of the query turned round, and keeps that query, as in the
-//! library.
+//! Answers about all translations: where bodies meet first, or last, or never.
 
-use colltrans::{ContactRange as Range, Outcome};
+use colltrans::{ContactRange as Range, Outcome, ProofFile};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
+use crate::answer::{Answer, answer, object};
 use crate::arrays::{coordinates, row};
 use crate::certificate::{Certificate, Separation};
 use crate::errors::OrRaise;
-use crate::features::{Features, Steps, feature};
+use crate::features::{Feature, Features, Steps};
 use crate::pose::Pose;
-use crate::query::{Cast, Query};
-use crate::saved::{Saved, saved, written};
-use crate::show::{Options, Shown, show};
+use crate::query::Cast;
 
 /// Where the bodies first meet along the direction.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Contact {
     pub(crate) contact: colltrans::Contact,
-    pub(crate) query: Query,
+    pub(crate) query: Py<Cast>,
 }
 
-impl Contact {
-    /// The library's cast; its query has been answered, so it is one.
-    fn with_cast<T>(&self, then: impl FnOnce(&colltrans::Cast<'_>) -> T) -> PyResult<T> {
-        self.query.ask(|cast| Ok(then(cast)))
-    }
-}
+answer!(Contact("translation", "normal", "point") of Outcome, Cast, |it| Outcome::Contact(it.contact));
 
 #[pymethods]
 impl Contact {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str, &'static str) =
-        ("translation", "normal", "point");
-
     /// float: The collision translation, in multiples of the direction. Negative: a contact that
     /// lies behind, or an overlap now.
     #[getter]
@@ -53,38 +39,38 @@ impl Contact {
     /// ndarray of shape (3,): The contact point, in the world.
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = self.with_cast(|cast| self.contact.points(cast))?;
+        let points = self.query.get().with(|cast| self.contact.points(cast))?;
         Ok(row(py, points.on_fixed))
     }
 
     /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
     #[getter]
     fn point_at_start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = self.with_cast(|cast| self.contact.points(cast))?;
+        let points = self.query.get().with(|cast| self.contact.points(cast))?;
         Ok(row(py, points.on_moving))
     }
 
     /// Features: The vertex, edge or face of each body in the contact plane.
     #[getter]
-    fn features(&self, py: Python<'_>) -> PyResult<Features> {
-        let (moving, fixed) = self.with_cast(|cast| {
-            let found = self.contact.features(cast);
-            (feature(found.moving, cast.moving()), feature(found.fixed, cast.fixed()))
-        })?;
-        Ok(Features { moving: Py::new(py, moving)?, fixed: Py::new(py, fixed)? })
+    fn features(&self) -> PyResult<Features> {
+        self.query.get().with(|cast| {
+            let colltrans::Features { moving, fixed } = self.contact.features(cast);
+            let moving = Feature::of(moving, cast.moving());
+            Features { moving, fixed: Feature::of(fixed, cast.fixed()) }
+        })
     }
 
     /// Certificate: Both bounds with their proofs.
     #[getter]
     fn certificate(&self, py: Python<'_>) -> Certificate {
-        Certificate { proof: self.contact.certificate, query: self.query.copy(py) }
+        Certificate { proof: self.contact.certificate, query: self.query.clone_ref(py) }
     }
 
     /// Pose: The moving body's pose after the motion up to this contact and not beyond, whatever
     /// rounding does.
     #[getter]
     fn pose_before(&self) -> PyResult<Pose> {
-        self.with_cast(|cast| self.contact.pose_before(cast))?.or_raise().map(Pose)
+        self.query.get().with(|cast| self.contact.pose_before(cast))?.or_raise().map(Pose)
     }
 
     /// str: The solver that found it.
@@ -96,44 +82,30 @@ impl Contact {
     /// Steps: Work done.
     #[getter]
     fn steps(&self) -> Steps {
-        Steps::of(self.contact.steps)
+        Steps(self.contact.steps)
     }
 
-    /// Cast: The query; of a last contact the one turned round.
-    #[getter]
-    fn query(&self, py: Python<'_>) -> Cast {
-        Cast(self.query.copy(py))
+    fn __repr__(&self) -> String {
+        contact_text(&self.contact)
     }
+}
 
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Contact", (Cast(self.query.copy(py)), written(&self.contact)?))
-    }
-
-    pub(crate) fn __repr__(&self) -> String {
-        let (t, n) = (self.contact.translation, coordinates(self.contact.normal));
-        format!("Contact(translation={t:?}, normal={n:?})")
-    }
+pub(crate) fn contact_text(contact: &colltrans::Contact) -> String {
+    let (t, n) = (contact.translation, coordinates(contact.normal));
+    format!("Contact(translation={t:?}, normal={n:?})")
 }
 
 /// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Grazing {
     pub(crate) grazing: colltrans::Grazing,
-    pub(crate) contact: Py<Contact>,
+    pub(crate) query: Py<Cast>,
 }
+
+answer!(Grazing("overlap", "contact") of Outcome, Cast, |it| Outcome::Grazing(it.grazing));
 
 #[pymethods]
 impl Grazing {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("overlap", "contact");
-
     /// float: How far the shadows overlap, a length; negative if they miss by less than rounding
     /// can tell.
     #[getter]
@@ -150,40 +122,31 @@ impl Grazing {
 
     /// Contact: The contact if the overlap is taken for real.
     #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<Contact> {
-        self.contact.clone_ref(py)
+    fn contact(&self, py: Python<'_>) -> Contact {
+        Contact { contact: self.grazing.contact, query: self.query(py) }
     }
 
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
+    fn __repr__(&self) -> String {
+        grazing_text(&self.grazing)
     }
+}
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let (contact, g) = (self.contact.clone_ref(py), &self.grazing);
-        saved(py, "Grazing", (contact, g.overlap, g.separating_direction.to_array()))
-    }
-
-    pub(crate) fn __repr__(&self) -> String {
-        let contact = self.contact.get().__repr__();
-        format!("Grazing(overlap={:?}, contact={contact})", self.grazing.overlap)
-    }
+pub(crate) fn grazing_text(grazing: &colltrans::Grazing) -> String {
+    let contact = contact_text(&grazing.contact);
+    format!("Grazing(overlap={:?}, contact={contact})", grazing.overlap)
 }
 
 /// The bodies never meet along the direction.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Separated {
     pub(crate) separated: colltrans::Separated,
-    pub(crate) query: Query,
+    pub(crate) query: Py<Cast>,
 }
+
+answer!(Separated("margin", "normal") of Outcome, Cast, |it| Outcome::Separated(it.separated));
 
 #[pymethods]
 impl Separated {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("margin", "normal");
-
     /// float: A lower bound of the distance of the shadows, a length.
     #[getter]
     fn margin(&self) -> f64 {
@@ -199,7 +162,7 @@ impl Separated {
     /// Separation: The proof.
     #[getter]
     fn certificate(&self, py: Python<'_>) -> Separation {
-        Separation { proof: self.separated.certificate, query: self.query.copy(py) }
+        Separation { proof: self.separated.certificate, query: self.query.clone_ref(py) }
     }
 
     /// float: How far the moving body can move: infinitely.
@@ -217,26 +180,10 @@ impl Separated {
     /// Steps: Work done.
     #[getter]
     fn steps(&self) -> Steps {
-        Steps::of(self.separated.steps)
+        Steps(self.separated.steps)
     }
 
-    /// Cast: The query.
-    #[getter]
-    fn query(&self, py: Python<'_>) -> Cast {
-        Cast(self.query.copy(py))
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Separated", (Cast(self.query.copy(py)), written(&self.separated)?))
-    }
-
-    pub(crate) fn __repr__(&self) -> String {
+    fn __repr__(&self) -> String {
         format!("Separated(margin={:?})", self.separated.certificate.margin)
     }
 }
@@ -244,96 +191,81 @@ impl Separated {
 /// All translations at which the bodies meet, with what touches at either end.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct ContactRange {
-    pub(crate) interval: (f64, f64),
-    pub(crate) first: Py<PyAny>,
-    pub(crate) last: Py<PyAny>,
+    range: Range,
+    query: Py<Cast>,
+}
+
+answer!(ContactRange("interval") of Range, Cast, |it| it.range);
+
+impl ContactRange {
+    /// The first contact, or the last one.
+    fn end<'py>(&self, py: Python<'py>, is_last: bool) -> PyResult<Bound<'py, PyAny>> {
+        let end = match self.range {
+            Range::Contact { first, last } => Outcome::Contact(if is_last { last } else { first }),
+            Range::Grazing { first, last } => Outcome::Grazing(if is_last { last } else { first }),
+            Range::Separated(separated) => Outcome::Separated(separated),
+        };
+        if is_last {
+            return end.object(&Bound::new(py, self.query.get().reversed(py))?);
+        }
+        end.object(self.query.bind(py))
+    }
 }
 
 #[pymethods]
 impl ContactRange {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("interval",);
-
     /// tuple of float: First and last translation, in multiples of the direction.
     #[getter]
     fn interval(&self) -> (f64, f64) {
-        self.interval
+        let [enter, exit] = self.range.interval().unwrap_or([f64::NAN; 2]);
+        (enter, exit + 0.0)
     }
 
     /// Contact or Grazing: The first contact along the direction.
     #[getter]
-    fn first(&self, py: Python<'_>) -> Py<PyAny> {
-        self.first.clone_ref(py)
+    fn first<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.end(py, false)
     }
 
     /// Contact or Grazing: The last contact: the first one of the query turned round.
     #[getter]
-    fn last(&self, py: Python<'_>) -> Py<PyAny> {
-        self.last.clone_ref(py)
+    fn last<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.end(py, true)
     }
 
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let (first, last) = (self.first.clone_ref(py), self.last.clone_ref(py));
-        saved(py, "ContactRange", (self.interval, first, last))
-    }
-
-    pub(crate) fn __repr__(&self) -> String {
-        format!("ContactRange(interval={:?})", self.interval)
+    fn __repr__(&self) -> String {
+        format!("ContactRange(interval={:?})", self.interval())
     }
 }
 
-pub(crate) fn contact(
-    py: Python<'_>,
-    query: Query,
-    contact: colltrans::Contact,
-) -> PyResult<Py<Contact>> {
-    Py::new(py, Contact { contact, query })
-}
+impl Answer for Outcome {
+    type Query = Cast;
 
-pub(crate) fn grazing(
-    py: Python<'_>,
-    query: Query,
-    grazing: colltrans::Grazing,
-) -> PyResult<Py<Grazing>> {
-    let contact = contact(py, query, grazing.contact)?;
-    Py::new(py, Grazing { grazing, contact })
-}
-
-/// An answer of a class of its own.
-pub(crate) fn object<T>(py: Python<'_>, of: T) -> PyResult<Bound<'_, PyAny>>
-where
-    T: pyo3::PyClass + Into<PyClassInitializer<T>>,
-{
-    Ok(Bound::new(py, of)?.into_any())
-}
-
-pub(crate) fn outcome(py: Python<'_>, query: Query, of: Outcome) -> PyResult<Bound<'_, PyAny>> {
-    match of {
-        Outcome::Contact(contact) => object(py, Contact { contact, query }),
-        Outcome::Grazing(of) => Ok(grazing(py, query, of)?.into_bound(py).into_any()),
-        Outcome::Separated(separated) => object(py, Separated { separated, query }),
-    }
-}
-
-pub(crate) fn range(py: Python<'_>, query: Query, of: Range) -> PyResult<Bound<'_, PyAny>> {
-    let back = query.reversed(py);
-    let interval = of.interval().map(|[enter, exit]| (enter, exit + 0.0));
-    let (first, last) = match of {
-        Range::Contact { first, last } => {
-            (contact(py, query, first)?.into_any(), contact(py, back, last)?.into_any())
+    fn object<'py>(self, asked: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, query) = (asked.py(), asked.clone().unbind());
+        match self {
+            Self::Contact(contact) => object(py, Contact { contact, query }),
+            Self::Grazing(grazing) => object(py, Grazing { grazing, query }),
+            Self::Separated(separated) => object(py, Separated { separated, query }),
         }
-        Range::Grazing { first, last } => {
-            (grazing(py, query, first)?.into_any(), grazing(py, back, last)?.into_any())
+    }
+
+    fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
+        query.get().with(|cast| ProofFile::of_outcome(cast, self).to_json())
+    }
+}
+
+impl Answer for Range {
+    type Query = Cast;
+
+    fn object<'py>(self, query: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
+        if let Self::Separated(separated) = self {
+            return Outcome::Separated(separated).object(query);
         }
-        Range::Separated(separated) => return object(py, Separated { separated, query }),
-    };
-    let interval = interval.unwrap_or((f64::NAN, f64::NAN));
-    object(py, ContactRange { interval, first, last })
+        object(query.py(), ContactRange { range: self, query: query.clone().unbind() })
+    }
+
+    fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
+        query.get().with(|cast| ProofFile::of_range(cast, self).to_json())
+    }
 }

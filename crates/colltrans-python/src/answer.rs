@@ -6,6 +6,7 @@
 use std::fs;
 use std::path::Path;
 
+use colltrans::record::Record;
 use pyo3::PyClass;
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -18,6 +19,9 @@ pub(crate) trait Answer: Serialize + DeserializeOwned {
 
     /// As Python has it: a class for each case.
     fn object<'py>(self, query: &Bound<'py, Self::Query>) -> PyResult<Bound<'py, PyAny>>;
+
+    /// What it says, as the command line writes it.
+    fn record(&self, query: &Bound<'_, Self::Query>) -> PyResult<Record>;
 
     /// Its proof, as a file.
     fn proof(&self, query: &Bound<'_, Self::Query>) -> PyResult<String>;
@@ -56,6 +60,18 @@ macro_rules! answer {
                 options: Option<$crate::frozen::Options<'_, 'py>>,
             ) -> $crate::frozen::Shown<'py> {
                 $crate::frozen::show(slf, options)
+            }
+
+            /// What it says, as plain Python: the fields of ``--json`` of the command line, with the same
+            /// bits. None stands for a bound that is infinite.
+            ///
+            /// Returns
+            /// -------
+            /// dict
+            fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                let $it = self;
+                let record = <$of as $crate::answer::Answer>::record(&$again, self.query.bind(py))?;
+                $crate::frozen::plain(py, &record)
             }
 
             /// The proof, with all that it is about, as text: the file of ``--save-proof``, which

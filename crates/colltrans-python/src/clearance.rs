@@ -1,11 +1,13 @@
 //! Answers about where the moving body is now: how far it can go, how deep it is, whether it meets.
 
+use colltrans::glam::DVec3;
+use colltrans::record::Record;
 use colltrans::{Clearance, OverlapAhead, ProofFile, WhyFree};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::row;
+use crate::arrays::{coordinates, row};
 use crate::outcome::{Contact, Grazing, contact_text, grazing_text};
 use crate::query::Cast;
 
@@ -185,8 +187,7 @@ impl Intersection {
     /// Contact or Grazing or Separated: What that cast found.
     #[getter]
     fn outcome<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let cast = self.query.get().along(py, self.found.direction);
-        self.found.outcome.object(&Bound::new(py, cast)?)
+        self.found.outcome.object(&along(self.query.bind(py), self.found.direction)?)
     }
 
     fn __bool__(&self) -> bool {
@@ -203,6 +204,11 @@ fn last(py: Python<'_>, contact: colltrans::Contact, query: &Py<Cast>) -> PyResu
     Ok(Contact { contact, query: Py::new(py, query.get().reversed(py))? })
 }
 
+/// The query that found out whether bodies meet.
+fn along<'py>(query: &Bound<'py, Cast>, direction: DVec3) -> PyResult<Bound<'py, Cast>> {
+    Bound::new(query.py(), query.get().along(query.py(), direction))
+}
+
 impl Answer for Clearance {
     type Query = Cast;
 
@@ -217,6 +223,10 @@ impl Answer for Clearance {
         }
     }
 
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        query.get().with(|cast| Record::of_clearance(self, cast))
+    }
+
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
         query.get().with(|cast| ProofFile::of_clearance(cast, self).to_json())
     }
@@ -227,6 +237,10 @@ impl Answer for colltrans::DirectionalDepth {
 
     fn object<'py>(self, query: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
         object(query.py(), DirectionalDepth { depth: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        self.clearance.record(query)
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
@@ -241,8 +255,13 @@ impl Answer for colltrans::Intersection {
         object(query.py(), Intersection { found: self, query: query.clone().unbind() })
     }
 
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        let mut record = self.outcome.record(&along(query, self.direction)?)?;
+        record.direction = Some(coordinates(self.direction));
+        Ok(record)
+    }
+
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
-        let (py, cast) = (query.py(), query.get());
-        self.outcome.proof(&Bound::new(py, cast.along(py, self.direction))?)
+        self.outcome.proof(&along(query, self.direction)?)
     }
 }

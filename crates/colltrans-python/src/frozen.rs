@@ -40,6 +40,11 @@ pub(crate) fn read<T: DeserializeOwned>(text: &str) -> PyResult<T> {
     serde_json::from_str(text).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
+/// The same as dictionaries, lists and numbers of Python.
+pub(crate) fn plain<'py, T: Serialize>(py: Python<'py>, value: &T) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (written(value)?,))
+}
+
 /// Pickles of classes that serde writes as they are.
 macro_rules! pickled {
     ($($class:ident),*) => {$(

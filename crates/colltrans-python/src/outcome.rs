@@ -1,5 +1,6 @@
 //! Answers about all translations: where bodies meet first, or last, or never.
 
+use colltrans::record::Record;
 use colltrans::{ContactRange as Range, Outcome, ProofFile};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -250,6 +251,10 @@ impl Answer for Outcome {
         }
     }
 
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        query.get().with(|cast| Record::of_outcome(self, cast))
+    }
+
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
         query.get().with(|cast| ProofFile::of_outcome(cast, self).to_json())
     }
@@ -263,6 +268,10 @@ impl Answer for Range {
             return Outcome::Separated(separated).object(query);
         }
         object(query.py(), ContactRange { range: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        query.get().with(|cast| Record::of_contact_range(self, cast))
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {

@@ -1,6 +1,7 @@
 //! Answers of queries about solids.
 
-use colltrans::{Clearance, Overlap, ProofFile, Separation, SolidOverlap};
+use colltrans::record::{Record, StartOverlapRecord};
+use colltrans::{Clearance, Overlap, ProofFile, Separation, SolidOverlap, StartOverlap};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -264,6 +265,21 @@ impl Answer for SolidClearance {
         }
     }
 
+    fn record(&self, query: &Bound<'_, SolidCast>) -> PyResult<Record> {
+        let clearance = *self;
+        SolidCast::ask(query, move |cast| {
+            let mut record = Record::of_solids(&clearance, cast.exit(), cast);
+            if cast.options().start_overlap == StartOverlap::Ignore {
+                record.start_overlaps = cast
+                    .start_overlap()
+                    .map(|of| StartOverlapRecord { depth: of.depth, ..Default::default() })
+                    .into_iter()
+                    .collect();
+            }
+            record
+        })
+    }
+
     fn proof(&self, query: &Bound<'_, SolidCast>) -> PyResult<String> {
         proof(query)
     }
@@ -274,6 +290,11 @@ impl Answer for colltrans::SolidContact {
 
     fn object<'py>(self, query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
         object(query.py(), SolidContact { contact: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, SolidCast>) -> PyResult<Record> {
+        let distance = self.translation.lower.max(0.0);
+        SolidClearance::Blocked { distance, contact: *self }.record(query)
     }
 
     fn proof(&self, query: &Bound<'_, SolidCast>) -> PyResult<String> {

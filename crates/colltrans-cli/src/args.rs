@@ -18,7 +18,7 @@ use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, fitted, formats,
 };
 pub(crate) use values::{Angles, Place, direction};
-use values::{angles, bytes, factor, length, picture, place, solver, threads};
+use values::{angles, bytes, factor, length, picture, place, proof, solver, threads};
 
 /// How far can one body move along a direction before it touches another?
 ///
@@ -134,7 +134,7 @@ pub(crate) struct PairArguments {
     pub(crate) picture: Option<PathBuf>,
     /// Write the proof of the answer, with the bodies and where they are, as one file that `colltrans
     /// verify` checks
-    #[arg(long, value_name = "OUT.json", conflicts_with = "directions")]
+    #[arg(long, value_name = "OUT.json", value_parser = proof, conflicts_with = "directions")]
     pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,

@@ -8,7 +8,7 @@ use colltrans_mesh::{Mesh, ReadOptions};
 
 use crate::args::InfoArguments;
 use crate::failure::{Code, Failure, print};
-use crate::numbers::{about, known, six_digits, vector};
+use crate::numbers::{about, counted, known, six_digits, vector};
 use crate::report::line;
 use crate::solid;
 use crate::terminal::shown;
@@ -134,9 +134,8 @@ fn surface(mesh: &Mesh) -> String {
     match open.as_slice() {
         [] => "closed".into(),
         [[a, b], ..] => format!(
-            "not closed: {} edges have no partner that runs the other way, one of them from \
-             vertex {a} to vertex {b}",
-            open.len()
+            "not closed: {} no partner that runs the other way, one of them from vertex {a} to vertex {b}",
+            counted(open.len(), "edge has", "edges have")
         ),
     }
 }
@@ -165,9 +164,9 @@ fn counts(hull: &ConvexPolyhedron) -> String {
         _ => "",
     };
     format!(
-        "{shape}{} vertices, {} edges, {} faces",
-        hull.vertices().len(),
-        hull.edge_count(),
-        hull.face_count()
+        "{shape}{}, {}, {}",
+        counted(hull.vertices().len(), "vertex", "vertices"),
+        counted(hull.edge_count(), "edge", "edges"),
+        counted(hull.face_count(), "face", "faces")
     )
 }

@@ -167,7 +167,10 @@ fn check_properties(header: &Header) -> Result<Precision, Fault> {
             return Err(fault("the element `face` has no list `vertex_indices`".into()));
         }
         if !lists.all(|list| is_list_of_integers(&list.data_type)) {
-            return Err(fault("the vertex indices of `face` are no list of integers".into()));
+            return Err(fault(
+                "the vertex indices of `face` are not a list of integers, counted by an integer"
+                    .into(),
+            ));
         }
     }
     if element("tristrips").is_some() {
@@ -177,8 +180,8 @@ fn check_properties(header: &Header) -> Result<Precision, Fault> {
 }
 
 fn is_list_of_integers(property: &PropertyType) -> bool {
-    let PropertyType::List(_, scalar) = property else { return false };
-    !matches!(scalar, ScalarType::Float | ScalarType::Double)
+    let PropertyType::List(count, scalar) = property else { return false };
+    [count, scalar].into_iter().all(|kind| !matches!(kind, ScalarType::Float | ScalarType::Double))
 }
 
 /// The names that the corners of a face go by.

@@ -224,6 +224,10 @@ fn faces_of_a_ply_file_are_not_missed() {
     assert!(unnamed.contains("no list `vertex_indices`"), "{unnamed}");
     let strips = message(Format::Ply, text.replace("element face", "element tristrips"));
     assert!(strips.contains("triangle strips"), "{strips}");
+    for list in ["list float int", "list uchar float"] {
+        let odd = message(Format::Ply, text.replace("list uchar int", list));
+        assert!(odd.contains("not a list of integers, counted by an integer"), "{odd}");
+    }
 }
 
 /// Zeros that are rounding errors, as computed corners have them.

@@ -170,6 +170,14 @@ pub(crate) fn picture(text: &str) -> Result<PathBuf, String> {
     Err(format!("pictures are written as SVG; call it {}", svg.display()))
 }
 
+/// The name of a proof, which is a file: standard output has the answer.
+pub(crate) fn proof(text: &str) -> Result<PathBuf, String> {
+    match text {
+        "-" => Err("standard output has the answer; a proof needs a file".into()),
+        name => Ok(name.into()),
+    }
+}
+
 /// A number of bytes, with a unit or without.
 pub(crate) fn bytes(text: &str) -> Result<usize, String> {
     let text = text.trim();
@@ -305,6 +313,12 @@ mod tests {
         for bad in ["", "GB", "1 apple", "-1", "1.2.3", "nan"] {
             assert!(bytes(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn proofs_are_files() {
+        assert!(proof("a/b.json").is_ok());
+        assert!(proof("-").unwrap_err().contains("needs a file"));
     }
 
     #[test]

@@ -10,6 +10,7 @@ use colltrans_assembly::{Assembly, Fit};
 use crate::args::AssemblyArguments;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::refuse_overwriting;
+use crate::numbers::counted;
 use crate::outputs::{FileNames, Outputs};
 use crate::terminal::{plain_json, shown};
 
@@ -86,7 +87,7 @@ fn summary(f: &Findings) -> String {
         Fit::Tolerance(length) => format!("tolerance {length}"),
         Fit::Apart(length) => format!("{length} to keep apart"),
     };
-    let mut text = format!("{} parts, {fit}\n", assembly.parts().len());
+    let mut text = format!("{}, {fit}\n", counted(assembly.parts().len(), "part", "parts"));
     for (k, p) in assembly.parts().iter().enumerate() {
         for defect in p.defects().iter().chain(&f.bodies.remark(k)) {
             let _ = writeln!(text, "  {}: {}", shown(p.name()), shown(defect));

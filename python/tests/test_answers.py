@@ -132,7 +132,7 @@ def test_every_answer_of_many_is_proven() -> None:
 def test_ranges_depths_and_intersections() -> None:
     found = contact_range(CUBE, CUBE, [0.5, 0, 0], moving_pose=[-3, 0.5, 0])
     assert isinstance(found, ContactRange) and found.interval == (4.0, 8.0)
-    assert found.last.query.direction.tolist() == [-0.5, 0, 0]  # type: ignore[union-attr]
+    assert found.last.query.direction.tolist() == [-0.5, 0, 0]
     depth = directional_depth(CUBE, CUBE, [1, 0, 0], moving_pose=[-0.75, 0, 0])
     assert abs(depth.depth - 0.25) < 1e-13 and isinstance(depth.clearance, Overlapping)
     assert intersects(CUBE, CUBE, [1, 0, 0], moving_pose=[0.5, 0, 0])

@@ -142,6 +142,52 @@ def test_the_stop_of_solids_counts() -> None:
     assert refused(changed(beside, ("statement", "clearance", "separation", "normal", 0), more))
 
 
+def test_what_is_missing_claims_nothing() -> None:
+    """Null stands for what is not there, as it does for the library."""
+    file = proof("contacts")
+    contacts = file["statement"]["contacts"]
+    contacts["last"] = None
+    report = check.check(json.dumps(file))
+    assert report.holds and not any("against" in line for line in report.holds)
+    contacts["first"] = None
+    with pytest.raises(check.NoProofError, match="no contact is claimed"):
+        check.check(json.dumps(file))
+    file["statement"] = {"contacts": None, "separation": None}
+    with pytest.raises(check.NoProofError, match="it has to say one thing, not 0"):
+        check.check(json.dumps(file))
+
+
+def test_what_is_said_of_a_body_counts() -> None:
+    file = proof("contacts")
+    body = ("moving", "convex")
+    assert believed(file, (*body, "faces"), lambda k: k + 1) == []
+    assert believed(file, (*body, "faces"), lambda _: 10_000) == []
+    first = file["moving"]["convex"]["input_indices"][0]
+    twice = believed(file, (*body, "input_indices"), lambda _: first)
+    assert twice == [(*body, "input_indices", 0)]
+    assert believed(file, (*body, "hull_error"), lambda x: -x - 1.0) == []
+    for name, wrong in [
+        ("faces", file["moving"]["convex"]["faces"][1:]),
+        ("faces", [face[::-1] for face in file["moving"]["convex"]["faces"]]),
+        ("input_indices", []),
+        ("hull_error", None),
+    ]:
+        other = proof("contacts")
+        other["moving"]["convex"][name] = wrong
+        assert refused(other), name
+
+
+def test_a_slide_is_one() -> None:
+    file = proof("slide")
+    report = check.check(json.dumps(file))
+    assert report.holds[0].startswith("the bodies slide along each other")
+    assert any("no upper bound is claimed" in line for line in report.unchecked)
+    way = ("statement", "contacts", "slide")
+    assert believed(file, (*way, "overlap"), lambda x: x - 1e-12) == []
+    assert believed(file, (*way, "overlap"), lambda x: x + 1) == [(*way, "overlap")]
+    assert believed(file, (*way, "normal"), lambda x: x + 0.1) == []
+
+
 def test_a_contact_that_rounding_hides_is_said_to_be_one() -> None:
     """A corner that the line misses by the last bit: no triangle is met exactly."""
     file = proof("contacts")

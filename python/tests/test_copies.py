@@ -104,8 +104,8 @@ def test_proofs_features_and_answers_of_trackers() -> None:
 
 
 def test_bytes_that_are_none_are_refused() -> None:
-    restore: Any = colltrans._colltrans._restore
-    with pytest.raises(ValueError, match="nothing of this package"):
-        restore("Cube", ())
-    with pytest.raises((TypeError, ValueError)):
-        restore("Contact", (1, 2))
+    again: Any = Contact
+    with pytest.raises(TypeError):
+        again._of(1, 2)
+    with pytest.raises(ValueError):
+        again._of(Cast(CUBE, CUBE, [1, 0, 0]), "{}")

@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 from conftest import ROOT, Batch, draw
 
+from colltrans import Cast, ConvexPolyhedron, Solid, SolidBlocked, SolidCast
+
 Draft202012Validator = pytest.importorskip("jsonschema").Draft202012Validator
 SCHEMA = json.loads((ROOT / "docs" / "answers.schema.json").read_text())
 DATA = ROOT / "data"
@@ -77,6 +79,49 @@ def test_answers_and_their_proofs(cli: Path, tmp_path: Path, words: list[str]) -
     file = json.loads(proof.read_text())
     conform("proof", file)
     conform("verified", ask(cli, ["verify", str(proof)]))
+
+
+def plain(answer: Any) -> Any:
+    """As the command line has it, whose words and names of files are its own."""
+    mine = ("message", "moving", "fixed")
+    return {name: value for name, value in answer.items() if name not in mine}
+
+
+def test_answers_of_solids_are_the_command_lines(cli: Path) -> None:
+    bolt, plate = Solid.read(DATA / "bolt.stl"), Solid.read(DATA / "plate.off")
+    seen = set()
+    for start, way in [("0,0,9", "-z"), ("0,0,9", "z"), ("0,40,9", "z"), ("0.5,0,0", "-z")]:
+        for ignore in (False, True):
+            pose = [float(x) for x in start.split(",")]
+            direction = [0, 0, -1 if way == "-z" else 1]
+            query = SolidCast(
+                bolt, plate, direction, moving_pose=pose, ignore_start_overlaps=ignore
+            )
+            words = [*CLEAR, start, "--direction", way, *["--ignore-start-overlaps"] * ignore]
+            here, there = query.clearance().to_dict(), ask(cli, words)
+            conform("answer", here)
+            for overlap in there.get("start_overlaps", []):
+                del overlap["moving"], overlap["fixed"]
+            assert here == plain(there)
+            seen.add(here["outcome"])
+    assert seen == {"blocked", "free", "overlapping"}
+
+
+def test_every_class_of_answers_has_a_record() -> None:
+    cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    for start in ([-3, 0.5, 0], [-3, 1, 0], [-3, 9, 0], [0.5, 0, 0], [3, 0, 0]):
+        query = Cast(cube, cube, [1, 0, 0], moving_pose=start)
+        found: list[Any] = [query.first_contact(), query.contact_range(), query.clearance()]
+        depth, meeting = query.directional_depth(), query.intersects()
+        assert depth.to_dict() == depth.clearance.to_dict()
+        told = meeting.to_dict()
+        assert told.pop("direction") == meeting.direction.tolist()
+        assert told == meeting.outcome.to_dict()
+        for answer in [*found, depth, meeting]:
+            conform("answer", answer.to_dict())
+    blocked = SolidCast(cube, cube, [1, 0, 0], moving_pose=[-3, 0.5, 0]).clearance()
+    assert isinstance(blocked, SolidBlocked)
+    assert blocked.contact.to_dict() == blocked.to_dict()
 
 
 def test_a_proof_that_does_not_hold(cli: Path, tmp_path: Path) -> None:

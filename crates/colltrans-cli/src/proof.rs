@@ -34,8 +34,8 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         .map_err(|error| input(format!("cannot be read: {error}")))?;
     let proof = ProofFile::from_json(&text).map_err(|error| input(error.to_string()))?;
     match proof.check() {
-        Ok(()) if arguments.json => print_json(&format!("{}\n", told(proof.statement()))),
-        Ok(()) => print(&format!("holds: {}\n", proof.statement())),
+        Ok(()) if arguments.json => print_json(&format!("{}\n", told(&proof))),
+        Ok(()) => print(&format!("holds: {proof}\n")),
         Err(error) => {
             if arguments.json {
                 let told = json!({ "holds": false, "message": error.to_string() });
@@ -47,15 +47,16 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
 }
 
 /// What is proven, in the fields of answers.
-fn told(statement: &Statement) -> Value {
+fn told(proof: &ProofFile) -> Value {
     let mut fields = Map::new();
     let mut say = |name: &str, value: Value| fields.insert(name.into(), value);
     say("holds", json!(true));
-    match statement {
+    match proof.statement() {
         Statement::Contacts(contacts) => {
             let [first, last] = contacts.bounds();
             first.map(|bounds| say("translation_bounds", json!(bounds)));
             last.map(|bounds| say("exit_bounds", json!(bounds)));
+            contacts.slide.map(|slide| say("overlap", json!(slide.overlap)));
         }
         Statement::Separation(separation) => {
             say("margin", json!(separation.margin));
@@ -67,8 +68,10 @@ fn told(statement: &Statement) -> Value {
                 say("facets", json!(stop.facets));
             }
             statement.separation.map(|plane| say("margin", json!(plane.margin)));
+            let inverted = proof.inverted();
+            (inverted != [0; 2]).then(|| say("inverted", json!(inverted)));
         }
     }
-    say("statement", json!(statement.to_string()));
+    say("statement", json!(proof.to_string()));
     Value::Object(fields)
 }

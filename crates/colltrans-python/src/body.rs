@@ -265,7 +265,7 @@ impl ConvexPolyhedron {
     /// shrunk by 0.75 nothing is left of the body: it holds no ball of this radius, one of radius 0.5 it does
     fn shrunk(&self, py: Python<'_>, amount: f64) -> PyResult<(Self, OffsetReport)> {
         let (body, report) = py.detach(|| self.0.shrunk(amount)).or_raise()?;
-        Ok((body.into(), OffsetReport(report)))
+        Ok((body.into(), report.into()))
     }
 
     /// What lies at most so far outside every face plane, for a margin to be kept.
@@ -300,7 +300,7 @@ impl ConvexPolyhedron {
     /// 8.0
     fn grown(&self, py: Python<'_>, amount: f64) -> PyResult<(Self, OffsetReport)> {
         let (body, report) = py.detach(|| self.0.grown(amount)).or_raise()?;
-        Ok((body.into(), OffsetReport(report)))
+        Ok((body.into(), report.into()))
     }
 
     /// int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count

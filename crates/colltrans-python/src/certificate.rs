@@ -2,11 +2,35 @@
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::arrays::{row, table};
 use crate::errors::OrRaise;
-use crate::query::{Cast, Query};
-use crate::saved::{Saved, saved, written};
+use crate::frozen::{Reduced, match_args, pickled, read, reduced, written};
+use crate::query::Cast;
+
+/// A proof, and what it was made for: to bytes and back.
+macro_rules! of_a_query {
+    ($class:ident($($name:literal),*)) => {
+        match_args!($class($($name),*));
+
+        #[pymethods]
+        impl $class {
+            fn __reduce__<'py>(
+                &self,
+                py: Python<'py>,
+            ) -> PyResult<Reduced<'py, (Py<Cast>, String)>> {
+                reduced::<Self, _>(py, (self.query.clone_ref(py), written(&self.proof)?))
+            }
+
+            #[staticmethod]
+            #[pyo3(name = "_of")]
+            fn of_text(query: Py<Cast>, text: &str) -> PyResult<Self> {
+                Ok(Self { proof: read(text)?, query })
+            }
+        }
+    };
+}
 
 /// The proof of a contact: both bounds of the collision translation, rounded outwards.
 ///
@@ -14,16 +38,13 @@ use crate::saved::{Saved, saved, written};
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Certificate {
     pub(crate) proof: colltrans::Certificate,
-    /// For its [`Query::cast`].
-    pub(crate) query: Query,
+    pub(crate) query: Py<Cast>,
 }
+
+of_a_query!(Certificate("lower", "upper"));
 
 #[pymethods]
 impl Certificate {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("lower", "upper");
-
     /// float: The proven lower bound, in multiples of the direction.
     #[getter]
     fn lower(&self) -> f64 {
@@ -83,13 +104,9 @@ impl Certificate {
     /// CertificateError
     ///     What is not proven.
     #[pyo3(signature = (query=None))]
-    fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
-        let query = query.map_or(&self.query, |cast| &cast.get().0);
-        query.ask(|cast| Ok(cast.verify(&self.proof)))?.or_raise()
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Certificate", (Cast(self.query.copy(py)), written(&self.proof)?))
+    pub(crate) fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
+        let query = query.map_or_else(|| self.query.get(), |cast| cast.get());
+        query.with(|cast| cast.verify(&self.proof))?.or_raise()
     }
 
     fn __repr__(&self) -> String {
@@ -102,15 +119,13 @@ impl Certificate {
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Separation {
     pub(crate) proof: colltrans::Separation,
-    pub(crate) query: Query,
+    pub(crate) query: Py<Cast>,
 }
+
+of_a_query!(Separation("normal", "margin"));
 
 #[pymethods]
 impl Separation {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("normal", "margin");
-
     /// ndarray of shape (3,): Unit normal of the plane, in the world, from the moving body to the
     /// fixed one.
     #[getter]
@@ -141,16 +156,49 @@ impl Separation {
     /// CertificateError
     ///     What is not proven.
     #[pyo3(signature = (query=None))]
-    fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
-        let query = query.map_or(&self.query, |cast| &cast.get().0);
-        query.ask(|cast| Ok(cast.verify(&self.proof)))?.or_raise()
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Separation", (Cast(self.query.copy(py)), written(&self.proof)?))
+    pub(crate) fn verify(&self, query: Option<&Bound<'_, Cast>>) -> PyResult<f64> {
+        let query = query.map_or_else(|| self.query.get(), |cast| cast.get());
+        query.with(|cast| cast.verify(&self.proof))?.or_raise()
     }
 
     fn __repr__(&self) -> String {
         format!("Separation(margin={:?})", self.proof.margin)
+    }
+}
+
+/// The proof of a clearance between solids.
+#[pyclass(frozen, module = "colltrans")]
+#[derive(Serialize, Deserialize)]
+pub(crate) struct SolidCertificate(pub(crate) colltrans::SolidCertificate);
+
+pickled!(SolidCertificate);
+
+#[pymethods]
+impl SolidCertificate {
+    /// float: The tolerance by which the bodies were shrunk.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.0.tolerance
+    }
+
+    /// float: The proven lower bound of the shrunk bodies' distance, in multiples of the direction.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.0.lower
+    }
+
+    /// The proof as text.
+    pub(crate) fn to_json(&self) -> String {
+        self.0.to_json()
+    }
+
+    /// From what `to_json` has written. It is read, not believed.
+    #[staticmethod]
+    pub(crate) fn from_json(text: &str) -> PyResult<Self> {
+        colltrans::SolidCertificate::from_json(text).or_raise().map(Self)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("SolidCertificate(lower={:?})", self.0.lower)
     }
 }

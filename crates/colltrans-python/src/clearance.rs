@@ -1,28 +1,30 @@
 //! Answers about where the moving body is now: how far it can go, how deep it is, whether it meets.
 
-use colltrans::{Clearance, OverlapAhead, WhyFree};
-use numpy::{IntoPyArray, PyArray1};
+use colltrans::glam::DVec3;
+use colltrans::record::Record;
+use colltrans::{Clearance, OverlapAhead, ProofFile, WhyFree};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::answer::{Contact, Grazing, Separated, contact, grazing, object, outcome};
-use crate::arrays::coordinates;
-use crate::query::Query;
-use crate::saved::{Saved, saved};
-use crate::show::{Options, Shown, show};
+use crate::answer::{Answer, answer, object};
+use crate::arrays::{coordinates, row};
+use crate::outcome::{Contact, Grazing, contact_text, grazing_text};
+use crate::query::Cast;
 
 /// The moving body can move until it touches.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Blocked {
-    pub(crate) distance: f64,
-    pub(crate) contact: Py<Contact>,
+    distance: f64,
+    contact: colltrans::Contact,
+    query: Py<Cast>,
 }
+
+answer!(Blocked("distance", "contact") of Clearance, Cast, |it| {
+    Clearance::Blocked { distance: it.distance, contact: it.contact }
+});
 
 #[pymethods]
 impl Blocked {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("distance", "contact");
-
     /// float: How far it may safely move, in multiples of the direction: never more than it can.
     #[getter]
     fn distance(&self) -> f64 {
@@ -31,18 +33,8 @@ impl Blocked {
 
     /// Contact: What stops it.
     #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<Contact> {
-        self.contact.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Blocked", (self.distance, self.contact.clone_ref(py)))
+    fn contact(&self, py: Python<'_>) -> Contact {
+        Contact { contact: self.contact, query: self.query(py) }
     }
 
     fn __repr__(&self) -> String {
@@ -53,15 +45,14 @@ impl Blocked {
 /// The moving body slides along the other one, as far as it likes.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Slides {
-    pub(crate) grazing: Py<Grazing>,
+    grazing: colltrans::Grazing,
+    query: Py<Cast>,
 }
+
+answer!(Slides("grazing") of Clearance, Cast, |it| Clearance::Free(WhyFree::Slides(it.grazing)));
 
 #[pymethods]
 impl Slides {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("grazing",);
-
     /// float: Infinite.
     #[getter]
     fn distance(&self) -> f64 {
@@ -70,37 +61,26 @@ impl Slides {
 
     /// Grazing: Along what it slides.
     #[getter]
-    fn grazing(&self, py: Python<'_>) -> Py<Grazing> {
-        self.grazing.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Slides", (self.grazing.clone_ref(py),))
+    fn grazing(&self, py: Python<'_>) -> Grazing {
+        Grazing { grazing: self.grazing, query: self.query(py) }
     }
 
     fn __repr__(&self) -> String {
-        format!("Slides(grazing={})", self.grazing.get().__repr__())
+        format!("Slides(grazing={})", grazing_text(&self.grazing))
     }
 }
 
 /// The last contact lies behind, or is here and the moving body leaves it.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Behind {
-    pub(crate) contact: Py<Contact>,
+    contact: colltrans::Contact,
+    query: Py<Cast>,
 }
+
+answer!(Behind("contact") of Clearance, Cast, |it| Clearance::Free(WhyFree::Behind(it.contact)));
 
 #[pymethods]
 impl Behind {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("contact",);
-
     /// float: Infinite.
     #[getter]
     fn distance(&self) -> f64 {
@@ -109,38 +89,26 @@ impl Behind {
 
     /// Contact: The last one: the first one of the query turned round.
     #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<Contact> {
-        self.contact.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Behind", (self.contact.clone_ref(py),))
+    fn contact(&self, py: Python<'_>) -> PyResult<Contact> {
+        last(py, self.contact, &self.query)
     }
 
     fn __repr__(&self) -> String {
-        format!("Behind(contact={})", self.contact.get().__repr__())
+        format!("Behind(contact={})", contact_text(&self.contact))
     }
 }
 
 /// The bodies overlap where they are, by more than rounding error.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Overlapping {
-    pub(crate) first: Py<Contact>,
-    pub(crate) last: Py<Contact>,
+    ends: OverlapAhead,
+    query: Py<Cast>,
 }
+
+answer!(Overlapping("first", "last") of Clearance, Cast, |it| Clearance::Overlapping(it.ends));
 
 #[pymethods]
 impl Overlapping {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("first", "last");
-
     /// None: There is none.
     #[getter]
     fn distance(&self) -> Option<f64> {
@@ -149,28 +117,18 @@ impl Overlapping {
 
     /// Contact: The first contact, behind.
     #[getter]
-    fn first(&self, py: Python<'_>) -> Py<Contact> {
-        self.first.clone_ref(py)
+    fn first(&self, py: Python<'_>) -> Contact {
+        Contact { contact: self.ends.first, query: self.query(py) }
     }
 
     /// Contact: The last contact, ahead: the first one of the query turned round.
     #[getter]
-    fn last(&self, py: Python<'_>) -> Py<Contact> {
-        self.last.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Overlapping", (self.first.clone_ref(py), self.last.clone_ref(py)))
+    fn last(&self, py: Python<'_>) -> PyResult<Contact> {
+        last(py, self.ends.last, &self.query)
     }
 
     fn __repr__(&self) -> String {
-        let [first, last] = [&self.first, &self.last].map(|c| c.get().__repr__());
+        let [first, last] = [&self.ends.first, &self.ends.last].map(contact_text);
         format!("Overlapping(first={first}, last={last})")
     }
 }
@@ -178,132 +136,132 @@ impl Overlapping {
 /// How far the moving body has to go back until the overlap has ended.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct DirectionalDepth {
-    pub(crate) depth: f64,
-    pub(crate) clearance: Py<PyAny>,
+    depth: colltrans::DirectionalDepth,
+    query: Py<Cast>,
 }
+
+answer!(DirectionalDepth("depth") of colltrans::DirectionalDepth, Cast, |it| it.depth);
 
 #[pymethods]
 impl DirectionalDepth {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("depth",);
-
     /// float: In multiples of the direction, never less than the true depth; 0 without overlap.
     #[getter]
     fn depth(&self) -> f64 {
-        self.depth
+        self.depth.depth
     }
 
     /// Blocked or Slides or Behind or Separated or Overlapping: What it follows from.
     #[getter]
-    fn clearance(&self, py: Python<'_>) -> Py<PyAny> {
-        self.clearance.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "DirectionalDepth", (self.depth, self.clearance.clone_ref(py)))
+    fn clearance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.depth.clearance.object(self.query.bind(py))
     }
 
     fn __repr__(&self) -> String {
-        format!("DirectionalDepth(depth={:?})", self.depth)
+        format!("DirectionalDepth(depth={:?})", self.depth.depth)
     }
 }
 
 /// Whether the bodies meet where they are: true or false in a condition.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Intersection {
-    pub(crate) meets: bool,
-    pub(crate) direction: [f64; 3],
-    pub(crate) outcome: Py<PyAny>,
+    found: colltrans::Intersection,
+    query: Py<Cast>,
 }
+
+answer!(Intersection("meets") of colltrans::Intersection, Cast, |it| it.found);
 
 #[pymethods]
 impl Intersection {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("meets",);
-
     /// bool: Whether they have a point in common, to within rounding error.
     #[getter]
     fn meets(&self) -> bool {
-        self.meets
+        self.found.meets
     }
 
     /// ndarray of shape (3,): The direction between the centres, of the cast that found out.
     #[getter]
     fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.direction.to_vec().into_pyarray(py)
+        row(py, self.found.direction)
     }
 
     /// Contact or Grazing or Separated: What that cast found.
     #[getter]
-    fn outcome(&self, py: Python<'_>) -> Py<PyAny> {
-        self.outcome.clone_ref(py)
+    fn outcome<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.found.outcome.object(&along(self.query.bind(py), self.found.direction)?)
     }
 
     fn __bool__(&self) -> bool {
-        self.meets
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Intersection", (self.meets, self.direction, self.outcome.clone_ref(py)))
+        self.found.meets
     }
 
     fn __repr__(&self) -> String {
-        format!("Intersection(meets={})", if self.meets { "True" } else { "False" })
+        format!("Intersection(meets={})", if self.found.meets { "True" } else { "False" })
     }
 }
 
-pub(crate) fn clearance(py: Python<'_>, query: Query, of: Clearance) -> PyResult<Bound<'_, PyAny>> {
-    match of {
-        Clearance::Blocked { distance, contact: of } => {
-            object(py, Blocked { distance, contact: contact(py, query, of)? })
+/// A last contact, which is the first one of the query turned round.
+fn last(py: Python<'_>, contact: colltrans::Contact, query: &Py<Cast>) -> PyResult<Contact> {
+    Ok(Contact { contact, query: Py::new(py, query.get().reversed(py))? })
+}
+
+/// The query that found out whether bodies meet.
+fn along<'py>(query: &Bound<'py, Cast>, direction: DVec3) -> PyResult<Bound<'py, Cast>> {
+    Bound::new(query.py(), query.get().along(query.py(), direction))
+}
+
+impl Answer for Clearance {
+    type Query = Cast;
+
+    fn object<'py>(self, asked: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, query) = (asked.py(), asked.clone().unbind());
+        match self {
+            Self::Blocked { distance, contact } => object(py, Blocked { distance, contact, query }),
+            Self::Free(WhyFree::Slides(grazing)) => object(py, Slides { grazing, query }),
+            Self::Free(WhyFree::Behind(contact)) => object(py, Behind { contact, query }),
+            Self::Free(WhyFree::Separated(of)) => colltrans::Outcome::Separated(of).object(asked),
+            Self::Overlapping(ends) => object(py, Overlapping { ends, query }),
         }
-        Clearance::Free(WhyFree::Slides(of)) => {
-            object(py, Slides { grazing: grazing(py, query, of)? })
-        }
-        Clearance::Free(WhyFree::Behind(of)) => {
-            object(py, Behind { contact: contact(py, query.reversed(py), of)? })
-        }
-        Clearance::Free(WhyFree::Separated(separated)) => {
-            object(py, Separated { separated, query })
-        }
-        Clearance::Overlapping(OverlapAhead { first, last }) => {
-            let back = query.reversed(py);
-            let (first, last) = (contact(py, query, first)?, contact(py, back, last)?);
-            object(py, Overlapping { first, last })
-        }
+    }
+
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        query.get().with(|cast| Record::of_clearance(self, cast))
+    }
+
+    fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
+        query.get().with(|cast| ProofFile::of_clearance(cast, self).to_json())
     }
 }
 
-pub(crate) fn depth(
-    py: Python<'_>,
-    query: Query,
-    of: colltrans::DirectionalDepth,
-) -> PyResult<Bound<'_, PyAny>> {
-    let clearance = clearance(py, query, of.clearance)?.unbind();
-    object(py, DirectionalDepth { depth: of.depth, clearance })
+impl Answer for colltrans::DirectionalDepth {
+    type Query = Cast;
+
+    fn object<'py>(self, query: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
+        object(query.py(), DirectionalDepth { depth: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        self.clearance.record(query)
+    }
+
+    fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
+        self.clearance.proof(query)
+    }
 }
 
-pub(crate) fn intersection(
-    py: Python<'_>,
-    query: Query,
-    of: colltrans::Intersection,
-) -> PyResult<Bound<'_, PyAny>> {
-    let query = Query { direction: of.direction, ..query };
-    let direction = coordinates(of.direction);
-    let outcome = outcome(py, query, of.outcome)?.unbind();
-    object(py, Intersection { meets: of.meets, direction, outcome })
+impl Answer for colltrans::Intersection {
+    type Query = Cast;
+
+    fn object<'py>(self, query: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
+        object(query.py(), Intersection { found: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        let mut record = self.outcome.record(&along(query, self.direction)?)?;
+        record.direction = Some(coordinates(self.direction));
+        Ok(record)
+    }
+
+    fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
+        self.outcome.proof(&along(query, self.direction)?)
+    }
 }

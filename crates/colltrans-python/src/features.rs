@@ -1,43 +1,56 @@
 //! The work done for an answer, and the features that touch.
 
+use std::borrow::Cow;
+
+use colltrans::Body;
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use crate::saved::{Saved, saved};
+use crate::frozen::{match_args, pickled};
 
 /// Work done for one answer.
-#[pyclass(frozen, get_all, module = "colltrans")]
-pub(crate) struct Steps {
-    /// int: Planar problems solved.
-    pub(crate) planar_problems: u32,
-    /// int: Supporting planes computed.
-    pub(crate) supports: u32,
-    /// int: Portals visited.
-    pub(crate) pivots: u32,
-    /// int: Iterations of inner loops.
-    pub(crate) iterations: u32,
-    /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
-    pub(crate) started_from: &'static str,
-}
+#[pyclass(frozen, module = "colltrans")]
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Steps(pub(crate) colltrans::Steps);
 
-impl Steps {
-    pub(crate) fn of(steps: colltrans::Steps) -> Self {
-        let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
-            steps;
-        let started_from = started_from.name();
-        Self { planar_problems, supports, pivots, iterations, started_from }
-    }
-}
+pickled!(Steps, Feature, Features);
 
 #[pymethods]
 impl Steps {
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let Self { planar_problems, supports, pivots, iterations, started_from } = *self;
-        saved(py, "Steps", ([planar_problems, supports, pivots, iterations], started_from))
+    /// int: Planar problems solved.
+    #[getter]
+    fn planar_problems(&self) -> u32 {
+        self.0.planar_problems
+    }
+
+    /// int: Supporting planes computed.
+    #[getter]
+    fn supports(&self) -> u32 {
+        self.0.supports
+    }
+
+    /// int: Portals visited.
+    #[getter]
+    fn pivots(&self) -> u32 {
+        self.0.pivots
+    }
+
+    /// int: Iterations of inner loops.
+    #[getter]
+    fn iterations(&self) -> u32 {
+        self.0.iterations
+    }
+
+    /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
+    #[getter]
+    fn started_from(&self) -> &'static str {
+        self.0.started_from.name()
     }
 
     fn __repr__(&self) -> String {
-        let Self { planar_problems, supports, pivots, iterations, started_from } = self;
+        let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
+            self.0;
         format!(
             "Steps(planar_problems={planar_problems}, supports={supports}, pivots={pivots}, \
              iterations={iterations}, started_from='{started_from}')"
@@ -47,21 +60,27 @@ impl Steps {
 
 /// A vertex, an edge or a face.
 #[pyclass(frozen, module = "colltrans")]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Feature {
-    kind: &'static str,
+    kind: Cow<'static, str>,
     vertices: Vec<u32>,
+}
+
+match_args!(Feature("kind", "vertices"));
+
+impl Feature {
+    /// By the numbers of the input.
+    pub(crate) fn of<B: Body>(feature: colltrans::Feature, body: &B) -> Self {
+        Self { kind: feature.kind().into(), vertices: feature.vertices(body) }
+    }
 }
 
 #[pymethods]
 impl Feature {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("kind", "vertices");
-
     /// str: ``"vertex"``, ``"edge"`` or ``"face"``.
     #[getter]
-    fn kind(&self) -> &'static str {
-        self.kind
+    fn kind(&self) -> &str {
+        &self.kind
     }
 
     /// ndarray: Its vertices, by the numbers of the points or the mesh that the body was made from.
@@ -70,46 +89,37 @@ impl Feature {
         PyArray1::from_slice(py, &self.vertices)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Feature", (self.kind, self.vertices.clone()))
-    }
-
     fn __repr__(&self) -> String {
         format!("Feature('{}', {:?})", self.kind, self.vertices)
     }
 }
 
-impl Feature {
-    pub(crate) fn new(kind: &'static str, vertices: Vec<u32>) -> Self {
-        Self { kind, vertices }
-    }
-}
-
-pub(crate) fn feature(feature: colltrans::Feature, body: &colltrans::ConvexPolyhedron) -> Feature {
-    Feature { kind: feature.kind(), vertices: feature.vertices(body) }
-}
-
 /// The parts of both bodies that touch.
-#[pyclass(frozen, get_all, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans")]
+#[derive(Serialize, Deserialize)]
 pub(crate) struct Features {
-    /// Feature: Of the moving body.
-    pub(crate) moving: Py<Feature>,
-    /// Feature: Of the fixed body.
-    pub(crate) fixed: Py<Feature>,
+    pub(crate) moving: Feature,
+    pub(crate) fixed: Feature,
 }
+
+match_args!(Features("moving", "fixed"));
 
 #[pymethods]
 impl Features {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("moving", "fixed");
+    /// Feature: Of the moving body.
+    #[getter]
+    fn moving(&self) -> Feature {
+        self.moving.clone()
+    }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "Features", (self.moving.clone_ref(py), self.fixed.clone_ref(py)))
+    /// Feature: Of the fixed body.
+    #[getter]
+    fn fixed(&self) -> Feature {
+        self.fixed.clone()
     }
 
     fn __repr__(&self) -> String {
-        let [moving, fixed] = [&self.moving, &self.fixed].map(|f| f.get().__repr__());
+        let [moving, fixed] = [&self.moving, &self.fixed].map(|f| f.__repr__());
         format!("Features(moving={moving}, fixed={fixed})")
     }
 }

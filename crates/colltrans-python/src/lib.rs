@@ -1,10 +1,17 @@
 //! The extension module of the Python package `colltrans`: thin conversions, nothing is computed here.
 //!
-//! The way: `arrays` (numbers in and out) and `errors` (the library's errors as exceptions) ->
-//! `body` (with `offset`), `pose` -> `query` (two placed bodies and a direction), `questions` (the functions of the
-//! package) -> `answer`, `clearance`, `features`, `certificate` (what comes back) -> `solid`, `solid_cast`, `solid_answer` (the same for parts
-//! that are not convex), `saved` (answers as bytes), `show` (as pictures), `tracker` and `many` (queries in sequence and in bulk), `assembly` (many parts). The package itself
-//! is in `python/`; its stub `_colltrans.pyi` has the types.
+//! Each file uses only those before it:
+//!
+//! 1. `errors` (the library's errors as exceptions), `arrays` (numbers in and out), `pose`, `frozen` (what
+//!    frozen classes have in common);
+//! 2. bodies: `offset` (reports), `body`, `solid`;
+//! 3. queries as values: `query` between convex bodies, `solid_cast` between solids;
+//! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
+//!    `solid_answer`;
+//! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
+//!    bulk), `assembly` (many parts).
+//!
+//! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
 mod answer;
 mod arrays;
@@ -14,13 +21,13 @@ mod certificate;
 mod clearance;
 mod errors;
 mod features;
+mod frozen;
 mod many;
 mod offset;
+mod outcome;
 mod pose;
 mod query;
 mod questions;
-mod saved;
-mod show;
 mod solid;
 mod solid_answer;
 mod solid_cast;
@@ -30,13 +37,11 @@ mod tracker;
 #[pyo3::pymodule(gil_used = false)]
 mod _colltrans {
     #[pymodule_export]
-    use crate::answer::{Contact, ContactRange, Grazing, Separated};
-    #[pymodule_export]
     use crate::assembly::Assembly;
     #[pymodule_export]
     use crate::body::{ConvexPolyhedron, read};
     #[pymodule_export]
-    use crate::certificate::{Certificate, Separation};
+    use crate::certificate::{Certificate, Separation, SolidCertificate};
     #[pymodule_export]
     use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapping, Slides};
     #[pymodule_export]
@@ -46,19 +51,17 @@ mod _colltrans {
     #[pymodule_export]
     use crate::offset::{OffsetReport, ShrinkReport};
     #[pymodule_export]
+    use crate::outcome::{Contact, ContactRange, Grazing, Separated};
+    #[pymodule_export]
     use crate::pose::Pose;
     #[pymodule_export]
     use crate::query::Cast;
     #[pymodule_export]
     use crate::questions::{cast, clearance, contact_range, directional_depth, intersects};
     #[pymodule_export]
-    use crate::saved::restore;
-    #[pymodule_export]
     use crate::solid::Solid;
     #[pymodule_export]
-    use crate::solid_answer::{
-        SolidBlocked, SolidCertificate, SolidContact, SolidFree, SolidOverlapping,
-    };
+    use crate::solid_answer::{SolidBlocked, SolidContact, SolidFree, SolidOverlapping};
     #[pymodule_export]
     use crate::solid_cast::SolidCast;
     #[pymodule_export]

@@ -2,63 +2,80 @@
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use crate::saved::{Saved, saved};
+use crate::frozen::{match_args, pickled};
 
 /// What became of a convex body whose faces were moved.
 #[pyclass(frozen, module = "colltrans")]
-pub(crate) struct OffsetReport(pub(crate) colltrans::OffsetReport);
+#[derive(Serialize, Deserialize)]
+pub(crate) struct OffsetReport {
+    farthest: f64,
+    vanished: Vec<u32>,
+}
+
+match_args!(OffsetReport("farthest", "vanished"));
+pickled!(OffsetReport);
+
+impl From<colltrans::OffsetReport> for OffsetReport {
+    fn from(report: colltrans::OffsetReport) -> Self {
+        let colltrans::OffsetReport { farthest, vanished } = report;
+        Self { farthest, vanished }
+    }
+}
 
 #[pymethods]
 impl OffsetReport {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("farthest", "vanished");
-
     /// float: The largest distance of a vertex from the one that it comes from, a length.
     #[getter]
     fn farthest(&self) -> f64 {
-        self.0.farthest
+        self.farthest
     }
 
     /// ndarray: Faces of the body as it was of which nothing is left, in increasing order.
     #[getter]
     fn vanished<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.0.vanished)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "OffsetReport", (self.0.farthest, self.0.vanished.clone()))
+        PyArray1::from_slice(py, &self.vanished)
     }
 
     fn __repr__(&self) -> String {
-        let colltrans::OffsetReport { farthest, vanished } = &self.0;
+        let Self { farthest, vanished } = self;
         format!("OffsetReport(farthest={farthest:?}, vanished={vanished:?})")
     }
 }
 
 /// What shrinking, or growing, could not do to a solid as it should.
 #[pyclass(frozen, module = "colltrans")]
-pub(crate) struct ShrinkReport(pub(crate) colltrans::ShrinkReport);
+#[derive(Serialize, Deserialize)]
+pub(crate) struct ShrinkReport {
+    farthest: f64,
+    stuck: Vec<u32>,
+    inverted: Vec<u32>,
+}
+
+match_args!(ShrinkReport("farthest", "stuck", "inverted"));
+pickled!(ShrinkReport);
+
+impl From<colltrans::ShrinkReport> for ShrinkReport {
+    fn from(report: colltrans::ShrinkReport) -> Self {
+        let colltrans::ShrinkReport { farthest, stuck, inverted } = report;
+        Self { farthest, stuck, inverted }
+    }
+}
 
 #[pymethods]
 impl ShrinkReport {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str, &'static str) =
-        ("farthest", "stuck", "inverted");
-
     /// float: The largest displacement of a vertex, a length.
     #[getter]
     fn farthest(&self) -> f64 {
-        self.0.farthest
+        self.farthest
     }
 
     /// ndarray: Vertices that stay, because no displacement is inwards for all facets around them;
     /// indices of the input.
     #[getter]
     fn stuck<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.0.stuck)
+        PyArray1::from_slice(py, &self.stuck)
     }
 
     /// ndarray: Facets that turned inside out, or passed through others, because the body (or a gap in
@@ -66,16 +83,11 @@ impl ShrinkReport {
     /// order.
     #[getter]
     fn inverted<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.0.inverted)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let colltrans::ShrinkReport { farthest, stuck, inverted } = self.0.clone();
-        saved(py, "ShrinkReport", (farthest, stuck, inverted))
+        PyArray1::from_slice(py, &self.inverted)
     }
 
     fn __repr__(&self) -> String {
-        let colltrans::ShrinkReport { farthest, stuck, inverted } = &self.0;
+        let Self { farthest, stuck, inverted } = self;
         format!("ShrinkReport(farthest={farthest:?}, stuck={stuck:?}, inverted={inverted:?})")
     }
 }

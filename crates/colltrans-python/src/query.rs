@@ -1,31 +1,20 @@
-//! Queries: two placed bodies, a direction and the choices, as a value.
+//! Queries between convex bodies, as values: two placed bodies, a direction and the choices.
 //!
-//! A [`Query`] is what every answer keeps to say more when it is asked: features, points, whether a
-//! proof is one. It holds its bodies by reference, so it is small, and the library's cast is made
-//! from it in no time.
+//! A [`Cast`] is what every answer keeps to say more when it is asked: features, points, whether a proof
+//! is one. It holds its bodies by reference, so it is small, and the library's cast is made from it in
+//! no time.
 
 use colltrans::glam::DVec3;
-use colltrans::{Options, Solver};
+use colltrans::{Options, QueryError, Solver};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 use crate::arrays::{row, vector};
 use crate::body::ConvexPolyhedron;
-use crate::certificate::{Certificate, Separation};
 use crate::errors::{OrRaise, error, query_error};
+use crate::frozen::{Options as Shows, Shown, show};
 use crate::pose::{Pose, pose};
-use crate::questions::{clear, depth, first_contact, meet, range};
-use crate::show::{Options as Shows, Shown, show};
-
-/// What was asked, or is about to be.
-pub(crate) struct Query {
-    pub(crate) moving: Py<ConvexPolyhedron>,
-    pub(crate) fixed: Py<ConvexPolyhedron>,
-    pub(crate) poses: [colltrans::Pose; 2],
-    pub(crate) direction: DVec3,
-    pub(crate) options: Options,
-}
 
 /// The arguments that all queries share.
 pub(crate) struct Arguments<'a, 'py> {
@@ -35,54 +24,6 @@ pub(crate) struct Arguments<'a, 'py> {
     pub(crate) poses: [Option<&'a Bound<'py, PyAny>>; 2],
     pub(crate) graze_tolerance: f64,
     pub(crate) solver: Option<&'a Bound<'py, PyString>>,
-}
-
-impl Query {
-    pub(crate) fn new(arguments: Arguments<'_, '_>) -> PyResult<Self> {
-        let Arguments { moving, fixed, direction, poses, graze_tolerance, solver } = arguments;
-        Ok(Self {
-            moving: moving.clone().unbind(),
-            fixed: fixed.clone().unbind(),
-            poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
-            direction: vector(direction, "direction")?,
-            options: Options {
-                solver: solver_called(solver)?,
-                graze_tolerance,
-                ..Options::default()
-            },
-        })
-    }
-
-    /// The library's.
-    #[inline]
-    pub(crate) fn cast(&self) -> Result<colltrans::Cast<'_>, colltrans::QueryError> {
-        let (moving, fixed) = (&self.moving.get().0, &self.fixed.get().0);
-        colltrans::Cast::new(moving.at(self.poses[0]), fixed.at(self.poses[1]), self.direction)?
-            .with_options(self.options)
-    }
-
-    /// An answer of the library's, or its exception.
-    #[inline]
-    pub(crate) fn ask<'a, T>(
-        &'a self,
-        question: impl FnOnce(&colltrans::Cast<'a>) -> Result<T, colltrans::QueryError>,
-    ) -> PyResult<T> {
-        self.cast().and_then(|cast| question(&cast)).map_err(|what| self.error(&what))
-    }
-
-    pub(crate) fn error(&self, what: &colltrans::QueryError) -> PyErr {
-        query_error(what, || self.cast().map_or_else(|e| e.to_string(), |cast| cast.to_json()))
-    }
-
-    pub(crate) fn copy(&self, py: Python<'_>) -> Self {
-        let (moving, fixed) = (self.moving.clone_ref(py), self.fixed.clone_ref(py));
-        Self { moving, fixed, ..*self }
-    }
-
-    /// The same bodies, and the direction turned round.
-    pub(crate) fn reversed(&self, py: Python<'_>) -> Self {
-        Self { direction: -self.direction, ..self.copy(py) }
-    }
 }
 
 /// A solver by its name; `auto` without.
@@ -128,7 +69,66 @@ pub(crate) fn solver_called_by(name: &str) -> PyResult<Solver> {
 /// >>> Cast.from_json(query.to_json()).first_contact().translation
 /// 2.0
 #[pyclass(frozen, module = "colltrans")]
-pub(crate) struct Cast(pub(crate) Query);
+pub(crate) struct Cast {
+    pub(crate) moving: Py<ConvexPolyhedron>,
+    pub(crate) fixed: Py<ConvexPolyhedron>,
+    pub(crate) poses: [colltrans::Pose; 2],
+    pub(crate) direction: DVec3,
+    pub(crate) options: Options,
+}
+
+impl Cast {
+    /// Not checked yet.
+    pub(crate) fn of(arguments: Arguments<'_, '_>) -> PyResult<Self> {
+        let Arguments { moving, fixed, direction, poses, graze_tolerance, solver } = arguments;
+        Ok(Self {
+            moving: moving.clone().unbind(),
+            fixed: fixed.clone().unbind(),
+            poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
+            direction: vector(direction, "direction")?,
+            options: Options {
+                solver: solver_called(solver)?,
+                graze_tolerance,
+                ..Options::default()
+            },
+        })
+    }
+
+    /// The library's.
+    #[inline]
+    fn cast(&self) -> Result<colltrans::Cast<'_>, QueryError> {
+        let (moving, fixed) = (&self.moving.get().0, &self.fixed.get().0);
+        colltrans::Cast::new(moving.at(self.poses[0]), fixed.at(self.poses[1]), self.direction)?
+            .with_options(self.options)
+    }
+
+    /// An answer of the library's, or its exception.
+    #[inline]
+    pub(crate) fn ask<'a, T>(
+        &'a self,
+        question: impl FnOnce(&colltrans::Cast<'a>) -> Result<T, QueryError>,
+    ) -> PyResult<T> {
+        self.cast().and_then(|cast| question(&cast)).map_err(|what| self.error(&what))
+    }
+
+    /// What is made of the library's cast without a search.
+    pub(crate) fn with<'a, T>(
+        &'a self,
+        make: impl FnOnce(&colltrans::Cast<'a>) -> T,
+    ) -> PyResult<T> {
+        self.ask(|cast| Ok(make(cast)))
+    }
+
+    pub(crate) fn error(&self, what: &QueryError) -> PyErr {
+        query_error(what, || self.cast().map_or_else(|e| e.to_string(), |cast| cast.to_json()))
+    }
+
+    /// The same bodies where they are, along another direction.
+    pub(crate) fn along(&self, py: Python<'_>, direction: DVec3) -> Self {
+        let (moving, fixed) = (self.moving.clone_ref(py), self.fixed.clone_ref(py));
+        Self { moving, fixed, direction, ..*self }
+    }
+}
 
 #[pymethods]
 impl Cast {
@@ -147,69 +147,21 @@ impl Cast {
     ) -> PyResult<Self> {
         let poses = [moving_pose, fixed_pose];
         let query =
-            Query::new(Arguments { moving, fixed, direction, poses, graze_tolerance, solver })?;
-        query.ask(|_| Ok(()))?;
-        Ok(Self(query))
-    }
-
-    /// At which translation do the bodies first meet? See :func:`cast`.
-    fn first_contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        first_contact(py, self.0.copy(py))
-    }
-
-    /// At which translations do they first and last meet? See :func:`contact_range`.
-    fn contact_range<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        range(py, self.0.copy(py))
-    }
-
-    /// How far can the moving body move from where it is? See :func:`clearance`.
-    fn clearance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        clear(py, self.0.copy(py))
-    }
-
-    /// How far must it go back until the overlap ends? See :func:`directional_depth`.
-    fn directional_depth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        depth(py, self.0.copy(py))
-    }
-
-    /// Do the bodies meet where they are? See :func:`intersects`.
-    fn intersects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        meet(py, self.0.copy(py))
+            Self::of(Arguments { moving, fixed, direction, poses, graze_tolerance, solver })?;
+        query.with(|_| ())?;
+        Ok(query)
     }
 
     /// The same bodies where they are, and the direction turned round.
-    fn reversed(&self, py: Python<'_>) -> Self {
-        Self(self.0.reversed(py))
-    }
-
-    /// Checks a proof against the two bodies, with nothing of the search that found it.
-    ///
-    /// Parameters
-    /// ----------
-    /// proof : Certificate or Separation
-    ///
-    /// Returns
-    /// -------
-    /// float
-    ///     The gap, in multiples of the direction, or the margin, a length, that is really proven.
-    ///
-    /// Raises
-    /// ------
-    /// CertificateError
-    ///     What is not proven.
-    fn verify(&self, proof: &Bound<'_, PyAny>) -> PyResult<f64> {
-        let cast = self.0.cast().map_err(|what| self.0.error(&what))?;
-        if let Ok(separation) = proof.cast::<Separation>() {
-            return cast.verify(&separation.get().proof).or_raise();
-        }
-        cast.verify(&proof.cast::<Certificate>()?.get().proof).or_raise()
+    pub(crate) fn reversed(&self, py: Python<'_>) -> Self {
+        self.along(py, -self.direction)
     }
 
     /// The query as text: bodies, poses, direction and choices, exact in bits.
     ///
     /// ``colltrans replay`` of the command line reads the same.
     fn to_json(&self) -> PyResult<String> {
-        self.0.ask(|cast| Ok(cast.to_json()))
+        self.with(|cast| cast.to_json())
     }
 
     /// From what `to_json`, or the command line, has written.
@@ -219,55 +171,55 @@ impl Cast {
         let cast = saved.cast().map_err(|what| error("QueryError", what))?;
         let body =
             |body: &colltrans::ConvexPolyhedron| Py::new(py, ConvexPolyhedron::from(body.clone()));
-        Ok(Self(Query {
+        Ok(Self {
             moving: body(cast.moving())?,
             fixed: body(cast.fixed())?,
             poses: [cast.moving_pose(), cast.fixed_pose()],
             direction: cast.direction(),
             options: cast.options(),
-        }))
+        })
     }
 
     /// ConvexPolyhedron: The moving body.
     #[getter]
     fn moving(&self, py: Python<'_>) -> Py<ConvexPolyhedron> {
-        self.0.moving.clone_ref(py)
+        self.moving.clone_ref(py)
     }
 
     /// ConvexPolyhedron: The fixed body.
     #[getter]
     fn fixed(&self, py: Python<'_>) -> Py<ConvexPolyhedron> {
-        self.0.fixed.clone_ref(py)
+        self.fixed.clone_ref(py)
     }
 
     /// Pose: Where the moving body is.
     #[getter]
     fn moving_pose(&self) -> Pose {
-        Pose(self.0.poses[0])
+        Pose(self.poses[0])
     }
 
     /// Pose: Where the fixed body is.
     #[getter]
     fn fixed_pose(&self) -> Pose {
-        Pose(self.0.poses[1])
+        Pose(self.poses[1])
     }
 
     /// ndarray of shape (3,): The direction, as given.
     #[getter]
     fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.direction)
+        row(py, self.direction)
     }
 
     /// float: Sideways overlaps up to this length count as grazing.
     #[getter]
     fn graze_tolerance(&self) -> f64 {
-        self.0.options.graze_tolerance
+        self.options.graze_tolerance
     }
 
     /// str: How the search is narrowed.
     #[getter]
     fn solver(&self) -> &'static str {
-        self.0.options.solver.name()
+        self.options.solver.name()
     }
 
     /// A picture of the bodies and of the first contact: see :func:`colltrans.show`.
@@ -281,6 +233,6 @@ impl Cast {
     }
 
     fn __repr__(&self) -> PyResult<String> {
-        self.0.ask(|cast| Ok(format!("Cast({cast})")))
+        self.with(|cast| format!("Cast({cast})"))
     }
 }

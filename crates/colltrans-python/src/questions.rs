@@ -1,38 +1,163 @@
-//! The functions of the package: one question each.
+//! Questions: the functions of the package, and the methods of queries that ask.
 
+use colltrans::QueryError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
 
-use crate::answer;
+use crate::answer::Answer;
 use crate::body::ConvexPolyhedron;
-use crate::clearance as answers;
-use crate::errors::error;
-use crate::query::{Arguments, Query, solver_called};
+use crate::certificate::{Certificate, Separation, SolidCertificate};
+use crate::errors::{OrRaise, error};
+use crate::query::{Arguments, Cast, solver_called};
+use crate::solid_answer::SolidOverlapping;
 use crate::solid_cast::SolidCast;
 
-pub(crate) fn first_contact(py: Python<'_>, query: Query) -> PyResult<Bound<'_, PyAny>> {
-    let outcome = query.ask(|cast| cast.first_contact())?;
-    answer::outcome(py, query, outcome)
+/// The answer as Python has it.
+fn answered<'py, A: Answer<Query = Cast>>(
+    query: &Bound<'py, Cast>,
+    question: impl FnOnce(&colltrans::Cast<'_>) -> Result<A, QueryError>,
+) -> PyResult<Bound<'py, PyAny>> {
+    query.get().ask(question)?.object(query)
 }
 
-pub(crate) fn range(py: Python<'_>, query: Query) -> PyResult<Bound<'_, PyAny>> {
-    let range = query.ask(|cast| cast.contact_range())?;
-    answer::range(py, query, range)
+#[pymethods]
+impl Cast {
+    /// At which translation do the bodies first meet? See :func:`cast`.
+    fn first_contact<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        answered(slf, |cast| cast.first_contact())
+    }
+
+    /// At which translations do they first and last meet? See :func:`contact_range`.
+    fn contact_range<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        answered(slf, |cast| cast.contact_range())
+    }
+
+    /// How far can the moving body move from where it is? See :func:`clearance`.
+    fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        answered(slf, |cast| cast.clearance())
+    }
+
+    /// How far must it go back until the overlap ends? See :func:`directional_depth`.
+    fn directional_depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        answered(slf, |cast| cast.directional_depth())
+    }
+
+    /// Do the bodies meet where they are? See :func:`intersects`.
+    fn intersects<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        answered(slf, |cast| cast.intersects())
+    }
+
+    /// Checks a proof against the two bodies, with nothing of the search that found it.
+    ///
+    /// Parameters
+    /// ----------
+    /// proof : Certificate or Separation
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     The gap, in multiples of the direction, or the margin, a length, that is really proven.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(slf: &Bound<'_, Self>, proof: &Bound<'_, PyAny>) -> PyResult<f64> {
+        if let Ok(separation) = proof.cast::<Separation>() {
+            return separation.get().verify(Some(slf));
+        }
+        proof.cast::<Certificate>()?.get().verify(Some(slf))
+    }
 }
 
-pub(crate) fn clear(py: Python<'_>, query: Query) -> PyResult<Bound<'_, PyAny>> {
-    let clearance = query.ask(|cast| cast.clearance())?;
-    answers::clearance(py, query, clearance)
-}
+/// They run without the interpreter's lock.
+#[pymethods]
+impl SolidCast {
+    /// How far can the moving body move from where it is, and what stops it?
+    ///
+    /// Returns
+    /// -------
+    /// SolidBlocked or SolidFree or SolidOverlapping
+    fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        Self::ask(slf, |cast| cast.clearance())?.object(slf)
+    }
 
-pub(crate) fn depth(py: Python<'_>, query: Query) -> PyResult<Bound<'_, PyAny>> {
-    let depth = query.ask(|cast| cast.directional_depth())?;
-    answers::depth(py, query, depth)
-}
+    /// The clearance, with a proof that :meth:`verify` checks.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of (SolidBlocked or SolidFree or SolidOverlapping, SolidCertificate)
+    fn certified_clearance<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, SolidCertificate)> {
+        let (answer, proof) = Self::ask(slf, |cast| cast.certified_clearance())?;
+        Ok((answer.object(slf)?, SolidCertificate(proof)))
+    }
 
-pub(crate) fn meet(py: Python<'_>, query: Query) -> PyResult<Bound<'_, PyAny>> {
-    let meeting = query.ask(|cast| cast.intersects())?;
-    answers::intersection(py, query, meeting)
+    /// Checks a proof against the two bodies.
+    ///
+    /// Parameters
+    /// ----------
+    /// proof : SolidCertificate
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     How far the bounds of the distance are apart, in multiples of the direction.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(slf: &Bound<'_, Self>, proof: &Bound<'_, SolidCertificate>) -> PyResult<f64> {
+        let proof = proof.clone().unbind();
+        Self::ask(slf, move |cast| cast.verify(&proof.get().0))?.or_raise()
+    }
+
+    /// Whether the bodies as they are, as closed sets, have a point in common.
+    fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
+        Self::ask(slf, |cast| cast.intersects())
+    }
+
+    /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
+    /// none up to their size.
+    fn depth(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
+        Self::ask(slf, |cast| cast.depth())
+    }
+
+    /// Where the bodies, shrunk by half the tolerance, overlap, and how deep; None if they do not: what
+    /// an answer with ``ignore_start_overlaps`` has ignored.
+    ///
+    /// Returns
+    /// -------
+    /// SolidOverlapping or None
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, SolidCast
+    /// >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
+    /// >>> plate = ConvexPolyhedron.cuboid([0, 0, 0], [1, 2, 1])
+    /// >>> aside = SolidCast(plate, table, [1, 0, 0], moving_pose=[0, 0, -0.125],
+    /// ...                   ignore_start_overlaps=True)
+    /// >>> aside.clearance()
+    /// SolidFree()
+    /// >>> round(aside.start_overlap().depth, 9)
+    /// 0.125
+    fn start_overlap(slf: &Bound<'_, Self>) -> PyResult<Option<SolidOverlapping>> {
+        let found = Self::ask(slf, |cast| cast.start_overlap())?;
+        Ok(found.map(|overlap| SolidOverlapping { overlap, query: slf.clone().unbind() }))
+    }
+
+    /// Where the bodies, as they are, meet last, in multiples of the direction; None if nothing faces.
+    /// The best estimate: for one that is safe see ``exit_bounds``.
+    fn exit(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
+        Self::ask(slf, |cast| cast.exit().map(|exit| exit.value))
+    }
+
+    /// The proven bounds of ``exit``, None if nothing faces: beyond the second they never meet again.
+    fn exit_bounds(slf: &Bound<'_, Self>) -> PyResult<Option<(f64, f64)>> {
+        Self::ask(slf, |cast| cast.exit().map(|exit| exit.bounds().into()))
+    }
 }
 
 fn solids_meet<'py>(query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
@@ -41,7 +166,7 @@ fn solids_meet<'py>(query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>
 
 /// A function of Python that asks one question.
 macro_rules! question {
-    ($(#[$doc:meta])* $name:ident => $ask:path) => {
+    ($(#[$doc:meta])* $name:ident => $ask:ident) => {
         $(#[$doc])*
         #[pyfunction]
         #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
@@ -59,14 +184,15 @@ macro_rules! question {
             solver: Option<&Bound<'py, PyString>>,
         ) -> PyResult<Bound<'py, PyAny>> {
             let poses = [moving_pose, fixed_pose];
-            $ask(py, Query::new(Arguments { moving, fixed, direction, poses, graze_tolerance, solver })?)
+            let asked = Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
+            answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask())
         }
     };
 }
 
 /// A function of Python that asks one question of bodies of any kind.
 macro_rules! question_of_any {
-    ($(#[$doc:meta])* $name:ident => $ask:path, $ask_solids:expr) => {
+    ($(#[$doc:meta])* $name:ident => $ask:ident, $ask_solids:path) => {
         $(#[$doc])*
         #[pyfunction]
         #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
@@ -92,9 +218,8 @@ macro_rules! question_of_any {
                     return Err(error("QueryError", FOR_SOLIDS));
                 }
                 let graze_tolerance = graze_tolerance.unwrap_or_default();
-                let arguments =
-                    Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
-                return $ask(py, Query::new(arguments)?);
+                let asked = Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
+                return answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask());
             }
             if graze_tolerance.is_some() {
                 return Err(error("QueryError", FOR_CONVEX));
@@ -176,7 +301,7 @@ question! {
     /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     /// >>> contact_range(cube, cube, [1, 0, 0], moving_pose=[-3, 0.5, 0]).interval
     /// (2.0, 4.0)
-    contact_range => range
+    contact_range => contact_range
 }
 
 question_of_any! {
@@ -213,7 +338,7 @@ question_of_any! {
     /// Blocked 0.0
     /// Slides inf
     /// Behind inf
-    clearance => clear, SolidCast::clearance
+    clearance => clearance, SolidCast::clearance
 }
 
 question! {
@@ -234,7 +359,7 @@ question! {
     /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     /// >>> round(directional_depth(cube, cube, [1, 0, 0], moving_pose=[-0.75, 0, 0]).depth, 12)
     /// 0.25
-    directional_depth => depth
+    directional_depth => directional_depth
 }
 
 question_of_any! {
@@ -259,5 +384,5 @@ question_of_any! {
     /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     /// >>> bool(intersects(cube, cube, [1, 0, 0], moving_pose=[0.5, 0, 0]))
     /// True
-    intersects => meet, solids_meet
+    intersects => intersects, solids_meet
 }

@@ -56,6 +56,20 @@ impl Piece {
         }
     }
 
+    /// What it is the union of, or itself.
+    pub(crate) fn pieces(&self) -> Result<Vec<&colltrans::Solid>, colltrans::SolidError> {
+        match self {
+            Self::Solid(solid) => match &*solid.get().source {
+                Source::Pieces(pieces) => {
+                    let parts: Result<Vec<_>, _> = pieces.iter().map(Self::pieces).collect();
+                    Ok(parts?.concat())
+                }
+                Source::Mesh(..) | Source::Moved(..) => Ok(vec![self.solid()?]),
+            },
+            Self::Convex(_) => Ok(vec![self.solid()?]),
+        }
+    }
+
     /// Convex bodies count as exact.
     pub(crate) fn precision(&self) -> f64 {
         match self {
@@ -146,7 +160,7 @@ impl Solid {
         let by = if inwards { amount } else { -amount };
         let source = Arc::new(Source::Moved(slf.clone().unbind(), by));
         let (precision, notes) = (slf.get().precision, slf.get().notes.clone());
-        Ok((Self { solid, precision, notes, source }, ShrinkReport(report)))
+        Ok((Self { solid, precision, notes, source }, report.into()))
     }
 }
 

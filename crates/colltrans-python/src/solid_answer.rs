@@ -1,31 +1,30 @@
-//! Answers of queries about solids: frozen, with what they were asked.
+//! Answers of queries about solids.
 
-use colltrans::{Clearance, Overlap, SolidOverlap};
+use colltrans::record::{Record, StartOverlapRecord};
+use colltrans::{Clearance, Overlap, ProofFile, Separation, SolidOverlap, StartOverlap};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
+use crate::answer::{Answer, answer, object};
 use crate::arrays::{coordinates, row};
 use crate::errors::OrRaise;
 use crate::features::Feature;
-use crate::saved::{Saved, saved, written};
-use crate::show::{Options, Shown, show};
 use crate::solid::Piece;
 use crate::solid_cast::SolidCast;
+
+type SolidClearance = Clearance<colltrans::Solid>;
 
 /// Where a solid is stopped.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidContact {
-    pub(crate) contact: colltrans::SolidContact,
-    pub(crate) query: Py<SolidCast>,
+    contact: colltrans::SolidContact,
+    query: Py<SolidCast>,
 }
+
+answer!(SolidContact("translation", "normal", "point") of colltrans::SolidContact, SolidCast, |it| it.contact);
 
 #[pymethods]
 impl SolidContact {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str, &'static str) =
-        ("translation", "normal", "point");
-
     /// float: Where the faces that stop the body meet in their true place, not shrunk, in multiples of
     /// the direction; the best estimate.
     #[getter]
@@ -85,46 +84,30 @@ impl SolidContact {
         feature(self.contact.fixed_feature, &self.query.get().bodies[1])
     }
 
-    /// SolidCast: The query.
-    #[getter]
-    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
-        self.query.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "SolidContact", (self.query.clone_ref(py), written(&self.contact)?))
-    }
-
     fn __repr__(&self) -> String {
         let (t, n) = (self.contact.translation.value, coordinates(self.contact.normal));
         format!("SolidContact(translation={t:?}, normal={n:?})")
     }
 }
 
-/// A feature by the numbers of the input.
 fn feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
-    Ok(Feature::new(feature.kind(), feature.vertices(body.solid().or_raise()?)))
+    Ok(Feature::of(feature, body.solid().or_raise()?))
 }
 
 /// A solid can move until it touches.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidBlocked {
-    pub(crate) distance: f64,
-    pub(crate) contact: Py<SolidContact>,
+    distance: f64,
+    contact: colltrans::SolidContact,
+    query: Py<SolidCast>,
 }
+
+answer!(SolidBlocked("distance", "contact") of SolidClearance, SolidCast, |it| {
+    SolidClearance::Blocked { distance: it.distance, contact: it.contact }
+});
 
 #[pymethods]
 impl SolidBlocked {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str, &'static str) = ("distance", "contact");
-
     /// float: How far it may safely move, in multiples of the direction: the lower bound of where it is
     /// stopped, and never negative.
     #[getter]
@@ -134,31 +117,15 @@ impl SolidBlocked {
 
     /// SolidContact: What stops it.
     #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<SolidContact> {
-        self.contact.clone_ref(py)
+    fn contact(&self, py: Python<'_>) -> SolidContact {
+        SolidContact { contact: self.contact, query: self.query(py) }
     }
 
     /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
     /// of them is not known.
     #[getter]
     fn surfaces(&self) -> PyResult<Vec<&'static str>> {
-        surfaces(&self.contact.get().query)
-    }
-
-    /// SolidCast: The query.
-    #[getter]
-    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
-        self.contact.get().query.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "SolidBlocked", (self.distance, self.contact.clone_ref(py)))
+        surfaces(&self.query)
     }
 
     fn __repr__(&self) -> String {
@@ -169,9 +136,11 @@ impl SolidBlocked {
 /// A solid can move as far as it likes.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidFree {
-    pub(crate) separation: Option<[f64; 4]>,
-    pub(crate) query: Py<SolidCast>,
+    separation: Option<Separation>,
+    query: Py<SolidCast>,
 }
+
+answer!(SolidFree() of SolidClearance, SolidCast, |it| SolidClearance::Free(it.separation));
 
 #[pymethods]
 impl SolidFree {
@@ -185,13 +154,13 @@ impl SolidFree {
     /// None if there is no such plane: it slides along, or moves away.
     #[getter]
     fn margin(&self) -> Option<f64> {
-        self.separation.map(|s| s[3])
+        self.separation.map(|s| s.margin)
     }
 
     /// ndarray of shape (3,) or None: Unit normal of that plane, in the world.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.separation.map(|s| PyArray1::from_slice(py, &s[..3]))
+        self.separation.map(|s| row(py, s.normal))
     }
 
     /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
@@ -199,22 +168,6 @@ impl SolidFree {
     #[getter]
     fn surfaces(&self) -> PyResult<Vec<&'static str>> {
         surfaces(&self.query)
-    }
-
-    /// SolidCast: The query.
-    #[getter]
-    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
-        self.query.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "SolidFree", (self.separation, self.query.clone_ref(py)))
     }
 
     fn __repr__(&self) -> &'static str {
@@ -225,33 +178,14 @@ impl SolidFree {
 /// Two solids overlap where they are, by more than is tolerated.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidOverlapping {
-    pub(crate) depth: Option<f64>,
-    /// Faces of the moving and of the fixed body.
-    pub(crate) place: [Option<u32>; 2],
+    pub(crate) overlap: SolidOverlap,
     pub(crate) query: Py<SolidCast>,
 }
 
-impl SolidOverlapping {
-    pub(crate) fn of(overlap: &SolidOverlap, query: &Bound<'_, SolidCast>) -> PyResult<Self> {
-        let triangles = match overlap.place {
-            Overlap::Facets(moving, fixed) => [Some(moving), Some(fixed)],
-            Overlap::MovingInside(moving) => [Some(moving), None],
-            Overlap::FixedInside(fixed) => [None, Some(fixed)],
-        };
-        let bodies = &query.get().bodies;
-        let solids = [bodies[0].solid().or_raise()?, bodies[1].solid().or_raise()?];
-        let face = |i: usize| Some(solids[i].facet_indices()[triangles[i]? as usize]);
-        let place = [face(0), face(1)];
-        Ok(Self { depth: overlap.depth, place, query: query.clone().unbind() })
-    }
-}
+answer!(SolidOverlapping("depth") of SolidClearance, SolidCast, |it| SolidClearance::Overlapping(it.overlap));
 
 #[pymethods]
 impl SolidOverlapping {
-    #[classattr]
-    #[pyo3(name = "__match_args__")]
-    const MATCH_ARGS: (&'static str,) = ("depth",);
-
     /// None: There is none.
     #[getter]
     fn distance(&self) -> Option<f64> {
@@ -262,7 +196,7 @@ impl SolidOverlapping {
     /// none, as for open surfaces.
     #[getter]
     fn depth(&self) -> Option<f64> {
-        self.depth
+        self.overlap.depth
     }
 
     /// tuple of (int or None, int or None): One of the places where the bodies, shrunk by half the
@@ -270,8 +204,16 @@ impl SolidOverlapping {
     /// were numbered in the input; where one of them is None, the shell with the other lies inside
     /// that body.
     #[getter]
-    fn place(&self) -> (Option<u32>, Option<u32>) {
-        self.place.into()
+    fn place(&self) -> PyResult<(Option<u32>, Option<u32>)> {
+        let [moving, fixed] = &self.query.get().bodies;
+        let face = |body: &Piece, at: u32| -> PyResult<_> {
+            Ok(Some(body.solid().or_raise()?.facet_indices()[at as usize]))
+        };
+        Ok(match self.overlap.place {
+            Overlap::Facets(s, t) => (face(moving, s)?, face(fixed, t)?),
+            Overlap::MovingInside(s) => (face(moving, s)?, None),
+            Overlap::FixedInside(t) => (None, face(fixed, t)?),
+        })
     }
 
     /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
@@ -281,26 +223,10 @@ impl SolidOverlapping {
         surfaces(&self.query)
     }
 
-    /// SolidCast: The query.
-    #[getter]
-    fn query(&self, py: Python<'_>) -> Py<SolidCast> {
-        self.query.clone_ref(py)
-    }
-
-    /// A picture: see :func:`colltrans.show`.
-    #[pyo3(signature = (**options))]
-    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
-        show(slf, options)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "SolidOverlapping", (self.depth, self.place, self.query.clone_ref(py)))
-    }
-
     fn __repr__(&self) -> String {
         format!(
             "SolidOverlapping(depth={})",
-            self.depth.map_or("None".into(), |d| format!("{d:?}"))
+            self.overlap.depth.map_or("None".into(), |d| format!("{d:?}"))
         )
     }
 }
@@ -315,64 +241,63 @@ fn surfaces(query: &Py<SolidCast>) -> PyResult<Vec<&'static str>> {
     Ok(found)
 }
 
-/// The proof of a clearance between solids.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidCertificate(pub(crate) colltrans::SolidCertificate);
+/// The proof of a clearance depends on the query alone.
+fn proof(query: &Bound<'_, SolidCast>) -> PyResult<String> {
+    let asked = query.clone().unbind();
+    SolidCast::ask(query, move |cast| -> Result<String, PyErr> {
+        let [moving, fixed] = &asked.get().bodies;
+        let pieces = [moving.pieces().or_raise()?, fixed.pieces().or_raise()?];
+        Ok(ProofFile::of_solids(cast, [&pieces[0], &pieces[1]]).or_raise()?.to_json())
+    })?
+}
 
-#[pymethods]
-impl SolidCertificate {
-    /// float: The tolerance by which the bodies were shrunk.
-    #[getter]
-    fn tolerance(&self) -> f64 {
-        self.0.tolerance
+impl Answer for SolidClearance {
+    type Query = SolidCast;
+
+    fn object<'py>(self, asked: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, query) = (asked.py(), asked.clone().unbind());
+        match self {
+            Self::Blocked { distance, contact } => {
+                object(py, SolidBlocked { distance, contact, query })
+            }
+            Self::Free(separation) => object(py, SolidFree { separation, query }),
+            Self::Overlapping(overlap) => object(py, SolidOverlapping { overlap, query }),
+        }
     }
 
-    /// float: The proven lower bound of the shrunk bodies' distance, in multiples of the direction.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.0.lower
+    fn record(&self, query: &Bound<'_, SolidCast>) -> PyResult<Record> {
+        let clearance = *self;
+        SolidCast::ask(query, move |cast| {
+            let mut record = Record::of_solids(&clearance, cast.exit(), cast);
+            if cast.options().start_overlap == StartOverlap::Ignore {
+                record.start_overlaps = cast
+                    .start_overlap()
+                    .map(|of| StartOverlapRecord { depth: of.depth, ..Default::default() })
+                    .into_iter()
+                    .collect();
+            }
+            record
+        })
     }
 
-    /// The proof as text.
-    pub(crate) fn to_json(&self) -> String {
-        self.0.to_json()
-    }
-
-    /// From what `to_json` has written. It is read, not believed.
-    #[staticmethod]
-    pub(crate) fn from_json(text: &str) -> PyResult<Self> {
-        colltrans::SolidCertificate::from_json(text).or_raise().map(Self)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        saved(py, "SolidCertificate", (self.to_json(),))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("SolidCertificate(lower={:?})", self.0.lower)
+    fn proof(&self, query: &Bound<'_, SolidCast>) -> PyResult<String> {
+        proof(query)
     }
 }
 
-pub(crate) fn solid_answer<'py>(
-    query: &Bound<'py, SolidCast>,
-    answer: &Clearance<colltrans::Solid>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let py = query.py();
-    Ok(match answer {
-        Clearance::Blocked { distance, contact } => {
-            let contact = SolidContact { contact: *contact, query: query.clone().unbind() };
-            let contact = Py::new(py, contact)?;
-            Bound::new(py, SolidBlocked { distance: *distance, contact })?.into_any()
-        }
-        Clearance::Free(separation) => {
-            let separation = separation.as_ref().map(|s| {
-                let [x, y, z] = coordinates(s.normal);
-                [x, y, z, s.margin]
-            });
-            Bound::new(py, SolidFree { separation, query: query.clone().unbind() })?.into_any()
-        }
-        Clearance::Overlapping(overlap) => {
-            Bound::new(py, SolidOverlapping::of(overlap, query)?)?.into_any()
-        }
-    })
+impl Answer for colltrans::SolidContact {
+    type Query = SolidCast;
+
+    fn object<'py>(self, query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
+        object(query.py(), SolidContact { contact: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, SolidCast>) -> PyResult<Record> {
+        let distance = self.translation.lower.max(0.0);
+        SolidClearance::Blocked { distance, contact: *self }.record(query)
+    }
+
+    fn proof(&self, query: &Bound<'_, SolidCast>) -> PyResult<String> {
+        proof(query)
+    }
 }

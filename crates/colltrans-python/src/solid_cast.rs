@@ -11,14 +11,13 @@ use colltrans_mesh::body::between;
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::{coordinates, row, vector};
 use crate::errors::{OrRaise, error};
+use crate::frozen::{Options, Shown, show};
 use crate::pose::{Pose, pose};
-use crate::saved::{Saved, saved};
-use crate::show::{Options, Shown, show};
 use crate::solid::Piece;
-use crate::solid_answer::{SolidCertificate, SolidOverlapping, solid_answer};
 
 /// A query about solids as a value: two placed bodies and a direction.
 ///
@@ -60,6 +59,9 @@ pub(crate) struct SolidCast {
     pub(crate) options: SolidOptions,
 }
 
+/// The bodies and the direction.
+type Positional = (Py<PyAny>, Py<PyAny>, [f64; 3]);
+
 /// Between two looks at signals.
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Bodies of fewer triangles are asked in the thread that asks: no answer takes long.
@@ -82,7 +84,7 @@ impl SolidCast {
 
     /// Without the interpreter's lock. Where it may take long, on a thread of its own, which is left
     /// alone when a signal ends the waiting.
-    fn ask<T: Send + 'static>(
+    pub(crate) fn ask<T: Send + 'static>(
         slf: &Bound<'_, Self>,
         question: impl FnOnce(&colltrans::Cast<'_, colltrans::Solid>) -> T + Send + 'static,
     ) -> PyResult<T> {
@@ -140,93 +142,6 @@ impl SolidCast {
         Ok(cast)
     }
 
-    /// How far can the moving body move from where it is, and what stops it?
-    ///
-    /// Returns
-    /// -------
-    /// SolidBlocked or SolidFree or SolidOverlapping
-    pub(crate) fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let answer = Self::ask(slf, |cast| cast.clearance())?;
-        solid_answer(slf, &answer)
-    }
-
-    /// The clearance, with a proof that :meth:`verify` checks.
-    ///
-    /// Returns
-    /// -------
-    /// tuple of (SolidBlocked or SolidFree or SolidOverlapping, SolidCertificate)
-    fn certified_clearance<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, SolidCertificate)> {
-        let (answer, proof) = Self::ask(slf, |cast| cast.certified_clearance())?;
-        Ok((solid_answer(slf, &answer)?, SolidCertificate(proof)))
-    }
-
-    /// Checks a proof against the two bodies.
-    ///
-    /// Parameters
-    /// ----------
-    /// proof : SolidCertificate
-    ///
-    /// Returns
-    /// -------
-    /// float
-    ///     How far the bounds of the distance are apart, in multiples of the direction.
-    ///
-    /// Raises
-    /// ------
-    /// CertificateError
-    ///     What is not proven.
-    fn verify(slf: &Bound<'_, Self>, proof: &Bound<'_, SolidCertificate>) -> PyResult<f64> {
-        let proof = proof.clone().unbind();
-        Self::ask(slf, move |cast| cast.verify(&proof.get().0))?.or_raise()
-    }
-
-    /// Whether the bodies as they are, as closed sets, have a point in common.
-    pub(crate) fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
-        Self::ask(slf, |cast| cast.intersects())
-    }
-
-    /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
-    /// none up to their size.
-    fn depth(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
-        Self::ask(slf, |cast| cast.depth())
-    }
-
-    /// Where the bodies, shrunk by half the tolerance, overlap, and how deep; None if they do not: what
-    /// an answer with ``ignore_start_overlaps`` has ignored.
-    ///
-    /// Returns
-    /// -------
-    /// SolidOverlapping or None
-    ///
-    /// Examples
-    /// --------
-    /// >>> from colltrans import ConvexPolyhedron, SolidCast
-    /// >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
-    /// >>> plate = ConvexPolyhedron.cuboid([0, 0, 0], [1, 2, 1])
-    /// >>> aside = SolidCast(plate, table, [1, 0, 0], moving_pose=[0, 0, -0.125],
-    /// ...                   ignore_start_overlaps=True)
-    /// >>> aside.clearance()
-    /// SolidFree()
-    /// >>> round(aside.start_overlap().depth, 9)
-    /// 0.125
-    fn start_overlap(slf: &Bound<'_, Self>) -> PyResult<Option<SolidOverlapping>> {
-        let found = Self::ask(slf, |cast| cast.start_overlap())?;
-        found.map(|found| SolidOverlapping::of(&found, slf)).transpose()
-    }
-
-    /// Where the bodies, as they are, meet last, in multiples of the direction; None if nothing faces.
-    /// The best estimate: for one that is safe see ``exit_bounds``.
-    fn exit(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
-        Self::ask(slf, |cast| cast.exit().map(|exit| exit.value))
-    }
-
-    /// The proven bounds of ``exit``, None if nothing faces: beyond the second they never meet again.
-    fn exit_bounds(slf: &Bound<'_, Self>) -> PyResult<Option<(f64, f64)>> {
-        Self::ask(slf, |cast| cast.exit().map(|exit| exit.bounds().into()))
-    }
-
     /// float: The tolerance that is used, a length.
     #[getter]
     fn tolerance(&self, py: Python<'_>) -> PyResult<f64> {
@@ -275,12 +190,18 @@ impl SolidCast {
         show(slf, options)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let bodies = [self.bodies[0].object(py), self.bodies[1].object(py)];
-        let poses = self.poses.map(Pose);
+    /// The arguments that make it once more, for `pickle` and `copy`.
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Positional, Bound<'py, PyDict>)> {
+        let named = PyDict::new(py);
+        named.set_item("moving_pose", self.moving_pose())?;
+        named.set_item("fixed_pose", self.fixed_pose())?;
+        named.set_item("tolerance", self.options.tolerance)?;
         let ignores = self.options.start_overlap == StartOverlap::Ignore;
-        let direction = self.direction.to_array();
-        saved(py, "SolidCast", (bodies, direction, poses, self.options.tolerance, ignores))
+        named.set_item("ignore_start_overlaps", ignores)?;
+        Ok(((self.moving(py), self.fixed(py), self.direction.to_array()), named))
     }
 
     fn __repr__(&self) -> String {

@@ -8,12 +8,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use self_cell::self_cell;
 
-use crate::answer;
+use crate::answer::Answer;
 use crate::body::ConvexPolyhedron;
-use crate::clearance;
 use crate::errors::error;
 use crate::features::Steps;
-use crate::query::{Arguments, Query};
+use crate::query::{Arguments, Cast};
 
 type Bodies = [Py<ConvexPolyhedron>; 2];
 type Borrowing<'a> = colltrans::Tracker<'a>;
@@ -53,7 +52,7 @@ impl Tracker {
     fn ask<T>(
         &mut self,
         py: Python<'_>,
-        query: &Query,
+        query: &Cast,
         question: impl for<'a> FnOnce(&mut Borrowing<'a>, &colltrans::Cast<'a>) -> Result<T, QueryError>,
     ) -> PyResult<T> {
         let bodies = [&query.moving, &query.fixed];
@@ -82,7 +81,7 @@ impl Tracker {
 
 /// A method that asks one question.
 macro_rules! questions {
-    ($($(#[$doc:meta])* $name:ident => $ask:ident, $answer:path;)*) => {
+    ($($(#[$doc:meta])* $name:ident => $ask:ident;)*) => {
         #[pymethods]
         impl Tracker {
             #[new]
@@ -98,7 +97,7 @@ macro_rules! questions {
             /// Steps: The work of the last query, of all its casts together.
             #[getter]
             fn steps(&self) -> Steps {
-                Steps::of(self.steps)
+                Steps(self.steps)
             }
 
             $(
@@ -122,9 +121,8 @@ macro_rules! questions {
                     let poses = [moving_pose, fixed_pose];
                     let arguments =
                         Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
-                    let query = Query::new(arguments)?;
-                    let answer = self.ask(py, &query, |tracker, cast| tracker.$ask(cast))?;
-                    $answer(py, query, answer)
+                    let query = Bound::new(py, Cast::of(arguments)?)?;
+                    self.ask(py, query.get(), |tracker, cast| tracker.$ask(cast))?.object(&query)
                 }
             )*
         }
@@ -133,13 +131,13 @@ macro_rules! questions {
 
 questions! {
     /// :func:`cast`, starting from the last answer.
-    cast => first_contact, answer::outcome;
+    cast => first_contact;
     /// :func:`contact_range`, starting from the last answer.
-    contact_range => contact_range, answer::range;
+    contact_range => contact_range;
     /// :func:`clearance`, starting from the last answer.
-    clearance => clearance, clearance::clearance;
+    clearance => clearance;
     /// :func:`directional_depth`, starting from the last answer.
-    directional_depth => directional_depth, clearance::depth;
+    directional_depth => directional_depth;
     /// :func:`intersects`, starting from the last answer to the same question.
-    intersects => intersects, clearance::intersection;
+    intersects => intersects;
 }

@@ -154,7 +154,7 @@ pub use cast::solid::{
     StartProof, StopProof,
 };
 #[cfg(feature = "json")]
-pub use cast::{Case, CaseError, Contacts, ProofFile, SolidStatement, Statement, Stop};
+pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, SolidStatement, Statement, Stop};
 pub use cast::{Cast, Features, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};

@@ -100,11 +100,49 @@ fn a_number_that_is_changed_is_noticed() {
         assert_eq!(believed(&file, &format!("{end}/lower"), &up), [""; 0]);
         assert_eq!(believed(&file, &format!("{end}/rounding"), &up), [""; 0]);
         assert_eq!(believed(&file, &format!("{end}/upper"), &down), [""; 0]);
+        let weaker: [fn(f64) -> f64; 1] = [|x| x + 0.5];
+        assert_eq!(believed(&file, &format!("{end}/upper"), &weaker).len(), 1);
     }
     let apart = cube_cast(&cube, 3.0);
     let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
     assert_eq!(believed(&apart, "/statement/separation/margin", &up), [""; 0]);
     assert_eq!(believed(&apart, "/statement/separation/normal", &both), [""; 0]);
+}
+
+fn said(file: &Value) -> String {
+    ProofFile::from_json(&file.to_string()).expect("a proof").to_string()
+}
+
+/// Cubes whose sides are in one plane, and ones that overlap by less than is tolerated.
+#[test]
+fn a_slide_is_said_to_be_one() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    for (y, graze, overlap) in [(1.0, 0.0, 0.0), (0.875, 0.25, 0.125)] {
+        let start = Pose::from_translation(DVec3::new(-3.0, y, 0.25)).expect("a pose");
+        let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)
+            .and_then(|cast| cast.with_graze_tolerance(graze))
+            .expect("a cast");
+        let clearance = cast.clearance().expect("an answer");
+        let outcome = cast.first_contact().expect("an answer");
+        let file = holds(&ProofFile::of_clearance(&cast, &clearance), "a slide");
+        assert_eq!(file, holds(&ProofFile::of_outcome(&cast, &outcome), "a slide"));
+        let range = cast.contact_range().expect("an answer");
+        let both = holds(&ProofFile::of_range(&cast, &range), "a slide");
+        assert!(said(&both).contains("; the bodies meet "), "{}", said(&both));
+        let slide = "/statement/contacts/slide";
+        let told = file.pointer(&format!("{slide}/overlap")).and_then(Value::as_f64);
+        assert!(told.is_some_and(|told| (told - overlap).abs() < 1e-14), "{told:?}");
+        let words = "the bodies slide along each other, seen along the direction they overlap by";
+        assert!(said(&file).starts_with(words), "{}", said(&file));
+        let less: [fn(f64) -> f64; 1] = [|x| x - 1e-12];
+        assert_eq!(believed(&file, &format!("{slide}/overlap"), &less), [""; 0]);
+        let other: [fn(f64) -> f64; 1] = [|x| x + 0.1];
+        assert_eq!(believed(&file, &format!("{slide}/normal"), &other), [""; 0]);
+        assert_eq!(believed(&file, &format!("{slide}/overlap"), &other).len(), 1);
+        let mut alone = file;
+        alone["statement"]["contacts"].as_object_mut().expect("it").remove("first");
+        assert!(ProofFile::from_json(&alone.to_string()).is_err(), "no contact is claimed");
+    }
 }
 
 /// The moving body a little larger.
@@ -170,6 +208,50 @@ fn proofs_between_solids_hold_and_their_numbers_count() {
     }
 }
 
+#[test]
+fn bounds_that_are_missing_or_wrong_are_told() {
+    let place = "/statement/clearance/stop/translation";
+    let file = of_parts(&parts(), DVec3::new(0.01, 0.02, 0.0), DVec3::NEG_Z, 0.0);
+    let with = |lower: Value, upper: Value| {
+        let mut other = file.clone();
+        let translation = other.pointer_mut(place).expect("a stop");
+        (translation["lower"], translation["upper"]) = (lower, upper);
+        ProofFile::from_json(&other.to_string()).expect("a proof")
+    };
+    let (low, high) = (json!(0.0), json!(9.0));
+    for (proof, words) in [
+        (with(low.clone(), high.clone()), "the facets that do meet, as they are, between 0.0 and 9.0"),
+        (with(Value::Null, high), "the facets that do meet, as they are, by 9.0"),
+        (with(low, Value::Null), "the facets that do meet, as they are, not before 0.0"),
+        (with(Value::Null, Value::Null), "it is not said where the facets that do meet, as they are"),
+    ] {
+        proof.check().expect("less than is proven");
+        assert!(proof.to_string().ends_with(words), "{proof}");
+    }
+    let mut wrong = file.clone();
+    *wrong.pointer_mut(&format!("{place}/value")).expect("a value") = json!(6.5);
+    let wrong = ProofFile::from_json(&wrong.to_string()).expect("a proof").check();
+    let told = wrong.expect_err("outside").to_string();
+    assert!(told.starts_with("the translation 6.5 is not between its bounds, "), "{told}");
+}
+
+#[test]
+fn shrunk_bodies_that_are_inside_out_are_told() {
+    let parts = parts();
+    let proof = |tolerance| {
+        let file = of_parts(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, tolerance);
+        ProofFile::from_json(&file.to_string()).expect("a proof")
+    };
+    assert_eq!(proof(0.25).inverted(), [0, 0]);
+    assert!(!proof(0.25).to_string().contains("inside out"));
+    // The washer is one thick.
+    let inside_out = proof(1.5);
+    let [bolt, washer] = inside_out.inverted();
+    assert!(washer > 0, "{washer}");
+    let words = format!("; shrunk so far, {bolt} facets of the moving body and {washer} of the fixed");
+    assert!(inside_out.to_string().contains(&words), "{inside_out}");
+}
+
 /// What is said of solids.
 fn solid_claim() -> Value {
     of_parts(&parts(), DVec3::ZERO, DVec3::NEG_Z, 0.0)["statement"].take()
@@ -211,11 +293,20 @@ fn other_files_are_refused_in_words() {
     assert_eq!(said(&mixed.to_string()), "one body is convex, the other is made of pieces");
     mixed["fixed"] = json!({"pieces": []});
     assert!(said(&mixed.to_string()).starts_with("moving body: "));
-    for says in [json!({"contacts": {}}), solid_claim()] {
+    let mut both = file["statement"].clone();
+    both["separation"] = json!({"normal": [0, 1, 0], "margin": 1});
+    for says in [json!({"contacts": {}}), json!({}), both, solid_claim()] {
         let mut wrong = file.clone();
         wrong["statement"] = says;
-        assert_eq!(said(&wrong.to_string()), "what it says is nothing, or is not of such bodies");
+        assert!(said(&wrong.to_string()).starts_with("it has to say one thing, and one of such bodies"));
     }
+    let large = text.replacen("-3.1", "1e999", 1);
+    assert!(said(&large).contains("a number is larger than any double"), "{}", said(&large));
+    let mut open = of_parts(&parts(), DVec3::ZERO, DVec3::NEG_Z, 0.0);
+    let triangles = open.pointer_mut("/fixed/pieces/0/triangles").expect("triangles");
+    triangles.as_array_mut().expect("a list").pop();
+    let told = said(&open.to_string());
+    assert!(told.starts_with("fixed body: the surface is open") && !told.contains("::"), "{told}");
     let mut still = file;
     still["direction"] = json!([0.0, 0.0, 0.0]);
     assert!(said(&still.to_string()).contains("direction"));

@@ -12,6 +12,10 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   certificate, the bodies meet. The bound claimed must not be smaller. Where rounding makes the line
   miss that triangle (a contact at a vertex, an edge or a rim), the weighted mean of the pairs has
   to come as near to the line as rounding explains; that is said.
+- *Slides.* ``max_P n.p - min_Q n.q`` over all vertices, for ``n`` across the direction: so much do
+  the bodies overlap seen along it, at most. The one claimed must not be smaller.
+- *Bodies.* The faces of a convex body, if it has any, close up around all vertices, and none of
+  their neighbours is above them by more than ``hull_error`` and rounding. No proof leans on them.
 - *Separation.* ``n' = n (d.d) - d (n.d)`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p``
   proves that the bodies never meet. The margin is checked along ``n``.
 - *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
@@ -29,7 +33,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -44,6 +48,8 @@ _U = Fraction(1, 2**53)
 _UNIT_VECTOR = 32 * _U
 #: Rounding of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
+#: How far a face may be from its plane, in sizes of the body, beyond its ``hull_error``.
+_PLANE = 256 * _U
 #: How far a pose may be from a rotation.
 _TURN = Fraction(1, 10**6)
 
@@ -130,6 +136,7 @@ class Body:
         ((kind, content),) = shape.items()
         if kind == "convex":
             points = [vector(v) for v in content["vertices"]]
+            described(points, content)
         elif kind == "pieces":
             for piece in content:
                 base = len(points)
@@ -177,6 +184,45 @@ class Body:
     def reach(self) -> float:
         """The largest distance of a point from the origin of the frame, nearly."""
         return math.sqrt(max(float(dot(v, v)) for v in self.points))
+
+
+def described(points: list[Vector], content: Any) -> None:
+    """Whether what a file says of a convex body beside its vertices fits them."""
+    inputs = [whole(k, 2**32) for k in content["input_indices"]]
+    if len(inputs) != len(points) or len(set(inputs)) != len(inputs):
+        raise RefusedError("the input indices are not one for each vertex, all different")
+    error = number(content["hull_error"])
+    if error < 0:
+        raise RefusedError(f"a hull error of {float(error)!r} is negative")
+    faces = [[whole(k, len(points)) for k in face] for face in content["faces"]]
+    if any(len(set(face)) != len(face) or len(face) < 3 for face in faces):
+        raise RefusedError("a face has fewer than three corners, or one of them twice")
+    sides = {side: face for face in faces for side in zip(face, face[1:] + face[:1], strict=True)}
+    closed = len(sides) == sum(map(len, faces)) and all((b, a) in sides for a, b in sides)
+    if not closed or (faces and len({a for a, _ in sides}) != len(points)):
+        raise RefusedError("the faces do not close up around all vertices")
+    if len(points) - len(sides) // 2 + len(faces) != 2 and len(points) > 2:
+        raise RefusedError("the faces are not those of one convex body")
+    room = error + _PLANE * Fraction(math.sqrt(max(float(dot(v, v)) for v in points)))
+    for face in faces:
+        normal = area(points, face)
+        if not any(normal):
+            raise RefusedError("a face has no area")
+        square = dot(normal, normal)
+        around = [v for a, b in zip(face, face[1:] + face[:1], strict=True) for v in sides[b, a]]
+        for k in (*face, *around):
+            above = dot(normal, minus(points[k], points[face[0]]))
+            if (above > 0 or k in face) and above * above > room * room * square:
+                raise RefusedError(f"vertex {k} is not where the faces around it are")
+
+
+def area(points: list[Vector], face: list[int]) -> Vector:
+    """Along the normal of a polygon."""
+    total = (Fraction(), Fraction(), Fraction())
+    for a, b in pairwise(face[1:]):
+        side, other = minus(points[a], points[face[0]]), minus(points[b], points[face[0]])
+        total = plus(total, cross(side, other))
+    return total
 
 
 def entry(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | None:
@@ -284,6 +330,21 @@ def gaps(moving: Body, fixed: Body, d: Vector, normal: Vector) -> tuple[Fraction
     return along[0], along[1]
 
 
+def slide(moving: Body, fixed: Body, d: Vector, claim: Any, report: Report) -> None:
+    """How much of the bodies is in each other's way at most, seen along the direction."""
+    normal, overlap = vector(claim["normal"]), number(claim["overlap"])
+    unit(normal)
+    if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
+        raise RefusedError("the normal of the slide is not across the direction")
+    proven = -gaps(moving, fixed, d, normal)[0]
+    if overlap < proven:
+        raise RefusedError(f"the bodies overlap by {float(proven)!r} there, not {float(overlap)!r}")
+    report.holds.append(
+        "the bodies slide along each other: seen along the direction they overlap by at most "
+        f"{float(overlap)!r}"
+    )
+
+
 def separation(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report) -> None:
     """A plane between convex bodies."""
     normal, margin = vector(proof["normal"]), number(proof["margin"])
@@ -318,6 +379,10 @@ def clearance(moving: Body, fixed: Body, d: Vector, claim: Any, report: Report) 
         raise RefusedError("the certificate and the claim do not agree about what stops the body")
     if stop is not None:
         facets(moving, fixed, d, stop, tolerance, report)
+    if tolerance:
+        report.unchecked.append(
+            f"what shrinking by {float(tolerance / 2)!r} makes of the bodies, which may be thinner"
+        )
     report.unchecked.append("whether the bodies overlap where they are")
     report.unchecked.append(
         "that nothing stops the moving body before" if stop else "that no two facets meet"
@@ -378,7 +443,10 @@ def check(text: str) -> Report:
         if not any(d):
             raise NoProofError("the direction is zero")
         report = Report()
-        ((kind, claim),) = file["statement"].items()
+        claims = {kind: claim for kind, claim in file["statement"].items() if claim is not None}
+        if len(claims) != 1:
+            raise NoProofError(f"it has to say one thing, not {len(claims)}")
+        ((kind, claim),) = claims.items()
         _claim(kind, claim, moving, fixed, d, report)
     except (*_MALFORMED, RecursionError) as error:
         if isinstance(error, NoProofError):
@@ -392,8 +460,11 @@ def _claim(kind: str, claim: Any, moving: Body, fixed: Body, d: Vector, report: 
     if is_solid != (kind == "clearance"):
         raise NoProofError(f"{kind!r} is not claimed of such bodies")
     if kind == "contacts":
-        if not set(claim) <= {"first", "last"} or not claim:
-            raise NoProofError("nothing is claimed")
+        claim = {name: part for name, part in claim.items() if part is not None}
+        if not set(claim) <= {"slide", "first", "last"} or not {"first", "last"} & set(claim):
+            raise NoProofError("no contact is claimed")
+        if "slide" in claim:
+            slide(moving, fixed, d, claim["slide"], report)
         if "first" in claim:
             contact(moving, fixed, d, claim["first"], report, "along the direction")
         if "last" in claim:

@@ -46,7 +46,7 @@ fn a_saved_proof_holds_and_is_told_in_one_line() {
             "the bodies first meet at a translation between 1.9",
             "translation_bounds",
         ),
-        ("clearance", "1", "the bodies meet at no translation below 1.9", "translation_bounds"),
+        ("clearance", "1", "the bodies slide along each other, seen along the direction", "overlap"),
     ] {
         let arguments = pair(command, y);
         let plain = answered(folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
@@ -77,6 +77,22 @@ fn a_proof_between_solids_holds() {
         saved(folder, &all);
         let text = answered(folder, &["verify", "proof.json"]);
         assert!(text.contains(said), "{text}");
+    }
+}
+
+#[test]
+fn shrunk_bodies_that_are_inside_out_are_counted() {
+    let folder = folder();
+    let folder = folder.path();
+    let clear = ["clear", "cube.off", "--from", "cube.off", "--direction", "-z", "--moving-pose"];
+    for (tolerance, inside_out) in [("0.5", false), ("1000", true)] {
+        let mut all = clear.to_vec();
+        all.extend(["0,0,3000", "--tolerance", tolerance]);
+        saved(folder, &all);
+        let text = answered(folder, &["verify", "proof.json"]);
+        assert_eq!(text.contains("are inside out"), inside_out, "{text}");
+        let told = read(&answered(folder, &["verify", "proof.json", "--json"]));
+        assert_eq!(told.get("inverted").is_some(), inside_out, "{told}");
     }
 }
 

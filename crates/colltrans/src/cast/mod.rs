@@ -29,7 +29,7 @@ use crate::solve::{WarmStart, search};
 pub use contact::{Features, WitnessPoints};
 pub(crate) use derive::{clearance_of, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
-pub use proof_file::{Contacts, ProofFile, SolidStatement, Statement, Stop};
+pub use proof_file::{Contacts, ProofFile, Slide, SolidStatement, Statement, Stop};
 #[cfg(feature = "json")]
 pub use replay::{Case, CaseError};
 

@@ -13,12 +13,13 @@ use super::replay::BodyRecord;
 use super::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use super::{CaseError, Cast};
 use crate::answer::{
-    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, OverlapAhead,
-    Separation, WhyFree,
+    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, Grazing, Outcome,
+    OverlapAhead, Separation, WhyFree,
 };
 use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
 use crate::body::{ConvexPolyhedron, Pose};
+use crate::number::{extent, noise};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";
@@ -70,12 +71,27 @@ pub enum Statement {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contacts {
+    /// Where the bodies slide along each other: that they hardly overlap, seen along the direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slide: Option<Slide>,
     /// Of the first contact, along the direction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first: Option<Certificate>,
     /// Of the last one: the first of the [reversed](Cast::reversed) cast.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<Certificate>,
+}
+
+/// How much of two convex bodies is in each other's way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Slide {
+    /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed one:
+    /// [`Grazing::separating_direction`].
+    pub normal: DVec3,
+    /// At least `max_P n.p - min_Q n.q`, a length, wherever on its way the moving body is near the
+    /// fixed one; negative if they miss each other.
+    pub overlap: f64,
 }
 
 /// What is said of two solids.
@@ -104,7 +120,46 @@ pub struct Stop {
     pub translation: Bounded,
 }
 
+impl Slide {
+    fn of(grazing: &Grazing, cast: &Cast<'_>) -> Self {
+        let normal = grazing.separating_direction;
+        Self { normal, overlap: proven_overlap(normal, cast) }
+    }
+
+    fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
+        let Self { normal, overlap: claimed } = *self;
+        let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
+        if !is_unit || normal.dot(cast.setting.unit).abs() > noise::UNIT_VECTOR {
+            return Err(CertificateError::Normal { normal });
+        }
+        let proven = proven_overlap(normal, cast);
+        if claimed >= proven { Ok(()) } else { Err(CertificateError::Bound { proven, claimed }) }
+    }
+}
+
+/// At least how far two bodies overlap along a normal. One that is not quite orthogonal to the direction
+/// lets them overlap more, as far away as the bodies reach.
+fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
+    let setting = &cast.setting;
+    let fixed = (setting.fixed.vertices(), &setting.fixed_matrix);
+    let moving = (setting.moving.vertices(), &setting.moving_matrix);
+    let gap = extent::distance(normal, fixed, moving, setting.exact_offset());
+    (normal.dot(setting.unit).abs() * setting.scale() - gap).next_up()
+}
+
 impl Contacts {
+    /// The contacts at the ends, those that there are.
+    fn between(first: Option<&Contact>, last: Option<&Contact>) -> Self {
+        let [first, last] = [first, last].map(|end| end.map(|contact| contact.certificate));
+        Self { slide: None, first, last }
+    }
+
+    /// Of bodies that slide along each other.
+    fn sliding(cast: &Cast<'_>, first: &Grazing, last: Option<&Grazing>) -> Self {
+        let ends = Self::between(Some(&first.contact), last.map(|last| &last.contact));
+        Self { slide: Some(Slide::of(first, cast)), ..ends }
+    }
+
     /// The translation at which the bodies first meet, and the one at which they last do: at least,
     /// and at most.
     pub fn bounds(&self) -> [Option<[f64; 2]>; 2] {
@@ -115,36 +170,43 @@ impl Contacts {
 }
 
 impl ProofFile {
+    /// Of an answer of [`Cast::first_contact`]; `cast` is the one that was asked.
+    pub fn of_outcome(cast: &Cast<'_>, outcome: &Outcome) -> Self {
+        let statement = match outcome {
+            Outcome::Contact(contact) => {
+                Statement::Contacts(Contacts::between(Some(contact), None))
+            }
+            Outcome::Grazing(grazing) => {
+                Statement::Contacts(Contacts::sliding(cast, grazing, None))
+            }
+            Outcome::Separated(separated) => Statement::Separation(separated.certificate),
+        };
+        Self::of_convex(cast, statement)
+    }
+
     /// Of an answer of [`Cast::contact_range`]; `cast` is the one that was asked.
     pub fn of_range(cast: &Cast<'_>, range: &ContactRange) -> Self {
-        Self::of_convex(
-            cast,
-            match range {
-                ContactRange::Contact { first, last } => between(Some(first), Some(last)),
-                ContactRange::Grazing { first, last } => {
-                    between(Some(&first.contact), Some(&last.contact))
-                }
-                ContactRange::Separated(separated) => Statement::Separation(separated.certificate),
-            },
-        )
+        let contacts = match range {
+            ContactRange::Contact { first, last } => Contacts::between(Some(first), Some(last)),
+            ContactRange::Grazing { first, last } => Contacts::sliding(cast, first, Some(last)),
+            ContactRange::Separated(of) => return Self::of_outcome(cast, &Outcome::Separated(*of)),
+        };
+        Self::of_convex(cast, Statement::Contacts(contacts))
     }
 
     /// Of an answer of [`Cast::clearance`]; `cast` is the one that was asked.
     pub fn of_clearance(cast: &Cast<'_>, clearance: &Clearance) -> Self {
-        Self::of_convex(
-            cast,
-            match clearance {
-                Clearance::Blocked { contact, .. } => between(Some(contact), None),
-                Clearance::Free(WhyFree::Slides(grazing)) => between(Some(&grazing.contact), None),
-                Clearance::Free(WhyFree::Behind(last)) => between(None, Some(last)),
-                Clearance::Free(WhyFree::Separated(separated)) => {
-                    Statement::Separation(separated.certificate)
-                }
-                Clearance::Overlapping(OverlapAhead { first, last }) => {
-                    between(Some(first), Some(last))
-                }
-            },
-        )
+        let outcome = |of| Self::of_outcome(cast, &of);
+        let ends = |first, last| {
+            Self::of_convex(cast, Statement::Contacts(Contacts::between(first, last)))
+        };
+        match clearance {
+            Clearance::Blocked { contact, .. } => outcome(Outcome::Contact(*contact)),
+            Clearance::Free(WhyFree::Slides(grazing)) => outcome(Outcome::Grazing(*grazing)),
+            Clearance::Free(WhyFree::Separated(of)) => outcome(Outcome::Separated(*of)),
+            Clearance::Free(WhyFree::Behind(last)) => ends(None, Some(last)),
+            Clearance::Overlapping(OverlapAhead { first, last }) => ends(Some(first), Some(last)),
+        }
     }
 
     fn of_convex(cast: &Cast<'_>, statement: Statement) -> Self {
@@ -184,6 +246,21 @@ impl ProofFile {
     /// What it says; true if [`Self::check`] does not object.
     pub const fn statement(&self) -> &Statement {
         &self.statement
+    }
+
+    /// How many facets of the moving and of the fixed body turn inside out, or pass through others, where
+    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](crate::ShrinkReport::inverted)):
+    /// what is said of shrunk bodies says little there.
+    pub fn inverted(&self) -> [usize; 2] {
+        match (&self.bodies, &self.statement) {
+            (Bodies::Solids { made, .. }, Statement::Clearance(of))
+                if of.certificate.tolerance > 0.0 =>
+            {
+                let amount = of.certificate.tolerance / 2.0;
+                made.each_ref().map(|body| body.shrink_report(amount).inverted.len())
+            }
+            _ => [0; 2],
+        }
     }
 
     /// Checks it as [`Cast::verify`] does, without a search.
@@ -248,7 +325,7 @@ impl ProofFile {
         if format != FORMAT {
             return Err(CaseError::Format { found: format, known: FORMAT });
         }
-        let file: File = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let file: File<StatementRecord> = serde_json::from_str(text).map_err(CaseError::Proof)?;
         let bodies = match (file.moving, file.fixed) {
             (BodyFile::Convex(moving), BodyFile::Convex(fixed)) => {
                 let body = |record: BodyRecord, which| {
@@ -262,22 +339,12 @@ impl ProofFile {
             },
             _ => return Err(CaseError::Mixed),
         };
-        let says_nothing = file.statement == Statement::Contacts(Contacts::default());
-        let is_solid = matches!(bodies, Bodies::Solids { .. });
-        if says_nothing || is_solid != matches!(file.statement, Statement::Clearance(_)) {
-            return Err(CaseError::Statement);
-        }
+        let statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
         let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
         let direction = DVec3::from_array(file.direction);
         crate::setting::check_direction(direction)?;
-        Ok(Self { bodies, poses, direction, statement: file.statement })
+        Ok(Self { bodies, poses, direction, statement })
     }
-}
-
-/// The contacts at the ends, those that there are.
-fn between(first: Option<&Contact>, last: Option<&Contact>) -> Statement {
-    let [first, last] = [first, last].map(|end| end.map(|contact| contact.certificate));
-    Statement::Contacts(Contacts { first, last })
 }
 
 fn options(start_overlap: StartOverlap, tolerance: f64) -> SolidOptions {
@@ -288,10 +355,11 @@ impl Statement {
     /// Of convex bodies.
     fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
         match self {
-            Self::Contacts(Contacts { first: None, last: None }) | Self::Clearance(_) => {
+            Self::Contacts(Contacts { first: None, last: None, .. }) | Self::Clearance(_) => {
                 Err(CertificateError::Start)
             }
-            Self::Contacts(Contacts { first, last }) => {
+            Self::Contacts(Contacts { slide, first, last }) => {
+                slide.map_or(Ok(()), |slide| slide.check(cast))?;
                 first.map_or(Ok(0.0), |first| cast.verify(&first))?;
                 last.map_or(Ok(0.0), |last| cast.reversed().verify(&last))?;
                 Ok(())
@@ -337,11 +405,15 @@ impl SolidStatement {
             of_pair.stop_by(triangles).filter(|_| facets(cast, triangles) == Some(stop.facets));
         let Some(found) = found else { return Err(CertificateError::Facets { moving, fixed }) };
         let (claimed, proven) = (stop.translation, found.translation);
-        if !(claimed.lower <= proven.lower && claimed.lower <= claimed.value) {
-            return Err(CertificateError::Bound { proven: proven.lower, claimed: claimed.lower });
+        let Bounded { value, lower, upper } = claimed;
+        if !(lower <= value && value <= upper) {
+            return Err(CertificateError::Value { value, lower, upper });
         }
-        if !(claimed.upper >= proven.upper && claimed.upper >= claimed.value) {
-            return Err(CertificateError::Bound { proven: proven.upper, claimed: claimed.upper });
+        if lower > proven.lower {
+            return Err(CertificateError::Bound { proven: proven.lower, claimed: lower });
+        }
+        if upper < proven.upper {
+            return Err(CertificateError::Bound { proven: proven.upper, claimed: upper });
         }
         Ok(())
     }
@@ -355,14 +427,43 @@ fn facets(cast: &Cast<'_, Solid>, [s, t]: [u32; 2]) -> Option<[u32; 2]> {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct File<S> {
     format: String,
     moving: BodyFile,
     moving_pose: PoseRecord,
     fixed: BodyFile,
     fixed_pose: PoseRecord,
     direction: [f64; 3],
-    statement: Statement,
+    statement: S,
+}
+
+/// A [`Statement`] as it is read.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatementRecord {
+    contacts: Option<Contacts>,
+    separation: Option<Separation>,
+    clearance: Option<SolidStatement>,
+}
+
+impl StatementRecord {
+    /// The one thing that is said of such bodies.
+    fn of(self, solids: bool) -> Result<Statement, CaseError> {
+        match self {
+            Self { contacts: Some(of), separation: None, clearance: None }
+                if !solids && (of.first.is_some() || of.last.is_some()) =>
+            {
+                Ok(Statement::Contacts(of))
+            }
+            Self { contacts: None, separation: Some(of), clearance: None } if !solids => {
+                Ok(Statement::Separation(of))
+            }
+            Self { contacts: None, separation: None, clearance: Some(of) } if solids => {
+                Ok(Statement::Clearance(of))
+            }
+            _ => Err(CaseError::Statement),
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -427,6 +528,22 @@ fn is_same(a: &Solid, b: &Solid) -> bool {
     a.is_closed() == b.is_closed() && facets(a) == facets(b)
 }
 
+impl fmt::Display for ProofFile {
+    /// Its statement, and what shrinking has done to the bodies, in words, in one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [moving, fixed] = self.inverted();
+        self.statement.fmt(f)?;
+        if [moving, fixed] == [0; 2] {
+            return Ok(());
+        }
+        write!(
+            f,
+            "; shrunk so far, {moving} facets of the moving body and {fixed} of the fixed one are inside out: \
+             where a body is thinner than the tolerance, nothing is said of it as it is"
+        )
+    }
+}
+
 impl fmt::Display for Statement {
     /// In words, in one line; translations in multiples of the direction.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -445,6 +562,12 @@ impl fmt::Display for Statement {
 
 impl fmt::Display for Contacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(Slide { overlap, .. }) = self.slide {
+            write!(
+                f,
+                "the bodies slide along each other, seen along the direction they overlap by at most {overlap:?}; "
+            )?;
+        }
         match self.bounds() {
             [Some([a, b]), Some([c, d])] if b.is_finite() && c.is_finite() => {
                 write!(
@@ -486,10 +609,23 @@ impl fmt::Display for SolidStatement {
         let later = if overlapping { " that touches later" } else { "" };
         match self.stop {
             None => write!(f, ", and nothing{later} ever stops the moving one"),
-            Some(Stop { translation: Bounded { lower: a, upper: b, .. }, .. }) => write!(
+            Some(Stop { translation, .. }) => write!(
                 f,
-                ", and nothing{later} stops the moving one before a translation of {lower:?}; the facets that do meet, as they are, between {a:?} and {b:?}"
+                ", and nothing{later} stops the moving one before a translation of {lower:?}; {}",
+                meeting(translation)
             ),
         }
+    }
+}
+
+/// Of the facets that stop a body.
+fn meeting(Bounded { lower, upper, .. }: Bounded) -> String {
+    match [lower.is_finite(), upper.is_finite()] {
+        [true, true] => {
+            format!("the facets that do meet, as they are, between {lower:?} and {upper:?}")
+        }
+        [true, false] => format!("the facets that do meet, as they are, not before {lower:?}"),
+        [false, true] => format!("the facets that do meet, as they are, by {upper:?}"),
+        [false, false] => "it is not said where the facets that do meet, as they are".into(),
     }
 }

@@ -59,8 +59,10 @@ pub enum CaseError {
     /// One body is convex, the other a solid.
     #[error("one body is convex, the other is made of pieces")]
     Mixed,
-    /// Nothing is said, or what is said is not of such bodies.
-    #[error("what it says is nothing, or is not of such bodies")]
+    /// Nothing is said, or more than one thing, or what is said is not of such bodies.
+    #[error(
+        "it has to say one thing, and one of such bodies: contacts or a separation of convex ones, a clearance of pieces"
+    )]
     Statement,
     /// A solid that its own facets do not make once more.
     #[error("{which} body: its facets alone do not say what it is")]
@@ -75,6 +77,10 @@ fn what_is_wrong(error: &serde_json::Error, file: &str) -> String {
     use serde_json::error::Category;
     let what = match error.classify() {
         Category::Io => return error.to_string(),
+        // The parser tells it in its words alone.
+        Category::Syntax if error.to_string().starts_with("number out of range") => {
+            "a number is larger than any double".into()
+        }
         Category::Syntax => "it is no JSON".into(),
         Category::Eof => "it ends too early".into(),
         Category::Data => format!("something is missing, or is not what {file} has there"),

@@ -40,11 +40,11 @@ pub enum SolidError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// Edges with a facet on one side only.
+    /// Edges with a facet on one side only: see [`Solid::from_open_mesh`](crate::Solid::from_open_mesh).
     #[error(
         "the surface is open: {count} edges have a facet on one side only, the first from vertex \
-         {from} to vertex {to} of facet {facet}; scans that are open on purpose are built by \
-         `Solid::from_open_mesh`"
+         {from} to vertex {to} of facet {facet}; one that is open on purpose, as a scan is, has to be \
+         called open"
     )]
     Open {
         /// How many edges.

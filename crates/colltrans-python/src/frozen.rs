@@ -1,0 +1,85 @@
+//! What frozen classes have in common: names for `match`, pictures, and bytes for `pickle` and `copy`.
+//!
+//! `__reduce__` of a class names its static method `_of` and what that takes, as serde writes it: the
+//! same bits. What comes back is believed, as all that is pickled; a proof in it is checked by `verify`
+//! as ever. Pictures are made by the package's own `show`, which is Python.
+
+use pyo3::PyClass;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+pub(crate) type Options<'a, 'py> = &'a Bound<'py, PyDict>;
+pub(crate) type Shown<'py> = PyResult<Bound<'py, PyAny>>;
+
+pub(crate) fn show<'py, T>(
+    answer: &Bound<'py, T>,
+    options: Option<Options<'_, 'py>>,
+) -> Shown<'py> {
+    let show = answer.py().import("colltrans.pictures")?.getattr("show")?;
+    show.call((answer.as_any(),), options)
+}
+
+/// What `__reduce__` returns.
+pub(crate) type Reduced<'py, T> = (Bound<'py, PyAny>, T);
+
+/// A thing of class `C`, made of this.
+pub(crate) fn reduced<C: PyClass, T>(py: Python<'_>, state: T) -> PyResult<Reduced<'_, T>> {
+    Ok((py.get_type::<C>().getattr("_of")?, state))
+}
+
+/// What something says of itself, as text that reads back as the same bits.
+pub(crate) fn written<T: Serialize>(value: &T) -> PyResult<String> {
+    serde_json::to_string(value).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// From what is [`written`].
+pub(crate) fn read<T: DeserializeOwned>(text: &str) -> PyResult<T> {
+    serde_json::from_str(text).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// The same as dictionaries, lists and numbers of Python.
+pub(crate) fn plain<'py, T: Serialize>(py: Python<'py>, value: &T) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (written(value)?,))
+}
+
+/// Pickles of classes that serde writes as they are.
+macro_rules! pickled {
+    ($($class:ident),*) => {$(
+        #[pyo3::pymethods]
+        impl $class {
+            fn __reduce__<'py>(
+                &self,
+                py: pyo3::Python<'py>,
+            ) -> pyo3::PyResult<$crate::frozen::Reduced<'py, (String,)>> {
+                $crate::frozen::reduced::<Self, _>(py, ($crate::frozen::written(self)?,))
+            }
+
+            #[staticmethod]
+            #[pyo3(name = "_of")]
+            fn of_text(text: &str) -> pyo3::PyResult<Self> {
+                $crate::frozen::read(text)
+            }
+        }
+    )*};
+}
+pub(crate) use pickled;
+
+/// The names by which `match` takes a class apart.
+macro_rules! match_args {
+    ($class:ident($($name:literal),*)) => {
+        #[pyo3::pymethods]
+        impl $class {
+            #[classattr]
+            #[pyo3(name = "__match_args__")]
+            fn match_args(
+                py: pyo3::Python<'_>,
+            ) -> pyo3::PyResult<pyo3::Bound<'_, pyo3::types::PyTuple>> {
+                pyo3::types::PyTuple::new(py, { const NAMES: &[&str] = &[$($name),*]; NAMES })
+            }
+        }
+    };
+}
+pub(crate) use match_args;

@@ -1,0 +1,280 @@
+//! Answers about all translations: where bodies meet first, or last, or never.
+
+use colltrans::record::Record;
+use colltrans::{ContactRange as Range, Outcome, ProofFile};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::answer::{Answer, answer, object};
+use crate::arrays::{coordinates, row};
+use crate::certificate::{Certificate, Separation};
+use crate::errors::OrRaise;
+use crate::features::{Feature, Features, Steps};
+use crate::pose::Pose;
+use crate::query::Cast;
+
+/// Where the bodies first meet along the direction.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Contact {
+    pub(crate) contact: colltrans::Contact,
+    pub(crate) query: Py<Cast>,
+}
+
+answer!(Contact("translation", "normal", "point") of Outcome, Cast, |it| Outcome::Contact(it.contact));
+
+#[pymethods]
+impl Contact {
+    /// float: The collision translation, in multiples of the direction. Negative: a contact that
+    /// lies behind, or an overlap now.
+    #[getter]
+    fn translation(&self) -> f64 {
+        self.contact.translation
+    }
+
+    /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.contact.normal)
+    }
+
+    /// ndarray of shape (3,): The contact point, in the world.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let points = self.query.get().with(|cast| self.contact.points(cast))?;
+        Ok(row(py, points.on_fixed))
+    }
+
+    /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
+    #[getter]
+    fn point_at_start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let points = self.query.get().with(|cast| self.contact.points(cast))?;
+        Ok(row(py, points.on_moving))
+    }
+
+    /// Features: The vertex, edge or face of each body in the contact plane.
+    #[getter]
+    fn features(&self) -> PyResult<Features> {
+        self.query.get().with(|cast| {
+            let colltrans::Features { moving, fixed } = self.contact.features(cast);
+            let moving = Feature::of(moving, cast.moving());
+            Features { moving, fixed: Feature::of(fixed, cast.fixed()) }
+        })
+    }
+
+    /// Certificate: Both bounds with their proofs.
+    #[getter]
+    fn certificate(&self, py: Python<'_>) -> Certificate {
+        Certificate { proof: self.contact.certificate, query: self.query.clone_ref(py) }
+    }
+
+    /// Pose: The moving body's pose after the motion up to this contact and not beyond, whatever
+    /// rounding does.
+    #[getter]
+    fn pose_before(&self) -> PyResult<Pose> {
+        self.query.get().with(|cast| self.contact.pose_before(cast))?.or_raise().map(Pose)
+    }
+
+    /// str: The solver that found it.
+    #[getter]
+    fn solver(&self) -> &'static str {
+        self.contact.solver.name()
+    }
+
+    /// Steps: Work done.
+    #[getter]
+    fn steps(&self) -> Steps {
+        Steps(self.contact.steps)
+    }
+
+    fn __repr__(&self) -> String {
+        contact_text(&self.contact)
+    }
+}
+
+pub(crate) fn contact_text(contact: &colltrans::Contact) -> String {
+    let (t, n) = (contact.translation, coordinates(contact.normal));
+    format!("Contact(translation={t:?}, normal={n:?})")
+}
+
+/// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Grazing {
+    pub(crate) grazing: colltrans::Grazing,
+    pub(crate) query: Py<Cast>,
+}
+
+answer!(Grazing("overlap", "contact") of Outcome, Cast, |it| Outcome::Grazing(it.grazing));
+
+#[pymethods]
+impl Grazing {
+    /// float: How far the shadows overlap, a length; negative if they miss by less than rounding
+    /// can tell.
+    #[getter]
+    fn overlap(&self) -> f64 {
+        self.grazing.overlap
+    }
+
+    /// ndarray of shape (3,): Unit vector of the world, across the direction, from the moving body's
+    /// shadow to the fixed one's.
+    #[getter]
+    fn separating_direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.grazing.separating_direction)
+    }
+
+    /// Contact: The contact if the overlap is taken for real.
+    #[getter]
+    fn contact(&self, py: Python<'_>) -> Contact {
+        Contact { contact: self.grazing.contact, query: self.query(py) }
+    }
+
+    fn __repr__(&self) -> String {
+        grazing_text(&self.grazing)
+    }
+}
+
+pub(crate) fn grazing_text(grazing: &colltrans::Grazing) -> String {
+    let contact = contact_text(&grazing.contact);
+    format!("Grazing(overlap={:?}, contact={contact})", grazing.overlap)
+}
+
+/// The bodies never meet along the direction.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Separated {
+    pub(crate) separated: colltrans::Separated,
+    pub(crate) query: Py<Cast>,
+}
+
+answer!(Separated("margin", "normal") of Outcome, Cast, |it| Outcome::Separated(it.separated));
+
+#[pymethods]
+impl Separated {
+    /// float: A lower bound of the distance of the shadows, a length.
+    #[getter]
+    fn margin(&self) -> f64 {
+        self.separated.certificate.margin
+    }
+
+    /// ndarray of shape (3,): Unit normal of a plane between them, parallel to the direction.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.separated.certificate.normal)
+    }
+
+    /// Separation: The proof.
+    #[getter]
+    fn certificate(&self, py: Python<'_>) -> Separation {
+        Separation { proof: self.separated.certificate, query: self.query.clone_ref(py) }
+    }
+
+    /// float: How far the moving body can move: infinitely.
+    #[getter]
+    fn distance(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// str: The solver that found it.
+    #[getter]
+    fn solver(&self) -> &'static str {
+        self.separated.solver.name()
+    }
+
+    /// Steps: Work done.
+    #[getter]
+    fn steps(&self) -> Steps {
+        Steps(self.separated.steps)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Separated(margin={:?})", self.separated.certificate.margin)
+    }
+}
+
+/// All translations at which the bodies meet, with what touches at either end.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct ContactRange {
+    range: Range,
+    query: Py<Cast>,
+}
+
+answer!(ContactRange("interval") of Range, Cast, |it| it.range);
+
+impl ContactRange {
+    /// The first contact, or the last one.
+    fn end<'py>(&self, py: Python<'py>, is_last: bool) -> PyResult<Bound<'py, PyAny>> {
+        let end = match self.range {
+            Range::Contact { first, last } => Outcome::Contact(if is_last { last } else { first }),
+            Range::Grazing { first, last } => Outcome::Grazing(if is_last { last } else { first }),
+            Range::Separated(separated) => Outcome::Separated(separated),
+        };
+        if is_last {
+            return end.object(&Bound::new(py, self.query.get().reversed(py))?);
+        }
+        end.object(self.query.bind(py))
+    }
+}
+
+#[pymethods]
+impl ContactRange {
+    /// tuple of float: First and last translation, in multiples of the direction.
+    #[getter]
+    fn interval(&self) -> (f64, f64) {
+        let [enter, exit] = self.range.interval().unwrap_or([f64::NAN; 2]);
+        (enter, exit + 0.0)
+    }
+
+    /// Contact or Grazing: The first contact along the direction.
+    #[getter]
+    fn first<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.end(py, false)
+    }
+
+    /// Contact or Grazing: The last contact: the first one of the query turned round.
+    #[getter]
+    fn last<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.end(py, true)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("ContactRange(interval={:?})", self.interval())
+    }
+}
+
+impl Answer for Outcome {
+    type Query = Cast;
+
+    fn object<'py>(self, asked: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, query) = (asked.py(), asked.clone().unbind());
+        match self {
+            Self::Contact(contact) => object(py, Contact { contact, query }),
+            Self::Grazing(grazing) => object(py, Grazing { grazing, query }),
+            Self::Separated(separated) => object(py, Separated { separated, query }),
+        }
+    }
+
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        query.get().with(|cast| Record::of_outcome(self, cast))
+    }
+
+    fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
+        query.get().with(|cast| ProofFile::of_outcome(cast, self).to_json())
+    }
+}
+
+impl Answer for Range {
+    type Query = Cast;
+
+    fn object<'py>(self, query: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
+        if let Self::Separated(separated) = self {
+            return Outcome::Separated(separated).object(query);
+        }
+        object(query.py(), ContactRange { range: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
+        query.get().with(|cast| Record::of_contact_range(self, cast))
+    }
+
+    fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
+        query.get().with(|cast| ProofFile::of_range(cast, self).to_json())
+    }
+}

@@ -90,12 +90,11 @@ export class AssemblyTab {
   private turn = 0;
 
   constructor(
-    private readonly script: URL,
     private readonly state: () => State,
     private readonly remember: () => void,
     private readonly copy: (text: string, what: string) => void,
   ) {
-    this.engine = new Engine(script, "colltrans_assembly");
+    this.engine = new Engine("colltrans_assembly");
     this.stage.append(this.view, this.player.element);
     this.player.show([], "");
     const number = (k: number) => {
@@ -215,7 +214,7 @@ export class AssemblyTab {
 
   private async load(files: { name: string; bytes: ArrayBuffer }[], source: string) {
     const turn = ++this.turn;
-    const engine = new Engine(this.script, "colltrans_assembly");
+    const engine = new Engine("colltrans_assembly");
     this.wait("Reading the parts");
     try {
       for (const { name, bytes } of files) {

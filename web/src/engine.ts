@@ -172,13 +172,15 @@ interface Waiting {
   reject(error: Error): void;
 }
 
+const WORKER = new URL("worker.js", import.meta.url);
+
 export class Engine {
   private worker: Worker | undefined;
   private readonly waiting = new Map<number, Waiting>();
   private next = 1;
 
   /** The worker starts at once: the library is read while the page is still being made. */
-  constructor(private readonly script: URL, private readonly library: "colltrans" | "colltrans_assembly" = "colltrans") {
+  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_picture" = "colltrans") {
     this.running();
   }
 
@@ -225,7 +227,7 @@ export class Engine {
 
   private running(): Worker {
     if (this.worker) return this.worker;
-    const worker = new Worker(this.script, { type: "module", name: this.library });
+    const worker = new Worker(WORKER, { type: "module", name: this.library });
     worker.onmessage = ({ data }: MessageEvent<Reply>) => {
       this.waiting.get(data.id)?.resolve(data);
       this.waiting.delete(data.id);

@@ -26,8 +26,7 @@ const TABS: Tab[] = ["answer", "found", "assembly"];
 const PROVED_SOON = 20_000;
 /** The example that is an assembly. */
 const GEARBOX = "gearbox";
-const WORKER = new URL("worker.js", import.meta.url);
-const engine = new Engine(WORKER);
+const engine = new Engine();
 
 class Page {
   private state: State = fromHash(location.hash);
@@ -112,7 +111,7 @@ class Page {
         this.found.changed();
       } else if (tab === "assembly") {
         const { AssemblyTab } = await import("./assembly");
-        this.assembly = new AssemblyTab(WORKER, () => this.state, () => this.remember(), (text, what) => void this.copy(text, what));
+        this.assembly = new AssemblyTab(() => this.state, () => this.remember(), (text, what) => void this.copy(text, what));
         named("panel").append(this.assembly.panel);
         named("stage").prepend(this.assembly.stage);
         void this.assembly.start();

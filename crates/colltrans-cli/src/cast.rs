@@ -13,7 +13,7 @@ use crate::inputs::refuse_picture;
 use crate::outputs;
 use crate::picture::{Scene, draw};
 use crate::proof::{self, refuse_proof};
-use crate::record::{Hulls, Name, Record};
+use crate::record::{Hulls, Line};
 use crate::replay;
 use crate::report::{self, Asked};
 
@@ -105,20 +105,20 @@ fn ask(
     asked: Asked,
     cast: &Cast<'_>,
     [moving, fixed]: [&Part; 2],
-) -> Result<(Answer, Record), QueryError> {
-    let (answer, record) = match asked {
+) -> Result<(Answer, Line), QueryError> {
+    let (answer, line) = match asked {
         Asked::Contact => {
             let answer = cast.contact_range()?;
-            let record = Record::of_answer(&answer, cast);
-            (Answer::Contact(answer), record)
+            let line = Line::of_range(&answer, cast);
+            (Answer::Contact(answer), line)
         }
         Asked::Clearance => {
             let answer = cast.clearance()?;
-            let record = Record::of_clearance(&answer, cast);
-            (Answer::Clearance(answer), record)
+            let line = Line::of_clearance(&answer, cast);
+            (Answer::Clearance(answer), line)
         }
     };
-    Ok((answer, Record { hull: Hulls::of(moving.excess, fixed.excess), ..record }))
+    Ok((answer, Line { hull: Hulls::of(moving.excess, fixed.excess), ..line }))
 }
 
 fn answer_one(
@@ -128,13 +128,13 @@ fn answer_one(
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
     let answered = ask(asked, cast, parts);
-    let (answer, record) = answered.map_err(|error| replay::failure(error, cast))?;
+    let (answer, told) = answered.map_err(|error| replay::failure(error, cast))?;
     let text = if arguments.json {
-        record.json()
+        told.json()
     } else {
         match &answer {
-            Answer::Contact(answer) => report::cast(answer, &record, cast.direction()),
-            Answer::Clearance(answer) => report::clearance(answer, &record, cast.direction()),
+            Answer::Contact(answer) => report::cast(answer, &told, cast.direction()),
+            Answer::Clearance(answer) => report::clearance(answer, &told, cast.direction()),
         }
     };
     print(&text)?;
@@ -174,14 +174,14 @@ fn scan<'a>(
             let answered = ask(asked, &cast, parts);
             answered.map_err(|error| replay::failure(error, &cast))
         });
-        let record = match answered {
-            Ok((_, record)) => record,
-            Err(failure) => Record::of_error(failure.into_message()),
+        let mut line = match answered {
+            Ok((_, line)) => line,
+            Err(failure) => Line::error(failure.into_message()),
         };
-        failed += usize::from(record.outcome == Name::Error);
-        let record = Record { direction: Some(direction.to_array()), ..record };
+        failed += usize::from(line.is_error());
+        line.record.direction = Some(direction.to_array());
         let text =
-            if as_json { record.json() } else { report::scan_line(&record, asked, direction) };
+            if as_json { line.json() } else { report::scan_line(&line.record, asked, direction) };
         print(&text)?;
     }
     all_answered(count, failed)

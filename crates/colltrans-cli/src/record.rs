@@ -1,103 +1,33 @@
-//! What is said about an answer, in the fields that `batch --help` documents.
+//! A result as a line of JSON, in the fields that `batch --help` documents: the library's record, and
+//! what only files have.
 
-mod line;
-
-use std::path::Path;
-
-use colltrans::glam::DVec3;
-use colltrans::{
-    Bounded, Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Feature, Grazing,
-    OverlapAhead, Separated, Steps, WhyFree,
-};
+use colltrans::record::{Ending, Record};
+use colltrans::{Cast, Clearance, ContactRange};
 use colltrans_mesh::body::Excess;
 use serde::Serialize;
+use serde_json::value::RawValue;
 
 use crate::numbers::{six_digits, unit_vector};
-use crate::solid::{Answer, Kind};
+use crate::terminal::plain_json;
 
-/// One result; fields that do not apply are left out.
-#[derive(Debug, Default)]
-pub(crate) struct Record {
-    pub(crate) outcome: Name,
-    /// Of a scan.
-    pub(crate) direction: Option<[f64; 3]>,
-    pub(crate) distance: Option<f64>,
-    pub(crate) back: Option<f64>,
-    pub(crate) on: Option<f64>,
-    pub(crate) translation: Option<Bounded>,
-    /// Of solids.
-    pub(crate) shrunk_distance: Option<Bounded>,
-    pub(crate) exit: Option<Bounded>,
-    /// The file that touches, of a body of several.
-    pub(crate) moving: Option<String>,
-    pub(crate) fixed: Option<String>,
-    pub(crate) normal: Option<[f64; 3]>,
-    pub(crate) point: Option<[f64; 3]>,
-    pub(crate) rounding: Option<f64>,
-    /// Of solids.
-    pub(crate) tolerance: Option<f64>,
-    /// Of solids.
-    pub(crate) start_overlaps: Vec<StartOverlap>,
-    /// Of solids, those that are open surfaces, at least in part.
-    pub(crate) surfaces: Vec<&'static str>,
-    pub(crate) features: Option<Features>,
-    pub(crate) margin: Option<f64>,
-    pub(crate) overlap: Option<f64>,
+/// One result.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct Line {
+    #[serde(flatten)]
+    pub(crate) record: Record,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) hull: Option<Hulls>,
-    pub(crate) solver: Option<&'static str>,
-    pub(crate) steps: Option<StepCounts>,
-    pub(crate) message: Option<String>,
     /// What was done to the meshes, in a batch; other commands say it on standard error.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) notes: Vec<String>,
 }
 
-/// How a query ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum Name {
-    Contact,
-    Grazing,
-    Separated,
-    Free,
-    Blocked,
-    Slides,
-    Behind,
-    Overlapping,
-    #[default]
-    Error,
-}
-
-impl Name {
-    /// As it is written.
-    pub(crate) const fn text(self) -> &'static str {
-        match self {
-            Self::Contact => "contact",
-            Self::Grazing => "grazing",
-            Self::Separated => "separated",
-            Self::Free => "free",
-            Self::Blocked => "blocked",
-            Self::Slides => "slides",
-            Self::Behind => "behind",
-            Self::Overlapping => "overlapping",
-            Self::Error => "error",
-        }
-    }
-}
-
-/// Two files that overlap where they are, or two bodies without names.
-#[derive(Debug, Serialize)]
-pub(crate) struct StartOverlap {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) moving: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) fixed: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    depth: Option<f64>,
-}
-
 /// What the hulls have that their parts have not.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct Hulls {
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) moving: Option<Excess>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fixed: Option<Excess>,
 }
 
@@ -114,181 +44,102 @@ impl Hulls {
     }
 }
 
-/// The features of both bodies in the contact plane.
-#[derive(Debug)]
-pub(crate) struct Features {
-    pub(crate) moving: FeatureRecord,
-    pub(crate) fixed: FeatureRecord,
-}
-
-/// A feature by the indices of the input.
-#[derive(Debug, Clone)]
-pub(crate) struct FeatureRecord {
-    pub(crate) kind: &'static str,
-    pub(crate) vertices: Vec<u32>,
-}
-
-/// The library's [`Steps`].
-#[derive(Debug)]
-pub(crate) struct StepCounts {
-    planar_problems: u32,
-    supports: u32,
-    pivots: u32,
-}
-
-impl Record {
-    /// The result of a query that was answered.
-    pub(crate) fn of_answer(answer: &ContactRange, cast: &Cast) -> Self {
-        match answer {
-            ContactRange::Contact { first, last } => {
-                Self { outcome: Name::Contact, ..Self::of_contact(first, last, cast) }
-            }
-            ContactRange::Grazing { first, last } => Self {
-                outcome: Name::Grazing,
-                overlap: Some(first.overlap),
-                message: Some(describe(first)),
-                ..Self::of_contact(&first.contact, &last.contact, cast)
-            },
-            ContactRange::Separated(separated) => Self::of_separated(separated),
+impl From<Record> for Line {
+    /// A contact that is none for certain says so.
+    fn from(mut record: Record) -> Self {
+        if let (Some(overlap), Some(sideways)) = (record.overlap, record.sideways) {
+            let (overlap, along) = (six_digits(overlap), unit_vector(sideways.into()));
+            record.message = Some(format!("the shadows overlap by {overlap} along [{along}]"));
         }
+        Self { record, ..Self::default() }
+    }
+}
+
+impl Line {
+    /// Of a query for both contacts.
+    pub(crate) fn of_range(range: &ContactRange, cast: &Cast) -> Self {
+        Record::of_contact_range(range, cast).into()
     }
 
-    /// The result of a query for the clearance.
+    /// Of a query for the clearance.
     pub(crate) fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
-        match clearance {
-            Clearance::Blocked { distance, contact } => Self {
-                outcome: Name::Blocked,
-                distance: Some(*distance),
-                ..Self::of_first(contact, cast)
-            },
-            Clearance::Free(WhyFree::Slides(grazing)) => Self {
-                outcome: Name::Slides,
-                overlap: Some(grazing.overlap),
-                message: Some(describe(grazing)),
-                ..Self::of_first(&grazing.contact, cast)
-            },
-            // The last contact is the first one of the way back.
-            Clearance::Free(WhyFree::Behind(last)) => Self {
-                outcome: Name::Behind,
-                exit: Some(last.exit()),
-                translation: None,
-                ..Self::of_first(last, &cast.reversed())
-            },
-            Clearance::Free(WhyFree::Separated(separated)) => Self::of_separated(separated),
-            Clearance::Overlapping(OverlapAhead { first, last }) => Self {
-                outcome: Name::Overlapping,
-                back: Some(-first.certificate.lower),
-                on: Some(-last.certificate.lower),
-                ..Self::of_contact(first, last, cast)
-            },
+        Record::of_clearance(clearance, cast).into()
+    }
+
+    /// That there is no answer, and why.
+    pub(crate) fn error(message: String) -> Self {
+        Record::error(message).into()
+    }
+
+    pub(crate) fn is_error(&self) -> bool {
+        self.record.outcome == Ending::Error
+    }
+
+    /// As text, with its end.
+    pub(crate) fn json(&self) -> String {
+        let mut text = Vec::new();
+        self.write(&mut text);
+        String::from_utf8(text).unwrap_or_default()
+    }
+
+    /// Appends the line of a batch, with its end; the id comes first.
+    pub(crate) fn write_with(&self, id: Option<&RawValue>, text: &mut Vec<u8>) {
+        text.extend_from_slice(b"{\"id\":");
+        text.extend_from_slice(id.map_or("null", RawValue::get).as_bytes());
+        let start = text.len();
+        self.write(text);
+        // The fields go on.
+        text[start] = b',';
+    }
+
+    fn write(&self, text: &mut Vec<u8>) {
+        let start = text.len();
+        // Nothing in a line can fail to be written.
+        let written = serde_json::to_writer(&mut *text, self);
+        debug_assert!(written.is_ok(), "{written:?}");
+        // What could steer a terminal is none of ASCII, whose control characters JSON has escaped, but one.
+        let line = &text[start..];
+        if !line.is_ascii() || line.contains(&0x7f) {
+            let safe = plain_json(&String::from_utf8_lossy(line)).into_owned();
+            text.truncate(start);
+            text.extend_from_slice(safe.as_bytes());
         }
-    }
-
-    /// The result of a query between solids.
-    pub(crate) fn of_solids(answer: &Answer<'_>) -> Self {
-        let name = |path: &Path| Some(path.display().to_string());
-        let start_overlaps: Vec<StartOverlap> = answer
-            .overlaps
-            .iter()
-            .map(|o| StartOverlap { moving: name(o.moving), fixed: name(o.fixed), depth: o.depth })
-            .collect();
-        let record = match &answer.kind {
-            Kind::Free => Self { outcome: Name::Free, ..Self::default() },
-            Kind::Overlapping => Self {
-                outcome: Name::Overlapping,
-                moving: answer.overlaps.first().and_then(|o| name(o.moving)),
-                fixed: answer.overlaps.first().and_then(|o| name(o.fixed)),
-                ..Self::default()
-            },
-            Kind::Blocked(stop) => Self {
-                outcome: Name::Blocked,
-                distance: Some(stop.distance),
-                translation: Some(stop.translation),
-                shrunk_distance: Some(stop.shrunk),
-                moving: name(stop.moving.file),
-                fixed: name(stop.fixed.file),
-                normal: Some(coordinates(stop.normal)),
-                point: Some(coordinates(stop.point)),
-                features: Some(Features {
-                    moving: stop.moving.feature.clone(),
-                    fixed: stop.fixed.feature.clone(),
-                }),
-                ..Self::default()
-            },
-        };
-        let (tolerance, surfaces) = (Some(answer.tolerance), answer.surface_names());
-        Self { exit: answer.exit, tolerance, start_overlaps, surfaces, ..record }
-    }
-
-    /// Without the names of files, where a body is one.
-    #[must_use]
-    pub(crate) fn without_names(mut self) -> Self {
-        (self.moving, self.fixed) = (None, None);
-        for overlap in &mut self.start_overlaps {
-            (overlap.moving, overlap.fixed) = (None, None);
-        }
-        self
-    }
-
-    fn of_separated(separated: &Separated) -> Self {
-        let Separated { certificate, solver, steps } = separated;
-        Self {
-            outcome: Name::Separated,
-            normal: Some(coordinates(certificate.normal)),
-            margin: Some(certificate.margin),
-            solver: Some(solver.name()),
-            steps: Some(StepCounts::of(*steps)),
-            ..Self::default()
-        }
-    }
-
-    /// The result of a query that has no answer.
-    pub(crate) fn of_error(message: String) -> Self {
-        Self { outcome: Name::Error, message: Some(message), ..Self::default() }
-    }
-
-    fn of_contact(first: &Contact, last: &Contact, cast: &Cast) -> Self {
-        Self { exit: Some(last.exit()), ..Self::of_first(first, cast) }
-    }
-
-    fn of_first(first: &Contact, cast: &Cast) -> Self {
-        let features = first.features(cast);
-        Self {
-            translation: Some(first.bounded()),
-            normal: Some(coordinates(first.normal)),
-            point: Some(coordinates(first.points(cast).on_fixed)),
-            rounding: Some(first.certificate.rounding),
-            features: Some(Features {
-                moving: FeatureRecord::of(features.moving, cast.moving()),
-                fixed: FeatureRecord::of(features.fixed, cast.fixed()),
-            }),
-            solver: Some(first.solver.name()),
-            steps: Some(StepCounts::of(first.steps)),
-            ..Self::default()
-        }
+        text.push(b'\n');
     }
 }
 
-impl FeatureRecord {
-    fn of(feature: Feature, body: &ConvexPolyhedron) -> Self {
-        Self { kind: feature.kind(), vertices: feature.vertices(body) }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_there_is_not_written() {
+        assert_eq!(Line::default().json(), "{\"outcome\":\"error\"}\n");
+        let mut text = b"before\n".to_vec();
+        Line::default().write_with(None, &mut text);
+        assert_eq!(text, b"before\n{\"id\":null,\"outcome\":\"error\"}\n");
     }
-}
 
-impl StepCounts {
-    fn of(steps: Steps) -> Self {
-        // One-off queries start from scratch.
-        let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
-        Self { planar_problems, supports, pivots }
+    #[test]
+    fn ids_are_written_as_they_came_and_nothing_steers_a_terminal() {
+        let line = Line::error("\u{1b}[31m\u{7f}\u{9b}\u{202e}".into());
+        let mut text = Vec::new();
+        let id: Box<RawValue> = serde_json::from_str("[1.0, \"x\"]").unwrap();
+        line.write_with(Some(&id), &mut text);
+        let text = String::from_utf8(text).unwrap();
+        assert!(text.starts_with("{\"id\":[1.0, \"x\"],\"outcome\""), "{text}");
+        assert!(text.trim_end().chars().all(|c| c.is_ascii() && !c.is_control()), "{text}");
+        let read: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(read["message"], "\u{1b}[31m\u{7f}\u{9b}\u{202e}");
     }
-}
 
-/// Without -0.
-fn coordinates(v: DVec3) -> [f64; 3] {
-    v.to_array().map(|c| c + 0.0)
-}
-
-fn describe(grazing: &Grazing) -> String {
-    let (overlap, along) = (six_digits(grazing.overlap), unit_vector(grazing.separating_direction));
-    format!("the shadows overlap by {overlap} along [{along}]")
+    #[test]
+    fn a_hull_is_told_beside_the_record() {
+        let excess =
+            Excess { hull_volume: 0.1, part_volume: None, is_closed: false, depth: Some(2.0) };
+        let hull = Hulls::of(None, Some(excess));
+        let text = Line { hull, notes: vec!["a".into()], ..Line::default() }.json();
+        let hull = r#""hull":{"fixed":{"hull_volume":0.1,"depth":2.0}},"notes":["a"]"#;
+        assert_eq!(text, format!("{{\"outcome\":\"error\",{hull}}}\n"));
+    }
 }

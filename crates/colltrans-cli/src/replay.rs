@@ -8,7 +8,7 @@ use colltrans::{Case, Cast, QueryError};
 use crate::args::ReplayArguments;
 use crate::failure::{Code, Failure, print};
 use crate::outputs;
-use crate::record::Record;
+use crate::record::Line;
 use crate::report;
 
 pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
@@ -19,12 +19,9 @@ pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
     let case = Case::from_json(&text).map_err(|error| input(error.to_string()))?;
     let cast = case.cast()?;
     let answer = cast.contact_range()?;
-    let record = Record::of_answer(&answer, &cast);
-    let text = if arguments.json {
-        record.json()
-    } else {
-        report::cast(&answer, &record, cast.direction())
-    };
+    let told = Line::of_range(&answer, &cast);
+    let text =
+        if arguments.json { told.json() } else { report::cast(&answer, &told, cast.direction()) };
     print(&text)
 }
 

@@ -3,13 +3,14 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
+use colltrans::record::{Ending, FeatureRecord, Record};
 use colltrans::{
     Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Solver, Steps,
     WhyFree,
 };
 
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
-use crate::record::{FeatureRecord, Hulls, Name, Record};
+use crate::record::{Hulls, Line};
 
 /// Which question is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,8 +25,8 @@ pub(crate) enum Asked {
 const LISTED: usize = 12;
 
 /// The readable answer of `colltrans cast`.
-pub(crate) fn cast(answer: &ContactRange, record: &Record, direction: DVec3) -> String {
-    let mut text = String::new();
+pub(crate) fn cast(answer: &ContactRange, told: &Line, direction: DVec3) -> String {
+    let (mut text, record) = (String::new(), &told.record);
     match answer {
         ContactRange::Contact { first, last } => {
             text.push_str("contact\n");
@@ -43,13 +44,13 @@ pub(crate) fn cast(answer: &ContactRange, record: &Record, direction: DVec3) -> 
             separated(&mut text, answer);
         }
     }
-    hulls(&mut text, record);
+    hulls(&mut text, told);
     text
 }
 
 /// The readable answer of `colltrans clearance`.
-pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -> String {
-    let mut text = String::new();
+pub(crate) fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> String {
+    let (mut text, record) = (String::new(), &told.record);
     match answer {
         Clearance::Blocked { distance, contact: first } => {
             text.push_str("blocked\n");
@@ -88,19 +89,19 @@ pub(crate) fn clearance(answer: &Clearance, record: &Record, direction: DVec3) -
             }
         }
     }
-    hulls(&mut text, record);
+    hulls(&mut text, told);
     text
 }
 
 /// One line of a scan, under [`scan_head`].
 pub(crate) fn scan_line(record: &Record, asked: Asked, direction: DVec3) -> String {
     let (length, error) = (direction.length(), record.rounding.unwrap_or_default());
-    let mut columns = vec![record.outcome.text().to_owned()];
+    let mut columns = vec![record.outcome.name().to_owned()];
     match (record.outcome, asked) {
-        (Name::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
+        (Ending::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
         (_, Asked::Clearance) => columns.extend(safe(record.distance, direction)),
         (_, Asked::Contact) => columns.extend(match record.translation {
-            Some(Bounded { value: t, .. }) => [known(t, error), known(t * length, error * length)],
+            Some(t) => [known(t, error), known(t * length, error * length)],
             None => ["-", "-"].map(str::to_owned),
         }),
     }
@@ -229,8 +230,8 @@ fn separated(text: &mut String, separated: &Separated) {
 }
 
 /// By how much hulls exceed their parts, and what the answer then means.
-fn hulls(text: &mut String, record: &Record) {
-    let Some(hulls) = &record.hull else { return };
+fn hulls(text: &mut String, told: &Line) {
+    let Some(hulls) = &told.hull else { return };
     for (name, excess) in hulls.named() {
         line(text, name, &excess.to_string());
     }
@@ -240,16 +241,16 @@ fn hulls(text: &mut String, record: &Record) {
         (Some(_), None) => "the moving part itself",
         _ => "the fixed part itself",
     };
-    let meaning = match record.outcome {
-        Name::Separated => format!("proven for {whose} too"),
-        Name::Behind => format!("proven for {whose} too: free ahead"),
-        Name::Grazing | Name::Slides => {
+    let meaning = match told.record.outcome {
+        Ending::Separated => format!("proven for {whose} too"),
+        Ending::Behind => format!("proven for {whose} too: free ahead"),
+        Ending::Grazing | Ending::Slides => {
             format!("a bound for {whose}: no more overlap sideways, perhaps none")
         }
-        Name::Overlapping => {
+        Ending::Overlapping => {
             format!("a bound for {whose}: free after these ways, perhaps no overlap at all")
         }
-        Name::Contact | Name::Blocked | Name::Free | Name::Error => {
+        Ending::Contact | Ending::Blocked | Ending::Free | Ending::Error => {
             format!("a bound for {whose}: no contact before this one, perhaps later or none")
         }
     };

@@ -105,8 +105,9 @@
 //! of its formats. A case of several is written as its name in lower case (`blocked`, with what it
 //! holds), choices by the names that they print and parse, a pose column by column, an infinite bound as
 //! nothing (`null`). Numbers come back as the same bits. What is read is checked where it is a pose or a
-//! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. The feature `json`
-//! adds whole queries and proofs as files (`Case`, `ProofFile`).
+//! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. An answer as front
+//! ends write it, for people and programs that do not check it, is a `record::Record`. The feature
+//! `json` adds whole queries and proofs as files (`Case`, `ProofFile`).
 //!
 //! # How it works
 //!
@@ -123,12 +124,14 @@
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, and [`observe`]), `cast` (the queries) and
-//! `tracker`. `written` says how all of them are written.
+//! `tracker`. `written` and `record` say how all of them are written.
 
 mod answer;
 mod body;
 mod cast;
 mod number;
+#[cfg(feature = "serde")]
+pub mod record;
 mod setting;
 mod solve;
 mod tracker;

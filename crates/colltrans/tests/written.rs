@@ -1,6 +1,7 @@
 //! What serde writes of an answer comes back in bits, and what is not one is refused.
 #![cfg(feature = "json")]
 
+use colltrans::record::Ending;
 use colltrans::{
     Bounded, Cast, Clearance, ContactRange, Intersection, NarrowFrom, Options, Outcome, Pose,
     Solid, SolidCertificate, SolidOptions, Solver, StartOverlap, StartedFrom,
@@ -94,6 +95,8 @@ fn names_are_those_that_serde_writes() {
     named(&[StartedFrom::Features, StartedFrom::Region, StartedFrom::Scratch]);
     named(&[NarrowFrom::Ellipsoids, NarrowFrom::Center]);
     named(&[StartOverlap::Refuse, StartOverlap::Ignore]);
+    named(&[Ending::Contact, Ending::Grazing, Ending::Separated, Ending::Free, Ending::Blocked]);
+    named(&[Ending::Slides, Ending::Behind, Ending::Overlapping, Ending::Error]);
     let error = "fastest".parse::<Solver>().expect_err("there is none");
     assert_eq!(error.to_string(), "there is no solver \"fastest\"; there are auto, cta, portal");
 }

@@ -209,6 +209,7 @@ Each result is one JSON object with those of these fields that apply:
   margin       separated: gap between the shadows (the projections along the direction), measured
                along normal, a lower bound of their distance
   overlap      grazing, slides: by how much the shadows overlap; negative where they may not
+  sideways     grazing, slides: the unit vector across the direction along which they do
   hull         {"moving": EXCESS, "fixed": EXCESS} where the hull of a mesh was taken that is not
                convex. EXCESS = {"hull_volume", "part_volume" (of a closed mesh), "depth"}: the
                largest depth of the mesh's surface below the hull's. Then "separated" holds for the

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
+use colltrans::record::Record;
 use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::BodyOptions;
@@ -19,7 +20,7 @@ use super::source::{Asked, BodySource, PoseSource, Query};
 use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
-use crate::record::{Hulls, Name, Record};
+use crate::record::{Hulls, Line as Told};
 use crate::replay;
 use crate::solid::{self, Question};
 
@@ -55,9 +56,9 @@ impl Batch {
             Line::Text(text) => self.answer_text(number, text, recent),
             Line::TooLong => (None, Err(format!("line {number}: longer than 64 MiB"))),
         };
-        let record = answer.unwrap_or_else(Record::of_error);
-        record.write_line(Some(id.map_or("null", RawValue::get)), results);
-        record.outcome != Name::Error
+        let told = answer.unwrap_or_else(Told::error);
+        told.write_with(id, results);
+        !told.is_error()
     }
 
     /// The id of a line, if it has one, and its answer.
@@ -66,7 +67,7 @@ impl Batch {
         number: u64,
         text: &'a [u8],
         recent: &mut Recent,
-    ) -> (Option<&'a RawValue>, Result<Record, String>) {
+    ) -> (Option<&'a RawValue>, Result<Told, String>) {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let usual = str::from_utf8(text).ok().and_then(fast_path::read);
@@ -93,7 +94,7 @@ impl Batch {
         number: u64,
         query: &Query<'_, &str>,
         recent: &mut Recent,
-    ) -> Option<Result<Record, String>> {
+    ) -> Option<Result<Told, String>> {
         let answer = guarded(number, || {
             let moving = self.body_by_words(query.moving, recent);
             let fixed = self.body_by_words(query.fixed, recent);
@@ -182,7 +183,7 @@ fn guarded<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result
     Err(format!("line {number}: {what}"))
 }
 
-fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Record, String> {
+fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Told, String> {
     let moving = moving.map_err(|e| format!("moving: {e}"))?;
     let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
     let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
@@ -195,7 +196,7 @@ fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Record,
 }
 
 impl<B> Query<'_, B> {
-    fn of_convex(&self, [moving, fixed]: [&Part; 2], poses: [Pose; 2]) -> Result<Record, String> {
+    fn of_convex(&self, [moving, fixed]: [&Part; 2], poses: [Pose; 2]) -> Result<Told, String> {
         if self.tolerance.is_some() || self.ignore_start_overlaps.is_some() {
             let fields = "`tolerance` and `ignore_start_overlaps`";
             return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
@@ -211,16 +212,16 @@ impl<B> Query<'_, B> {
             .and_then(|cast| cast.with_options(options))
             .map_err(|error| error.to_string())?;
         let answered = match self.asked.unwrap_or(Asked::Contact) {
-            Asked::Contact => cast.contact_range().map(|range| Record::of_answer(&range, &cast)),
-            Asked::Clearance => cast.clearance().map(|far| Record::of_clearance(&far, &cast)),
+            Asked::Contact => cast.contact_range().map(|range| Told::of_range(&range, &cast)),
+            Asked::Clearance => cast.clearance().map(|far| Told::of_clearance(&far, &cast)),
         };
-        let record = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
+        let told = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
         let notes = [moving, fixed].into_iter().flat_map(|part| part.notes.clone()).collect();
-        Ok(Record { hull: Hulls::of(moving.excess, fixed.excess), notes, ..record })
+        Ok(Told { hull: Hulls::of(moving.excess, fixed.excess), notes, ..told })
     }
 
     /// At least one of the bodies is a solid.
-    fn of_solids(&self, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Record, String> {
+    fn of_solids(&self, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Told, String> {
         if self.asked == Some(Asked::Contact) {
             return Err(r#"solids are asked for their clearance: "query": "clearance""#.into());
         }
@@ -246,8 +247,17 @@ impl<B> Query<'_, B> {
         let bodies = [question.moving, question.fixed];
         let told = bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
         let notes = told.cloned().collect();
-        Ok(Record { notes, ..Record::of_solids(&answer).without_names() })
+        Ok(Told { notes, ..without_names(answer.record).into() })
     }
+}
+
+/// Without the names of files: a body is one.
+fn without_names(mut record: Record) -> Record {
+    (record.moving, record.fixed) = (None, None);
+    for overlap in &mut record.start_overlaps {
+        (overlap.moving, overlap.fixed) = (None, None);
+    }
+    record
 }
 
 /// A solid, or one made of a convex body.

@@ -4,6 +4,8 @@ mod words;
 
 use std::path::Path;
 
+use colltrans::record::{Ending, Record};
+
 use crate::args::ClearArguments;
 use crate::cast::{Directions, all_answered, directions};
 use crate::failure::{Code, Failure, note, print};
@@ -12,7 +14,7 @@ use crate::outputs;
 use crate::picture::draw_solids;
 use crate::progress;
 use crate::proof::{self, refuse_proof};
-use crate::record::{Name, Record};
+use crate::record::Line;
 use crate::solid::{Body, Question};
 
 pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
@@ -51,13 +53,13 @@ fn answer_one(arguments: &ClearArguments, question: &Question<'_>) -> Result<(),
     answer.notes.iter().for_each(|text| note(text));
     let is_default = arguments.tolerance.is_none();
     let text = if arguments.json {
-        Record::of_solids(&answer).json()
+        Line::from(answer.record.clone()).json()
     } else {
         words::answer(&answer, question.direction, is_default)
     };
     print(&text)?;
     if let Some(path) = &arguments.save_proof {
-        proof::save(path, &question.prove(answer.tolerance)?)?;
+        proof::save(path, &question.prove(answer.record.tolerance.unwrap_or_default())?)?;
     }
     match &arguments.picture {
         Some(path) => outputs::write(path, draw_solids(question, &answer).as_bytes()),
@@ -76,20 +78,20 @@ fn scan<'a>(
     }
     let mut noted = false;
     for question in questions {
-        let record = match question.ask(|| ()) {
+        let mut record = match question.ask(|| ()) {
             Ok(answer) => {
                 // The same bodies and tolerance for all directions.
                 if !noted {
                     answer.notes.iter().for_each(|text| note(text));
                     noted = true;
                 }
-                Record::of_solids(&answer)
+                answer.record
             }
-            Err(error) => Record::of_error(Failure::from(error).into_message()),
+            Err(error) => Record::error(Failure::from(error).into_message()),
         };
-        failed += usize::from(record.outcome == Name::Error);
-        let record = Record { direction: Some(question.direction.to_array()), ..record };
-        let text = if as_json { record.json() } else { words::scan_line(&record) };
+        failed += usize::from(record.outcome == Ending::Error);
+        record.direction = Some(question.direction.to_array());
+        let text = if as_json { Line::from(record).json() } else { words::scan_line(&record) };
         print(&text)?;
     }
     all_answered(count, failed)

@@ -1,49 +1,49 @@
 //! The answer in words.
 
-use colltrans::Bounded;
 use colltrans::glam::DVec3;
+use colltrans::record::{Ending, FeaturesRecord, Record, StartOverlapRecord};
 
 use crate::numbers::{decade, known_vector, number, unit_vector};
-use crate::record::Record;
 use crate::report::{feature, line, safely, times};
-use crate::solid::{Answer, Kind, Overlap, Stop, Touch};
+use crate::solid::Answer;
 use crate::terminal::shown;
 
 /// Below this many tolerances a body hardly moves: perhaps a fit is tighter than the tolerance.
 const HARDLY: f64 = 4.0;
 
 /// The readable answer of `colltrans clear`.
-pub(super) fn answer(answer: &Answer<'_>, direction: DVec3, is_default: bool) -> String {
+pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> String {
     let mut text = String::new();
-    match &answer.kind {
-        Kind::Free => text.push_str("free: nothing stops it along this direction\n"),
-        Kind::Blocked(stop) => {
+    let record = &answer.record;
+    let tolerance = record.tolerance.unwrap_or_default();
+    match record.outcome {
+        Ending::Blocked => {
             text.push_str("blocked\n");
-            blocked(&mut text, answer, stop, direction);
-            if is_default && stop.distance * direction.length() <= HARDLY * answer.tolerance {
+            blocked(&mut text, answer, direction);
+            let hardly = HARDLY * tolerance;
+            if is_default && record.distance.is_some_and(|t| t * direction.length() <= hardly) {
                 let fit =
                     "if a fit is meant to slide here, give the chord errors of both as --tolerance";
                 line(&mut text, "", fit);
             }
         }
-        Kind::Overlapping => text.push_str("overlapping: the bodies overlap now\n"),
+        Ending::Overlapping => text.push_str("overlapping: the bodies overlap now\n"),
+        _ => text.push_str("free: nothing stops it along this direction\n"),
     }
-    if let Some(exit) = answer.exit {
-        let exit = times(exit.upper);
-        line(&mut text, "exit", &format!("{exit}; after it they never meet"));
+    if let Some([_, upper]) = record.exit_bounds {
+        line(&mut text, "exit", &format!("{}; after it they never meet", times(upper)));
     }
-    overlaps(&mut text, answer);
-    let surfaces = answer.surface_names();
-    if !surfaces.is_empty() {
+    overlaps(&mut text, record);
+    if !record.surfaces.is_empty() {
         let what = "open, blocking from both sides, rims included; what is inside is not known";
-        line(&mut text, "surface", &format!("{}, {what}", surfaces.join(" and ")));
+        line(&mut text, "surface", &format!("{}, {what}", record.surfaces.join(" and ")));
     }
-    let source = match (is_default, answer.tolerance == 0.0) {
+    let source = match (is_default, tolerance == 0.0) {
         (true, _) => "from the files' precision and the poses; --tolerance sets another",
         (false, true) => "as asked: the bodies are taken as they are",
         (false, false) => "as asked: both bodies are shrunk by half of it",
     };
-    line(&mut text, "tolerance", &format!("{} ({source})", number(answer.tolerance)));
+    line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
     text
 }
 
@@ -56,17 +56,15 @@ pub(super) fn scan_head() -> String {
 pub(super) fn scan_line(record: &Record) -> String {
     let vector = |v: [f64; 3]| v.map(number).join(",");
     let direction = record.direction.map_or_else(String::new, vector);
+    let outcome = record.outcome.name().to_owned();
     if let Some(message) = &record.message {
-        return columns(
-            &direction,
-            [record.outcome.text().into(), message.clone(), String::new(), String::new()],
-        );
+        return columns(&direction, [outcome, message.clone(), String::new(), String::new()]);
     }
-    let shrunk = record.shrunk_distance.map(|shrunk| shrunk.lower);
-    let exit = record.exit.map(|exit| exit.upper);
+    let shrunk = record.shrunk_distance_bounds.map(|[lower, _]| lower);
+    let exit = record.exit_bounds.map(|[_, upper]| upper);
     let or_none = |t: Option<f64>| t.map_or_else(|| "-".into(), number);
     let [distance, shrunk, exit] = [record.distance, shrunk, exit].map(or_none);
-    columns(&direction, [record.outcome.text().into(), distance, shrunk, exit])
+    columns(&direction, [outcome, distance, shrunk, exit])
 }
 
 fn columns(direction: &str, others: [String; 4]) -> String {
@@ -75,30 +73,42 @@ fn columns(direction: &str, others: [String; 4]) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-fn blocked(text: &mut String, answer: &Answer<'_>, stop: &Stop<'_>, direction: DVec3) {
+fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
+    let record = &answer.record;
     let error = answer.error / direction.length();
-    let Bounded { value, lower, upper } = stop.translation;
-    let remark = if value.abs() <= error { " (the parts touch)" } else { "" };
-    let far = safely(value.max(0.0), error, [stop.distance, stop.shrunk.lower], direction);
-    line(text, "distance", &format!("{far}{remark}"));
-    line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
-    if answer.tolerance > 0.0 {
-        line(text, "shrunk", &format!("{}, for the shrunk bodies", times(stop.shrunk.lower)));
+    if let (Some(value), Some([lower, upper]), Some(distance), Some([shrunk, _])) = (
+        record.translation,
+        record.translation_bounds,
+        record.distance,
+        record.shrunk_distance_bounds,
+    ) {
+        let remark = if value.abs() <= error { " (the parts touch)" } else { "" };
+        let far = safely(value.max(0.0), error, [distance, shrunk], direction);
+        line(text, "distance", &format!("{far}{remark}"));
+        line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+        if record.tolerance > Some(0.0) {
+            line(text, "shrunk", &format!("{}, for the shrunk bodies", times(shrunk)));
+        }
     }
-    line(text, "moving", &touched(&stop.moving));
-    line(text, "fixed", &touched(&stop.fixed));
-    line(text, "normal", &unit_vector(stop.normal));
-    line(text, "point", &known_vector(stop.point, answer.error));
+    if let Some(FeaturesRecord { moving, fixed }) = &record.features {
+        for (name, what, file) in
+            [("moving", moving, &record.moving), ("fixed", fixed, &record.fixed)]
+        {
+            let file = shown(file.as_deref().unwrap_or_default());
+            line(text, name, &format!("{} of {file}", feature(what)));
+        }
+    }
+    if let (Some(normal), Some(point)) = (record.normal, record.point) {
+        line(text, "normal", &unit_vector(normal.into()));
+        line(text, "point", &known_vector(point.into(), answer.error));
+    }
 }
 
-fn touched(touch: &Touch<'_>) -> String {
-    format!("{} of {}", feature(&touch.feature), shown(touch.file.display()))
-}
-
-fn overlaps(text: &mut String, answer: &Answer<'_>) {
-    let ignored = !matches!(answer.kind, Kind::Overlapping);
-    for Overlap { moving, fixed, depth } in &answer.overlaps {
-        let (moving, fixed) = (shown(moving.display()), shown(fixed.display()));
+fn overlaps(text: &mut String, record: &Record) {
+    let ignored = record.outcome != Ending::Overlapping;
+    for StartOverlapRecord { moving, fixed, depth } in &record.start_overlaps {
+        let [moving, fixed] =
+            [moving, fixed].map(|name| shown(name.as_deref().unwrap_or_default()));
         let depth = match depth {
             Some(depth) => format!("a tolerance of {} would part them", above(*depth)),
             None => "no tolerance would part them".into(),
@@ -107,7 +117,7 @@ fn overlaps(text: &mut String, answer: &Answer<'_>) {
         line(text, name, &format!("{moving} in {fixed}: {depth}"));
     }
     if !ignored {
-        let hint = if answer.overlaps.iter().all(|overlap| overlap.depth.is_some()) {
+        let hint = if record.start_overlaps.iter().all(|overlap| overlap.depth.is_some()) {
             "--tolerance allows for it, --ignore-start-overlaps lets it pass"
         } else {
             "--ignore-start-overlaps lets it pass"

@@ -6,9 +6,11 @@
 //! and creases (edges that bend by more than [`SMOOTH`]), and what of them is hidden as dashes where
 //! there are few.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use colltrans::glam::{DVec2, DVec3};
+use colltrans::record::{Ending, FeaturesRecord, Record};
 use colltrans_picture::{
     Edge, FIXED, MOVING, Page, Paint, Raster, SHADES, SMOOTH, Stroke, View, edges,
 };
@@ -19,7 +21,7 @@ use super::size::working_size;
 use super::solid::Solid;
 use super::story::{Story, components, quantity, short};
 use super::{Cast, viewpoint};
-use crate::solid::{Answer, Kind, Question, Stop};
+use crate::solid::{Answer, Question};
 
 /// Hidden edges are drawn if no more edges than this are drawn at all.
 const FEW_EDGES: usize = 600;
@@ -29,7 +31,7 @@ const SLACK: f64 = 1e-4;
 const MOVING_TONES: usize = SHADES + 1;
 
 /// The SVG file of an answer.
-pub(crate) fn draw_solids(question: &Question<'_>, answer: &Answer<'_>) -> String {
+pub(crate) fn draw_solids(question: &Question<'_>, answer: &Answer) -> String {
     let direction = question.direction;
     let story = story(question, answer);
     let (vertices, triangles) = question.moving.surface(&question.moving_pose, story.origin);
@@ -50,54 +52,54 @@ pub(crate) fn draw_solids(question: &Question<'_>, answer: &Answer<'_>) -> Strin
 }
 
 /// What the picture has to tell.
-fn story(question: &Question<'_>, answer: &Answer<'_>) -> Story {
+fn story(question: &Question<'_>, answer: &Answer) -> Story {
     let length = question.direction.length();
+    let record = &answer.record;
     let mut details = Vec::new();
-    let mut touching = None;
-    let headline = match &answer.kind {
-        Kind::Free => "Free: nothing stops it along d".to_owned(),
-        Kind::Overlapping => {
-            details.extend(answer.overlaps.first().map(|overlap| {
+    let place = record.translation.map(|t| if t.abs() <= answer.error { 0.0 } else { t });
+    let headline = match (record.outcome, place) {
+        (Ending::Blocked, Some(place)) => {
+            details.extend(touching(record));
+            format!("Blocked at {}", quantity(place, length))
+        }
+        (Ending::Overlapping, _) => {
+            details.extend(record.start_overlaps.first().map(|overlap| {
                 let depth = overlap.depth.map_or("none".into(), short);
                 format!("tolerance that would part them: {depth}")
             }));
             "Overlapping: the parts overlap now".to_owned()
         }
-        Kind::Blocked(stop) => {
-            touching = Some(stop);
-            let [moving, fixed] = [&stop.moving, &stop.fixed]
-                .map(|touch| format!("{} of {}", touch.feature.kind, name(touch.file)));
-            details
-                .push(format!("{moving} touches {fixed}; normal n = {}", components(stop.normal)));
-            format!("Blocked at {}", quantity(place(stop, answer), length))
-        }
+        _ => "Free: nothing stops it along d".to_owned(),
     };
-    let exit = answer
-        .exit
-        .map_or(String::new(), |exit| format!("; exit at {}", quantity(exit.value, length)));
-    details.push(format!("tolerance {}{exit}", short(answer.tolerance)));
+    let exit =
+        record.exit.map_or(String::new(), |exit| format!("; exit at {}", quantity(exit, length)));
+    details.push(format!("tolerance {}{exit}", short(record.tolerance.unwrap_or_default())));
     Story {
-        origin: touching.map_or(question.fixed_pose.translation(), |stop| stop.point),
-        stop: touching.map_or(0.0, |stop| place(stop, answer) * length),
-        normal: touching.map_or(DVec3::ZERO, |stop| stop.normal),
-        touches: touching.is_some(),
+        origin: record.point.map_or(question.fixed_pose.translation(), DVec3::from),
+        stop: place.map_or(0.0, |place| place * length),
+        normal: record.normal.map_or(DVec3::ZERO, DVec3::from),
+        touches: record.point.is_some(),
         marks: None,
         margin: None,
-        way: touching.map_or("d".into(), |stop| quantity(place(stop, answer), length)),
+        way: place.map_or("d".into(), |place| quantity(place, length)),
         headline,
         details,
     }
 }
 
-/// A file without its folder.
-fn name(file: &Path) -> String {
-    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+/// What touches what.
+fn touching(record: &Record) -> Option<String> {
+    let FeaturesRecord { moving, fixed } = record.features.as_ref()?;
+    let normal = components(record.normal?.into());
+    let moving = format!("{} of {}", moving.kind, name(record.moving.as_deref()?));
+    let fixed = format!("{} of {}", fixed.kind, name(record.fixed.as_deref()?));
+    Some(format!("{moving} touches {fixed}; normal n = {normal}"))
 }
 
-/// Where it stops, without the rounding error of a touch.
-fn place(stop: &Stop<'_>, answer: &Answer<'_>) -> f64 {
-    let place = stop.translation.value;
-    if place.abs() <= answer.error { 0.0 } else { place }
+/// A file without its folder.
+fn name(file: &str) -> Cow<'_, str> {
+    let path = Path::new(file);
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy()
 }
 
 /// From the scene to the page.

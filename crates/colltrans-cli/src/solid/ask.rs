@@ -1,18 +1,15 @@
 //! The question between two placed bodies, and its answer.
 
-use std::path::Path;
-
 use colltrans::glam::DVec3;
+use colltrans::record::{Ending, FeatureRecord, FeaturesRecord, Record, StartOverlapRecord};
 use colltrans::{
-    Bounded, Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid, SolidContact,
-    SolidOverlap, StartOverlap,
+    Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid, SolidOverlap, StartOverlap,
 };
 use colltrans_mesh::body::between;
 
 use super::{Body, Piece};
 use crate::failure::{Code, Failure};
 use crate::numbers::counted;
-use crate::record::FeatureRecord;
 
 /// What rounding alone can do to a length, as a part of the scene's size.
 const ROUNDING: f64 = 1e-14;
@@ -31,96 +28,46 @@ pub(crate) struct Question<'a> {
 }
 
 /// What can be said.
-pub(crate) struct Answer<'a> {
-    pub(crate) kind: Kind<'a>,
-    /// The tolerance that was used, a length.
-    pub(crate) tolerance: f64,
-    /// The translation after which the bodies never meet; `None` if they never do.
-    pub(crate) exit: Option<Bounded>,
-    /// What overlaps at the start, the deepest first; looked at where it matters.
-    pub(crate) overlaps: Vec<Overlap<'a>>,
-    /// Which of the moving and the fixed body are surfaces, at least in part.
-    pub(crate) surfaces: [bool; 2],
+pub(crate) struct Answer {
+    /// With the names of files, and all that overlaps at the start, the deepest first; that is looked
+    /// at where it matters.
+    pub(crate) record: Record,
     /// What could not be shrunk as the tolerance asks for.
     pub(crate) notes: Vec<String>,
     /// How far lengths may be off by the precision of the files and by rounding.
     pub(crate) error: f64,
 }
 
-impl Answer<'_> {
-    /// `moving` and `fixed`, those that are surfaces.
-    pub(crate) fn surface_names(&self) -> Vec<&'static str> {
-        let names = ["moving", "fixed"].into_iter().zip(self.surfaces);
-        names.filter_map(|(name, is_surface)| is_surface.then_some(name)).collect()
-    }
-}
-
-/// How it ends.
-pub(crate) enum Kind<'a> {
-    Free,
-    Blocked(Box<Stop<'a>>),
-    Overlapping,
-}
-
-/// What stops the moving body.
-pub(crate) struct Stop<'a> {
-    /// How far it is safe to move, in multiples of the direction.
-    pub(crate) distance: f64,
-    /// Where the facets that stop it meet in their true place.
-    pub(crate) translation: Bounded,
-    /// How far the shrunk bodies go.
-    pub(crate) shrunk: Bounded,
-    pub(crate) normal: DVec3,
-    /// On the fixed body.
-    pub(crate) point: DVec3,
-    pub(crate) moving: Touch<'a>,
-    pub(crate) fixed: Touch<'a>,
-}
-
-/// What of a file is touched: a feature by the numbers of the file.
-pub(crate) struct Touch<'a> {
-    pub(crate) file: &'a Path,
-    pub(crate) feature: FeatureRecord,
-}
-
-/// Two files that overlap where they are.
-pub(crate) struct Overlap<'a> {
-    pub(crate) moving: &'a Path,
-    pub(crate) fixed: &'a Path,
-    /// The least tolerance with which they would not; `None` if there is none.
-    pub(crate) depth: Option<f64>,
-}
-
-impl<'a> Question<'a> {
+impl Question<'_> {
     /// Pairs of files that may be looked at.
     pub(crate) fn pairs(&self) -> usize {
         self.moving.pieces.len() * self.fixed.pieces.len()
     }
 
     /// The answer; `done` is called after each pair of files that was looked at.
-    pub(crate) fn ask(&self, done: impl FnMut()) -> Result<Answer<'a>, QueryError> {
+    pub(crate) fn ask(&self, done: impl FnMut()) -> Result<Answer, QueryError> {
         let precisions = [self.moving.precision(), self.fixed.precision()];
         let cast =
             self.cast(self.moving.solid(), self.fixed.solid(), precisions, self.tolerance)?;
         let tolerance = cast.tolerance();
-        let kind = match cast.clearance() {
-            Clearance::Free(_) => Kind::Free,
-            Clearance::Blocked { distance, contact } => {
-                Kind::Blocked(Box::new(self.stop(distance, &contact)))
-            }
-            Clearance::Overlapping(_) => Kind::Overlapping,
-        };
-        let overlaps = if self.ignore_start_overlaps || matches!(kind, Kind::Overlapping) {
-            self.overlaps(tolerance, done)?
-        } else {
-            Vec::new()
-        };
+        let clearance = cast.clearance();
+        let mut record = Record::of_solids(&clearance, cast.exit(), &cast);
+        if let Clearance::Blocked { contact, .. } = clearance {
+            let (moving_file, moving) = self.moving.touch(contact.moving_feature);
+            let (fixed_file, fixed) = self.fixed.touch(contact.fixed_feature);
+            (record.moving, record.fixed) = (Some(moving_file), Some(fixed_file));
+            record.features = Some(FeaturesRecord { moving, fixed });
+        }
+        if self.ignore_start_overlaps || record.outcome == Ending::Overlapping {
+            record.start_overlaps = self.overlaps(tolerance, done)?;
+        }
+        if record.outcome == Ending::Overlapping
+            && let Some(deepest) = record.start_overlaps.first()
+        {
+            (record.moving, record.fixed) = (deepest.moving.clone(), deepest.fixed.clone());
+        }
         Ok(Answer {
-            kind,
-            tolerance,
-            exit: cast.exit(),
-            overlaps,
-            surfaces: [self.moving.is_surface(), self.fixed.is_surface()],
+            record,
             notes: self.unshrunk(tolerance),
             error: precisions[0] + precisions[1] + ROUNDING * self.size(),
         })
@@ -148,36 +95,24 @@ impl<'a> Question<'a> {
         between(moving, fixed, self.direction, precisions, tolerance, start)
     }
 
-    fn stop(&self, distance: f64, contact: &SolidContact) -> Stop<'a> {
-        Stop {
-            distance,
-            translation: contact.translation,
-            shrunk: contact.shrunk_distance,
-            normal: contact.normal,
-            point: contact.point_on_fixed,
-            moving: self.moving.touch(contact.moving_feature),
-            fixed: self.fixed.touch(contact.fixed_feature),
-        }
-    }
-
     /// All pairs of files, because bodies overlap exactly where pieces of them do.
     fn overlaps(
         &self,
         tolerance: f64,
         mut done: impl FnMut(),
-    ) -> Result<Vec<Overlap<'a>>, QueryError> {
+    ) -> Result<Vec<StartOverlapRecord>, QueryError> {
         let mut found = Vec::new();
         for moving in &self.moving.pieces {
             for fixed in &self.fixed.pieces {
                 let cast = self.cast(&moving.solid, &fixed.solid, [0.0; 2], Some(tolerance))?;
                 if let Some(SolidOverlap { depth, .. }) = cast.start_overlap() {
-                    let (moving, fixed) = (moving.file.as_path(), fixed.file.as_path());
-                    found.push(Overlap { moving, fixed, depth });
+                    let [moving, fixed] = [moving.name(), fixed.name()].map(Some);
+                    found.push(StartOverlapRecord { moving, fixed, depth });
                 }
                 done();
             }
         }
-        let depth = |overlap: &Overlap| overlap.depth.unwrap_or(f64::INFINITY);
+        let depth = |overlap: &StartOverlapRecord| overlap.depth.unwrap_or(f64::INFINITY);
         found.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
         Ok(found)
     }
@@ -204,7 +139,7 @@ impl<'a> Question<'a> {
 
 impl Body {
     /// The file of a feature, and the feature in its numbers.
-    fn touch(&self, feature: Feature) -> Touch<'_> {
+    fn touch(&self, feature: Feature) -> (String, FeatureRecord) {
         let mut vertices = feature.vertices(self.solid());
         let (mut first, mut base) = (vertices.first().copied().unwrap_or(0), 0);
         let mut owner = &self.pieces[0];
@@ -220,12 +155,15 @@ impl Body {
         for vertex in &mut vertices {
             *vertex -= base;
         }
-        let feature = FeatureRecord { kind: feature.kind(), vertices };
-        Touch { file: &owner.file, feature }
+        (owner.name(), FeatureRecord { kind: feature.kind(), vertices })
     }
 }
 
 impl Piece {
+    fn name(&self) -> String {
+        self.file.display().to_string()
+    }
+
     fn unshrunk(&self, amount: f64) -> Option<String> {
         let report = self.solid.shrink_report(amount);
         let mut text = Vec::new();

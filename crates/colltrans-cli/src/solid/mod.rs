@@ -16,7 +16,7 @@ use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid}
 
 use crate::body::{hint, of_file, refusal};
 use crate::numbers::counted;
-pub(crate) use ask::{Answer, Kind, Overlap, Question, Stop, Touch};
+pub(crate) use ask::{Answer, Question};
 
 /// A body of one piece or several.
 #[derive(Debug)]
@@ -79,11 +79,6 @@ impl Body {
 
     fn solid(&self) -> &Solid {
         self.union.as_ref().unwrap_or_else(|| &self.pieces[0].solid)
-    }
-
-    /// Whether some shell of it is open.
-    fn is_surface(&self) -> bool {
-        !self.solid().is_closed()
     }
 
     /// The coarsest of its files.

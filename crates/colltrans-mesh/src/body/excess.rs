@@ -22,15 +22,19 @@ const RECENT: usize = 8;
 
 /// What a hull has and its part has not.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Excess {
     /// Volume of the hull.
     pub hull_volume: f64,
     /// Volume of the part; `None` if its surface is open or oriented inwards.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub part_volume: Option<f64>,
     /// Whether the part's surface is closed.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub is_closed: bool,
     /// How deep the part's surface lies below the hull's; `None` without a surface, if there is more of
     /// it than can be looked at, and without the feature `depth`.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub depth: Option<f64>,
 }
 

@@ -34,7 +34,8 @@ pub struct Steps {
     /// Iterations of the loops inside planar problems: vertices of sections computed, vertices of
     /// the bodies climbed over, halvings in searches.
     pub iterations: u32,
-    /// What the search began with.
+    /// What the search began with; as data it is missing where that was nothing but the bodies.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "StartedFrom::is_scratch"))]
     pub started_from: StartedFrom,
 }
 
@@ -65,4 +66,12 @@ pub enum StartedFrom {
     /// Nothing but the bodies.
     #[default]
     Scratch,
+}
+
+#[cfg(feature = "serde")]
+impl StartedFrom {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+    fn is_scratch(&self) -> bool {
+        *self == Self::Scratch
+    }
 }

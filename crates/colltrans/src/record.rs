@@ -1,0 +1,308 @@
+//! Answers as the command line, batches, Python and the page write them: one flat object of JSON,
+//! described by `docs/answers.schema.json`.
+//!
+//! A [`Record`] says what people and programs ask of an answer: numbers with their proven bounds, points
+//! and normals in the world, features by the numbers of the input. What checks a proof is not in it: for
+//! that there are the answers themselves, which the feature `serde` writes whole, and `ProofFile`.
+
+use glam::DVec3;
+use serde::Serialize;
+
+use crate::answer::{
+    Bounded, Clearance, Contact, ContactRange, Grazing, Outcome, OverlapAhead, Separated, Solver,
+    Steps, WhyFree,
+};
+use crate::body::solid::Solid;
+use crate::body::{Body, Feature};
+use crate::cast::{Cast, Features};
+
+/// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
+///
+/// Translations, distances and their bounds are in multiples of the direction, other lengths in the
+/// unit of the bodies.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
+pub struct Record {
+    /// How the query ended.
+    pub outcome: Ending,
+    /// Of one query among several directions: the direction as it was read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub direction: Option<[f64; 3]>,
+    /// Blocked: how far it is safe to move.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distance: Option<f64>,
+    /// Overlapping: how far to go back to be free for certain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub back: Option<f64>,
+    /// Overlapping: how far to go on to be free for certain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<f64>,
+    /// First contact; of solids, where the facets that stop them meet in their true place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub translation: Option<f64>,
+    /// Proven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub translation_bounds: Option<[f64; 2]>,
+    /// Of solids: how far they go, shrunk by half the tolerance each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shrunk_distance: Option<f64>,
+    /// Proven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shrunk_distance_bounds: Option<[f64; 2]>,
+    /// Last contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exit: Option<f64>,
+    /// Proven: beyond the second they never meet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exit_bounds: Option<[f64; 2]>,
+    /// The name of what touches, or overlaps deepest, of a moving body that has several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moving: Option<String>,
+    /// The same of the fixed body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<String>,
+    /// Unit normal from the moving to the fixed body, of the contact plane or of the separating one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal: Option<[f64; 3]>,
+    /// The contact point on the fixed body, in the world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point: Option<[f64; 3]>,
+    /// Of convex bodies: what rounding alone can make of the bounds' difference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rounding: Option<f64>,
+    /// Of solids: the one that was used, a length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Of solids: what overlaps now.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub start_overlaps: Vec<StartOverlapRecord>,
+    /// Of solids: which are open, at least in part.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub surfaces: Vec<&'static str>,
+    /// What touches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub features: Option<FeaturesRecord>,
+    /// Separated: the gap between the shadows along the normal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin: Option<f64>,
+    /// Grazing, slides: by how much the shadows overlap; negative where they may not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overlap: Option<f64>,
+    /// Grazing, slides: the unit vector along which they do, across the direction, from the moving
+    /// body's shadow to the fixed one's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sideways: Option<[f64; 3]>,
+    /// Of convex bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solver: Option<Solver>,
+    /// Of convex bodies: how much work it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<Steps>,
+    /// For people: what is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub message: Option<String>,
+}
+
+/// How a query ended, in a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// The bodies meet along the direction, somewhere.
+    Contact,
+    /// Their shadows overlap by no more than the graze tolerance.
+    Grazing,
+    /// They never meet.
+    Separated,
+    /// Nothing stops a solid.
+    Free,
+    /// It can go so far.
+    Blocked,
+    /// Nothing stops a convex body: it slides along the other.
+    Slides,
+    /// Nothing stops a convex body: they only meet behind.
+    Behind,
+    /// They overlap now.
+    Overlapping,
+    /// There is no answer.
+    #[default]
+    Error,
+}
+
+/// Two solids that overlap where they are, or two pieces of them by their names.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct StartOverlapRecord {
+    /// The name of the moving piece.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moving: Option<String>,
+    /// The name of the fixed piece.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<String>,
+    /// The least tolerance with which they would not overlap, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth: Option<f64>,
+}
+
+/// The features of both bodies in the contact plane.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FeaturesRecord {
+    /// Of the moving body.
+    pub moving: FeatureRecord,
+    /// Of the fixed body.
+    pub fixed: FeatureRecord,
+}
+
+/// A feature by the vertices of the input.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FeatureRecord {
+    /// `vertex`, `edge` or `face`.
+    pub kind: &'static str,
+    /// Its vertices: one, two, or the corners of a face.
+    pub vertices: Vec<u32>,
+}
+
+impl Record {
+    /// Of a query that has no answer, and why.
+    pub fn error(message: String) -> Self {
+        Self { message: Some(message), ..Self::default() }
+    }
+
+    /// Of [`Cast::first_contact`].
+    pub fn of_outcome(outcome: &Outcome, cast: &Cast) -> Self {
+        match outcome {
+            Outcome::Contact(first) => Self::contact(Ending::Contact, first, cast),
+            Outcome::Grazing(grazing) => Self::grazing(Ending::Grazing, grazing, cast),
+            Outcome::Separated(separated) => Self::separated(separated),
+        }
+    }
+
+    /// Of [`Cast::contact_range`].
+    pub fn of_contact_range(range: &ContactRange, cast: &Cast) -> Self {
+        match range {
+            ContactRange::Contact { first, last } => {
+                Self::contact(Ending::Contact, first, cast).with_exit(last.exit())
+            }
+            ContactRange::Grazing { first, last } => {
+                Self::grazing(Ending::Grazing, first, cast).with_exit(last.contact.exit())
+            }
+            ContactRange::Separated(separated) => Self::separated(separated),
+        }
+    }
+
+    /// Of [`Cast::clearance`] between convex bodies.
+    pub fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
+        match clearance {
+            Clearance::Blocked { distance, contact } => {
+                let record = Self::contact(Ending::Blocked, contact, cast);
+                Self { distance: Some(*distance), ..record }
+            }
+            Clearance::Free(WhyFree::Slides(grazing)) => {
+                Self::grazing(Ending::Slides, grazing, cast)
+            }
+            // The last contact is the first one of the way back.
+            Clearance::Free(WhyFree::Behind(last)) => {
+                let record = Self::contact(Ending::Behind, last, &cast.reversed());
+                let record = Self { translation: None, translation_bounds: None, ..record };
+                record.with_exit(last.exit())
+            }
+            Clearance::Free(WhyFree::Separated(separated)) => Self::separated(separated),
+            Clearance::Overlapping(OverlapAhead { first, last }) => {
+                let record = Self::contact(Ending::Overlapping, first, cast);
+                let [back, on] = [first, last].map(|contact| Some(-contact.certificate.lower));
+                Self { back, on, ..record }.with_exit(last.exit())
+            }
+        }
+    }
+
+    /// Of [`Cast::clearance`] between solids; `exit` as [`Cast::exit`] says.
+    pub fn of_solids(
+        clearance: &Clearance<Solid>,
+        exit: Option<Bounded>,
+        cast: &Cast<'_, Solid>,
+    ) -> Self {
+        let record = match clearance {
+            Clearance::Free(_) => Self { outcome: Ending::Free, ..Self::default() },
+            Clearance::Overlapping(overlap) => {
+                let depth = overlap.depth;
+                let start_overlaps = vec![StartOverlapRecord { depth, ..Default::default() }];
+                Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() }
+            }
+            Clearance::Blocked { distance, contact } => Self {
+                outcome: Ending::Blocked,
+                distance: Some(*distance),
+                shrunk_distance: Some(contact.shrunk_distance.value),
+                shrunk_distance_bounds: Some(contact.shrunk_distance.bounds()),
+                normal: Some(coordinates(contact.normal)),
+                point: Some(coordinates(contact.point_on_fixed)),
+                features: Some(FeaturesRecord {
+                    moving: FeatureRecord::of(contact.moving_feature, cast.moving()),
+                    fixed: FeatureRecord::of(contact.fixed_feature, cast.fixed()),
+                }),
+                ..Self::default()
+            }
+            .with_translation(contact.translation),
+        };
+        let sides = [("moving", cast.moving()), ("fixed", cast.fixed())].into_iter();
+        let open = sides.filter(|(_, body)| !body.is_closed());
+        let surfaces = open.map(|(name, _)| name).collect();
+        let record = Self { tolerance: Some(cast.tolerance()), surfaces, ..record };
+        exit.into_iter().fold(record, Self::with_exit)
+    }
+
+    fn separated(separated: &Separated) -> Self {
+        let Separated { certificate, solver, steps } = separated;
+        Self {
+            outcome: Ending::Separated,
+            normal: Some(coordinates(certificate.normal)),
+            margin: Some(certificate.margin),
+            solver: Some(*solver),
+            steps: Some(*steps),
+            ..Self::default()
+        }
+    }
+
+    fn grazing(outcome: Ending, grazing: &Grazing, cast: &Cast) -> Self {
+        Self {
+            overlap: Some(grazing.overlap),
+            sideways: Some(coordinates(grazing.separating_direction)),
+            ..Self::contact(outcome, &grazing.contact, cast)
+        }
+    }
+
+    fn contact(outcome: Ending, contact: &Contact, cast: &Cast) -> Self {
+        let Features { moving, fixed } = contact.features(cast);
+        Self {
+            outcome,
+            normal: Some(coordinates(contact.normal)),
+            point: Some(coordinates(contact.points(cast).on_fixed)),
+            rounding: Some(contact.certificate.rounding),
+            features: Some(FeaturesRecord {
+                moving: FeatureRecord::of(moving, cast.moving()),
+                fixed: FeatureRecord::of(fixed, cast.fixed()),
+            }),
+            solver: Some(contact.solver),
+            steps: Some(contact.steps),
+            ..Self::default()
+        }
+        .with_translation(contact.bounded())
+    }
+
+    fn with_translation(self, t: Bounded) -> Self {
+        Self { translation: Some(t.value), translation_bounds: Some(t.bounds()), ..self }
+    }
+
+    fn with_exit(self, exit: Bounded) -> Self {
+        Self { exit: Some(exit.value), exit_bounds: Some(exit.bounds()), ..self }
+    }
+}
+
+impl FeatureRecord {
+    /// A feature of a body.
+    pub fn of<B: Body>(feature: Feature, body: &B) -> Self {
+        Self { kind: feature.kind(), vertices: feature.vertices(body) }
+    }
+}
+
+/// Without -0.
+fn coordinates(v: DVec3) -> [f64; 3] {
+    v.to_array().map(|c| c + 0.0)
+}

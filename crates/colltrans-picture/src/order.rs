@@ -273,8 +273,8 @@ impl Ready {
         pool.entry(facet.style).or_default().push(k);
     }
 
-    /// One of the last style, or else of that of which the next one is the farthest. Opaque ones as early as can
-    /// be: their rims are not to be seen on what is translucent.
+    /// One of the last style, or else of that of which the next one is the farthest. Opaque ones as early
+    /// as can be: their rims are not to be seen on what is translucent.
     fn take(&mut self, near: impl Fn(u32) -> f64) -> Option<u32> {
         let pool = if self.opaque.is_empty() { &mut self.sheer } else { &mut self.opaque };
         if !pool.contains_key(&self.style) {
@@ -407,7 +407,8 @@ mod tests {
         assert!(200 * other < all, "{other} of {all}");
     }
 
-    /// What is translucent is painted after what it is before, and before what hides it; what is hidden is not.
+    /// What is translucent is painted after what it is before, and before what hides it; what is hidden
+    /// is not.
     #[test]
     fn the_translucent_is_between_the_far_and_the_near() {
         let facets = [

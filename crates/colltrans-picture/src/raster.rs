@@ -61,7 +61,8 @@ impl Raster {
         self.split_edge(ends, slack, &[])
     }
 
-    /// The same of an edge of what was drawn in the tones `own`, which do not hide it, however steep they are.
+    /// The same of an edge of what was drawn in the tones `own`, which do not hide it, however steep they
+    /// are.
     pub fn split_edge(&self, [a, b]: [DVec3; 2], slack: f64, own: &[u32]) -> [Vec<[DVec2; 2]>; 2] {
         let mut parts = [Vec::new(), Vec::new()];
         let (from, to) = (a.truncate(), b.truncate());

@@ -1,9 +1,9 @@
 //! What is to be drawn, as the page hands it over.
 //!
-//! Points are (x, y, q): pixels of the page, and the inverse of the distance along the view. The file that comes
-//! with a question is little-endian: the corners of the triangles (nine `f64` each), the ends of the segments
-//! (six `f64` each), then `u32`: for each triangle its style and its number, for each segment its style and of
-//! how many triangles it is an edge, and after all of them, the numbers of those.
+//! Points are (x, y, q): pixels of the page, and the inverse of the distance along the view. The file that
+//! comes with a question is little-endian: the corners of the triangles (nine `f64` each), the ends of the
+//! segments (six `f64` each), then `u32`: for each triangle its style and its number, for each segment its
+//! style and of how many triangles it is an edge, and after all of them, the numbers of those.
 
 use colltrans_picture::Facet;
 use glam::{DVec2, DVec3};

@@ -57,7 +57,7 @@ test("numbers: up and down, with shift by ten times as much", async () => {
   await page.locator("button:text-is('turn round')").press("Enter");
   assert.deepEqual(await probed("d"), [0.31, -0.1, 1]);
   await page.selectOption('[aria-label="Solver"]', "cta");
-  await page.waitForFunction(() => window.colltrans.probe().answer?.steps.solver === "cta");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.record.solver === "cta");
 });
 
 test("the way: its slider, its marks, playing", async () => {

@@ -15,8 +15,7 @@ use colltrans_mesh::body::BodyOptions;
 use crate::failure::{Code, Failure};
 pub(crate) use assembly::AssemblyArguments;
 use help::{
-    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEAR_ANSWERS, CLEARANCE_ANSWERS, EXIT_CODES,
-    fitted, formats,
+    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, fitted, formats,
 };
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, solver, threads};
@@ -24,7 +23,7 @@ use values::{angles, bytes, factor, length, picture, place, solver, threads};
 /// How far can one body move along a direction before it touches another?
 ///
 /// Start with `colltrans info MESH` to see what a mesh is. Convex bodies: `colltrans cast MOVING FIXED
-/// --direction -z`, with proven bounds. Parts that have holes and hollows: `colltrans clear MOVING
+/// --direction -z`, with proven bounds. Parts that have holes and hollows: `colltrans clearance MOVING
 /// --from FIXED --direction -z`.
 #[derive(Debug, Parser)]
 #[command(name = "colltrans", version, max_term_width = help::WIDEST, after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, &formats(), EXIT_CODES]))]
@@ -40,19 +39,14 @@ pub(crate) enum Command {
     /// The answer is the translation at which they first meet, wherever the moving mesh is now:
     /// negative if they overlap, or if the contact lies behind.
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, &formats(), EXIT_CODES]))]
-    Cast(Box<PairArguments>),
-    /// Say how far one mesh can move from where it is before another blocks it
+    Cast(Box<CastArguments>),
+    /// Say how far a mesh can move from where it is before another blocks it
     ///
-    /// Takes what `cast` takes. Contacts behind do not block, and neither does a mesh along which
-    /// the moving one slides.
-    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEARANCE_ANSWERS, &formats(), EXIT_CODES]))]
-    Clearance(Box<PairArguments>),
-    /// Say how far a part that need not be convex can move before other parts block it
-    ///
-    /// Several files on one side are one body, in place. Parts are closed surfaces, and are taken as
-    /// they are, with their holes.
-    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEAR_ANSWERS, &formats(), EXIT_CODES]))]
-    Clear(Box<ClearArguments>),
+    /// Two convex meshes are asked as convex bodies, as `cast` asks them. Meshes that are not, several on
+    /// a side, and whatever stands after --from are parts: closed surfaces with their holes and
+    /// hollows, several files on a side being one body, in place. Contacts behind do not block.
+    #[command(visible_alias = "clear", after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEARANCE_ANSWERS, &formats(), EXIT_CODES]))]
+    Clearance(Box<ClearanceArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[BATCH_FORMAT, EXIT_CODES]))]
     Batch(BatchArguments),
@@ -79,17 +73,55 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct PairArguments {
+pub(crate) struct CastArguments {
     /// The mesh that moves
     pub(crate) moving: PathBuf,
     /// The mesh that stays
     pub(crate) fixed: PathBuf,
     #[command(flatten)]
+    pub(crate) pair: PairArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ClearanceArguments {
+    /// The mesh that moves and the one that stays; with --from all that move, as one body
+    #[arg(required = true, value_name = "MESH")]
+    meshes: Vec<PathBuf>,
+    /// The meshes that stay, as one body: parts, that need not be convex
+    #[arg(long, num_args = 1.., value_name = "FIXED")]
+    from: Vec<PathBuf>,
+    /// Of parts: how deep bodies may enter each other [default: from the files' precision]
+    ///
+    /// In the unit of the meshes. Both bodies are shrunk by half of it. A curved fit of tessellated
+    /// parts needs the chord errors of both together. The default is twice what rounding may have
+    /// made of the coordinates of both files together (2.4e-7 of the largest coordinate for binary
+    /// STL and PLY with float coordinates, else 3.6e-15 of it), and no less than what turned poses
+    /// need. The answer states it.
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// Of parts: let what overlaps at the start pass, and say what that is
+    ///
+    /// Faces that cross now do not block; contacts that begin later do.
+    #[arg(long)]
+    pub(crate) ignore_start_overlaps: bool,
+    /// Take surfaces that are not closed, as sheets and scans are: they block from both sides and with
+    /// their rims, without an inside
+    #[arg(long, help_heading = UNCLEAN)]
+    open: bool,
+    #[command(flatten)]
+    pub(crate) pair: PairArguments,
+}
+
+/// What is asked of two bodies, and what becomes of the answer.
+#[derive(Debug, Args)]
+pub(crate) struct PairArguments {
+    #[command(flatten)]
     pub(crate) directions: DirectionArguments,
-    /// How the search is narrowed; the answer is the same
+    /// Of convex bodies: how the search is narrowed; the answer is the same
     #[arg(long, value_parser = solver(), default_value_t = Solver::Auto)]
     pub(crate) solver: Solver,
-    /// Sideways overlap up to which bodies slide along each other (grazing) instead of colliding
+    /// Of convex bodies: sideways overlap up to which they slide along each other (grazing) instead of
+    /// colliding
     ///
     /// In the unit of the meshes. 0 stands for the rounding error of the configuration.
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, default_value = "0")]
@@ -112,66 +144,57 @@ pub(crate) struct PairArguments {
     pub(crate) body: BodyArguments,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct ClearArguments {
-    /// The meshes that move, as one body
-    #[arg(required = true, value_name = "MOVING")]
-    pub(crate) moving: Vec<PathBuf>,
-    /// The meshes that stay
-    #[arg(long, required = true, num_args = 1.., value_name = "FIXED")]
-    pub(crate) from: Vec<PathBuf>,
-    #[command(flatten)]
-    pub(crate) directions: DirectionArguments,
-    /// How deep bodies may enter each other [default: from the files' precision]
-    ///
-    /// In the unit of the meshes. Both bodies are shrunk by half of it. A curved fit of tessellated
-    /// parts needs the chord errors of both together. The default is twice what rounding may have
-    /// made of the coordinates of both files together (2.4e-7 of the largest coordinate for binary
-    /// STL and PLY with float coordinates, else 3.6e-15 of it), and no less than what turned poses
-    /// need. The answer states it.
-    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
-    pub(crate) tolerance: Option<f64>,
-    /// Let what overlaps at the start pass, and say what that is
-    ///
-    /// Faces that cross now do not block; contacts that begin later do.
-    #[arg(long)]
-    pub(crate) ignore_start_overlaps: bool,
-    /// Print the answer as one JSON object
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Draw the parts and what stops them as an SVG picture
-    #[arg(long, value_name = "OUT.svg", value_parser = picture)]
-    pub(crate) picture: Option<PathBuf>,
-    /// Write the proof of the answer, with the bodies and where they are, as one file that `colltrans
-    /// verify` checks
-    #[arg(long, value_name = "OUT.json", conflicts_with = "directions")]
-    pub(crate) save_proof: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) places: PlaceArguments,
-    /// Take surfaces that are not closed, as sheets and scans are: they block from both sides and with
-    /// their rims, without an inside
-    #[arg(long, help_heading = OPEN_OR_UNCLEAN)]
-    pub(crate) open: bool,
-    /// How far apart vertices on open edges may be to be merged, in the unit of the file [default:
-    /// a few roundings of the largest coordinate]
-    ///
-    /// As for `cast`. What was merged is said. A closed surface is left as it is.
-    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, help_heading = OPEN_OR_UNCLEAN)]
-    pub(crate) merge_tolerance: Option<f64>,
+const UNCLEAN: &str = "Meshes that are not convex, closed or clean";
+
+/// The files of the moving and of the fixed body, and as what they are asked.
+pub(crate) struct Sides<'a> {
+    pub(crate) files: [&'a [PathBuf]; 2],
+    pub(crate) taken: Taken,
 }
 
-const OPEN_OR_UNCLEAN: &str = "Meshes that are not closed or clean";
+/// As what files are asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Taken {
+    /// One convex body on each side.
+    Convex,
+    /// The same if they are convex, else parts.
+    AsTheyAre,
+    Parts,
+}
 
-impl ClearArguments {
-    /// How the files of the moving and of the fixed body are read.
-    pub(crate) fn body_options(&self) -> [BodyOptions; 2] {
-        let &Self { merge_tolerance, open, .. } = self;
-        [self.places.moving_scale, self.places.fixed_scale].map(|scale| BodyOptions {
-            scale,
-            merge_tolerance,
-            open,
-            ..BodyOptions::default()
-        })
+impl ClearanceArguments {
+    /// Who moves, who stays, and as what.
+    pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
+        let usage = |message: &str| Err(Failure::new(Code::Usage, message));
+        let asks_parts = self.tolerance.is_some()
+            || self.ignore_start_overlaps
+            || self.open
+            || !self.from.is_empty();
+        let asks_convex = self.pair.asks_convex();
+        let files = match (self.meshes.as_slice(), self.from.as_slice()) {
+            ([_, _], []) => [&self.meshes[..1], &self.meshes[1..]],
+            (_, []) => return usage("give the mesh that moves and the one that stays, or --from"),
+            (moving, fixed) => [moving, fixed],
+        };
+        let taken = match (asks_convex, asks_parts) {
+            (false, false) => Taken::AsTheyAre,
+            (false, true) => Taken::Parts,
+            (true, false) => Taken::Convex,
+            (true, true) => {
+                return usage(
+                    "--solver, --graze-tolerance, --convex-tolerance and --hull are for two convex \
+                     meshes; --from, --tolerance, --ignore-start-overlaps and --open for parts",
+                );
+            }
+        };
+        Ok(Sides { files, taken })
+    }
+
+    /// How the files of the moving and of the fixed body are read as parts.
+    pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
+        let PairArguments { places, body, .. } = &self.pair;
+        [places.moving_scale, places.fixed_scale]
+            .map(|scale| BodyOptions { open: self.open, ..body.options(scale) })
     }
 }
 
@@ -240,7 +263,7 @@ impl PlaceArguments {
 
 /// Whose convex hull is to be taken.
 #[derive(Debug, Clone, Copy, Args)]
-#[command(next_help_heading = "Meshes that are not convex, closed or clean")]
+#[command(next_help_heading = UNCLEAN)]
 pub(crate) struct HullArguments {
     /// Take the convex hull of all vertices of both meshes, whatever their faces are
     ///
@@ -258,7 +281,7 @@ pub(crate) struct HullArguments {
 
 /// What is tolerated of meshes.
 #[derive(Debug, Clone, Copy, Args)]
-#[command(next_help_heading = "Meshes that are not convex, closed or clean")]
+#[command(next_help_heading = UNCLEAN)]
 pub(crate) struct BodyArguments {
     /// How deep a face may lie below the convex hull, in the unit of the file [default: 1e-5 of
     /// the mesh's extent]
@@ -287,7 +310,14 @@ impl BodyArguments {
 }
 
 impl PairArguments {
-    /// How the mesh files become bodies.
+    /// Whether something is asked that only convex bodies have.
+    fn asks_convex(&self) -> bool {
+        let HullArguments { hull, hull_moving, hull_fixed } = self.hulls;
+        let hulls = hull || hull_moving || hull_fixed || self.body.convex_tolerance.is_some();
+        hulls || self.solver != Solver::Auto || self.graze_tolerance != 0.0
+    }
+
+    /// How the mesh files become convex bodies.
     pub(crate) fn body_options(&self) -> [BodyOptions; 2] {
         let HullArguments { hull, hull_moving, hull_fixed } = self.hulls;
         let one = |hull, scale| BodyOptions { hull, ..self.body.options(scale) };

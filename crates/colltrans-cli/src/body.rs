@@ -6,8 +6,6 @@ use std::path::Path;
 use colltrans::{BuildError, ConvexPolyhedron};
 use colltrans_mesh::body::{BodyOptions, Excess, LoadError, Loaded, Note, Refused, Take};
 
-use crate::failure::{Code, Failure};
-
 /// A convex body, and what is to be said about how it came to be.
 #[derive(Debug)]
 pub(crate) struct Part {
@@ -26,10 +24,9 @@ impl Part {
     }
 }
 
-/// Reads a mesh file as a convex body. The message of an error names the file and says what would help.
-pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, String> {
-    let Loaded { body, notes, .. } =
-        colltrans_mesh::body::load_convex(path, options).map_err(|error| refusal(&error))?;
+/// Reads a mesh file as a convex body.
+pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, LoadError> {
+    let Loaded { body, notes, .. } = colltrans_mesh::body::load_convex(path, options)?;
     let mut excess = None;
     let others = notes.iter().filter(|note| match note {
         // Said with the answer, because the answer means something else then.
@@ -43,14 +40,15 @@ pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, String> {
     Ok(Part { body, excess, notes })
 }
 
-/// [`load`], where a failure ends the command.
-pub(crate) fn load_or_fail(path: &Path, options: &BodyOptions) -> Result<Part, Failure> {
-    load(path, options).map_err(|message| Failure::new(Code::Input, message))
-}
-
 /// A note with the name of its file.
 pub(crate) fn of_file(path: &Path, note: &Note) -> String {
     format!("{}: {note}", path.display())
+}
+
+/// Whether the mesh could be taken as a part, though it is not convex: closed, or as it is.
+pub(crate) fn is_part(error: &LoadError) -> bool {
+    let LoadError::Body { source, .. } = error else { return false };
+    source.instead().iter().any(|take| matches!(take, Take::Solid | Take::Open))
 }
 
 /// Why no body was made of a file, and what would help.
@@ -65,18 +63,18 @@ pub(crate) fn refusal(error: &LoadError) -> String {
 pub(crate) fn hint(refused: &Refused) -> &'static str {
     match (refused, refused.instead()) {
         (Refused::Convex(BuildError::NotConvex { .. }), _) => {
-            "; `colltrans clear` takes parts that are not convex, --hull takes the convex hull, \
+            "; `colltrans clearance` takes parts that are not convex, --hull takes the convex hull, \
              --convex-tolerance allows more"
         }
         (Refused::Convex(_), [Take::Solid, ..]) => {
-            "; `colltrans clear` takes parts that are not convex, --hull takes the convex hull of \
+            "; `colltrans clearance` takes parts that are not convex, --hull takes the convex hull of \
              its vertices"
         }
         (Refused::Convex(_), [_, ..]) => {
             "; --merge-tolerance closes gaps, --hull takes the convex hull of its vertices"
         }
         (Refused::Solid(_), [Take::Open, ..]) => {
-            "; --merge-tolerance closes gaps, `clear --open` takes it as a surface without an inside"
+            "; --merge-tolerance closes gaps, `clearance --open` takes it as a surface without an inside"
         }
         _ => "",
     }

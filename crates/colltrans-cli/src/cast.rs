@@ -1,12 +1,13 @@
-//! `colltrans cast` and `colltrans clearance`: queries on two mesh files.
+//! Queries on two convex meshes: `colltrans cast`, and `colltrans clearance` where they are convex.
 
 use std::io::{self, Read as _};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{Cast, Clearance, ContactRange, Options, ProofFile, QueryError};
+use colltrans::{Cast, Clearance, ContactRange, Options, Pose, ProofFile, QueryError};
+use colltrans_mesh::body::{BodyOptions, LoadError};
 
-use crate::args::{self, DirectionArguments, PairArguments};
+use crate::args::{self, CastArguments, DirectionArguments, PairArguments};
 use crate::body::{self, Part};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
@@ -23,31 +24,59 @@ enum Answer {
     Clearance(Clearance),
 }
 
-pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure> {
-    let (picture, inputs) = (arguments.picture.as_deref(), [&*arguments.moving, &*arguments.fixed]);
-    refuse_picture(picture, &inputs)?;
-    refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
-    let places = &arguments.places;
-    let [moving_pose, fixed_pose] = places.poses()?;
-    let directions = directions(&arguments.directions)?;
-    let [moving_options, fixed_options] = arguments.body_options();
-    let moving = body::load_or_fail(&arguments.moving, &moving_options)?;
-    let fixed = body::load_or_fail(&arguments.fixed, &fixed_options)?;
-    let (placed, mended) = (places.notes(), moving.notes.iter().chain(&fixed.notes));
-    placed.iter().flatten().chain(mended).for_each(|text| note(text));
-    let options = Options {
-        solver: arguments.solver,
-        graze_tolerance: arguments.graze_tolerance,
-        ..Options::default()
-    };
-    let [moving_at, fixed_at] = [moving.body.at(moving_pose), fixed.body.at(fixed_pose)];
-    let cast = |direction| Cast::new(moving_at, fixed_at, direction)?.with_options(options);
-    let parts = [&moving, &fixed];
-    match directions {
-        Directions::One(direction) => answer_one(arguments, asked, &cast(direction)?, parts),
-        Directions::Many(all) => {
-            let casts = all.into_iter().map(|direction| (direction, cast(direction)));
-            scan(arguments.json, asked, casts, parts)
+pub(crate) fn run(arguments: &CastArguments) -> Result<(), Failure> {
+    let files = [&*arguments.moving, &*arguments.fixed];
+    let request = Request::of(&arguments.pair, &files)?;
+    let parts = load(files, &arguments.pair.body_options());
+    let [moving, fixed] =
+        parts.map_err(|error| Failure::new(Code::Input, body::refusal(&error)))?;
+    request.convex(Asked::Contact, [&moving, &fixed])
+}
+
+/// Both files as convex bodies.
+pub(crate) fn load(files: [&Path; 2], options: &[BodyOptions; 2]) -> Result<[Part; 2], LoadError> {
+    Ok([body::load(files[0], &options[0])?, body::load(files[1], &options[1])?])
+}
+
+/// What is asked of two bodies, checked before they are read.
+pub(crate) struct Request<'a> {
+    pub(crate) arguments: &'a PairArguments,
+    pub(crate) poses: [Pose; 2],
+    pub(crate) directions: Directions,
+}
+
+impl<'a> Request<'a> {
+    pub(crate) fn of(arguments: &'a PairArguments, inputs: &[&Path]) -> Result<Self, Failure> {
+        let picture = arguments.picture.as_deref();
+        refuse_picture(picture, inputs)?;
+        refuse_proof(arguments.save_proof.as_deref(), picture, inputs)?;
+        let poses = arguments.places.poses()?;
+        Ok(Self { arguments, poses, directions: directions(&arguments.directions)? })
+    }
+
+    /// Says what was changed about the poses and mended in the files.
+    pub(crate) fn tell(&self, mended: [&[String]; 2]) {
+        let placed = self.arguments.places.notes();
+        placed.iter().flatten().chain(mended.into_iter().flatten()).for_each(|text| note(text));
+    }
+
+    /// Asked of convex bodies.
+    pub(crate) fn convex(self, asked: Asked, parts: [&Part; 2]) -> Result<(), Failure> {
+        self.tell(parts.map(|part| part.notes.as_slice()));
+        let Self { arguments, poses, directions } = self;
+        let options = Options {
+            solver: arguments.solver,
+            graze_tolerance: arguments.graze_tolerance,
+            ..Options::default()
+        };
+        let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
+        let cast = |direction| Cast::new(moving, fixed, direction)?.with_options(options);
+        match directions {
+            Directions::One(direction) => answer_one(arguments, asked, &cast(direction)?, parts),
+            Directions::Many(all) => {
+                let casts = all.into_iter().map(|direction| (direction, cast(direction)));
+                scan(arguments.json, asked, casts, parts)
+            }
         }
     }
 }
@@ -59,7 +88,7 @@ pub(crate) enum Directions {
 }
 
 /// What `--direction` and `--directions` say.
-pub(crate) fn directions(asked: &DirectionArguments) -> Result<Directions, Failure> {
+fn directions(asked: &DirectionArguments) -> Result<Directions, Failure> {
     match (asked.direction, asked.directions.as_deref()) {
         (_, Some(file)) => read_directions(file).map(Directions::Many),
         (Some(direction), None) => Ok(Directions::One(direction)),

@@ -147,7 +147,7 @@ fn not_quite(mesh: &Mesh, face: usize, depth: f64, asked_tolerance: Option<f64>)
     let verdict = if depth <= tolerance {
         "yes, within tolerance"
     } else {
-        "no; `clear` takes it as it is, --hull takes its hull"
+        "no; `clearance` takes it as it is, --hull takes its hull"
     };
     format!(
         "{verdict}: face {face} lies {} below the hull, {} of the extent (tolerated: {})",

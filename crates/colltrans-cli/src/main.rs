@@ -5,8 +5,8 @@
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read, [`outputs`]
 //! writes files whole or not at all, [`terminal`] keeps names from steering it.
-//! [`info`] looks at one mesh, [`assembly`] at many parts. Parts that need not be convex go from [`solid`] (mesh files to
-//! solids, and the library's part) by way of [`clear`]; [`progress`] shows how far work is. [`proof`]
+//! [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
+//! others as parts, which [`solid`] makes of files; [`progress`] shows how far work is. [`proof`]
 //! saves proofs and checks saved ones.
 
 mod args;
@@ -14,7 +14,7 @@ mod assembly;
 mod batch;
 mod body;
 mod cast;
-mod clear;
+mod clearance;
 mod failure;
 mod info;
 mod inputs;
@@ -35,7 +35,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Arguments, Command};
-use report::Asked;
 
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|bug| {
@@ -46,9 +45,8 @@ fn main() -> ExitCode {
         Err(told) => return told_by_the_parser(&told),
     };
     let result = match arguments.command {
-        Command::Cast(arguments) => cast::run(&arguments, Asked::Contact),
-        Command::Clearance(arguments) => cast::run(&arguments, Asked::Clearance),
-        Command::Clear(arguments) => clear::run(&arguments),
+        Command::Cast(arguments) => cast::run(&arguments),
+        Command::Clearance(arguments) => clearance::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),

@@ -17,9 +17,12 @@ pub fn json(f: &Findings) -> Value {
         .iter()
         .enumerate()
         .map(|(k, p)| {
-            let mut part =
-                json!({ "name": p.name(), "facets": p.facets(), "volume": p.solid().volume() });
-            part["volume_bounds"] = json!(p.solid().volume_bounds());
+            let bounds = p.solid().volume_bounds();
+            // What is open has none.
+            let volume = bounds.map(|_| p.solid().volume());
+            let mut part = json!({
+                "name": p.name(), "facets": p.facets(), "volume": volume, "volume_bounds": bounds
+            });
             if p.is_surface() {
                 let count =
                     |kind: ShellKind| (kind.name().to_owned(), p.solid().report().count(kind));

@@ -123,7 +123,7 @@ Examples:
     printf 'x\\n-x\\n1,1,0\\n' | colltrans cast a.obj b.obj --directions - --json";
 
 pub(super) const CLEARANCE_ANSWERS: &str = "\
-Answers:
+Answers for convex bodies:
   blocked      the body can go so far, and then touches the other; 0 if it touches now and would
                enter it
   slides       it can go on for ever: the bodies touch along the way, or overlap sideways by no
@@ -132,11 +132,7 @@ Answers:
   separated    it can go on for ever, and back too: the bodies never meet along this line
   overlapping  the bodies overlap now; the answer says how far to go back, or on, to be free
 
-Example:
-  colltrans clearance drawer.stl cabinet.stl --direction -y --hull-moving";
-
-pub(super) const CLEAR_ANSWERS: &str = "\
-Answers:
+Answers for parts:
   free         it can go on for ever
   blocked      it can go so far, perhaps 0: `distance` is safe to move by. The faces that stop it meet
                in their true place within `translation_bounds`; the bodies shrunk by half the tolerance
@@ -147,21 +143,18 @@ Answers:
 multiples of the direction; tolerance, depth and point are in the unit of the meshes. Vertices are
 numbered from 0 as in their files; a face is the whole polygon, an edge runs from corner to corner.
 
-With --json one object, with those of these fields that apply:
-  {\"outcome\": \"free\"|\"blocked\"|\"overlapping\", \"distance\", \"translation\",
-   \"translation_bounds\": [at least, at most], \"shrunk_distance\", \"shrunk_distance_bounds\",
-   \"exit\", \"exit_bounds\", \"moving\": FILE, \"fixed\": FILE (what touches, or overlaps deepest),
-   \"normal\": [x,y,z] (from moving to fixed), \"point\": [x,y,z] (of the contact, on the fixed part),
-   \"tolerance\", \"start_overlaps\": [{\"moving\": FILE, \"fixed\": FILE, \"depth\"}],
-   \"features\": {\"moving\": {\"kind\": \"vertex\"|\"edge\"|\"face\", \"vertices\": [...]}, \"fixed\": ...}}
+With --json one object, in the fields of `batch --help`; of parts, `moving` and `fixed` are the files
+that touch, or overlap deepest, and start_overlaps has one entry for each two files that overlap.
 
 Examples:
+  How far does a drawer come out, by the hull of both?
+    colltrans clearance drawer.stl cabinet.stl --direction -y --hull-moving
   How far does a bolt go down into a plate with a hole, from 7 above it?
-    colltrans clear bolt.stl --from plate.stl --direction -z --moving-pose 0,0,7
+    colltrans clearance bolt.stl --from plate.stl --direction -z --moving-pose 0,0,7
   Does the bearing come out of its housing, when curved fits are tessellated to 0.05?
-    colltrans clear ring.stl balls.stl --from housing.stl shaft.stl --direction x --tolerance 0.1
+    colltrans clearance ring.stl balls.stl --from housing.stl shaft.stl --direction x --tolerance 0.1
   Parts that are pressed into each other at the start, with a picture:
-    colltrans clear pin.stl --from block.stl --direction z --ignore-start-overlaps \\
+    colltrans clearance pin.stl --from block.stl --direction z --ignore-start-overlaps \\
       --picture pin.svg";
 
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
@@ -173,9 +166,8 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
        or {"mesh": "path", "hull": true|false, "scale": FACTOR}
        or {"solid": "path", "scale": FACTOR, "open": BOOL} (need not be convex; open: nor closed)
   (hull and scale may be missing: as --hull says, and 1)
-  query is "contact", as of `colltrans cast`, or "clearance": as of `colltrans clear` where a body
-  is a solid, else as of `colltrans clearance`. Solids are asked for their clearance only, which is
-  the default there.
+  query is "contact", as of `colltrans cast`, or "clearance", as of `colltrans clearance`. Solids are
+  asked for their clearance only, which is the default there.
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
 moving, fixed and direction are required. Paths are relative to the folder of the query file, or to
 the current folder for standard input. Blank lines are skipped, unknown fields are errors.
@@ -268,7 +260,6 @@ mod tests {
             &formats(),
             CAST_EXAMPLES,
             CLEARANCE_ANSWERS,
-            CLEAR_ANSWERS,
             BATCH_FORMAT,
             ASSEMBLY_FORMAT,
         ];

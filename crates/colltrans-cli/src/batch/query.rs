@@ -154,7 +154,7 @@ impl Batch {
         self.cache.get(key, |_| {
             self.watched.note(&path);
             let options = BodyOptions { hull, ..self.body.options(scale) };
-            let part = body::load(&path, &options)?;
+            let part = body::load(&path, &options).map_err(|error| body::refusal(&error))?;
             Ok(Arc::new(Shape::Convex(part)))
         })
     }

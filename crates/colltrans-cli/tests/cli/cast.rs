@@ -158,7 +158,7 @@ fn bad_files_are_named_with_what_helps() {
     assert_error(
         &cast("dent.off", &[]),
         3,
-        &["dent.off", "not convex", "2.5e-1", "--hull", "`colltrans clear`"],
+        &["dent.off", "not convex", "2.5e-1", "--hull", "`colltrans clearance`"],
     );
     assert_error(&cast("points.ply", &[]), 3, &["points.ply", "no faces", "--hull"]);
     for good in [
@@ -220,7 +220,7 @@ fn info_says_what_is_there_and_what_is_wrong() {
             "vertices     9",
             "surface      closed",
             "solid        yes: 1 shell, 0 holes through",
-            "no; `clear` takes it as it is, --hull takes its hull: face 1 lies 0.25 below",
+            "no; `clearance` takes it as it is, --hull takes its hull: face 1 lies 0.25 below",
             "volume       0.9166",
             "hull volume  1\n",
             "hull exceeds 0.0833333 of its volume 1 is not the part (8.333 %); the part's surface \

@@ -3,7 +3,7 @@
 mod assembly;
 mod batch;
 mod cast;
-mod clear;
+mod clearance;
 mod example_parts;
 mod newcomers;
 mod picture;

@@ -1,32 +1,48 @@
-//! `colltrans clear`: how far a part that need not be convex can move before other parts block it.
+//! `colltrans clearance`: how far a body can move before another blocks it. Two convex meshes are asked as
+//! `cast` asks them; this is the way of all others, the parts.
 
 mod words;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use colltrans::record::{Ending, Record};
+use colltrans_mesh::body::BodyOptions;
 
-use crate::args::ClearArguments;
-use crate::cast::{Directions, all_answered, directions};
+use crate::args::{ClearanceArguments, PairArguments, Sides, Taken};
+use crate::body::{is_part, refusal};
+use crate::cast::{self, Directions, Request, all_answered};
 use crate::failure::{Code, Failure, note, print};
-use crate::inputs::refuse_picture;
 use crate::outputs;
 use crate::picture::draw_solids;
 use crate::progress;
-use crate::proof::{self, refuse_proof};
+use crate::proof;
 use crate::record::Line;
+use crate::report::Asked;
 use crate::solid::{Body, Question};
 
-pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
-    let files = arguments.moving.iter().chain(&arguments.from);
-    let inputs: Vec<&Path> = files.map(AsRef::as_ref).collect();
-    let picture = arguments.picture.as_deref();
-    refuse_picture(picture, &inputs)?;
-    refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
-    let places = &arguments.places;
-    let [moving_pose, fixed_pose] = places.poses()?;
-    let directions = directions(&arguments.directions)?;
-    let [moving, fixed] = load(arguments, inputs.len())?;
+pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
+    let Sides { files, taken } = arguments.sides()?;
+    let inputs: Vec<&Path> = files.into_iter().flatten().map(AsRef::as_ref).collect();
+    let request = Request::of(&arguments.pair, &inputs)?;
+    if let ([moving, fixed], true) = (inputs.as_slice(), taken != Taken::Parts) {
+        match cast::load([moving, fixed], &arguments.pair.body_options()) {
+            Ok([moving, fixed]) => return request.convex(Asked::Clearance, [&moving, &fixed]),
+            Err(error) if taken == Taken::AsTheyAre && is_part(&error) => {}
+            Err(error) => return Err(Failure::new(Code::Input, refusal(&error))),
+        }
+    }
+    parts(arguments, request, files)
+}
+
+/// Asked of parts that need not be convex.
+fn parts(
+    arguments: &ClearanceArguments,
+    request: Request<'_>,
+    files: [&[PathBuf]; 2],
+) -> Result<(), Failure> {
+    let [moving, fixed] = load(files, &arguments.part_options())?;
+    request.tell([&moving.notes, &fixed.notes]);
+    let [moving_pose, fixed_pose] = request.poses;
     let question = |direction| Question {
         moving: &moving,
         moving_pose,
@@ -36,24 +52,21 @@ pub(crate) fn run(arguments: &ClearArguments) -> Result<(), Failure> {
         tolerance: arguments.tolerance,
         ignore_start_overlaps: arguments.ignore_start_overlaps,
     };
-    let placed = places.notes();
-    let told = moving.notes.iter().chain(&fixed.notes);
-    placed.iter().flatten().chain(told).for_each(|text| note(text));
-    match directions {
-        Directions::One(direction) => answer_one(arguments, &question(direction)),
-        Directions::Many(all) => scan(arguments.json, all.into_iter().map(question)),
+    match request.directions {
+        Directions::One(direction) => answer_one(&arguments.pair, &question(direction)),
+        Directions::Many(all) => scan(arguments.pair.json, all.into_iter().map(question)),
     }
 }
 
-fn answer_one(arguments: &ClearArguments, question: &Question<'_>) -> Result<(), Failure> {
+fn answer_one(arguments: &PairArguments, question: &Question<'_>) -> Result<(), Failure> {
     let bar = progress::steps(question.pairs(), "looking");
     let answer = question.ask(|| bar.inc(1));
     bar.finish_and_clear();
     let answer = answer?;
     answer.notes.iter().for_each(|text| note(text));
-    let is_default = arguments.tolerance.is_none();
+    let is_default = question.tolerance.is_none();
     let text = if arguments.json {
-        Line::from(answer.record.clone()).json()
+        Line { notes: answer.notes.clone(), ..answer.record.clone().into() }.json()
     } else {
         words::answer(&answer, question.direction, is_default)
     };
@@ -98,12 +111,10 @@ fn scan<'a>(
 }
 
 /// Both bodies.
-fn load(arguments: &ClearArguments, files: usize) -> Result<[Body; 2], Failure> {
-    let bar = progress::steps(files, "reading");
-    let [moving, fixed] = arguments.body_options();
-    let load = |files, options| Body::load(files, options, || bar.inc(1));
-    let moving = load(&arguments.moving, &moving);
-    let bodies = moving.and_then(|moving| Ok([moving, load(&arguments.from, &fixed)?]));
+fn load(files: [&[PathBuf]; 2], options: &[BodyOptions; 2]) -> Result<[Body; 2], Failure> {
+    let bar = progress::steps(files.iter().map(|side| side.len()).sum(), "reading");
+    let load = |k: usize| Body::load(files[k], &options[k], || bar.inc(1));
+    let bodies = load(0).and_then(|moving| Ok([moving, load(1)?]));
     bar.finish_and_clear();
     bodies.map_err(|message| Failure::new(Code::Input, message))
 }

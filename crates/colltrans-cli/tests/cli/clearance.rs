@@ -1,4 +1,4 @@
-//! `colltrans clear`, and solids in `batch` and `info`: small parts that the tests write.
+//! `colltrans clearance`, and solids in `batch` and `info`: small parts that the tests write.
 
 use std::path::Path;
 use std::process::Output;
@@ -171,8 +171,8 @@ fn a_bolt_stops_where_its_head_does() {
 #[test]
 fn the_page_shows_what_is_printed() {
     let root = data().join("..");
-    let page = std::fs::read_to_string(root.join("docs/clear.md")).unwrap();
-    let (_, rest) = page.split_once("```sh\ncolltrans clear ").unwrap();
+    let page = std::fs::read_to_string(root.join("docs/clearance.md")).unwrap();
+    let (_, rest) = page.split_once("```sh\ncolltrans clearance ").unwrap();
     let (command, rest) = rest.split_once(" --picture bolt.svg\n```\n\n```text\n").unwrap();
     let (shown, _) = rest.split_once("```").unwrap();
     let folder = tempfile::tempdir().unwrap();
@@ -319,6 +319,23 @@ fn open_surfaces_are_refused_unless_they_are_meant() {
 }
 
 #[test]
+fn two_meshes_are_asked_as_what_they_are() {
+    let folder = folder();
+    let ask = |words: &str| ask(folder.path(), &format!("{words} --direction -z")).0;
+    let convex = ask("block.off table.off --moving-pose 0,0,5");
+    assert_eq!(convex["solver"], "portal", "{convex}");
+    assert_eq!(ask("block.off table.off --moving-pose 9,9,-20")["outcome"], "behind");
+    let placed = |words: &str| ask(&format!("{words} --moving-pose 0,0,5"));
+    assert_eq!(placed("pin.off plate.off"), placed("pin.off --from plate.off"));
+    assert_eq!(placed("pin.off plate.off")["outcome"], "blocked");
+    let parts = placed("block.off table.off --tolerance 0.1");
+    assert_eq!(parts["tolerance"], 0.1, "{parts}");
+    assert_eq!(placed("pin.off plate.off --hull")["solver"], "portal");
+    let thin = placed("block.off plate.off --tolerance 9");
+    assert!(thin["notes"][0].as_str().unwrap().contains("inside out"), "{thin}");
+}
+
+#[test]
 fn what_is_wrong_is_said() {
     let folder = folder();
     let folder = folder.path();
@@ -326,7 +343,11 @@ fn what_is_wrong_is_said() {
     refused(folder, "block.off --from broken.off --direction z", 3, &["broken.off", "`zero`"]);
     refused(folder, "block.off --from table.off", 2, &["--direction"]);
     refused(folder, "block.off --direction z", 2, &["--from"]);
-    refused(folder, "--from table.off --direction z", 2, &["MOVING"]);
+    refused(folder, "block.off table.off pin.off --direction z", 2, &["--from"]);
+    refused(folder, "pin.off plate.off --direction z --hull --open", 2, &["--hull", "--open"]);
+    refused(folder, "pin.off --from plate.off --direction z --solver cta", 2, &["--solver"]);
+    refused(folder, "open.off table.off --direction z", 3, &["open.off", "--open"]);
+    refused(folder, "--from table.off --direction z", 2, &["MESH"]);
     let words = "block.off --from table.off --direction z";
     refused(folder, &format!("{words} --tolerance -1"), 2, &["negative"]);
     refused(folder, &format!("{words} --graze-tolerance 1"), 2, &["--graze-tolerance"]);
@@ -347,7 +368,7 @@ fn cast_says_who_takes_parts_that_are_not_convex() {
     assert_eq!(output.status.code(), Some(3));
     let message = stderr(&output);
     assert!(
-        message.contains("a hole through it") && message.contains("`colltrans clear`"),
+        message.contains("a hole through it") && message.contains("`colltrans clearance`"),
         "{message}"
     );
 }

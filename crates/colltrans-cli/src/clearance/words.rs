@@ -11,7 +11,7 @@ use crate::terminal::shown;
 /// Below this many tolerances a body hardly moves: perhaps a fit is tighter than the tolerance.
 const HARDLY: f64 = 4.0;
 
-/// The readable answer of `colltrans clear`.
+/// The readable answer of `colltrans clearance`.
 pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> String {
     let mut text = String::new();
     let record = &answer.record;

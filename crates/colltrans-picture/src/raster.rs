@@ -221,9 +221,8 @@ mod tests {
     #[test]
     fn slack_is_a_length_for_either_kind_of_depths() {
         let v = DVec3::new;
-        let kinds: [(Depth, fn(f64) -> f64); 2] =
-            [(Depth::Length, |away| -away), (Depth::Inverse, |away| 1.0 / away)];
-        for (kind, depth) in kinds {
+        for kind in [Depth::Length, Depth::Inverse] {
+            let depth = |away: f64| if kind == Depth::Length { -away } else { 1.0 / away };
             let mut raster = Raster::new(WINDOW).with_depths(kind);
             let z = depth(4.0);
             raster.draw([v(-99.0, -99.0, z), v(299.0, -99.0, z), v(-99.0, 299.0, z)], 0);

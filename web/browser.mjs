@@ -1,9 +1,11 @@
 // For the tests: the page as it was built, in a browser; and programs that answer the same natively.
 
+import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { Ajv2020 } from "ajv/dist/2020.js";
 import { chromium } from "playwright-core";
 import { serve } from "./serve.mjs";
 import { built } from "./toolchain.mjs";
@@ -18,6 +20,16 @@ export const program = (name) => join(built, "native/examples", name);
 /** Its answers, a line each. */
 export function answers(name, questions) {
   return execFileSync(program(name), { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
+}
+
+const schema = new Ajv2020({ strict: false, allErrors: true });
+schema.addSchema(JSON.parse(readFileSync(join(root, "docs/answers.schema.json"), "utf8")), "answers");
+
+/** Whether a value is what the schema of answers calls so. */
+export function conform(name, value) {
+  const fits = schema.getSchema(`answers#/$defs/${name}`);
+  assert.ok(fits, `${name} is not in the schema`);
+  assert.ok(fits(value), `${name}: ${schema.errorsText(fits.errors)}: ${JSON.stringify(value).slice(0, 500)}`);
 }
 
 /** Graphics are computed. Only what is drawn in three dimensions is, as by a graphics card; the page around it is

@@ -28,10 +28,17 @@ const root = join(here, "..");
 const data = join(root, "data");
 const out = join(here, "dist");
 
+/** The examples that are the page's modules, by their packages. */
+const MODULES = {
+  "colltrans-wasm": "page",
+  "colltrans-wasm-assembly": "page_assembly",
+  "colltrans-wasm-picture": "page_picture",
+};
+
 if (!process.argv.includes("--no-wasm")) {
   const env = { ...process.env, ...found() };
-  const packages = ["-p", "colltrans-wasm", "--example", "page", "-p", "colltrans-wasm-assembly", "--example", "page_assembly"];
-  // Both at once: what they have in common is built once.
+  const packages = Object.entries(MODULES).flatMap(([name, example]) => ["-p", name, "--example", example]);
+  // All at once: what they have in common is built once.
   execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown"], {
     cwd: join(root, "crates/colltrans-wasm"),
     env,
@@ -41,9 +48,10 @@ if (!process.argv.includes("--no-wasm")) {
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-const modules = join(built, "wasm32-unknown-unknown/page/examples");
-copyFileSync(join(modules, "page.wasm"), join(out, "colltrans.wasm"));
-copyFileSync(join(modules, "page_assembly.wasm"), join(out, "colltrans_assembly.wasm"));
+for (const example of Object.values(MODULES)) {
+  const made = join(built, "wasm32-unknown-unknown/page/examples", `${example}.wasm`);
+  copyFileSync(made, join(out, `${example.replace("page", "colltrans")}.wasm`));
+}
 copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 await build({

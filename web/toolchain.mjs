@@ -16,6 +16,11 @@ export const built = process.env.CARGO_TARGET_DIR ?? join(dirname(fileURLToPath(
 
 const TARGET = "wasm32-unknown-unknown";
 
+/** What only a compiler takes that is allowed unstable options, as Debian's is here: no place of the source in what
+ * a panic says, and of values made of others only their names. Nothing but the last words of a stopped library has
+ * either, and both are bytes that every visitor loads. */
+const SMALLER = "-Zlocation-detail=none -Zfmt-debug=shallow";
+
 const run = (command, args, options = {}) => execFileSync(command, args, { encoding: "utf8", ...options });
 
 function installed() {
@@ -40,9 +45,10 @@ function unpacked(folder) {
     RUSTC: rustc,
     RUSTC_BOOTSTRAP: "1",
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER: join("/usr/bin", linker),
+    CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: SMALLER,
   };
   const sysroot = standardLibrary(folder, { ...process.env, ...env });
-  return { ...env, CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: `--sysroot=${sysroot}` };
+  return { ...env, CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: `${SMALLER} --sysroot=${sysroot}` };
 }
 
 /** What the standard library is compiled for: a program as small as the page's modules (see profile `page` in
@@ -67,7 +73,7 @@ const OF_SOURCE = ["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize
 /** The folder of the standard library by this compiler and for such programs. */
 function standardLibrary(folder, env) {
   const compiler = run(env.RUSTC, ["-vV"], { env });
-  const key = createHash("sha256").update([compiler, PROGRAM, ...OF_SOURCE].join()).digest("hex").slice(0, 16);
+  const key = createHash("sha256").update([compiler, PROGRAM, SMALLER, ...OF_SOURCE].join()).digest("hex").slice(0, 16);
   const sysroot = join(folder, `std-${key}`);
   if (existsSync(sysroot)) return sysroot;
   // It gets its name when all of it is there.

@@ -6,6 +6,7 @@
 
 import { Group, MeshLambertMaterial, Vector3 } from "three";
 import { aim, onPage, rounded } from "./aim";
+import type { PageAlong, PageFit, PageParts, PagePlan } from "./answers";
 import { type Move, Parts, tint } from "./assembly/parts";
 import { Player } from "./assembly/player";
 import { type RemovalMap, Sphere } from "./assembly/sphere";
@@ -25,31 +26,6 @@ const GEARBOX = [
 const EXAMPLE = "gearbox_small";
 /** What is planned without being asked to. */
 const SOON = 40;
-
-interface Facts {
-  parts: { name: string; vertices: number; triangles: number; closed: boolean; defects: string[] }[];
-  unit: string | null;
-  size: number;
-}
-interface Fit {
-  tolerance: number;
-  default: number;
-  suggested: number | null;
-  overlaps: { parts: [number, number]; depth: number | null; remains: boolean }[];
-  touches: { parts: [number, number]; area: number }[];
-}
-interface Along {
-  meetings: { moving: number; fixed: number; distance: number | null; point: Vec | null }[];
-  first: { outcome: "free" | "blocked" | "overlapping"; by?: number; distance?: number }[];
-  removable: number[][];
-  closures: number[][];
-}
-interface Plan {
-  directions: number;
-  steps: { parts: number[]; direction: Vec; travel: number; within: number | null; surfaces: number[] }[];
-  left: number[];
-  stuck: { parts: number[]; directions: number; overlapping: [number, number][]; holds: { part: number; by: number[][] }[] }[];
-}
 
 export class AssemblyTab {
   readonly panel = h("div", { class: "assembly-panel" });
@@ -74,11 +50,11 @@ export class AssemblyTab {
   private engine: Engine;
   private files: { name: string; bytes: ArrayBuffer }[] = [];
   private source = "";
-  private facts: Facts | undefined;
-  private fit: Fit | undefined;
-  private along: Along | undefined;
+  private facts: PageParts | undefined;
+  private fit: PageFit | undefined;
+  private along: PageAlong | undefined;
   private map: RemovalMap | undefined;
-  private plan: Plan | undefined;
+  private plan: PagePlan | undefined;
   private moves: Move[] = [];
   private error = "";
   private busy = "";
@@ -90,12 +66,11 @@ export class AssemblyTab {
   private turn = 0;
 
   constructor(
-    private readonly script: URL,
     private readonly state: () => State,
     private readonly remember: () => void,
     private readonly copy: (text: string, what: string) => void,
   ) {
-    this.engine = new Engine(script, "colltrans_assembly");
+    this.engine = new Engine("colltrans_assembly");
     this.stage.append(this.view, this.player.element);
     this.player.show([], "");
     const number = (k: number) => {
@@ -215,7 +190,7 @@ export class AssemblyTab {
 
   private async load(files: { name: string; bytes: ArrayBuffer }[], source: string) {
     const turn = ++this.turn;
-    const engine = new Engine(this.script, "colltrans_assembly");
+    const engine = new Engine("colltrans_assembly");
     this.wait("Reading the parts");
     try {
       for (const { name, bytes } of files) {
@@ -227,8 +202,8 @@ export class AssemblyTab {
       // What is there stays until the new one is read.
       this.engine.stop("another assembly was asked for");
       this.engine = engine;
-      [this.files, this.source, this.facts] = [files, source, facts as Facts];
-      this.showParts(this.facts, numbers);
+      [this.files, this.source, this.facts] = [files, source, facts];
+      this.showParts(facts, numbers);
     } catch (error) {
       engine.stop("it was refused");
       // What is wrong with it is of no use once another one is asked for.
@@ -240,7 +215,7 @@ export class AssemblyTab {
     await this.refit();
   }
 
-  private showParts(facts: Facts, numbers: ArrayBuffer) {
+  private showParts(facts: PageParts, numbers: ArrayBuffer) {
     let at = 0;
     const parts = facts.parts.map(({ name, vertices, triangles }, k) => {
       const part = { name, colour: tint(k), vertices: new Float32Array(numbers, at, 3 * vertices), triangles: new Uint32Array(numbers, at + 12 * vertices, 3 * triangles) };
@@ -265,7 +240,7 @@ export class AssemblyTab {
     try {
       const { facts } = await this.engine.ask({ do: "fit", tolerance, ignore_overlaps: ignore });
       if (turn !== this.turn) return;
-      this.fit = facts as Fit;
+      this.fit = facts;
       this.wait("");
       await this.ask();
       if (turn !== this.turn || !this.patient) return;
@@ -287,7 +262,7 @@ export class AssemblyTab {
     this.asking = true;
     try {
       const { facts } = await this.engine.ask({ do: "along", direction: this.asked.direction });
-      if (turn === this.turn) [this.along, this.error] = [facts as Along, ""];
+      if (turn === this.turn) [this.along, this.error] = [facts, ""];
     } catch (error) {
       if (turn === this.turn) [this.along, this.error] = [undefined, said(error)];
     }
@@ -309,7 +284,7 @@ export class AssemblyTab {
       if (turn !== this.turn || this.asked.part !== part) return;
       const [n, t] = [facts.directions as number, facts.triangles as number];
       this.map = {
-        ...(facts as RemovalMap), directions: new Float32Array(numbers, 0, 3 * n), distances: new Float32Array(numbers, 12 * n, n),
+        ...facts, directions: new Float32Array(numbers, 0, 3 * n), distances: new Float32Array(numbers, 12 * n, n),
         triangles: new Uint32Array(numbers, 16 * n, 3 * t),
       };
     } finally {
@@ -324,7 +299,7 @@ export class AssemblyTab {
     try {
       const { facts } = await this.engine.ask({ do: "plan" });
       if (turn !== this.turn || !this.facts) return;
-      const plan = (this.plan = facts as Plan);
+      const plan = (this.plan = facts);
       const { size, unit: of } = this.facts;
       const last = plan.steps.length - 1;
       this.moves = plan.steps.map(({ parts, direction, travel }, k) => {
@@ -433,7 +408,7 @@ export class AssemblyTab {
       ...(wait ? [wait] : []));
   }
 
-  private showList(facts: Facts) {
+  private showList(facts: PageParts) {
     const { along, asked } = this;
     const rows = facts.parts.map(({ name, defects, closed }, k) => {
       const first = along?.first[k];
@@ -451,7 +426,7 @@ export class AssemblyTab {
     refill(this.list, ...rows);
   }
 
-  private blockers(along: Along, part: number): string {
+  private blockers(along: PageAlong, part: number): string {
     const met = along.meetings.filter(({ moving }) => moving === part).sort((a, b) => (a.distance ?? 0) - (b.distance ?? 0));
     if (!met.length) return "Nothing is in its way.";
     const each = met.map(({ fixed, distance }) => `${this.names([fixed])} ${distance === null ? "(overlap)" : `after ${short(distance, 4)}`}`).join(", ");

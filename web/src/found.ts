@@ -4,11 +4,12 @@
 // looked at, the moving one's where it starts and where it touches the other.
 
 import { BufferGeometry, DoubleSide, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Vector3 } from "three";
+import type { PageSearch } from "./answers";
 import { palette } from "./colours";
 import { h, refill, svg } from "./dom";
 import type { Engine, Pair } from "./engine";
 import { Graph, type Grid } from "./found/graph";
-import { type Minimisation, type Recording, below, minimisation, portals } from "./found/recording";
+import { type Minimisation, below, minimisation, portals } from "./found/recording";
 import { type Vec, add, cross, dot, hull, length, placed, short, sub, times, unit } from "./math";
 import type { State } from "./state";
 import type { View } from "./view";
@@ -114,7 +115,7 @@ export class Found {
       const sections = await this.engine.ask({ do: "search", ...pair, solver: "cta", from_center, after: this.before() });
       const refined = await this.engine.ask({ do: "search", ...pair, solver: "portal", after: this.before() });
       if (turn !== this.asked) return;
-      const [first, second] = [sections.facts as Recording, refined.facts as Recording];
+      const [first, second] = [sections.facts, refined.facts];
       this.found = this.from.value === "region" ? within(first) : minimisation(first.events);
       this.refined = portals(second.events);
       this.grid = undefined;
@@ -135,7 +136,7 @@ export class Found {
     this.head.replaceChildren(h("h2", {}, headline), h("p", {}, sentence));
   }
 
-  private tellWork(cta: Recording, portal: Recording) {
+  private tellWork(cta: PageSearch, portal: PageSearch) {
     const bodies = this.bodies()!;
     const [p, q] = bodies.map((body) => body.body.facts.vertices) as Two;
     this.say(
@@ -145,19 +146,19 @@ export class Found {
     );
   }
 
-  private tellTracker({ steps, tracked }: Recording) {
+  private tellTracker({ steps, tracked }: PageSearch) {
     if (!tracked) {
       this.tracker.textContent = "Change the question a little (drag the arrow, or move a body): a tracker then starts from the answer before.";
       return;
     }
-    const from = { features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.from];
+    const from = { features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.steps.started_from ?? "scratch"];
     this.tracker.textContent =
       `Asked after the question before this one, a tracker starts from ${from}: ${count(tracked.steps.supports, "supporting plane")} and ` +
       `${count(tracked.steps.pivots, "portal")}, instead of ${steps.supports} and ${steps.pivots}. The proof is made anew, so it is as tight as any.`;
   }
 
   /** What the neighbourhood of the last solution saves. */
-  private tellNear({ steps, region }: Recording) {
+  private tellNear({ steps, region }: PageSearch) {
     const l = length(this.pair().direction);
     if (!region) {
       this.near.textContent = region === null ? "The question before had no contact: there is no p, and no neighbourhood N(p)." : "";
@@ -196,8 +197,8 @@ export class Found {
     const all = new Float64Array(numbers);
     const corners = (from: number, count: number): Vec[] =>
       Array.from({ length: count }, (_, k) => [all[from + 3 * k]!, all[from + 3 * k + 1]!, all[from + 3 * k + 2]!]);
-    const count = facts.moving[0] as number;
-    this.sections = { phi: all[0]!, moving: corners(1, count), fixed: corners(1 + 3 * count, facts.fixed[0]) };
+    const count = facts.moving[0] ?? 0;
+    this.sections = { phi: all[0]!, moving: corners(1, count), fixed: corners(1 + 3 * count, facts.fixed[0] ?? 0) };
   }
 
   private pick(step: number) {
@@ -368,7 +369,7 @@ export class Found {
 const count = (n: number, what: string) => `${n} ${what}${n === 1 ? "" : "s"}`;
 
 /** The minimisation in the neighbourhood of the last solution. */
-function within({ region }: Recording): Minimisation | undefined {
+function within({ region }: PageSearch): Minimisation | undefined {
   const found = region ? minimisation(region.events) : undefined;
   if (found && region) found.square = { center: region.center, half: region.half };
   return found;

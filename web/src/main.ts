@@ -6,7 +6,8 @@
 
 import { onChange } from "./colours";
 import { h, named, soon } from "./dom";
-import { type Answer, Engine, type Pair, Refused, type Slot, type SolidAnswer, type SolidProof, type Take, bytesOf } from "./engine";
+import type { PageCast, PageCertify } from "./answers";
+import { Engine, type Pair, Refused, type Slot, type Take, bytesOf } from "./engine";
 import { EXAMPLES, type Part, SLOTS } from "./examples";
 import { ACCEPTED } from "./formats";
 import { dot, length, placed, sub } from "./math";
@@ -26,19 +27,18 @@ const TABS: Tab[] = ["answer", "found", "assembly"];
 const PROVED_SOON = 20_000;
 /** The example that is an assembly. */
 const GEARBOX = "gearbox";
-const WORKER = new URL("worker.js", import.meta.url);
-const engine = new Engine(WORKER);
+const engine = new Engine();
 
 class Page {
   private state: State = fromHash(location.hash);
-  private answer: Answer | undefined;
+  private answer: PageCast | undefined;
   private error: string | undefined;
   private took = 0;
   /** Milliseconds from the page's beginning. */
   private firstAnswer: number | undefined;
   private verdict: Shown["verdict"];
   /** Of an answer between solids, with its entries. */
-  private solidProof: { told: SolidProof; entries: ArrayBuffer } | undefined;
+  private solidProof: PageCertify | undefined;
   private proving = 0;
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
   private readonly engine = engine;
@@ -112,7 +112,7 @@ class Page {
         this.found.changed();
       } else if (tab === "assembly") {
         const { AssemblyTab } = await import("./assembly");
-        this.assembly = new AssemblyTab(WORKER, () => this.state, () => this.remember(), (text, what) => void this.copy(text, what));
+        this.assembly = new AssemblyTab(() => this.state, () => this.remember(), (text, what) => void this.copy(text, what));
         named("panel").append(this.assembly.panel);
         named("stage").prepend(this.assembly.stage);
         void this.assembly.start();
@@ -214,47 +214,33 @@ class Page {
 
   private async prove() {
     const answer = this.answer;
-    const { facts, numbers } = await this.engine.ask({ do: "certify", ...this.pair() });
-    if (answer === this.answer) this.solidProof = { told: facts as SolidProof, entries: numbers };
+    const { facts } = await this.engine.ask({ do: "certify", ...this.pair() });
+    if (answer === this.answer) this.solidProof = facts;
     this.show();
   }
 
-  /** The claims, and the plane if there is one. */
-  private async verifySolid(answer: SolidAnswer) {
-    if (!this.solidProof) await this.prove();
-    const { told, entries } = this.solidProof ?? {};
-    if (!told || !entries) return;
-    const check = async (proof: object, file?: ArrayBuffer) => (await this.engine.ask({ do: "verify", ...this.pair(), proof }, file)).facts;
-    const facts = await check({ clearance: told }, entries.slice(0));
-    const plane = answer.margin ? await check({ separation: { normal: answer.sideways, margin: answer.margin } }) : undefined;
-    const bad = [facts, plane].find((one) => one && !one.holds);
-    const count = entries.byteLength.toLocaleString("en");
-    if (answer !== this.answer) return;
-    this.verdict = bad
-      ? { holds: false, text: `✗ ${bad.because}` }
-      : { holds: true, text: `✓ it holds: ${count} entries checked, gap ${Number(facts.proven).toExponential(1)}${plane ? `; margin ${Number(plane.proven).toExponential(1)}` : ""}` };
-  }
-
+  /** What is proven, each by its own check: of solids the claims, and the plane if there is one. */
   private async verify() {
-    if (this.answer?.kind === "solid") {
-      await this.verifySolid(this.answer).catch((error: unknown) => (this.verdict = { holds: false, text: String(error) }));
-      this.show();
-      return;
-    }
     const answer = this.answer;
     if (!answer) return;
-    const proof = answer.outcome === "separated"
-      ? { separation: { normal: answer.sideways, margin: answer.margin } }
-      : { contact: answer.first!.proof };
     try {
-      const { facts } = await this.engine.ask({ do: "verify", ...this.pair(), proof });
-      if (answer !== this.answer) return;
-      const proven = answer.outcome === "separated" ? "margin" : "gap";
-      this.verdict = facts.holds
-        ? { holds: true, text: `✓ it holds: ${proven} proven ${Number(facts.proven).toExponential(1)}` }
-        : { holds: false, text: `✗ ${facts.because}` };
+      if (answer.kind === "solid" && !this.solidProof) await this.prove();
+      const claims = answer.kind === "solid" ? this.solidProof?.proof : undefined;
+      const told: string[] = [];
+      for (const proof of [claims, answer.proof]) {
+        if (!proof) continue;
+        const { facts } = await this.engine.ask({ do: "verify", ...this.pair(), proof });
+        if (answer !== this.answer) return;
+        if (!facts.holds) throw new Error(facts.because);
+        const { start, cover } = claims?.clearance ?? { start: "assumed", cover: "" };
+        const entries = cover.length + (typeof start === "object" && "apart" in start ? start.apart.length : 0);
+        const what = proof === claims ? `${entries.toLocaleString("en")} entries checked, gap` : "separation" in proof ? "margin" : "gap";
+        told.push(`${what} proven ${Number(facts.proven).toExponential(1)}`);
+      }
+      this.verdict = { holds: true, text: `✓ it holds: ${told.join("; ")}` };
     } catch (error) {
-      this.verdict = { holds: false, text: String(error) };
+      if (answer !== this.answer) return;
+      this.verdict = { holds: false, text: `✗ ${error instanceof Error ? error.message : String(error)}` };
     }
     this.show();
   }
@@ -388,7 +374,7 @@ class Page {
       element.setAttribute("aria-selected", String(state.tab === tab));
       element.tabIndex = state.tab === tab ? 0 : -1;
     }
-    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof?.told, verdict: this.verdict };
+    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof, verdict: this.verdict };
     this.panel.show(shown);
     if (state.tab !== "answer") void this.openTab(state.tab);
     this.found?.show(state, state.tab === "found");

@@ -1,7 +1,8 @@
 // What is said and what can be set, beside the view.
 
 import { h, refill, svg } from "./dom";
-import { type Answer, type Certificate, type Claims, type ConvexAnswer, MOST_MIB, type Slot, type SolidAnswer, type SolidProof, type Take } from "./engine";
+import type { Certificate, PageCast, PageCertify, PageClaims, PageConvex, PageSolid } from "./answers";
+import { MOST_MIB, type Slot, type Take, plane } from "./engine";
 import { names } from "./formats";
 import { type Vec, length, short } from "./math";
 import { asCommand } from "./share";
@@ -21,7 +22,7 @@ export interface Refusal {
 
 export interface Shown {
   state: State;
-  answer: Answer | undefined;
+  answer: PageCast | undefined;
   /** Why there is no answer. */
   error: string | undefined;
   /** Milliseconds. */
@@ -29,7 +30,7 @@ export interface Shown {
   bodies: Partial<Record<Slot, Drawn>>;
   refusals: Partial<Record<Slot, Refusal>>;
   /** Of an answer between solids, once it is made. */
-  solidProof: SolidProof | undefined;
+  solidProof: PageCertify | undefined;
   /** What came of the check of the proof. */
   verdict: { holds: boolean; text: string } | undefined;
 }
@@ -227,16 +228,17 @@ export class AnswerPanel {
       this.said.replaceChildren(h("h2", {}, "…"), h("p", {}, "Reading."));
     } else {
       const { kind, headline, sentence } = say(answer, state);
-      const work = answer.kind === "convex"
-        ? `${counts([[answer.steps.planar_problems, "planar problem"], [answer.steps.supports, "supporting plane"], [answer.steps.pivots, "portal"]])}; `
+      const { steps, translation, outcome } = answer.record;
+      const work = steps
+        ? `${counts([[steps.planar_problems, "planar problem"], [steps.supports, "supporting plane"], [steps.pivots, "portal"]])}; `
         : "";
       this.said.className = `said ${kind}`;
       this.said.replaceChildren(
         h("h2", { id: "headline" }, headline), h("p", {}, sentence),
         h("p", { class: "took" }, `${work}${took < 0.1 ? "less than 0.1" : short(took, 2)} ms in this browser`),
       );
-      this.said.dataset.t = answer.first ? String(answer.first.t) : "";
-      this.said.dataset.outcome = answer.outcome;
+      this.said.dataset.t = String(translation ?? "");
+      this.said.dataset.outcome = outcome;
     }
   }
 
@@ -264,20 +266,20 @@ export class AnswerPanel {
     refill(this.parts, ...rows, h("small", { style: "color: var(--soft)" }, `${names("or")}, up to ${MOST_MIB} MiB; or drop files on the view.`));
   }
 
-  private showProof(answer: Answer, shown: Shown) {
+  private showProof(answer: PageCast, shown: Shown) {
     const { verdict } = shown;
-    if (!this.fresh("proof", [answer, verdict, shown.solidProof])) return;
+    if (!this.fresh("proof", [answer, verdict, shown.solidProof?.claims])) return;
     this.verdict.className = verdict ? `verdict ${verdict.holds ? "yes" : "no"}` : "";
     this.verdict.textContent = verdict?.text ?? "";
-    refill(this.proof, ...(answer.kind === "solid" ? solidProof(answer, shown) : convexProof(answer)));
+    refill(this.proof, ...(answer.kind === "solid" ? solidProof(answer, shown) : convexProof(answer.proof)));
   }
 }
 
 /** The proof between convex bodies. */
-function convexProof({ outcome, first }: ConvexAnswer): Element[] {
+function convexProof(of: PageConvex["proof"]): Element[] {
   const text = (...children: (string | HTMLElement | null)[]) => h("p", { class: "proof" }, ...children);
-  if (outcome === "separated") return [text("A plane along d lies between the bodies. All of the moving one is on one side, all of the fixed one on the other.")];
-  const proof = first!.proof!;
+  if ("separation" in of) return [text("A plane along d lies between the bodies. All of the moving one is on one side, all of the fixed one on the other.")];
+  const proof = of.contact;
   const upper = proof.upper === null ? undefined : String(proof.upper);
   return [
     bounds(proof),
@@ -289,31 +291,31 @@ function convexProof({ outcome, first }: ConvexAnswer): Element[] {
 }
 
 /** The proof between solids: what stops the body, and why none of all pairs of facets does before. */
-function solidProof(answer: SolidAnswer, { solidProof: proof, bodies }: Shown): Element[] {
+function solidProof(answer: PageSolid, { solidProof: proof, bodies }: Shown): Element[] {
   const text = (...children: (string | HTMLElement)[]) => h("p", { class: "proof" }, ...children);
-  const plane = answer.margin ? [text("A plane along d lies between the bodies: a shorter proof, which is checked too.")] : [];
-  if (!proof) return [text("A list of claims that covers all pairs of facets; it is made when it is asked for."), ...plane];
+  const shorter = plane(answer)?.margin ? [text("A plane along d lies between the bodies: a shorter proof, which is checked too.")] : [];
+  if (!proof) return [text("A list of claims that covers all pairs of facets; it is made when it is asked for."), ...shorter];
   const pairs = (bodies.moving?.body.facts.triangles ?? 0) * (bodies.fixed?.body.facts.triangles ?? 0);
   const all = `all ${pairs.toLocaleString("en")} pairs of triangles`;
-  const { stop, overlap } = proof;
-  if (overlap) {
-    const how = overlap.kind === "facets" ? `around triangles ${overlap.triangles.join(" and ")}` : `a shell of the ${overlap.kind.split(" ")[0]} body lies inside the other`;
+  const { stop, start, lower, tolerance } = proof.proof.clearance;
+  if (start !== "assumed" && !("apart" in start)) {
+    const how = "facets" in start ? `around triangles ${start.facets.join(" and ")}`
+      : `a shell of the ${"moving_inside" in start ? "moving" : "fixed"} body lies inside the other`;
     return [text(`They overlap where they are: ${how}.`), ...(proof.claims.length ? [text(`Claims about ${all}:`), table(proof.claims, pairs)] : [])];
   }
-  const lower = proof.lower === null ? "ever" : "before ";
   return [
-    ...(stop ? [bounds({ lower: proof.lower ?? 0, upper: stop.shrunk_distance, rounding: Math.abs(stop.shrunk_distance - (proof.lower ?? 0)) })] : []),
-    text(`Of ${all} none stops the moving body ${lower}`, ...(proof.lower === null ? [] : [h("b", {}, String(proof.lower))]),
-      ...(stop ? [`; triangles ${stop.triangles.join(" and ")} do at `, h("b", {}, String(stop.shrunk_distance))] : []), proof.tolerance ? `, both bodies being shrunk by half of ${short(proof.tolerance, 3)}.` : "."),
+    ...(stop ? [bounds({ lower: lower ?? 0, upper: stop.distance, rounding: Math.abs(stop.distance - (lower ?? 0)) })] : []),
+    text(`Of ${all} none stops the moving body ${lower === null ? "ever" : "before "}`, ...(lower === null ? [] : [h("b", {}, String(lower))]),
+      ...(stop ? [`; triangles ${stop.triangles.join(" and ")} do at `, h("b", {}, String(stop.distance))] : []), tolerance ? `, both bodies being shrunk by half of ${short(tolerance, 3)}.` : "."),
     table(proof.claims, pairs),
     ...(proof.start_claims ? [text("That they do not overlap where they are:"), table(proof.start_claims, pairs)] : []),
-    ...plane,
+    ...shorter,
   ];
 }
 
-function table(claims: Claims[], pairs: number): HTMLElement {
-  return h("dl", { class: "claims" }, ...claims.flatMap(({ because, claims, pairs: of }) => [
-    h("dt", {}, because), h("dd", {}, `${claims.toLocaleString("en")} claim${claims === 1 ? "" : "s"}, ${short((100 * of) / (pairs || 1), 3)} %`),
+function table(claims: PageClaims[], pairs: number): HTMLElement {
+  return h("dl", { class: "claims" }, ...claims.flatMap(({ because, given, pairs: of }) => [
+    h("dt", {}, because), h("dd", {}, `${given.toLocaleString("en")} claim${given === 1 ? "" : "s"}, ${short((100 * of) / (pairs || 1), 3)} %`),
   ]));
 }
 

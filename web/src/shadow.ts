@@ -2,7 +2,8 @@
 
 import { type Palette, palette } from "./colours";
 import { h, svg } from "./dom";
-import type { Answer, Slot } from "./engine";
+import type { PageCast } from "./answers";
+import { type Slot, plane, touch } from "./engine";
 import { type Pose, type Vec, add, cross, dot, hull, placed, short, times, unit } from "./math";
 import type { State } from "./state";
 import type { Drawn } from "./view/body";
@@ -41,7 +42,7 @@ export class Shadow {
     this.element = h("figure", { class: "shadow" }, h("div", { class: "shadow-pictures" }, this.canvas, this.picture), this.note);
   }
 
-  show(state: State, bodies: Record<Slot, Drawn>, answer: Answer | undefined) {
+  show(state: State, bodies: Record<Slot, Drawn>, answer: PageCast | undefined) {
     const { moving, fixed } = state.poses;
     const now = [bodies.moving, bodies.fixed, answer, palette(), [...state.direction, ...moving, ...fixed].join()];
     if (now.every((value, k) => value === this.known[k])) return;
@@ -65,7 +66,7 @@ export class Shadow {
   }
 
   private draw(
-    state: State, bodies: Record<Slot, Drawn>, answer: Answer | undefined, points: Record<Slot, Flat[]>,
+    state: State, bodies: Record<Slot, Drawn>, answer: PageCast | undefined, points: Record<Slot, Flat[]>,
     place: (p: Flat) => Flat, scale: number, [right, up]: [Vec, Vec],
   ) {
     const colours = palette();
@@ -92,14 +93,14 @@ export class Shadow {
 
   /** Marks, and what they mean. */
   private overlay(
-    picture: SVGSVGElement, state: State, bodies: Record<Slot, Drawn>, answer: Answer | undefined,
+    picture: SVGSVGElement, state: State, bodies: Record<Slot, Drawn>, answer: PageCast | undefined,
     flatten: (v: Vec) => Flat, scale: number, colours: Palette,
   ): string {
-    const first = answer?.first;
-    const sideways = answer?.sideways;
+    const [first, between, overlap] = [touch(answer), plane(answer), answer?.record.overlap ?? 0];
+    const sideways = between?.normal ?? answer?.record.sideways;
     if (sideways) {
       // The line through the end of the moving body's shadow, and the one through the fixed one's.
-      const gap = answer.margin ?? (answer.kind === "convex" ? -(answer.overlap ?? 0) : 0);
+      const gap = between?.margin ?? -overlap;
       const end = farthest(bodies.moving, state.poses.moving, sideways);
       const along = cross(unit(state.direction), sideways);
       const far = (2 * WIDE) / scale;
@@ -116,16 +117,16 @@ export class Shadow {
         svg("line", { x1: a[0], y1: a[1], x2: b[0], y2: b[1], stroke: colours.normal, "stroke-width": 3 }),
         svg("circle", { cx: a[0], cy: a[1], r: 3.5, fill: colours.normal }),
       );
-      return answer.margin
-        ? `Seen along d: the shadows are apart by at least ${short(answer.margin ?? 0)}, so the bodies never meet.`
-        : `Seen along d: the shadows overlap by ${short(Math.abs(answer?.kind === "convex" ? (answer.overlap ?? 0) : 0))}, no more than is tolerated.`;
+      return between?.margin
+        ? `Seen along d: the shadows are apart by at least ${short(between.margin)}, so the bodies never meet.`
+        : `Seen along d: the shadows overlap by ${short(Math.abs(overlap))}, no more than is tolerated.`;
     }
     if (first) {
-      const at = flatten(first.on_fixed);
+      const at = flatten(first.point);
       picture.append(svg("circle", { cx: at[0], cy: at[1], r: 4.5, fill: colours.normal, stroke: "#fff", "stroke-width": 1.5 }));
       return "Seen along d: the shadows overlap, so the bodies meet; the point is where they touch first.";
     }
-    if (answer?.outcome === "free") return "Seen along d: nothing of the fixed body lies ahead of the moving one.";
+    if (answer?.record.outcome === "free") return "Seen along d: nothing of the fixed body lies ahead of the moving one.";
     return "Seen along d.";
   }
 

@@ -18,7 +18,7 @@ export function asCommand(state: State): string | undefined {
   const hull = Object.values(state.parts).some(({ take }) => take === "hull");
   if (solids && hull) return undefined;
   const words = solids
-    ? ["colltrans", "clear", quoted(moving), "--from", quoted(fixed)]
+    ? ["colltrans", "clearance", quoted(moving), "--from", quoted(fixed)]
     : ["colltrans", "cast", quoted(moving), quoted(fixed)];
   words.push(`--direction=${state.direction.join(",")}`);
   for (const slot of ["moving", "fixed"] as const) {

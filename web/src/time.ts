@@ -1,7 +1,7 @@
 // The slider along `t`: from the start over the first contact to the last.
 
 import { h, refill } from "./dom";
-import type { Answer } from "./engine";
+import type { PageCast } from "./answers";
 import { short } from "./math";
 import type { State } from "./state";
 
@@ -22,9 +22,8 @@ export class Timeline {
     this.play.addEventListener("click", () => (this.running ? this.stop() : this.start()));
   }
 
-  show(state: State, answer: Answer | undefined, pass: number) {
-    const first = answer?.first?.t;
-    const exit = answer?.exit ?? undefined;
+  show(state: State, answer: PageCast | undefined, pass: number) {
+    const { translation: first, exit, outcome } = answer?.record ?? {};
     const ends = [0, first ?? pass, exit ?? first ?? pass];
     const [low, high] = [Math.min(...ends), Math.max(...ends)];
     const more = (high - low || 1) * 0.06;
@@ -44,7 +43,7 @@ export class Timeline {
       h("i", { class: kind, style: `left: ${place(t)}` }),
     ];
     const parts = [...mark(0, "start", "low")];
-    if (first !== undefined) parts.push(...mark(first, answer?.outcome === "grazing" ? "touches" : "first contact", "stop"));
+    if (first !== undefined) parts.push(...mark(first, outcome === "grazing" ? "touches" : "first contact", "stop"));
     if (first !== undefined && exit !== undefined && exit > first) {
       parts.push(...mark(exit, answer?.kind === "solid" ? "out" : "last contact", "low"));
       parts.push(h("b", { style: `left: ${place(first)}; right: calc(100% - ${place(exit)})` }));

@@ -10,7 +10,8 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { aim, onPage, rounded } from "./aim";
 import { palette } from "./colours";
 import { h, soon } from "./dom";
-import type { Answer, Slot } from "./engine";
+import type { PageCast } from "./answers";
+import { type Slot, plane, touch } from "./engine";
 import { type Pose, type Vec, length, times, unit } from "./math";
 import type { State } from "./state";
 import { type Arrow, arrow } from "./view/arrow";
@@ -36,7 +37,7 @@ export class View {
   readonly extra = new Group();
   private readonly frame: Frame = { origin: [0, 0, 0], size: 1, colours: palette() };
   private state: State | undefined;
-  private answer: Answer | undefined;
+  private answer: PageCast | undefined;
   private arrow: Arrow | undefined;
   private labels: Label[] = [];
   private plain = false;
@@ -102,7 +103,7 @@ export class View {
   }
 
   /** Everything into the picture. `along`: seen along the direction. */
-  fit(state: State, answer: Answer | undefined, along = false) {
+  fit(state: State, answer: PageCast | undefined, along = false) {
     [this.state, this.answer] = [state, answer];
     const { moving, fixed } = this.bodies;
     if (!moving || !fixed || !drawable(state, answer, moving, fixed)) return;
@@ -119,7 +120,7 @@ export class View {
     this.show(state, answer);
   }
 
-  show(state: State, answer: Answer | undefined) {
+  show(state: State, answer: PageCast | undefined) {
     [this.state, this.answer, this.arrow, this.labels] = [state, answer, undefined, []];
     const { frame, shown } = this;
     const { moving, fixed } = this.bodies;
@@ -138,7 +139,7 @@ export class View {
   }
 
   /** Where `t` is, where it starts, where it stops. */
-  private addMoving(moving: Drawn, state: State, answer: Answer | undefined) {
+  private addMoving(moving: Drawn, state: State, answer: PageCast | undefined) {
     const { origin, colours } = this.frame;
     const add = (t: number, how: "solid" | "ghost" | "outline") => {
       const at = matrixOf(state.poses.moving, moving.middle, origin, times(state.direction, t));
@@ -148,20 +149,20 @@ export class View {
     const t = state.t ?? 0;
     add(t, "solid");
     if (t !== 0) add(0, "outline");
-    const stop = answer?.first?.t;
+    const stop = answer?.record.translation;
     if (stop !== undefined && Math.abs(stop - t) > 1e-9 * (1 + Math.abs(stop))) add(stop, "ghost");
   }
 
   /** The contact, or the plane between; the arrow. */
-  private addNotes(state: State, answer: Answer | undefined, moving: Drawn, fixed: Drawn) {
+  private addNotes(state: State, answer: PageCast | undefined, moving: Drawn, fixed: Drawn) {
     const { frame, shown } = this;
-    const first = answer?.first;
+    const [first, between] = [touch(answer), plane(answer)];
     if (first) {
-      const { parts, label } = contact(frame, first, answer, state, { moving, fixed });
+      const { parts, label } = contact(frame, first, answer?.proof, state, { moving, fixed });
       shown.add(...parts);
       this.labels.push(label);
-    } else if (answer?.sideways && answer.margin) {
-      shown.add(...gap(frame, answer.sideways, answer.margin, state, { moving, fixed }));
+    } else if (between?.margin) {
+      shown.add(...gap(frame, between.normal, between.margin, state, { moving, fixed }));
     }
     this.arrow = arrow(frame, moving, fixed, state.poses.moving, state.direction);
     shown.add(this.arrow.group);

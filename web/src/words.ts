@@ -1,6 +1,7 @@
 // An answer in words.
 
-import type { Answer, ConvexAnswer, Feature, SolidAnswer } from "./engine";
+import type { Feature, PageCast, PageConvex, PageSolid } from "./answers";
+import { plane, touch } from "./engine";
 import { length, short, shown } from "./math";
 import type { State } from "./state";
 
@@ -14,9 +15,10 @@ export interface Said {
 
 /** A feature, by the numbers of its file. */
 export function feature(of: Feature): string {
-  const list = of.file.length > 8 ? `${of.file.slice(0, 8).join(" ")} … (${of.file.length} in all)` : of.file.join(" ");
+  const { length } = of.vertices;
+  const list = length > 8 ? `${of.vertices.slice(0, 8).join(" ")} … (${length} in all)` : of.vertices.join(" ");
   if (of.kind === "vertex") return `vertex ${list}`;
-  return of.kind === "edge" ? `edge ${of.file.join("–")}` : `face of vertices ${list}`;
+  return of.kind === "edge" ? `edge ${of.vertices.join("–")}` : `face of vertices ${list}`;
 }
 
 /** A number that is not beyond a limit: a few digits where they are not, else a dozen, rounded down. */
@@ -37,116 +39,117 @@ function way(t: number, limit: number, state: State): string {
 const proven = (bounds: readonly (number | null)[] | null | undefined) =>
   (bounds ?? []).map((x) => (x === null ? "?" : short(x, 15))).join(" to ");
 
-export function say(answer: Answer, state: State): Said {
+export function say(answer: PageCast, state: State): Said {
   return answer.kind === "convex" ? convex(answer, state) : solid(answer, state);
 }
 
-function convex(answer: ConvexAnswer, state: State): Said {
-  const { first } = answer;
+function convex(answer: PageConvex, state: State): Said {
+  const { record, clearance } = answer;
+  const [first, between] = [touch(answer), plane(answer)];
   if (!first) {
     return {
       kind: "free",
       headline: "They never meet",
-      sentence: `Along d the bodies pass each other; a plane lies between their ways, at least ${short(answer.margin ?? 0)} wide.`,
-      rows: [["margin", short(answer.margin ?? 0, 12)], ["plane's normal", shown(answer.sideways ?? [0, 0, 0])]],
+      sentence: `Along d the bodies pass each other; a plane lies between their ways, at least ${short(between?.margin ?? 0)} wide.`,
+      rows: [["margin", short(between?.margin ?? 0, 12)], ["plane's normal", shown(between?.normal ?? [0, 0, 0])]],
     };
   }
   const rows: [string, string][] = [
     ["first contact t", short(first.t, 12)],
-    ["proven", proven(first.proof && [first.proof.lower, first.proof.upper])],
-    ["last contact t", short(answer.exit ?? first.t, 12)],
-    ["proven", proven(answer.exit_bounds)],
+    ["proven", proven(record.translation_bounds)],
+    ["last contact t", short(record.exit ?? first.t, 12)],
+    ["proven", proven(record.exit_bounds)],
     ["length", short(first.t * length(state.direction), 12)],
     ["normal n", shown(first.normal)],
-    ["point", first.on_fixed.map((x) => short(x, 7)).join(", ")],
-    ["moving", feature(first.moving)],
-    ["fixed", feature(first.fixed)],
+    ["point", first.point.map((x) => short(x, 7)).join(", ")],
+    ["moving", feature(first.features.moving)],
+    ["fixed", feature(first.features.fixed)],
   ];
-  const touch = `${kind(first.moving)} of the moving body meets ${kind(first.fixed)} of the fixed one`;
-  const { kind: free, distance } = answer.clearance;
-  if (answer.outcome === "grazing") {
+  const meeting = `${kind(first.features.moving)} of the moving body meets ${kind(first.features.fixed)} of the fixed one`;
+  if (record.outcome === "grazing") {
     return {
       kind: "care",
       headline: "They slide along each other",
       sentence:
-        `Their shadows overlap by ${short(answer.overlap ?? 0)}, no more than the graze tolerance: nothing blocks. ` +
+        `Their shadows overlap by ${short(record.overlap ?? 0)}, no more than the graze tolerance: nothing blocks. ` +
         `If the overlap were real, they would touch at t = ${short(first.t)}.`,
-      rows: [["sideways overlap", short(answer.overlap ?? 0, 6)], ...rows],
+      rows: [["sideways overlap", short(record.overlap ?? 0, 6)], ...rows],
     };
   }
-  if (free === "behind") {
+  if (clearance.outcome === "behind") {
     return {
       kind: "free",
       headline: "The contact lies behind",
-      sentence: `Nothing stops the moving body ahead; the bodies meet from t = ${short(first.t)} to ${short(answer.exit ?? first.t)}.`,
+      sentence: `Nothing stops the moving body ahead; the bodies meet from t = ${short(first.t)} to ${short(record.exit ?? first.t)}.`,
       rows,
     };
   }
-  if (free === "overlapping") {
+  if (clearance.outcome === "overlapping") {
     return {
       kind: "care",
       headline: "They overlap now",
-      sentence: `The bodies meet from t = ${short(first.t)}, behind, to ${short(answer.exit ?? 0)}, ahead, where they part.`,
+      sentence: `The bodies meet from t = ${short(first.t)}, behind, to ${short(record.exit ?? 0)}, ahead, where they part.`,
       rows,
     };
   }
   return {
     kind: "stop",
     headline: `Contact at t = ${short(first.t)}`,
-    sentence: `Free for ${way(first.t, distance ?? first.t, state)}; then ${touch}.`,
+    sentence: `Free for ${way(first.t, clearance.distance ?? first.t, state)}; then ${meeting}.`,
     rows,
   };
 }
 
 const kind = (of: Feature) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
 
-function solid(answer: SolidAnswer, state: State): Said {
-  const tolerance: [string, string] = ["tolerance", short(answer.tolerance, 3)];
-  const exit: [string, string][] = !answer.exit_bounds || answer.exit_bounds[1] <= 0 ? [] : [["parted for good after t", String(answer.exit_bounds[1])]];
-  const open: [string, string][] = answer.surfaces.length ? [["open surface", `${answer.surfaces.join(" and ")}: blocks from both sides, rims included`]] : [];
-  const { first } = answer;
-  if (answer.outcome === "free") {
+function solid(answer: PageSolid, state: State): Said {
+  const { tolerance: used = 0, exit_bounds: [, gone] = [0, 0], surfaces = [], ...record } = answer.record;
+  const tolerance: [string, string] = ["tolerance", short(used, 3)];
+  const exit: [string, string][] = gone === null || gone <= 0 ? [] : [["parted for good after t", String(gone)]];
+  const open: [string, string][] = surfaces.length ? [["open surface", `${surfaces.join(" and ")}: blocks from both sides, rims included`]] : [];
+  const [first, margin] = [touch(answer), plane(answer)?.margin];
+  if (record.outcome === "free") {
     return {
       kind: "free",
       headline: "Nothing stops it",
-      sentence: answer.margin
-        ? `The moving body can go as far as it likes: a plane along d lies between the bodies, with a gap of at least ${short(answer.margin)}.`
+      sentence: margin
+        ? `The moving body can go as far as it likes: a plane along d lies between the bodies, with a gap of at least ${short(margin)}.`
         : "The moving body can go as far as it likes.",
-      rows: [...(answer.margin ? [["margin", short(answer.margin, 9)] as [string, string]] : []), ...exit, tolerance, ...open],
+      rows: [...(margin ? [["margin", short(margin, 9)] as [string, string]] : []), ...exit, tolerance, ...open],
     };
   }
   if (!first) {
-    const depth = answer.depth ?? null;
+    const depth = record.start_overlaps?.[0].depth ?? null;
     return {
       kind: "care",
       headline: "They overlap where they are",
       sentence:
         depth === null
-          ? answer.surfaces.length
+          ? surfaces.length
             ? "A surface passes through what is there: less of the other body would not free it."
             : "One body lies in the other, deeper than any tolerance reaches."
-          : depth < answer.tolerance
-          ? `With a tolerance of ${short(depth)} they would not: one of ${short(answer.tolerance)} is more than the bodies are thick, and turns them inside out.`
+          : depth < used
+          ? `With a tolerance of ${short(depth)} they would not: one of ${short(used)} is more than the bodies are thick, and turns them inside out.`
           : `With a tolerance of ${short(depth)} they would not: that is how deep they are in each other.`,
       rows: [...(depth === null ? [] : [["depth", short(depth, 9)] as [string, string]]), ...exit, tolerance, ...open],
     };
   }
-  const [shrunk] = answer.shrunk_distance_bounds!;
+  const shrunk = record.shrunk_distance_bounds?.[0] ?? first.t;
   return {
     kind: "stop",
     headline: `Blocked at t = ${within(Math.max(first.t, 0), shrunk)}`,
-    sentence: `Free for ${way(Math.max(first.t, 0), shrunk, state)}; then ${kind(first.moving)} of the moving body meets ${kind(first.fixed)} of the fixed one.`,
+    sentence: `Free for ${way(Math.max(first.t, 0), shrunk, state)}; then ${kind(first.features.moving)} of the moving body meets ${kind(first.features.fixed)} of the fixed one.`,
     rows: [
-      ["safe for t up to", String(answer.distance)],
+      ["safe for t up to", String(record.distance)],
       ["t, bodies as they are", short(first.t, 12)],
-      ["proven", proven(answer.bounds)],
-      ["t, bodies shrunk", short(answer.shrunk_distance!, 12)],
-      ["proven", proven(answer.shrunk_distance_bounds)],
+      ["proven", proven(record.translation_bounds)],
+      ["t, bodies shrunk", short(record.shrunk_distance ?? first.t, 12)],
+      ["proven", proven(record.shrunk_distance_bounds)],
       ...exit,
       ["normal n", shown(first.normal)],
-      ["point", first.on_fixed.map((x) => short(x, 7)).join(", ")],
-      ["moving", feature(first.moving)],
-      ["fixed", feature(first.fixed)],
+      ["point", first.point.map((x) => short(x, 7)).join(", ")],
+      ["moving", feature(first.features.moving)],
+      ["fixed", feature(first.features.fixed)],
       tolerance,
       ...open,
     ],

@@ -58,7 +58,7 @@ test("convex bodies of 10,000 vertices: every change is answered within a frame"
   }
   await page.fill('[aria-label="Direction x"]', "-0.6");
   await page.fill('[aria-label="Direction y"]', "-0.1");
-  await page.waitForFunction(() => window.colltrans.probe().answer?.outcome === "contact");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.record.outcome === "contact");
 
   // What the library takes, in its worker: 1,000 poses and directions, none like the one before. A program
   // that waits for a processor is seldom interrupted within a tenth of a millisecond: 99 of 100 are within a
@@ -76,7 +76,7 @@ test("convex bodies of 10,000 vertices: every change is answered within a frame"
       const question = { do: "cast", moving_pose, fixed_pose: state.poses.fixed, direction: [random(), random(), -1] };
       const answer = await engine.ask(question);
       took.push(answer.took);
-      outcomes[answer.facts.outcome] = (outcomes[answer.facts.outcome] ?? 0) + 1;
+      outcomes[answer.facts.record.outcome] = (outcomes[answer.facts.record.outcome] ?? 0) + 1;
     }
     return { took, outcomes };
   });
@@ -105,7 +105,7 @@ test("convex bodies of 10,000 vertices: every change is answered within a frame"
         });
       }
       times.push(performance.now() - began);
-      if (probe().state.direction[0] !== field.valueAsNumber || !probe().answer.first) throw new Error("another question was answered");
+      if (probe().state.direction[0] !== field.valueAsNumber || probe().answer.record.translation === undefined) throw new Error("another question was answered");
     }
     return times;
   });
@@ -121,7 +121,7 @@ test("convex bodies of 10,000 vertices: every change is answered within a frame"
   await page.mouse.up();
   await page.waitForFunction(() => {
     const { answer, state } = window.colltrans.probe();
-    return answer?.first && state.direction[0] !== -0.657 && document.querySelector("#headline").textContent.includes(answer.first.t.toPrecision(6).replace(/0+$/, ""));
+    return answer?.record.translation !== undefined && state.direction[0] !== -0.657 && document.querySelector("#headline").textContent.includes(answer.record.translation.toPrecision(6).replace(/0+$/, ""));
   });
   assert.deepEqual(page.complaints, []);
   await page.context().close();

@@ -23,7 +23,7 @@ const focused = () => page.evaluate(() => {
 });
 const probed = (what) => page.evaluate((what) => {
   const { state, answer, view } = window.colltrans.probe();
-  return { t: state.t, d: state.direction, first: answer?.first?.t, eye: view.camera.position.toArray(), tab: state.tab }[what];
+  return { t: state.t, d: state.direction, first: answer?.record.translation, eye: view.camera.position.toArray(), tab: state.tab }[what];
 }, what);
 
 test("focus goes over the page in the order in which it is read", async () => {
@@ -53,11 +53,11 @@ test("numbers: up and down, with shift by ten times as much", async () => {
     assert.equal(Number(await field.inputValue()), value);
     assert.equal((await probed("d"))[0], value);
   }
-  await page.waitForFunction(() => Math.abs(window.colltrans.probe().answer.first.t - 4.31674) > 1e-3);
+  await page.waitForFunction(() => Math.abs(window.colltrans.probe().answer.record.translation - 4.31674) > 1e-3);
   await page.locator("button:text-is('turn round')").press("Enter");
   assert.deepEqual(await probed("d"), [0.31, -0.1, 1]);
   await page.selectOption('[aria-label="Solver"]', "cta");
-  await page.waitForFunction(() => window.colltrans.probe().answer?.steps.solver === "cta");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.record.solver === "cta");
 });
 
 test("the way: its slider, its marks, playing", async () => {

@@ -88,7 +88,7 @@ test(`${FACETS.toLocaleString("en")} facets: frames go on, a notice is shown, th
   await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid", undefined, { timeout: 60_000 });
   const { triangles, outcome, longest, notices } = await page.evaluate(() => {
     const { view, answer } = window.colltrans.probe();
-    return { triangles: view.bodyOf("moving").body.facts.triangles, outcome: answer.outcome, longest: window.longest, notices: [...window.notices] };
+    return { triangles: view.bodyOf("moving").body.facts.triangles, outcome: answer.record.outcome, longest: window.longest, notices: [...window.notices] };
   });
   const took = performance.now() - began;
   const worked = await working();

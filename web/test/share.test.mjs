@@ -24,7 +24,7 @@ test("an address leads back to the same bits", () => {
 test("the same question as a command line, or none where none asks the same", () => {
   assert.equal(asCommand(fromExample("slide")), "colltrans cast bracket.obj bracket.obj --direction=1,0,0 --moving-pose=-9,2,0,0,0,0,1");
   assert.equal(asCommand(fromHash("#example=plate&tol=0.01&ignore=1")),
-    "colltrans clear bolt.stl --from plate.off --direction=0,0,-1 --moving-pose=0,0,7,0,0,0,1 --tolerance=0.01 --ignore-start-overlaps");
+    "colltrans clearance bolt.stl --from plate.off --direction=0,0,-1 --moving-pose=0,0,7,0,0,0,1 --tolerance=0.01 --ignore-start-overlaps");
   assert.match(asCommand(fromHash("#m=it's mine.off:hull&graze=0.1&solver=cta")), /^colltrans cast 'it'\\''s mine\.off' bracket\.obj .* --hull-moving --graze-tolerance=0\.1 --solver=cta$/);
   assert.match(asCommand(fromHash("#f=plate.off:open")), / --open$/);
   assert.equal(asCommand(fromHash("#m=bolt.stl:hull&f=plate.off:solid")), undefined);

@@ -65,8 +65,11 @@ impl Frame {
         kept
     }
 
-    /// The part of a segment inside the frame.
+    /// The part of a segment inside the frame; none of what is not finite.
     pub fn clip_segment(&self, [mut a, mut b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
+        if !(a.is_finite() && b.is_finite()) {
+            return None;
+        }
         for side in self.sides() {
             let (at_a, at_b) = (side(a), side(b));
             if at_a < 0.0 && at_b < 0.0 {
@@ -139,13 +142,18 @@ impl Page {
 
     /// Segments of one look.
     pub fn segments<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, stroke: Stroke, all: I) {
+        self.lines(&stroke.attributes(), all);
+    }
+
+    /// Segments of a look that is written out.
+    pub fn lines<I: IntoIterator<Item = [DVec2; 2]>>(&mut self, look: &str, all: I) {
         let mut data = String::new();
         for segment in all {
             if let Some(kept) = self.frame.clip_segment(segment) {
                 push_path(&mut data, &kept, false);
             }
         }
-        self.path(&format!(r#"fill="none" {}"#, stroke.attributes()), &data);
+        self.path(&format!(r#"fill="none" {look}"#), &data);
     }
 
     fn path(&mut self, look: &str, data: &str) {
@@ -216,11 +224,20 @@ impl Page {
 
     /// A picture to be put into a page, as wide as there is room.
     pub fn inline(self, size: DVec2) -> String {
+        self.on_ground("", size, "#ffffff")
+    }
+
+    /// A picture of its own on a ground of this colour.
+    pub fn alone(self, size: DVec2, ground: &str) -> String {
         let DVec2 { x: width, y: height } = size;
-        let white = r##"<rect width="100%" height="100%" fill="#ffffff"/>"##;
+        self.on_ground(&format!(r#" width="{width}" height="{height}""#), size, &escaped(ground))
+    }
+
+    fn on_ground(self, extent: &str, DVec2 { x: width, y: height }: DVec2, ground: &str) -> String {
+        let ground = format!(r#"<rect width="100%" height="100%" fill="{ground}"/>"#);
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
-             stroke-linecap=\"round\" stroke-linejoin=\"round\">\n{white}\n{}</svg>\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\"{extent} viewBox=\"0 0 {width} {height}\" \
+             stroke-linecap=\"round\" stroke-linejoin=\"round\">\n{ground}\n{}</svg>\n",
             self.body
         )
     }
@@ -309,5 +326,8 @@ mod tests {
             Some([DVec2::new(0.0, 0.5), DVec2::new(1.0, 0.5)])
         );
         assert_eq!(frame.clip_segment([DVec2::new(-1.0, 0.5), DVec2::new(0.5, 3.0)]), None);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(frame.clip_segment([DVec2::new(bad, 0.5), DVec2::new(0.5, 0.5)]), None);
+        }
     }
 }

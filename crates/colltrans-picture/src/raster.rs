@@ -8,6 +8,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::Frame;
+use crate::grid::{Depth, Grid};
 
 /// Samples to a pixel, along each axis.
 const FINE: usize = 2;
@@ -16,76 +17,53 @@ const EMPTY: u32 = u32::MAX;
 
 /// Depths and tones over a window.
 pub struct Raster {
-    width: usize,
-    height: usize,
+    grid: Grid,
+    depth: Depth,
     depths: Vec<f64>,
     tones: Vec<u32>,
     window: Frame,
 }
 
 impl Raster {
-    /// Over a window that begins at (0, 0).
+    /// Over a window that begins at (0, 0), of depths that are lengths.
     pub fn new(window: Frame) -> Self {
-        let [width, height] = window.high.to_array().map(|side| side.ceil() as usize * FINE);
-        let count = width * height;
-        let (depths, tones) = (vec![f64::NEG_INFINITY; count], vec![EMPTY; count]);
-        Self { width, height, depths, tones, window }
+        let grid = Grid::new(window, FINE);
+        let (depths, tones) = (vec![f64::NEG_INFINITY; grid.len()], vec![EMPTY; grid.len()]);
+        Self { grid, depth: Depth::Length, depths, tones, window }
     }
 
-    /// Draws a triangle of a tone, a small number: x and y on the page, z the depth.
+    /// Depths are of another kind.
+    #[must_use]
+    pub fn with_depths(self, depth: Depth) -> Self {
+        Self { depth, ..self }
+    }
+
+    /// Draws a triangle of a tone, any number but the last: x and y on the page, z the depth. Where depths
+    /// are the same, what was drawn first stays.
     pub fn draw(&mut self, corners: [DVec3; 3], tone: u32) {
-        let [a, b, c] = corners.map(|p| (p.truncate() * FINE as f64 - 0.5).extend(p.z));
-        let (u, v) = (b - a, c - a);
-        let twice = u.x * v.y - u.y * v.x;
-        if twice == 0.0 || !twice.is_finite() {
-            return;
-        }
-        // The plane of the depths.
-        let slope_x = (u.z * v.y - v.z * u.y) / twice;
-        let slope_y = (v.z * u.x - u.z * v.x) / twice;
-        let cells = |low: f64, high: f64, count: usize| {
-            let from = low.ceil().clamp(0.0, count as f64) as usize;
-            from..((high.floor() + 1.0).clamp(0.0, count as f64) as usize).max(from)
-        };
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        for y in cells(low.y, high.y, self.height) {
-            let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-            for [p, q] in [[a, b], [b, c], [c, a]] {
-                let row = y as f64;
-                if (p.y <= row) != (q.y <= row) || p.y == row {
-                    let share = if p.y == q.y { 0.0 } else { (row - p.y) / (q.y - p.y) };
-                    let x = p.x + share.clamp(0.0, 1.0) * (q.x - p.x);
-                    (left, right) = (left.min(x), right.max(x));
-                }
+        self.grid.cover(corners, |cell, depth| {
+            if depth > self.depths[cell] {
+                (self.depths[cell], self.tones[cell]) = (depth, tone);
             }
-            for x in cells(left, right, self.width) {
-                let depth = a.z + slope_x * (x as f64 - a.x) + slope_y * (y as f64 - a.y);
-                let cell = y * self.width + x;
-                if depth > self.depths[cell] {
-                    (self.depths[cell], self.tones[cell]) = (depth, tone);
-                }
-            }
-        }
+        });
     }
 
-    /// Whether a point of the page at this depth is in front of all around it, or level with it.
-    pub fn sees(&self, at: DVec2, depth: f64) -> bool {
-        let [x, y] = (at * FINE as f64).to_array().map(|c| c.floor() as isize);
-        let around = |x: isize, y: isize| {
-            let inside = x >= 0 && y >= 0 && x < self.width as isize && y < self.height as isize;
-            inside.then(|| self.depths[y as usize * self.width + x as usize])
-        };
-        let cells = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j)));
-        let farthest = cells
-            .filter_map(|(i, j)| around(x + i, y + j))
-            .reduce(f64::min)
-            .unwrap_or(f64::NEG_INFINITY);
-        depth >= farthest
+    /// Whether a point of the page at this depth is in front of a sample around it, or level with it, or
+    /// that is of one of these tones.
+    fn sees(&self, at: DVec2, depth: f64, own: &[u32]) -> bool {
+        let sees = |cell: usize| self.depths[cell] <= depth || own.contains(&self.tones[cell]);
+        self.grid.around(at).any(sees)
     }
 
     /// The parts of a segment that are seen, and those that are hidden; x and y on the page, z the
-    /// depth, which may be less by `slack`.
-    pub fn split(&self, [a, b]: [DVec3; 2], slack: f64) -> [Vec<[DVec2; 2]>; 2] {
+    /// depth, which may be less by the length `slack`.
+    pub fn split(&self, ends: [DVec3; 2], slack: f64) -> [Vec<[DVec2; 2]>; 2] {
+        self.split_edge(ends, slack, &[])
+    }
+
+    /// The same of an edge of what was drawn in the tones `own`, which do not hide it, however steep they
+    /// are.
+    pub fn split_edge(&self, [a, b]: [DVec3; 2], slack: f64, own: &[u32]) -> [Vec<[DVec2; 2]>; 2] {
         let mut parts = [Vec::new(), Vec::new()];
         let (from, to) = (a.truncate(), b.truncate());
         let Some([first, last]) = self.window.clip_segment([from, to]) else { return parts };
@@ -95,15 +73,15 @@ impl Raster {
         let at = |i: usize| s + (t - s) * i as f64 / steps as f64;
         let is_seen = |i: usize| {
             let p = a.lerp(b, 0.5 * (at(i) + at(i + 1)));
-            self.sees(p.truncate(), p.z + slack)
+            self.sees(p.truncate(), self.depth.nearer(p.z, slack), own)
         };
-        let mut start = 0;
+        let (mut start, mut was) = (0, is_seen(0));
         for i in 1..=steps {
-            let seen = is_seen(start);
-            if i == steps || is_seen(i) != seen {
+            let is = i < steps && is_seen(i);
+            if i == steps || is != was {
                 let ends = [at(start), at(i)].map(|share| from.lerp(to, share));
-                parts[usize::from(!seen)].push(ends);
-                start = i;
+                parts[usize::from(!was)].push(ends);
+                (start, was) = (i, is);
             }
         }
         parts
@@ -114,10 +92,10 @@ impl Raster {
         let tones = self.tones.iter().filter(|tone| **tone != EMPTY).max();
         let mut done = vec![Vec::new(); tones.map_or(0, |last| *last as usize + 1)];
         let mut open: Vec<(u32, [usize; 4])> = Vec::new();
-        for y in 0..self.height / FINE {
+        for y in 0..self.grid.height / FINE {
             let mut runs: Vec<(u32, [usize; 4])> = Vec::new();
-            for x in 0..self.width / FINE {
-                let tone = self.tones[y * FINE * self.width + x * FINE];
+            for x in 0..self.grid.width / FINE {
+                let tone = self.tones[y * FINE * self.grid.width + x * FINE];
                 match runs.last_mut() {
                     Some((last, [_, _, right, _])) if *last == tone && *right == x => *right += 1,
                     _ if tone == EMPTY => {}
@@ -163,47 +141,31 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     use super::*;
-
-    fn window() -> Frame {
-        Frame { low: DVec2::ZERO, high: DVec2::new(40.0, 30.0) }
-    }
+    use crate::grid::tests::{WINDOW, corners, depth_at, sample};
 
     /// Against each triangle at each sample.
     #[test]
     fn the_nearest_triangle_is_seen() {
         let mut random = Random::new(7);
         for _ in 0..20 {
-            let mut point =
-                || DVec3::new(random.range(-5.0, 45.0), random.range(-5.0, 35.0), random.unit());
-            let triangles: Vec<[DVec3; 3]> = (0..12).map(|_| [point(), point(), point()]).collect();
-            let mut raster = Raster::new(window());
+            let triangles: Vec<[DVec3; 3]> = (0..12).map(|_| corners(&mut random)).collect();
+            let mut raster = Raster::new(WINDOW);
             for (k, &triangle) in triangles.iter().enumerate() {
                 raster.draw(triangle, k as u32);
             }
-            for cell in 0..raster.width * raster.height {
-                let at = DVec2::new(
-                    (cell % raster.width) as f64 + 0.5,
-                    (cell / raster.width) as f64 + 0.5,
-                ) / FINE as f64;
-                let mut best = (f64::NEG_INFINITY, EMPTY);
-                for (k, [a, b, c]) in triangles.iter().enumerate() {
-                    let area = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
-                    let [p, q, r] = [a, b, c].map(|v| v.truncate());
-                    let w =
-                        [area(q, r, at), area(r, p, at), area(p, q, at)].map(|w| w / area(p, q, r));
-                    let depth = w[0] * a.z + w[1] * b.z + w[2] * c.z;
-                    if w.iter().all(|&w| w >= 0.0) && depth > best.0 {
-                        best = (depth, k as u32);
-                    }
-                }
-                assert_eq!(raster.tones[cell], best.1);
+            for cell in 0..raster.grid.len() {
+                let at = sample(cell, &raster.grid);
+                let depths = triangles.iter().enumerate();
+                let depths = depths.filter_map(|(k, t)| Some((depth_at(at, *t)?, k as u32)));
+                let best = depths.max_by(|a, b| a.0.total_cmp(&b.0));
+                assert_eq!(raster.tones[cell], best.map_or(EMPTY, |(_, tone)| tone));
             }
         }
     }
 
     #[test]
     fn tiles_cover_what_was_drawn() {
-        let mut raster = Raster::new(window());
+        let mut raster = Raster::new(WINDOW);
         let corner = |x: f64, y: f64| DVec3::new(x, y, 0.0);
         raster.draw([corner(2.0, 3.0), corner(12.0, 3.0), corner(12.0, 9.0)], 4);
         raster.draw([corner(2.0, 3.0), corner(12.0, 9.0), corner(2.0, 9.0)], 4);
@@ -214,7 +176,7 @@ mod tests {
 
     #[test]
     fn a_segment_is_seen_beside_what_hides_it() {
-        let mut raster = Raster::new(window());
+        let mut raster = Raster::new(WINDOW);
         let corner = |x: f64, y: f64| DVec3::new(x, y, 1.0);
         raster.draw([corner(10.0, -50.0), corner(20.0, -50.0), corner(20.0, 90.0)], 0);
         raster.draw([corner(10.0, -50.0), corner(20.0, 90.0), corner(10.0, 90.0)], 0);
@@ -229,5 +191,56 @@ mod tests {
         }
         let nearer = ends.map(|p| p.with_z(2.0));
         assert_eq!(raster.split(nearer, 0.0).map(|parts| parts.len()), [1, 0]);
+    }
+
+    fn lengths(raster: &Raster, ends: [DVec3; 2], slack: f64, own: &[u32]) -> [f64; 2] {
+        let length = |parts: Vec<[DVec2; 2]>| parts.iter().map(|[a, b]| a.distance(*b)).sum();
+        raster.split_edge(ends, slack, own).map(length)
+    }
+
+    /// Nor where a valley is steep, whose edge is the farthest of all around it.
+    #[test]
+    fn an_edge_is_not_hidden_by_its_own_facets() {
+        let v = DVec3::new;
+        let mut raster = Raster::new(WINDOW).with_depths(Depth::Inverse);
+        raster.draw([v(20.0, -10.0, 1.0), v(40.0, -10.0, 1.0), v(40.0, 60.0, 1.0)], 0);
+        raster.draw([v(20.0, -10.0, 1.0), v(40.0, 60.0, 1.0), v(20.0, 60.0, 1.0)], 1);
+        let across = |depth: f64| [v(0.0, 20.0, depth), v(60.0, 20.0, depth)];
+        let [seen, hidden] = lengths(&raster, across(0.5), 1e-6, &[]);
+        assert!((seen - 40.0).abs() <= 2.0 && (seen + hidden - 60.0).abs() < 1e-9, "{seen}");
+        assert_eq!(lengths(&raster, across(2.0), 1e-6, &[]), [60.0, 0.0]);
+        assert_eq!(lengths(&raster, across(0.5), 1e-6, &[0, 1]), [60.0, 0.0]);
+        let mut valley = Raster::new(WINDOW).with_depths(Depth::Inverse);
+        valley.draw([v(0.0, 20.0, 1.0), v(60.0, 20.0, 1.0), v(30.0, 19.0, 50.0)], 3);
+        valley.draw([v(0.0, 20.0, 1.0), v(60.0, 20.0, 1.0), v(30.0, 21.0, 50.0)], 4);
+        assert_eq!(lengths(&valley, across(1.0), 1e-6, &[3, 4]), [60.0, 0.0]);
+        assert!(lengths(&valley, across(1.0), 1e-6, &[])[1] > 0.0);
+    }
+
+    /// The slack is a length of the scene: 1 behind what is 4 away is at 5.
+    #[test]
+    fn slack_is_a_length_for_either_kind_of_depths() {
+        let v = DVec3::new;
+        for kind in [Depth::Length, Depth::Inverse] {
+            let depth = |away: f64| if kind == Depth::Length { -away } else { 1.0 / away };
+            let mut raster = Raster::new(WINDOW).with_depths(kind);
+            let z = depth(4.0);
+            raster.draw([v(-99.0, -99.0, z), v(299.0, -99.0, z), v(-99.0, 299.0, z)], 0);
+            let line = [5.0, 55.0].map(|x| v(x, 20.0, depth(5.0)));
+            assert_eq!(raster.split(line, 0.99).map(|parts| parts.len()), [0, 1], "{kind:?}");
+            assert_eq!(raster.split(line, 1.01).map(|parts| parts.len()), [1, 0], "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_neither_drawn_nor_seen_nor_hidden_twice() {
+        let v = DVec3::new;
+        let mut raster = Raster::new(WINDOW);
+        raster.draw([v(f64::NAN, 0.0, 1.0), v(60.0, 0.0, 1.0), v(0.0, 40.0, 1.0)], 0);
+        raster.draw([v(0.0, 0.0, f64::NAN), v(60.0, 0.0, 1.0), v(0.0, 40.0, 1.0)], 1);
+        assert!(raster.tiles().is_empty());
+        raster.draw([v(0.0, 0.0, 1.0), v(60.0, 0.0, 1.0), v(0.0, 40.0, 1.0)], 2);
+        let line = [v(5.0, 5.0, f64::NAN), v(10.0, 5.0, 1.0)];
+        assert_eq!(raster.split(line, 0.0).map(|parts| parts.len()), [0, 1]);
     }
 }

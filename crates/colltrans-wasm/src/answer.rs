@@ -1,6 +1,7 @@
 //! What comes back for a question.
 
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::json;
 
 /// An answer: JSON, and numbers in binary (little-endian) whose layout the JSON tells.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,8 +30,9 @@ impl From<String> for Refusal {
 }
 
 impl Answer {
-    pub(crate) fn of(facts: &Value) -> Self {
-        Self { text: facts.to_string().into_bytes(), numbers: Vec::new() }
+    /// Facts whose keys are texts.
+    pub(crate) fn of<T: Serialize>(facts: &T) -> Self {
+        Self { text: serde_json::to_vec(facts).unwrap_or_default(), numbers: Vec::new() }
     }
 }
 

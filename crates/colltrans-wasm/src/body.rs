@@ -6,11 +6,11 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use colltrans::{ConvexPolyhedron, Feature, ShellKind, Solid};
+use colltrans::{ConvexPolyhedron, ShellKind, Solid};
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, Take};
 use colltrans_mesh::{Format, Mesh, sides};
 use glam::DVec3;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::answer::{Answer, Refusal};
 
@@ -233,28 +233,4 @@ fn answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
     drawn.faces.iter().for_each(|f| numbers.extend(f.to_le_bytes()));
     drawn.edges.iter().flatten().for_each(|v| numbers.extend(v.to_le_bytes()));
     answer
-}
-
-/// A feature: its kind, what to light, and its numbers in the file.
-#[derive(Debug)]
-pub(crate) struct Lit {
-    kind: &'static str,
-    /// Vertices of the body as drawn.
-    vertices: Vec<u32>,
-    /// The face of the body as drawn, for a face.
-    face: Option<u32>,
-    /// The vertices' numbers in the file.
-    file: Vec<u32>,
-}
-
-impl Lit {
-    pub(crate) fn of<B: colltrans::Body>(feature: Feature, body: &B) -> Self {
-        let (vertices, file) = (feature.own_vertices(body), feature.vertices(body));
-        let face = if let Feature::Face(face) = feature { Some(face) } else { None };
-        Self { kind: feature.kind(), vertices, face, file }
-    }
-
-    pub(crate) fn told(&self) -> Value {
-        json!({ "kind": self.kind, "vertices": self.vertices, "face": self.face, "file": self.file })
-    }
 }

@@ -1,16 +1,16 @@
 //! Casts between convex bodies, and the check of their proofs.
 
 use colltrans::observe::Recording;
-use colltrans::{
-    Cast, CertificateError, Clearance, Contact, ContactRange, Options, Solver, Steps, WhyFree,
-};
+use colltrans::record::Record;
+use colltrans::{Cast, CertificateError, ContactRange, Features, Options};
 use glam::DVec3;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::answer::{Answer, Refusal};
-use crate::body::{Hull, Lit};
+use crate::body::Hull;
 use crate::pose::pose;
-use crate::question::{Pair, Proof};
+use crate::question::Pair;
+use crate::told::{Lit, Proof, Told, Touching};
 
 /// The query that a question asks.
 pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
@@ -22,39 +22,6 @@ pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<C
     Ok(cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())?)
 }
 
-pub(crate) fn work(solver: Solver, steps: &Steps) -> Value {
-    json!({
-        "solver": solver.name(),
-        "planar_problems": steps.planar_problems,
-        "supports": steps.supports,
-        "pivots": steps.pivots,
-        "iterations": steps.iterations,
-    })
-}
-
-/// A contact, with its proof.
-fn touch(contact: &Contact, cast: &Cast) -> Value {
-    let (points, features) = (contact.points(cast), contact.features(cast));
-    let proof = &contact.certificate;
-    json!({
-        "t": contact.translation,
-        "normal": contact.normal.to_array(),
-        "on_moving": points.on_moving.to_array(),
-        "on_fixed": points.on_fixed.to_array(),
-        "moving": Lit::of(features.moving, cast.moving()).told(),
-        "fixed": Lit::of(features.fixed, cast.fixed()).told(),
-        "proof": {
-            "normal": proof.normal.to_array(),
-            "lower": proof.lower,
-            // Infinite where there is none, which JSON writes as null.
-            "upper": proof.upper,
-            "pairs": proof.pairs.map(|pair| [pair.moving, pair.fixed]),
-            "weights": proof.weights,
-            "rounding": proof.rounding,
-        },
-    })
-}
-
 pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let cast = query(bodies, pair)?;
     // Everything here is asked with a recording, so that each solver is in the page once.
@@ -62,57 +29,24 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let range = cast.contact_range_observed(seen).map_err(|error| error.to_string())?;
     seen.clear();
     let clearance = cast.clearance_observed(seen).map_err(|error| error.to_string())?;
-    let exit = match &range {
-        ContactRange::Contact { last, .. } => Some(last.exit()),
-        ContactRange::Grazing { last, .. } => Some(last.contact.exit()),
-        ContactRange::Separated(_) => None,
+    let first = match &range {
+        ContactRange::Contact { first, .. } => Ok(first),
+        ContactRange::Grazing { first, .. } => Ok(&first.contact),
+        ContactRange::Separated(separated) => Err(separated.certificate),
     };
-    let exit_bounds = exit.map(|exit| exit.bounds());
-    let exit = exit.map(|exit| exit.value);
-    let free = free(&clearance);
-    let told = match range {
-        ContactRange::Contact { first, .. } => json!({
-            "kind": "convex",
-            "outcome": "contact",
-            "first": touch(&first, &cast),
-            "exit": exit,
-            "exit_bounds": exit_bounds,
-            "clearance": free,
-            "steps": work(first.solver, &first.steps),
+    Ok(Answer::of(&Told {
+        kind: "convex",
+        record: Record::of_contact_range(&range, &cast),
+        clearance: Some(Record::of_clearance(&clearance, &cast)),
+        lit: first.ok().map(|contact| {
+            let Features { moving, fixed } = contact.features(&cast);
+            Touching { moving: Lit::of(moving, cast.moving()), fixed: Lit::of(fixed, cast.fixed()) }
         }),
-        ContactRange::Grazing { first, .. } => json!({
-            "kind": "convex",
-            "outcome": "grazing",
-            "first": touch(&first.contact, &cast),
-            "exit": exit,
-            "exit_bounds": exit_bounds,
-            "overlap": first.overlap,
-            "sideways": first.separating_direction.to_array(),
-            "clearance": free,
-            "steps": work(first.contact.solver, &first.contact.steps),
-        }),
-        ContactRange::Separated(separated) => json!({
-            "kind": "convex",
-            "outcome": "separated",
-            "sideways": separated.certificate.normal.to_array(),
-            "margin": separated.certificate.margin,
-            "clearance": free,
-            "steps": work(separated.solver, &separated.steps),
-        }),
-    };
-    Ok(Answer::of(&told))
-}
-
-/// How far the moving body can go from where it is; no distance where nothing stops it.
-fn free(clearance: &Clearance) -> Value {
-    let kind = match clearance {
-        Clearance::Blocked { .. } => "blocked",
-        Clearance::Free(WhyFree::Slides(_)) => "slides",
-        Clearance::Free(WhyFree::Behind(_)) => "behind",
-        Clearance::Free(WhyFree::Separated(_)) => "separated",
-        Clearance::Overlapping(_) => "overlapping",
-    };
-    json!({ "kind": kind, "distance": clearance.distance().filter(|d| d.is_finite()) })
+        proof: Some(
+            first.map_or_else(Proof::Separation, |contact| Proof::Contact(contact.certificate)),
+        ),
+        precision: None,
+    }))
 }
 
 /// Checks a proof as it was written, against the two bodies alone.

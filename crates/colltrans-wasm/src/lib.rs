@@ -2,8 +2,8 @@
 //!
 //! Data flow: a page writes a question, JSON and perhaps the bytes of a file, to a buffer (`exports`) ->
 //! [`State::ask`] reads it as a `question::Question` -> `body` (files become bodies, which stay in the
-//! state), `convex` and `solid` (casts), `certify` (proofs between solids), `search` (how an answer was
-//! found) -> an [`Answer`]: JSON, and perhaps numbers in binary for large things.
+//! state), `convex` and `solid` (casts, as `told` has them), `certify` (proofs between solids), `search` (how an
+//! answer was found) -> an [`Answer`]: JSON, and perhaps numbers in binary for large things.
 //!
 //! The part for assemblies is a module of its own, read when it is asked for (`assembly/`); it has the
 //! same exported names.
@@ -24,6 +24,7 @@ mod question;
 mod search;
 mod solid;
 mod state;
+mod told;
 
 pub use answer::Answer;
 pub use state::State;

@@ -1,13 +1,15 @@
 //! The questions, as the page writes them: objects with a field `do`.
 //!
-//! Read by hand: what derived readers add would be a third of the download.
+//! Read by hand but for proofs, which the library reads: what derived readers of all of them would add is a
+//! third of the download.
 
-use colltrans::{Certificate, Separation, Solver, StopProof, VertexPair};
+use colltrans::Solver;
 use colltrans_mesh::body::Take;
-use glam::DVec3;
+use serde::Deserialize as _;
 use serde_json::Value;
 
 use crate::fields::Fields;
+use crate::told::Proof;
 
 /// One question.
 #[derive(Debug)]
@@ -57,28 +59,6 @@ pub(crate) struct Pair {
     pub(crate) ignore_overlaps: bool,
 }
 
-/// A proof to check.
-#[derive(Debug)]
-pub(crate) enum Proof {
-    Contact(Certificate),
-    Separation(Separation),
-    /// Between solids.
-    Clearance(Claimed),
-}
-
-/// What a proof between solids says; its entries come as the file, a byte each.
-#[derive(Debug)]
-pub(crate) struct Claimed {
-    pub(crate) tolerance: f64,
-    /// Infinite where nothing ever stops the body.
-    pub(crate) lower: f64,
-    pub(crate) stop: Option<StopProof>,
-    /// Where they overlap at the start: in which way, and the triangles.
-    pub(crate) overlap: Option<(String, Vec<u32>)>,
-    /// How many of the entries are about the start.
-    pub(crate) start_entries: usize,
-}
-
 /// A search to look at.
 #[derive(Debug)]
 pub(crate) struct Search {
@@ -109,7 +89,10 @@ impl Question {
             "load" => fields.load().map(Self::Load),
             "cast" => fields.pair().map(Self::Cast),
             "certify" => fields.pair().map(Self::Certify),
-            "verify" => Ok(Self::Verify(fields.pair()?, fields.object("proof")?.proof()?)),
+            "verify" => {
+                let proof = Proof::deserialize(fields.need("proof")?);
+                Ok(Self::Verify(fields.pair()?, proof.map_err(|error| error.to_string())?))
+            }
             "search" => fields.search().map(Self::Search),
             "levels" => fields.levels().map(Self::Levels),
             other => Err(format!("nothing is known to do for {other}")),
@@ -121,8 +104,6 @@ impl Question {
 trait Read {
     fn load(&self) -> Result<Load, String>;
     fn pair(&self) -> Result<Pair, String>;
-    fn proof(&self) -> Result<Proof, String>;
-    fn claimed(&self) -> Result<Claimed, String>;
     fn search(&self) -> Result<Search, String>;
     fn levels(&self) -> Result<Levels, String>;
 }
@@ -159,53 +140,6 @@ impl Read for Fields<'_> {
         })
     }
 
-    fn proof(&self) -> Result<Proof, String> {
-        if let Ok(given) = self.object("separation") {
-            let margin = given.number("margin")?.ok_or("margin is missing")?;
-            let normal = DVec3::from_array(given.array("normal")?);
-            return Ok(Proof::Separation(Separation { normal, margin }));
-        }
-        if let Ok(given) = self.object("clearance") {
-            return given.claimed().map(Proof::Clearance);
-        }
-        let given = self.object("contact")?;
-        let number = |key: &str| given.number(key)?.ok_or_else(|| format!("{key} is missing"));
-        Ok(Proof::Contact(Certificate {
-            normal: DVec3::from_array(given.array("normal")?),
-            lower: number("lower")?,
-            upper: given.number("upper")?.unwrap_or(f64::INFINITY),
-            pairs: pairs(given.need("pairs")?).ok_or("pairs are not three pairs of vertices")?,
-            weights: given.array("weights")?,
-            rounding: number("rounding")?,
-        }))
-    }
-
-    fn claimed(&self) -> Result<Claimed, String> {
-        let triangles = |key: &str, from: &Self| -> Result<Vec<u32>, String> {
-            Ok(from.list(key)?.into_iter().map(|x| x as u32).collect())
-        };
-        let missing = |key: &str| format!("{key} is missing");
-        let stop = self.get("stop").is_some().then(|| -> Result<_, String> {
-            let stop = self.object("stop")?;
-            let shrunk_distance =
-                stop.number("shrunk_distance")?.ok_or_else(|| missing("shrunk_distance"))?;
-            let two = triangles("triangles", &stop)?.try_into();
-            let triangles = two.map_err(|_| "triangles are not two".to_owned())?;
-            Ok(StopProof { shrunk_distance, triangles })
-        });
-        let overlap = self.get("overlap").is_some().then(|| -> Result<_, String> {
-            let overlap = self.object("overlap")?;
-            Ok((overlap.text("kind")?.to_owned(), triangles("triangles", &overlap)?))
-        });
-        Ok(Claimed {
-            tolerance: self.number("tolerance")?.ok_or_else(|| missing("tolerance"))?,
-            lower: self.number("lower")?.unwrap_or(f64::INFINITY),
-            stop: stop.transpose()?,
-            overlap: overlap.transpose()?,
-            start_entries: self.number("start_entries")?.unwrap_or(0.0) as usize,
-        })
-    }
-
     fn search(&self) -> Result<Search, String> {
         let after =
             self.get("after").is_some().then(|| self.object("after")?.pair()).transpose()?;
@@ -219,14 +153,4 @@ impl Read for Fields<'_> {
             at: [self.list("moving_levels")?, self.list("fixed_levels")?],
         })
     }
-}
-
-fn pairs(value: &Value) -> Option<[VertexPair; 3]> {
-    let pair = |value: &Value| -> Option<VertexPair> {
-        let [moving, fixed] = value.as_array()?.as_slice() else { return None };
-        let vertex = |v: &Value| u32::try_from(v.as_u64()?).ok();
-        Some(VertexPair { moving: vertex(moving)?, fixed: vertex(fixed)? })
-    };
-    let [a, b, c] = value.as_array()?.as_slice() else { return None };
-    Some([pair(a)?, pair(b)?, pair(c)?])
 }

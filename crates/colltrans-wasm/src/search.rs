@@ -2,15 +2,47 @@
 
 use colltrans::observe::{Event, Recording};
 use colltrans::{
-    Cast, Focus, NarrowFrom, Narrowing, Options, Outcome, Pose, Region, Solver, Tracker,
+    Cast, Focus, NarrowFrom, Narrowing, Options, Outcome, Pose, Region, Solver, Steps, Tracker,
 };
 use glam::DVec3;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, Refusal};
 use crate::body::Hull;
-use crate::convex::{query, work};
+use crate::convex::query;
 use crate::question::Search;
+
+/// An answer to `search`.
+#[derive(Serialize)]
+struct Found {
+    events: Vec<Value>,
+    steps: Steps,
+    /// In the neighbourhood of the solution of the query before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    region: Option<Around>,
+    /// After the query before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tracked: Option<Tracked>,
+}
+
+#[derive(Serialize)]
+struct Around {
+    /// Levels.
+    center: [f64; 2],
+    /// Half the side of the square, along axes as long as levels count.
+    half: f64,
+    /// The same as a length.
+    delta: f64,
+    steps: Steps,
+    events: Vec<Value>,
+}
+
+#[derive(Serialize)]
+struct Tracked {
+    steps: Steps,
+    events: Vec<Value>,
+}
 
 pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
     let mut cast = query(bodies, &asked.pair)?;
@@ -21,16 +53,13 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
     }
     let mut recording = Recording::default();
     let outcome = cast.first_contact_observed(&mut recording).map_err(|error| error.to_string())?;
-    let events: Vec<Value> = recording.events().iter().filter_map(event).collect();
+    let events = told_of(&recording);
     let solver = if cast.options().solver == Solver::Cta { Solver::Cta } else { Solver::Portal };
-    let mut told = json!({
-        "events": events,
-        "steps": work(solver, &outcome.steps()),
-    });
+    let mut told = Found { events, steps: outcome.steps(), region: None, tracked: None };
     if let Some(before) = &asked.after {
         let first = query(bodies, before)?;
         if solver == Solver::Cta {
-            told["region"] = region(&first, &cast)?;
+            told.region = region(&first, &cast)?;
         }
         let (mut tracker, mut seen) = (Tracker::new(), Recording::default());
         let mut outcome = None;
@@ -40,11 +69,7 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
             outcome = Some(answered.map_err(|error| error.to_string())?);
         }
         let steps = outcome.map(|outcome| outcome.steps()).unwrap_or_default();
-        told["tracked"] = json!({
-            "steps": work(solver, &steps),
-            "from": format!("{:?}", steps.started_from).to_lowercase(),
-            "events": seen.events().iter().filter_map(event).collect::<Vec<_>>(),
-        });
+        told.tracked = Some(Tracked { steps, events: told_of(&seen) });
     }
     Ok(Answer::of(&told))
 }
@@ -52,10 +77,10 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
 /// The minimisation again, in the neighbourhood `N(p)` of the solution `p` of the query before: a
 /// square of pairs of levels around those of its contact points, whose half-side is how far those
 /// have moved apart sideways (the paper, section III-D).
-fn region(before: &Cast, cast: &Cast) -> Result<Value, Refusal> {
+fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, Refusal> {
     let said = |error: colltrans::QueryError| error.to_string();
     let outcome = before.first_contact_observed(&mut Recording::default()).map_err(said)?;
-    let Outcome::Contact(contact) = outcome else { return Ok(Value::Null) };
+    let Outcome::Contact(contact) = outcome else { return Ok(None) };
     let points = contact.points(before);
     let back = |pose: Pose, v: DVec3| pose.matrix().transpose() * (v - pose.translation());
     let p = back(before.moving_pose(), points.on_moving);
@@ -73,15 +98,18 @@ fn region(before: &Cast, cast: &Cast) -> Result<Value, Refusal> {
         Event::Sections(sections) => Some(sections.axes),
         _ => None,
     });
-    let Some([a, b]) = axes else { return Ok(Value::Null) };
-    Ok(json!({
-        "center": [level(a, cast.moving_pose(), p), level(b, cast.fixed_pose(), q)],
-        // Levels count along axes of this length.
-        "half": half_side * a.length(),
-        "delta": half_side,
-        "steps": work(Solver::Cta, &outcome.steps()),
-        "events": seen.events().iter().filter_map(event).collect::<Vec<_>>(),
+    let Some([a, b]) = axes else { return Ok(None) };
+    Ok(Some(Around {
+        center: [level(a, cast.moving_pose(), p), level(b, cast.fixed_pose(), q)],
+        half: half_side * a.length(),
+        delta: half_side,
+        steps: outcome.steps(),
+        events: told_of(&seen),
     }))
+}
+
+fn told_of(seen: &Recording) -> Vec<Value> {
+    seen.events().iter().filter_map(event).collect()
 }
 
 fn array(v: DVec3) -> [f64; 3] {

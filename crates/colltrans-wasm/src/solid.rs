@@ -1,63 +1,39 @@
 //! Casts between bodies of which at least one need not be convex.
 
+use colltrans::record::Record;
 use colltrans::{Cast, Clearance, Solid, StartOverlap};
 use colltrans_mesh::body::between;
 use glam::DVec3;
-use serde_json::{Value, json};
 
 use crate::answer::{Answer, Refusal};
-use crate::body::{Facets, Lit, Part};
+use crate::body::{Facets, Part};
 use crate::pose::pose;
 use crate::question::Pair;
+use crate::told::{Lit, Proof, Told, Touching};
 
 pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);
     let cast = query([moving, fixed], pair)?;
     let clearance = cast.clearance();
-    let exit = cast.exit();
-    // Which bodies are open, at least in part.
-    let named = [("moving", moving), ("fixed", fixed)].into_iter();
-    let surfaces: Vec<&str> =
-        named.filter_map(|(name, f)| (!f.body.is_closed()).then_some(name)).collect();
-    let mut told = json!({
-        "kind": "solid",
-        "exit": exit.map(|exit| exit.value),
-        "exit_bounds": exit.map(|exit| exit.bounds()),
-        "tolerance": cast.options().tolerance,
-        "precision": moving.precision + fixed.precision,
-        "surfaces": surfaces,
-    });
-    let more: Value = match clearance {
-        Clearance::Free(plane) => json!({
-            "outcome": "free",
-            "sideways": plane.map(|plane| plane.normal.to_array()),
-            "margin": plane.map(|plane| plane.margin),
-        }),
-        Clearance::Overlapping(overlap) => {
-            json!({ "outcome": "overlapping", "depth": overlap.depth })
+    let (mut lit, mut proof) = (None, None);
+    match &clearance {
+        Clearance::Free(plane) => proof = plane.map(Proof::Separation),
+        Clearance::Overlapping(_) => {}
+        Clearance::Blocked { contact, .. } => {
+            lit = Some(Touching {
+                moving: Lit::of(contact.moving_feature, cast.moving()),
+                fixed: Lit::of(contact.fixed_feature, cast.fixed()),
+            });
         }
-        Clearance::Blocked { distance, contact } => {
-            json!({
-                "outcome": "blocked",
-                "distance": distance,
-                "bounds": contact.translation.bounds(),
-                "shrunk_distance": contact.shrunk_distance.value,
-                "shrunk_distance_bounds": contact.shrunk_distance.bounds(),
-                "first": {
-                    "t": contact.translation.value,
-                    "normal": contact.normal.to_array(),
-                    "on_moving": contact.point_on_moving.to_array(),
-                    "on_fixed": contact.point_on_fixed.to_array(),
-                    "moving": Lit::of(contact.moving_feature, &moving.body).told(),
-                    "fixed": Lit::of(contact.fixed_feature, &fixed.body).told(),
-                },
-            })
-        }
-    };
-    if let (Value::Object(told), Value::Object(more)) = (&mut told, more) {
-        told.extend(more);
     }
-    Ok(Answer::of(&told))
+    Ok(Answer::of(&Told {
+        kind: "solid",
+        record: Record::of_solids(&clearance, cast.exit(), &cast),
+        clearance: None,
+        lit,
+        proof,
+        precision: Some(moving.precision + fixed.precision),
+    }))
 }
 
 /// The query that a question asks.

@@ -100,7 +100,7 @@ impl State {
                 [Part::Convex(moving), Part::Convex(fixed)] => {
                     convex::verify([moving, fixed], &pair, &proof)
                 }
-                bodies => certify::verify(bodies, &pair, &proof, &file),
+                bodies => certify::verify(bodies, &pair, &proof),
             },
             Question::Search(asked) => search::search(self.convex()?, &asked),
             Question::Levels(asked) => levels::levels(self.convex()?, &asked),

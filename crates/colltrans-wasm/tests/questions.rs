@@ -48,11 +48,12 @@ fn a_cast_is_the_library_s() {
     let start = Pose::new(DQuat::from_xyzw(a, b, c, w), DVec3::new(x, y, z)).unwrap();
     let cast = Cast::new(moving.at(start), fixed.at(Pose::IDENTITY), DVec3::new(-0.3, 0.1, -1.0));
     let Outcome::Contact(contact) = cast.unwrap().first_contact().unwrap() else { panic!() };
-    let first = &answer["first"];
-    assert_eq!(first["t"].as_f64().unwrap().to_bits(), contact.translation.to_bits());
-    assert_eq!(first["proof"]["lower"], json!(contact.certificate.lower));
-    assert_eq!(first["normal"], json!(contact.normal.to_array()));
-    assert_eq!(answer["clearance"]["kind"], "blocked");
+    let record = &answer["record"];
+    let t = record["translation"].as_f64().unwrap();
+    assert_eq!(t.to_bits(), contact.translation.to_bits());
+    assert_eq!(answer["proof"]["contact"]["lower"], json!(contact.certificate.lower));
+    assert_eq!(record["normal"], json!(contact.normal.to_array()));
+    assert_eq!(answer["clearance"]["outcome"], "blocked");
 }
 
 /// The minimisation's value at a pair of levels is the collision translation of the two sections,
@@ -102,28 +103,23 @@ fn what_a_solid_touches_with() {
     let mut question = pair("cast", [0.0, 0.0, -1.0]);
     question["moving_pose"] = json!([6.0, 5.0, 4.0, 0.0, 0.0, 0.0, 1.0]);
     let (answer, _) = ask(&mut state, &question, Vec::new());
-    let first = &answer["first"];
-    assert_eq!(
-        first["moving"],
-        json!({ "kind": "vertex", "vertices": [3], "face": null, "file": [4] })
-    );
+    let (record, lit) = (&answer["record"], &answer["lit"]);
+    let features = &record["features"];
+    assert_eq!(features["moving"], json!({ "kind": "vertex", "vertices": [4] }));
+    assert_eq!(lit["moving"], json!({ "vertices": [3] }));
     assert_eq!(numbers[9..12], [0.25, 0.0, 0.0], "the vertex that is lit");
-    assert_eq!(first["fixed"]["kind"], "face", "{answer}");
-    assert!(first["fixed"]["file"].as_array().unwrap().len() > 4, "with its hole: {answer}");
+    assert_eq!(features["fixed"]["kind"], "face", "{answer}");
+    assert!(lit["fixed"]["face"].is_u64(), "{answer}");
+    let corners = features["fixed"]["vertices"].as_array().unwrap();
+    assert!(corners.len() > 4, "with its hole: {answer}");
     let number = |value: &Value| value.as_f64().unwrap();
-    let t = number(&first["t"]);
-    assert!(
-        number(&answer["distance"]) <= t && t - number(&answer["distance"]) < 1e-11,
-        "{answer}"
-    );
-    for (name, value) in
-        [("bounds", t), ("shrunk_distance_bounds", number(&answer["shrunk_distance"]))]
-    {
-        let [lower, upper] = [0, 1].map(|k| number(&answer[name][k]));
+    let (t, distance) = (number(&record["translation"]), number(&record["distance"]));
+    assert!(distance <= t && t - distance < 1e-11, "{answer}");
+    for name in ["translation", "shrunk_distance", "exit"] {
+        let [lower, upper] = [0, 1].map(|k| number(&record[format!("{name}_bounds")][k]));
+        let value = number(&record[name]);
         assert!(lower <= value && value <= upper, "{name}: {answer}");
     }
-    let [lower, upper] = [0, 1].map(|k| number(&answer["exit_bounds"][k]));
-    assert!(lower <= number(&answer["exit"]) && number(&answer["exit"]) <= upper, "{answer}");
 }
 
 #[test]
@@ -152,7 +148,7 @@ fn what_cannot_be_answered_is_said() {
 
     let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
     let (before, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
-    assert_eq!(before["outcome"], "contact");
+    assert_eq!(before["record"]["outcome"], "contact");
     // What was there is still answered about when a file is refused, because of its text or of its shape.
     for (name, file) in [("a.off", b"OFF\n1 0 0\n0 0".to_vec()), ("plate.off", data("plate.off"))] {
         let (refused, _) = ask(&mut state, &load(name), file);
@@ -173,7 +169,7 @@ fn a_lie_is_no_proof() {
     let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
     let (answer, _) = ask(&mut state, &pair("cast", [-0.3, 0.1, -1.0]), Vec::new());
     let mut question = pair("verify", [-0.3, 0.1, -1.0]);
-    question["proof"] = json!({ "contact": answer["first"]["proof"] });
+    question["proof"] = answer["proof"].clone();
     let (checked, _) = ask(&mut state, &question, Vec::new());
     assert_eq!(checked["holds"], true, "{checked}");
     let lower = &mut question["proof"]["contact"]["lower"];
@@ -188,10 +184,10 @@ fn a_tracker_starts_from_the_last_answer() {
     let mut question = pair("search", [-0.3, 0.1, -1.0]);
     question["after"] = pair("cast", [-0.3, 0.101, -1.0]);
     let (answer, _) = ask(&mut state, &question, Vec::new());
-    assert_eq!(answer["tracked"]["from"], "features");
+    assert_eq!(answer["tracked"]["steps"]["started_from"], "features");
 }
 
-/// Read from text and bytes, as a page hands it back; changed in any of its parts it holds no more.
+/// Read as a page hands it back; changed in any of its parts it holds no more.
 #[test]
 fn proofs_between_solids_are_checked_as_they_were_told() {
     let solids = |moving: &str, fixed: &str| loaded(moving, fixed, "solid");
@@ -203,30 +199,35 @@ fn proofs_between_solids_are_checked_as_they_were_told() {
     for (mut state, [x, y, z], direction, kind) in cases {
         let mut question = pair("certify", direction);
         question["moving_pose"] = json!([x, y, z, 0.0, 0.0, 0.0, 1.0]);
-        let Answer { text, numbers } = state.ask(question.to_string().as_bytes(), Vec::new());
-        let told: Value = serde_json::from_slice(&text).unwrap();
+        let (told, _) = ask(&mut state, &question, Vec::new());
+        let told = &told["proof"]["clearance"];
         assert_eq!(told["stop"].is_object(), kind == "stop", "{told}");
-        assert_eq!(told["overlap"].is_object(), kind == "overlap", "{told}");
-        let mut check = |proof: &Value, entries: &[u8]| {
+        assert_eq!(told["start"]["facets"].is_array(), kind == "overlap", "{told}");
+        let mut check = |proof: &Value| {
             question["do"] = json!("verify");
             question["proof"] = json!({ "clearance": proof });
-            let answer = state.ask(question.to_string().as_bytes(), entries.to_vec());
-            serde_json::from_slice::<Value>(&answer.text).unwrap()
+            ask(&mut state, &question, Vec::new()).0
         };
-        assert_eq!(check(&told, &numbers)["holds"], true, "{told}");
+        assert_eq!(check(told)["holds"], true, "{told}");
         let mut lie = told.clone();
         lie["tolerance"] = json!(lie["tolerance"].as_f64().unwrap() + 1.0);
-        assert_eq!(check(&lie, &numbers)["holds"], false);
+        assert_eq!(check(&lie)["holds"], false);
         if kind == "stop" {
             let mut lie = told.clone();
             lie["lower"] = json!(lie["lower"].as_f64().unwrap() + 0.1);
-            assert_eq!(check(&lie, &numbers)["holds"], false);
+            assert_eq!(check(&lie)["holds"], false);
             lie = told.clone();
             lie["stop"] = Value::Null;
-            assert_eq!(check(&lie, &numbers)["holds"], false);
-            assert_eq!(check(&told, &numbers[..numbers.len() - 1])["holds"], false);
+            assert_eq!(check(&lie)["holds"], false);
+            let mut lie = told.clone();
+            let cover = lie["cover"].as_str().unwrap();
+            lie["cover"] = json!(cover[..cover.len() - 1]);
+            assert_eq!(check(&lie)["holds"], false);
         }
-        assert!(check(&told, &[200])["error"].is_string());
+        let mut lie = told.clone();
+        lie["cover"] = json!("?");
+        assert!(check(&lie)["error"].is_string());
+        assert!(check(&json!({}))["error"].is_string());
     }
 }
 

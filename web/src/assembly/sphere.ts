@@ -2,18 +2,12 @@
 // the view and is clicked into.
 
 import { type Camera, Vector3 } from "three";
+import type { PageMap } from "../answers";
 import { palette } from "../colours";
 import { h } from "../dom";
 import { type Vec, dot, unit } from "../math";
 
-export interface RemovalMap {
-  group: number[];
-  size: number;
-  free_share: number;
-  regions: { solid_angle: number; center: Vec }[];
-  isolated: Vec[];
-  /** Which part is in the way, by direction. */
-  by: (number | null)[];
+export interface RemovalMap extends Omit<PageMap, "directions" | "triangles"> {
   /** Three numbers each. */
   directions: Float32Array;
   /** Infinite where nothing is in the way. */

@@ -1,26 +1,9 @@
 // A recording of a search, in steps.
 
-import type { Steps } from "../engine";
+import type { PageEvent } from "../answers";
 import { type Vec, add, times } from "../math";
 
 type Two = [number, number];
-
-/** The events as the library tells them. */
-export type Event =
-  | { begun: [Vec, Vec, Vec] }
-  | { support: Vec; normal: Vec; pair: Two }
-  | { portal: [Vec, Vec, Vec] }
-  | { sections: [Vec, Vec]; ranges: [Two, Two] }
-  | { planar: Two; value: number; meets: boolean; gradient: Two; shifted: number }
-  | { cut: Two; origin: Two; limit: number; lower: number; upper: number };
-
-export interface Recording {
-  events: Event[];
-  steps: Steps;
-  /** The minimisation again in `N(p)`, around the levels of the last solution; `null` if that was none. */
-  region?: { center: Two; half: number; delta: number; steps: Steps; events: Event[] } | null;
-  tracked?: { steps: Steps; from: "features" | "region" | "scratch"; events: Event[] };
-}
 
 /** One planar problem, the cut that followed, and what was left of the levels before it. */
 export interface Step {
@@ -45,7 +28,7 @@ export interface Minimisation {
 }
 
 /** The minimisation over pairs of levels, if there was one. */
-export function minimisation(events: Event[]): Minimisation | undefined {
+export function minimisation(events: PageEvent[]): Minimisation | undefined {
   const begun = events.find((event) => "sections" in event);
   if (!begun || !("sections" in begun)) return undefined;
   const [[a, b], [c, d]] = begun.ranges;
@@ -82,7 +65,7 @@ export function below(polygon: Two[], gradient: Two, origin: Two, limit: number)
 }
 
 /** The portals in their order, each with the support points computed for it. */
-export function portals(events: Event[]): { frame: [Vec, Vec, Vec]; steps: { portal: [Vec, Vec, Vec]; supports: Vec[] }[]; loose: Vec[] } | undefined {
+export function portals(events: PageEvent[]): { frame: [Vec, Vec, Vec]; steps: { portal: [Vec, Vec, Vec]; supports: Vec[] }[]; loose: Vec[] } | undefined {
   let frame: [Vec, Vec, Vec] | undefined;
   let steps: { portal: [Vec, Vec, Vec]; supports: Vec[] }[] = [];
   let loose: Vec[] = [];

@@ -5,7 +5,8 @@ import {
   BufferGeometry, CircleGeometry, CylinderGeometry, Group, type Matrix4, Mesh, MeshBasicMaterial, type Object3D, PlaneGeometry,
   SphereGeometry, Vector3,
 } from "three";
-import type { Answer, Feature, Slot, Touch } from "../engine";
+import type { Certificate, Feature, PageCast, PageFeature } from "../answers";
+import type { Slot, Touch } from "../engine";
 import { type Pose, type Vec, add, cross, dot, placed, sub, times, unit } from "../math";
 import type { State } from "../state";
 import { type Drawn, corner, highest, matrixOf } from "./body";
@@ -14,25 +15,25 @@ import { type Frame, type Label, ball, dashes, inPicture, loop, rod, sheet } fro
 type Both = Record<Slot, Drawn>;
 type Poses = Record<Slot, Pose>;
 
-export function contact(frame: Frame, first: Touch, answer: Answer, state: State, bodies: Both): { parts: Object3D[]; label: Label } {
+export function contact(frame: Frame, first: Touch, proof: PageCast["proof"], state: State, bodies: Both): { parts: Object3D[]; label: Label } {
   const { size, colours, origin } = frame;
   const { poses, direction } = state;
   const { moving, fixed } = bodies;
   const n = first.normal;
   const along = times(direction, first.t);
-  const point = inPicture(frame, first.on_fixed);
-  const start = inPicture(frame, sub(first.on_fixed, along));
+  const point = inPicture(frame, first.point);
+  const start = inPicture(frame, sub(first.point, along));
   const reach = Math.min(moving.radius, fixed.radius);
-  const back = (length: number) => inPicture(frame, sub(first.on_fixed, times(n, length * reach)));
+  const back = (length: number) => inPicture(frame, sub(first.point, times(n, length * reach)));
   const parts = [
     dashes([start, point], colours.way, 0.7, size / 40),
     ...disc(point, n, 0.8 * reach, colours.plane),
     rod(back(0.62), point, colours.normal, 0.007 * size),
     ball(point, 0.013 * size, new MeshBasicMaterial({ color: colours.normal })),
-    feature(first.fixed, fixed, matrixOf(poses.fixed, fixed.middle, origin), colours.fixedMark, size),
-    feature(first.moving, moving, matrixOf(poses.moving, moving.middle, origin, along), colours.movingMark, size),
+    feature(first.features.fixed.kind, first.lit.fixed, fixed, matrixOf(poses.fixed, fixed.middle, origin), colours.fixedMark, size),
+    feature(first.features.moving.kind, first.lit.moving, moving, matrixOf(poses.moving, moving.middle, origin, along), colours.movingMark, size),
   ];
-  if (answer.kind === "convex" && first.proof) parts.push(...witness(frame, first.proof.pairs, along, poses, bodies));
+  if (proof && "contact" in proof) parts.push(...witness(frame, proof.contact.pairs, along, poses, bodies));
   return { parts, label: { text: "n", start: point, end: back(0.62), kind: "normal" } };
 }
 
@@ -49,11 +50,11 @@ function disc(at: Vector3, normal: Vec, radius: number, colour: string): Object3
 }
 
 /** The three pairs of vertices that prove the upper bound, at the contact. */
-function witness(frame: Frame, pairs: [number, number][], along: Vec, poses: Poses, { moving, fixed }: Both): Object3D[] {
+function witness(frame: Frame, pairs: Certificate["pairs"], along: Vec, poses: Poses, { moving, fixed }: Both): Object3D[] {
   const { colours } = frame;
   const triangles: [Vec[], string][] = [
-    [pairs.map(([p]) => add(corner(moving, poses.moving, p), along)), colours.movingMark],
-    [pairs.map(([, q]) => corner(fixed, poses.fixed, q)), colours.fixedMark],
+    [pairs.map((pair) => add(corner(moving, poses.moving, pair.moving), along)), colours.movingMark],
+    [pairs.map((pair) => corner(fixed, poses.fixed, pair.fixed)), colours.fixedMark],
   ];
   return triangles.flatMap(([corners, colour]) => {
     const at = corners.map((v) => inPicture(frame, v));
@@ -62,19 +63,19 @@ function witness(frame: Frame, pairs: [number, number][], along: Vec, poses: Pos
 }
 
 /** The vertex, edge or face that touches. */
-function feature(of: Feature, body: Drawn, matrix: Matrix4, colour: string, size: number): Group {
+function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, matrix: Matrix4, colour: string, size: number): Group {
   const group = new Group();
   group.matrixAutoUpdate = false;
   group.matrix.copy(matrix);
   const { vertices } = body.body;
   const at = (v: number) => new Vector3(...([0, 1, 2].map((c) => vertices[3 * v + c]! - body.middle[c]!) as Vec));
-  if (of.kind === "face") {
+  if (kind === "face") {
     const material = sheet(colour, 0.55);
     material.polygonOffset = true;
     material.polygonOffsetFactor = -1;
     material.polygonOffsetUnits = -1;
     group.add(new Mesh(new BufferGeometry().setFromPoints(faceOf(body, of.face)), material));
-  } else if (of.kind === "edge" && of.vertices.length === 2) {
+  } else if (kind === "edge" && of.vertices.length === 2) {
     const [a, b] = of.vertices.map(at) as [Vector3, Vector3];
     const width = 0.007 * size;
     const edge = new Mesh(new CylinderGeometry(width, width, a.distanceTo(b), 12), new MeshBasicMaterial({ color: colour }));

@@ -1,18 +1,14 @@
 // The picture as areas and lines: text of an SVG file.
 //
-// The data's way: the scene's triangles and lines -> the page (`Eye`) -> areas in the `order` in which
-// the nearer cover the farther, and of the lines what no opaque area hides (`depths`). What is above
-// everything, the arrow, comes last.
+// The data's way: the scene's triangles and lines -> the page (`Eye`), with what they look like (`Light`) -> a
+// `Sheet` of them -> the module of drawings, which finds what hides what.
 
 import {
   type AmbientLight, type BufferGeometry, Color, type DirectionalLight, DoubleSide, type Line, type LineBasicMaterial,
   type LineDashedMaterial, type Mesh, type MeshLambertMaterial, type Object3D, type PerspectiveCamera, type Scene, Vector3,
 } from "three";
-import { svg } from "../dom";
-import type { Body } from "../engine";
+import { type Body, Engine } from "../engine";
 import type { Drawn } from "./body";
-import { type Corners, Depths, type Point } from "./depths";
-import { type Facet, ordered } from "./order";
 import { placeOf } from "./overlay";
 import type { Label } from "./shapes";
 
@@ -20,8 +16,6 @@ import type { Label } from "./shapes";
 const MOST_DRAWN = 40_000;
 /** Lengths along the view that are no difference, as a part of the size of what is shown. */
 const SLACK = 2e-4;
-/** The width of an area's rim. */
-const RIM = 0.7;
 
 export interface Picture {
   scene: Scene;
@@ -34,9 +28,8 @@ export interface Picture {
   text: string;
 }
 
-export function drawing({ scene, camera, labels, size, wide, high, ground, text }: Picture): string {
+export async function drawing({ scene, camera, labels, size, wide, high, ground, text }: Picture): Promise<string> {
   scene.updateMatrixWorld();
-  const eye = new Eye(camera, wide, high);
   const [meshes, lines]: [Mesh[], Line[]] = [[], []];
   scene.traverseVisible((object) => {
     if ((object as Mesh).isMesh) meshes.push(object as Mesh);
@@ -44,38 +37,79 @@ export function drawing({ scene, camera, labels, size, wide, high, ground, text 
   });
   const triangles = meshes.reduce((sum, { geometry }) => sum + countOf(geometry) / 3, 0);
   if (triangles > MOST_DRAWN) throw new Error(`${Math.round(triangles)} triangles are too many for an SVG file: the PNG has them`);
-  const slack = SLACK * size;
+  const [eye, slack, sheet] = [new Eye(camera, wide, high), SLACK * size, new Sheet()];
   const light = new Light(scene, eye);
-  const depths = new Depths(wide, high, slack);
-  /** Of each body, where its triangles are among the owners of depths. */
-  const owners = new Map<Object3D, number>();
-  const [within, above]: [Facet[], Facet[]] = [[], []];
-  let owner = 0;
+  /** Of each body, the number of its first triangle. */
+  const firsts = new Map<Object3D, number>();
+  let first = 0;
   for (const mesh of meshes) {
-    if (mesh.parent) owners.set(mesh.parent, owner);
-    const hides = (mesh.material as MeshLambertMaterial).depthTest;
-    for (const facet of facetsOf(mesh, eye, light, slack)) {
-      (hides ? within : above).push(facet);
-      if (hides && facet.opaque) depths.draw(facet.corners, owner + facet.triangle);
-    }
-    owner += countOf(mesh.geometry) / 3;
+    if (mesh.parent) firsts.set(mesh.parent, first);
+    addMesh(sheet, mesh, eye, light, slack, first);
+    first += countOf(mesh.geometry) / 3;
   }
-  const grid = lines.filter((line) => line.type === "LineSegments" && !line.parent?.userData.body);
-  const areas = (facets: Facet[]) => areasOf(ordered(facets, wide, high, slack));
-  const strokes = (some: Line[]) => some.flatMap((line) => strokeOf(line, eye, depths, owners));
+  for (const line of lines) addLine(sheet, line, eye, firsts.get(line.parent!) ?? 0);
   const words = labels.flatMap((label) => {
     const at = placeOf(label, camera, wide, high);
-    const look = { "font-family": "sans-serif", "font-size": 14, "font-style": "italic", "text-anchor": "middle", fill: text };
-    return at ? [svg("text", { x: written(at[0]), y: written(at[1] + 4), ...look }, label.text)] : [];
+    return at ? [{ at: [at[0], at[1] + 4], text: label.text }] : [];
   });
-  const picture = svg("svg", { xmlns: "http://www.w3.org/2000/svg", viewBox: `0 0 ${wide} ${high}`, width: wide, height: high, "stroke-linejoin": "round" },
-    svg("rect", { width: wide, height: high, fill: ground }),
-    ...strokes(grid), ...areas(within), ...strokes(lines.filter((line) => !grid.includes(line))), ...areas(above), ...words);
-  return new XMLSerializer().serializeToString(picture);
+  const engine = new Engine("colltrans_picture");
+  try {
+    const { numbers } = await engine.ask({ do: "draw", size: [wide, high], slack, ground, text, words, ...sheet.said() }, sheet.file());
+    return new TextDecoder().decode(numbers);
+  } finally {
+    engine.stop("the drawing is done");
+  }
 }
 
 const countOf = (geometry: BufferGeometry): number => (geometry.index ?? geometry.getAttribute("position")).count;
-const written = (x: number): string => String(Math.round(100 * x) / 100);
+
+/** A point of the page in pixels; q is the inverse of its distance along the view: planes of the scene are planes there. */
+interface Point {
+  x: number;
+  y: number;
+  q: number;
+}
+
+/** Triangles and segments on the page, as the module of drawings reads them (`crates/colltrans-wasm/picture/src/scene.rs`). */
+class Sheet {
+  private readonly styles: Record<"areas" | "lines", Map<string, number>> = { areas: new Map(), lines: new Map() };
+  private readonly corners: number[] = [];
+  private readonly ends: number[] = [];
+  private readonly ofCorners: number[] = [];
+  private readonly ofEnds: number[] = [];
+  private readonly beside: number[] = [];
+
+  /** `number`: what lines that are its edges know it by. */
+  triangle(corners: Point[], look: { fill: string; opacity: number; above: boolean }, number: number) {
+    for (const { x, y, q } of corners) this.corners.push(x, y, q);
+    this.ofCorners.push(this.style("areas", look), number);
+  }
+
+  segment(ends: Point[], look: { colour: string; opacity: number; dash: number | undefined; below: boolean }, beside: readonly number[]) {
+    for (const { x, y, q } of ends) this.ends.push(x, y, q);
+    this.ofEnds.push(this.style("lines", look), beside.length);
+    this.beside.push(...beside);
+  }
+
+  private style(kind: "areas" | "lines", look: object): number {
+    const [styles, text] = [this.styles[kind], JSON.stringify(look)];
+    if (!styles.has(text)) styles.set(text, styles.size);
+    return styles.get(text)!;
+  }
+
+  said(): object {
+    const list = (kind: "areas" | "lines") => [...this.styles[kind].keys()].map((text) => JSON.parse(text));
+    return { areas: list("areas"), lines: list("lines"), triangles: this.ofCorners.length / 2, segments: this.ofEnds.length / 2 };
+  }
+
+  file(): ArrayBuffer {
+    const [points, numbers] = [[this.corners, this.ends].flat(), [this.ofCorners, this.ofEnds, this.beside].flat()];
+    const file = new ArrayBuffer(8 * points.length + 4 * numbers.length);
+    new Float64Array(file, 0, points.length).set(points);
+    new Uint32Array(file, 8 * points.length).set(numbers);
+    return file;
+  }
+}
 
 /** Who looks: from the world to the page. */
 class Eye {
@@ -136,13 +170,12 @@ class Light {
 }
 
 /** What looks at the eye, and both sides of sheets. */
-function facetsOf(mesh: Mesh, eye: Eye, light: Light, slack: number): (Facet & { triangle: number })[] {
+function addMesh(sheet: Sheet, mesh: Mesh, eye: Eye, light: Light, slack: number, first: number) {
   const material = mesh.material as MeshLambertMaterial;
   const closed = (mesh.parent?.userData.body as Drawn | undefined)?.body.facts.closed;
   const bothSides = material.side === DoubleSide && !closed;
   const nearer = material.polygonOffset ? -2 * slack * material.polygonOffsetFactor : 0;
   const corners = eye.sees(mesh);
-  const facets: (Facet & { triangle: number })[] = [];
   for (let k = 0; k < corners.length; k += 3) {
     const [a, b, c] = [corners[k]!, corners[k + 1]!, corners[k + 2]!];
     const normal = b.clone().sub(a).cross(c.clone().sub(a)).normalize();
@@ -150,57 +183,31 @@ function facetsOf(mesh: Mesh, eye: Eye, light: Light, slack: number): (Facet & {
       if (!bothSides) continue;
       normal.negate();
     }
-    const style = `${light.colour(material, normal)};${material.opacity}`;
-    const [first, ...rest] = eye.before([a, b, c], true).map((v) => eye.place(v, nearer));
-    for (let i = 1; i < rest.length; i++) {
-      const fan = [first!, rest[i - 1]!, rest[i]!] as Corners;
-      facets.push({ corners: fan, style, opaque: material.opacity === 1, triangle: k / 3 });
-    }
+    const look = { fill: light.colour(material, normal), opacity: material.opacity, above: !material.depthTest };
+    const [corner, ...rest] = eye.before([a, b, c], true).map((v) => eye.place(v, nearer));
+    for (let i = 1; i < rest.length; i++) sheet.triangle([corner!, rest[i - 1]!, rest[i]!], look, first + k / 3);
   }
-  return facets;
 }
 
-/** Neighbours of one style are one path; opaque ones have a thin rim, so that nothing shines through. */
-function areasOf(facets: Facet[]): SVGElement[] {
-  const paths: { style: string; opaque: boolean; d: string }[] = [];
-  for (const { style, opaque, corners } of facets) {
-    const [a, b, c] = corners;
-    const turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    // All of them the same way round: then overlaps add up and nothing is a hole.
-    const d = `M${(turn > 0 ? [a, b, c] : [a, c, b]).map(({ x, y }) => `${written(x)} ${written(y)}`).join("L")}Z`;
-    const last = paths.at(-1);
-    if (last?.style === style) last.d += d;
-    else paths.push({ style, opaque, d });
-  }
-  return paths.map(({ style, opaque, d }) => {
-    const [fill, opacity] = style.split(";") as [string, string];
-    return svg("path", opaque ? { d, fill, stroke: fill, "stroke-width": RIM } : { d, fill, "fill-opacity": opacity });
-  });
-}
-
-/** What is seen of a line. */
-function strokeOf(line: Line, eye: Eye, depths: Depths, owners: Map<Object3D, number>): SVGElement[] {
+/** `first`: the number of the first triangle of the body whose edges the lines are. */
+function addLine(sheet: Sheet, line: Line, eye: Eye, first: number) {
   const points = eye.sees(line);
   const apart = line.type === "LineSegments";
   const last = line.type === "LineLoop" ? points.length : points.length - 1;
   const body = (line.parent?.userData.how === "solid" ? line.parent.userData.body : undefined) as Drawn | undefined;
-  const beside = body && trianglesBeside(body.body, owners.get(line.parent!) ?? 0);
-  const away = (edge: number) => body?.body.facts.closed && !beside![edge]!.some((triangle) => depths.has(triangle));
-  let d = "";
-  let near = 0;
+  const beside = body && trianglesBeside(body.body, first);
+  const segments: { ends: Point[]; edge: number }[] = [];
   for (let k = 0; k < last; k += apart ? 2 : 1) {
-    if (away(k / 2)) continue;
-    const ends = eye.before([points[k]!, points[(k + 1) % points.length]!], false);
-    if (ends.length < 2) continue;
-    const [a, b] = ends.map((v) => eye.place(v)) as [Point, Point];
-    near = Math.max(near, a.q, b.q);
-    const at = (s: number) => `${written(a.x + s * (b.x - a.x))} ${written(a.y + s * (b.y - a.y))}`;
-    for (const [from, to] of depths.seen(a, b, beside?.[k / 2])) d += `M${at(from)}L${at(to)}`;
+    const ends = eye.before([points[k]!, points[(k + 1) % points.length]!], false).map((v) => eye.place(v));
+    if (ends.length === 2) segments.push({ ends, edge: k / 2 });
   }
-  if (!d) return [];
-  const { color, opacity, ...material } = line.material as LineBasicMaterial & Partial<LineDashedMaterial>;
-  const dash = material.dashSize && written(material.dashSize * eye.scale(near));
-  return [svg("path", { d, fill: "none", stroke: color.getStyle(), "stroke-opacity": opacity, "stroke-linecap": dash ? "butt" : "round", "stroke-dasharray": dash || undefined })];
+  const { color, opacity, dashSize } = line.material as LineBasicMaterial & Partial<LineDashedMaterial>;
+  const near = segments.reduce((most, { ends }) => Math.max(most, ends[0]!.q, ends[1]!.q), 0);
+  const dash = dashSize && eye.scale(near) * dashSize;
+  // The grid on the ground is below all.
+  const below = apart && !line.parent?.userData.body;
+  const look = { colour: color.getStyle(), opacity, dash, below };
+  for (const { ends, edge } of segments) sheet.segment(ends, look, beside?.[edge] ?? []);
 }
 
 /** Of each edge the triangles that meet there. */

@@ -1,6 +1,7 @@
 // From where the picture is seen, and how large it is.
 
-import type { Answer } from "../engine";
+import type { PageCast } from "../answers";
+import { touch } from "../engine";
 import { type Vec, add, dot, length, placed, sub, times, unit } from "../math";
 import type { State } from "../state";
 import type { Drawn } from "./body";
@@ -10,16 +11,16 @@ const FAR = 1e30;
 
 /** Whether a picture can be made: numbers may be larger than it holds, until the library has refused them and
  * even where it answers. */
-export function drawable({ poses, direction }: State, answer: Answer | undefined, moving: Drawn, fixed: Drawn): boolean {
-  const way = times(direction, Math.max(1, Math.abs(answer?.first?.t ?? 0)));
+export function drawable({ poses, direction }: State, answer: PageCast | undefined, moving: Drawn, fixed: Drawn): boolean {
+  const way = times(direction, Math.max(1, Math.abs(answer?.record.translation ?? 0)));
   return [...poses.moving, ...poses.fixed, ...way, moving.radius, ...moving.middle, fixed.radius, ...fixed.middle].every((x) => Math.abs(x) < FAR);
 }
 
 /** The middle of the bodies, the moving one where it starts and where it stops, and half of their extent. */
-export function extent(state: State, answer: Answer | undefined, moving: Drawn, fixed: Drawn): { origin: Vec; size: number } {
+export function extent(state: State, answer: PageCast | undefined, moving: Drawn, fixed: Drawn): { origin: Vec; size: number } {
   const start = placed(state.poses.moving, moving.middle);
   const balls: [Vec, number][] = [[start, moving.radius], [placed(state.poses.fixed, fixed.middle), fixed.radius]];
-  const t = answer?.first?.t;
+  const t = answer?.record.translation;
   if (t !== undefined && t > 0) balls.push([add(start, times(state.direction, t)), moving.radius]);
   // The arrow's tip, which is a little farther out when all of it is in the picture.
   const reach = 1.1 * moving.radius + 0.2 * (moving.radius + fixed.radius);
@@ -38,9 +39,9 @@ export function distance(size: number, fov: number, aspect: number): number {
 }
 
 /** From the side, so that the way is long, a little from above; where the fixed body does not hide the contact. */
-export function bestSide(direction: Vec, answer: Answer | undefined): Vec {
+export function bestSide(direction: Vec, answer: PageCast | undefined): Vec {
   const d = unit(direction);
-  const normal = answer?.first?.normal;
+  const normal = touch(answer)?.normal;
   const candidates: Vec[] = [[-0.62, -0.68, 0.4], [0.62, -0.68, 0.4], [-0.62, 0.68, 0.4], [0.62, 0.68, 0.4]];
   const score = (v: Vec) => -Math.abs(dot(v, d)) - (normal ? 0.8 * dot(v, normal) : 0);
   return candidates.reduce((best, v) => (score(v) > score(best) ? v : best));

@@ -1,0 +1,217 @@
+//! Samples over a page, and those that a triangle covers.
+//!
+//! Notation. A point of the page is (x, y) in pixels and a depth, which grows towards the viewer: planes
+//! of the scene are planes there. A *sample* is the centre of a cell of `1 / fine` pixels.
+
+use glam::{DVec2, DVec3};
+
+use crate::Frame;
+
+/// What depths are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// Lengths along the view, whose rays are parallel.
+    Length,
+    /// Inverses of the distance along the view, whose rays come together in an eye.
+    Inverse,
+}
+
+impl Depth {
+    /// The depth of what is nearer by a length.
+    pub(crate) fn nearer(self, depth: f64, by: f64) -> f64 {
+        match self {
+            Self::Length => depth + by,
+            // What would be behind the eye is as near as can be.
+            Self::Inverse if depth * by >= 1.0 => f64::INFINITY,
+            Self::Inverse => depth / (1.0 - depth * by),
+        }
+    }
+
+    /// By which length the first is farther than the second.
+    pub(crate) fn apart(self, far: f64, near: f64) -> f64 {
+        match self {
+            Self::Length => near - far,
+            Self::Inverse => 1.0 / far - 1.0 / near,
+        }
+    }
+}
+
+/// Where samples are.
+pub(crate) struct Grid {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    fine: usize,
+}
+
+impl Grid {
+    /// Over a window that begins at (0, 0).
+    pub(crate) fn new(window: Frame, fine: usize) -> Self {
+        let [width, height] = window.high.to_array().map(|side| side.ceil() as usize * fine);
+        Self { width, height, fine }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Whether a point is on the page.
+    pub(crate) fn has(&self, at: DVec2) -> bool {
+        let at = at * self.fine as f64;
+        at.cmpge(DVec2::ZERO).all() && at.x < self.width as f64 && at.y < self.height as f64
+    }
+
+    /// The numbers of the cell that has a point and of those around it, as far as they are on the page.
+    pub(crate) fn around(&self, at: DVec2) -> impl Iterator<Item = usize> + use<'_> {
+        let [x, y] = (at * self.fine as f64).to_array().map(|c| c.floor() as isize);
+        let cells = |c: isize, count: usize| {
+            let [from, to] = [c.saturating_sub(1), c.saturating_add(2)]
+                .map(|c| c.clamp(0, count as isize) as usize);
+            from..to
+        };
+        let columns = cells(x, self.width);
+        cells(y, self.height).flat_map(move |y| columns.clone().map(move |x| y * self.width + x))
+    }
+
+    /// Calls for every sample that a triangle covers, its rim included, with the cell's number and the depth
+    /// there. Triangles that are seen from their edge, or with coordinates that are not finite, cover none.
+    pub(crate) fn cover(&self, corners: [DVec3; 3], mut visit: impl FnMut(usize, f64)) {
+        let [a, b, c] = corners.map(|p| (p.truncate() * self.fine as f64 - 0.5).extend(p.z));
+        let (u, v) = (b - a, c - a);
+        let twice = u.x * v.y - u.y * v.x;
+        let slope_x = (u.z * v.y - v.z * u.y) / twice;
+        let slope_y = (v.z * u.x - u.z * v.x) / twice;
+        if ![twice, slope_x, slope_y].into_iter().all(f64::is_finite) {
+            return;
+        }
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        for y in cells(low.y, high.y, self.height) {
+            let [left, right] = crossed([a, b, c], y as f64);
+            for x in cells(left, right, self.width) {
+                let depth = a.z + slope_x * (x as f64 - a.x) + slope_y * (y as f64 - a.y);
+                // Of a triangle seen nearly from its edge the plane is steep: rounding would leave it.
+                visit(y * self.width + x, depth.clamp(low.z, high.z));
+            }
+        }
+    }
+}
+
+/// Whole numbers of a range, of those below `count`.
+fn cells(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
+    let from = low.ceil().clamp(0.0, count as f64) as usize;
+    from..((high.floor() + 1.0).clamp(0.0, count as f64) as usize).max(from)
+}
+
+/// Between which x a triangle crosses a row.
+fn crossed([a, b, c]: [DVec3; 3], row: f64) -> [f64; 2] {
+    let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+    for [p, q] in [[a, b], [b, c], [c, a]] {
+        if (p.y <= row) != (q.y <= row) || p.y == row {
+            let share = if p.y == q.y { 0.0 } else { (row - p.y) / (q.y - p.y) };
+            let x = p.x + share.clamp(0.0, 1.0) * (q.x - p.x);
+            (left, right) = (left.min(x), right.max(x));
+        }
+    }
+    [left, right]
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::collections::HashMap;
+
+    use colltrans_testkit::random::Random;
+
+    use super::*;
+
+    pub(crate) const WINDOW: Frame = Frame { low: DVec2::ZERO, high: DVec2::new(60.0, 40.0) };
+
+    /// Of a random triangle, partly beside the page.
+    pub(crate) fn corners(random: &mut Random) -> [DVec3; 3] {
+        std::array::from_fn(|_| {
+            let (x, y) = (random.range(-10.0, 70.0), random.range(-10.0, 50.0));
+            DVec3::new(x, y, random.range(0.5, 1.5))
+        })
+    }
+
+    /// The depth of a triangle where it covers a point.
+    pub(crate) fn depth_at(at: DVec2, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+        let area = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
+        let [p, q, r] = [a, b, c].map(DVec3::truncate);
+        let shares = [area(q, r, at), area(r, p, at), area(p, q, at)].map(|w| w / area(p, q, r));
+        let depth = shares[0] * a.z + shares[1] * b.z + shares[2] * c.z;
+        shares.iter().all(|&w| w >= 0.0).then_some(depth)
+    }
+
+    /// The centre of a cell.
+    pub(crate) fn sample(cell: usize, grid: &Grid) -> DVec2 {
+        let (x, y) = (cell % grid.width, cell / grid.width);
+        DVec2::new(x as f64 + 0.5, y as f64 + 0.5) / grid.fine as f64
+    }
+
+    #[test]
+    fn a_triangle_covers_the_samples_inside_it() {
+        let mut random = Random::new(3);
+        let grid = Grid::new(WINDOW, 2);
+        for _ in 0..200 {
+            let corners = corners(&mut random);
+            let mut covered = HashMap::new();
+            grid.cover(corners, |cell, depth| {
+                assert_eq!(covered.insert(cell, depth), None, "a sample is visited once");
+            });
+            for cell in 0..grid.len() {
+                let wanted = depth_at(sample(cell, &grid), corners);
+                let got = covered.get(&cell);
+                assert_eq!(got.is_some(), wanted.is_some(), "{cell} of {corners:?}");
+                assert!(got.zip(wanted).is_none_or(|(a, b)| (a - b).abs() < 1e-9));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_seen_from_its_edge_or_is_no_number_covers_nothing() {
+        let grid = Grid::new(WINDOW, 2);
+        let v = DVec3::new;
+        let on_edge = [v(5.0, 5.0, 1.0), v(10.0, 10.0, 2.0), v(20.0, 20.0, 1.0)];
+        let point = [v(5.25, 5.25, 1.0); 3];
+        let mut hostile = vec![on_edge, point];
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
+            for k in 0..3 {
+                let mut corner = v(30.0, 5.0, 1.0);
+                corner[k] = bad;
+                hostile.push([v(5.0, 5.0, 1.0), corner, v(5.0, 30.0, 1.0)]);
+                hostile.push([corner, v(5.0, 5.0, 1.0), v(5.0, 30.0, 1.0)]);
+            }
+        }
+        for corners in hostile {
+            grid.cover(corners, |cell, depth| assert!(depth.is_finite(), "{cell} of {corners:?}"));
+        }
+        for corners in
+            [on_edge, point, [v(f64::NAN, 0.0, 1.0), v(60.0, 0.0, 1.0), v(0.0, 40.0, 1.0)]]
+        {
+            grid.cover(corners, |cell, _| panic!("{cell} of {corners:?}"));
+        }
+    }
+
+    /// Depths of a steep one stay between those of its corners.
+    #[test]
+    fn a_steep_triangle_is_nowhere_nearer_than_its_corners() {
+        let grid = Grid::new(WINDOW, 2);
+        let v = DVec3::new;
+        let steep = [v(0.25, 20.25, 1.0), v(59.75, 20.25, 1.0), v(30.0, 20.25 + 1e-13, 50.0)];
+        let mut covered = 0;
+        grid.cover(steep, |_, depth| {
+            assert!((1.0..=50.0).contains(&depth), "{depth}");
+            covered += 1;
+        });
+        assert!(covered > 100, "{covered}");
+    }
+
+    #[test]
+    fn a_length_is_a_length_in_either_kind_of_depths() {
+        for (depth, value) in [(Depth::Length, 3.0), (Depth::Inverse, 0.25)] {
+            let nearer = depth.nearer(value, 0.5);
+            assert!((depth.apart(value, nearer) - 0.5).abs() < 1e-12, "{depth:?}");
+            assert_eq!(depth.nearer(value, 0.0), value);
+        }
+        assert_eq!(Depth::Inverse.nearer(1.0, 2.0), f64::INFINITY);
+    }
+}

@@ -1,0 +1,532 @@
+//! In which order facets are painted so that the nearer cover the farther.
+//!
+//! At each sample of the page the facets that cover it tell who is to be painted before whom; facets that
+//! are seen at none are left out. Facets that go in a circle, as those of bodies that stand in each
+//! other, are cut in four until they do not; the last circles are pixels wide and are cut open where the
+//! farthest is. Facets of one style are painted one after the other where they can be.
+//!
+//! Source: the sort of Newell, Newell and Sancha (1972), its questions being asked of samples.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use crate::Frame;
+use crate::grid::{Depth, Grid};
+
+/// A triangle to be painted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Facet {
+    /// x and y on the page, z the depth.
+    pub corners: [DVec3; 3],
+    /// What it looks like: a number.
+    pub style: u32,
+    /// Whether it hides what is behind it.
+    pub opaque: bool,
+}
+
+/// How often facets are cut.
+const ROUNDS: usize = 8;
+/// Facets of a smaller area are not cut: pixels.
+const SMALL: f64 = 2.0;
+/// Points at which a side is looked at, at most.
+const MOST_POINTS: f64 = 1e4;
+
+/// Facets on a window that begins at (0, 0), those first that are to be painted first, without those that are
+/// seen nowhere on it. `slack`: lengths along the view that are no difference.
+pub fn ordered(mut facets: Vec<Facet>, window: Frame, depth: Depth, slack: f64) -> Vec<Facet> {
+    let grid = Grid::new(window, 1);
+    facets.retain(|facet| facet.corners.iter().all(|corner| corner.is_finite()));
+    let mut rules = Rules::new(&facets, &grid, depth, slack);
+    for _ in 0..ROUNDS {
+        let mut cut = rules.in_circles();
+        for (circles, facet) in cut.iter_mut().zip(&facets) {
+            *circles &= facet.area() > SMALL;
+        }
+        if !cut.contains(&true) {
+            break;
+        }
+        let mut finer = Vec::with_capacity(facets.len());
+        for (k, facet) in facets.iter().enumerate().filter(|(k, _)| rules.seen[*k]) {
+            if cut[k] {
+                finer.extend(facet.quarters());
+            } else {
+                finer.push(*facet);
+            }
+        }
+        facets = finer;
+        rules = Rules::new(&facets, &grid, depth, slack);
+    }
+    rules.sorted(&facets).into_iter().map(|k| facets[k as usize]).collect()
+}
+
+impl Facet {
+    /// Pixels.
+    fn area(&self) -> f64 {
+        let [a, b, c] = self.corners.map(DVec3::truncate);
+        (b - a).perp_dot(c - a).abs() / 2.0
+    }
+
+    fn quarters(self) -> [Self; 4] {
+        let [a, b, c] = self.corners;
+        let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+            .map(|corners| Self { corners, ..self })
+    }
+
+    /// Points along its longest side, a pixel apart; none of its ends.
+    fn longest_side(&self) -> impl Iterator<Item = DVec3> + use<> {
+        let [a, b, c] = self.corners;
+        let length = |[p, q]: [DVec3; 2]| p.truncate().distance(q.truncate());
+        let [mut side, others @ ..] = [[a, b], [b, c], [c, a]];
+        for other in others {
+            if length(other) > length(side) {
+                side = other;
+            }
+        }
+        let count = length(side).ceil().min(MOST_POINTS);
+        (0..count as usize).map(move |k| side[0].lerp(side[1], (k as f64 + 0.5) / count))
+    }
+
+    /// Its depth at a point of the page that is inside it, by more than rounding.
+    fn depth_inside(&self, at: DVec2) -> Option<f64> {
+        let [a, b, c] = self.corners;
+        let [p, q, r] = self.corners.map(DVec3::truncate);
+        let twice = (q - p).perp_dot(r - p);
+        let share = |p: DVec2, q: DVec2| (q - p).perp_dot(at - p) / twice;
+        let [u, v, w] = [share(q, r), share(r, p), share(p, q)];
+        (u.min(v).min(w) > 1e-6).then_some(u * a.z + v * b.z + w * c.z)
+    }
+}
+
+/// What covers a sample.
+#[derive(Clone, Copy, Default)]
+struct Layer {
+    facet: u32,
+    depth: f64,
+}
+
+/// The layers of all cells, one cell after the other, the farthest first.
+struct Layers {
+    starts: Vec<usize>,
+    all: Vec<Layer>,
+}
+
+impl Layers {
+    fn new(facets: &[Facet], grid: &Grid) -> Self {
+        let mut starts = vec![0; grid.len() + 1];
+        for facet in facets {
+            grid.cover(facet.corners, |cell, _| starts[cell + 1] += 1);
+        }
+        for cell in 0..grid.len() {
+            starts[cell + 1] += starts[cell];
+        }
+        let mut all = vec![Layer::default(); starts[grid.len()]];
+        let mut next = starts.clone();
+        for (k, facet) in facets.iter().enumerate() {
+            grid.cover(facet.corners, |cell, depth| {
+                all[next[cell]] = Layer { facet: k as u32, depth };
+                next[cell] += 1;
+            });
+        }
+        for ends in starts.windows(2) {
+            all[ends[0]..ends[1]].sort_by(|a, b| a.depth.total_cmp(&b.depth));
+        }
+        Self { starts, all }
+    }
+
+    fn of(&self, cell: usize) -> &[Layer] {
+        &self.all[self.starts[cell]..self.starts[cell + 1]]
+    }
+}
+
+/// The place of the nearest opaque layer.
+fn front(layers: &[Layer], facets: &[Facet]) -> Option<usize> {
+    layers.iter().rposition(|layer| facets[layer.facet as usize].opaque)
+}
+
+/// Who is seen somewhere, and who of them is painted before whom.
+struct Rules {
+    seen: Vec<bool>,
+    before: Pairs,
+}
+
+impl Rules {
+    fn new(facets: &[Facet], grid: &Grid, depth: Depth, slack: f64) -> Self {
+        let layers = Layers::new(facets, grid);
+        let mut rules = Self { seen: vec![false; facets.len()], before: Pairs::default() };
+        let farther = |a: f64, b: f64| depth.apart(a, b) > slack;
+        for cell in 0..grid.len() {
+            rules.add_cell(layers.of(cell), facets, farther);
+        }
+        for (k, facet) in facets.iter().enumerate() {
+            rules.add_side(k as u32, facet.longest_side(), &layers, (facets, grid), farther);
+        }
+        let Self { seen, before } = &mut rules;
+        // Rules with those that are left out are none.
+        before.tidy(|[first, then]| seen[*first as usize] && seen[*then as usize]);
+        rules
+    }
+
+    fn add_cell(&mut self, here: &[Layer], facets: &[Facet], farther: impl Fn(f64, f64) -> bool) {
+        let front = front(here, facets);
+        for (k, layer) in here.iter().enumerate() {
+            let hider = front.filter(|front| k < *front).map(|front| &here[front]);
+            if let Some(then) = hider.or_else(|| here.get(k + 1))
+                && farther(layer.depth, then.depth)
+            {
+                self.before.push([layer.facet, then.facet]);
+            }
+            // What touches the nearest may be seen beside it.
+            if hider.is_none_or(|hider| !farther(layer.depth, hider.depth)) {
+                self.seen[layer.facet as usize] = true;
+            }
+        }
+    }
+
+    /// A facet may be too thin for any sample, or stand before others only beside them.
+    fn add_side(
+        &mut self,
+        facet: u32,
+        side: impl Iterator<Item = DVec3>,
+        layers: &Layers,
+        (facets, grid): (&[Facet], &Grid),
+        farther: impl Fn(f64, f64) -> bool,
+    ) {
+        for point in side {
+            let at = point.truncate();
+            if !grid.has(at) {
+                continue;
+            }
+            let mut hidden = false;
+            // What covers the point need not cover its cell's sample.
+            for cell in grid.around(at) {
+                let here = layers.of(cell);
+                for layer in &here[front(here, facets).unwrap_or(0)..] {
+                    let other = &facets[layer.facet as usize];
+                    let is_before = |depth| layer.facet != facet && farther(point.z, depth);
+                    if other.depth_inside(at).is_some_and(is_before) {
+                        self.before.push([facet, layer.facet]);
+                        hidden |= other.opaque;
+                    }
+                }
+            }
+            self.seen[facet as usize] |= !hidden;
+        }
+    }
+
+    /// Those that neither come before nor after all circles.
+    fn in_circles(&self) -> Vec<bool> {
+        let mut left = self.seen.clone();
+        trim(&mut left, &self.before.all);
+        let mut back: Vec<_> = self.before.all.iter().map(|&[first, then]| [then, first]).collect();
+        back.sort_unstable();
+        trim(&mut left, &back);
+        left
+    }
+
+    fn sorted(&self, facets: &[Facet]) -> Vec<u32> {
+        let mut waits = waiting(&self.seen, &self.before.all);
+        let near = |k: u32| facets[k as usize].corners.iter().map(|p| p.z).sum::<f64>();
+        let mut farthest: Vec<u32> = (0..self.seen.len() as u32).collect();
+        farthest.retain(|k| self.seen[*k as usize]);
+        farthest.sort_by(|a, b| near(*a).total_cmp(&near(*b)));
+        let mut ready = Ready::default();
+        for &k in farthest.iter().rev().filter(|k| waits[**k as usize] == 0) {
+            ready.put(k, &facets[k as usize]);
+        }
+        let mut done = Vec::with_capacity(farthest.len());
+        let mut painted = vec![false; facets.len()];
+        let mut left = farthest.iter();
+        // Without one that is ready those left are in a circle, or after one.
+        while let Some(k) =
+            ready.take(near).or_else(|| left.find(|k| !painted[**k as usize]).copied())
+        {
+            (painted[k as usize], waits[k as usize]) = (true, u32::MAX);
+            done.push(k);
+            for &[_, then] in from(&self.before.all, k) {
+                let wait = &mut waits[then as usize];
+                // What was painted to open a circle waits for nothing.
+                if *wait != u32::MAX {
+                    *wait -= 1;
+                    if *wait == 0 {
+                        ready.put(then, &facets[then as usize]);
+                    }
+                }
+            }
+        }
+        done
+    }
+}
+
+/// What can be painted, by its style, the farthest last.
+#[derive(Default)]
+struct Ready {
+    opaque: BTreeMap<u32, Vec<u32>>,
+    sheer: BTreeMap<u32, Vec<u32>>,
+    style: u32,
+}
+
+impl Ready {
+    fn put(&mut self, k: u32, facet: &Facet) {
+        let pool = if facet.opaque { &mut self.opaque } else { &mut self.sheer };
+        pool.entry(facet.style).or_default().push(k);
+    }
+
+    /// One of the last style, or else of that of which the next one is the farthest. Opaque ones as early
+    /// as can be: their rims are not to be seen on what is translucent.
+    fn take(&mut self, near: impl Fn(u32) -> f64) -> Option<u32> {
+        let pool = if self.opaque.is_empty() { &mut self.sheer } else { &mut self.opaque };
+        if !pool.contains_key(&self.style) {
+            let next = |of: &[u32]| of.last().map_or(f64::INFINITY, |k| near(*k));
+            self.style = *pool.iter().min_by(|a, b| next(a.1).total_cmp(&next(b.1)))?.0;
+        }
+        let same = pool.get_mut(&self.style)?;
+        let taken = same.pop();
+        if same.is_empty() {
+            pool.remove(&self.style);
+        }
+        taken
+    }
+}
+
+/// Pairs of numbers, each once and in order when they are tidied.
+#[derive(Default)]
+struct Pairs {
+    all: Vec<[u32; 2]>,
+    tidied: usize,
+}
+
+impl Pairs {
+    /// Many are the same, at samples beside each other: they are tidied as often as they have doubled.
+    fn push(&mut self, pair: [u32; 2]) {
+        self.all.push(pair);
+        if self.all.len() > 2 * self.tidied + (1 << 16) {
+            self.tidy(|_| true);
+        }
+    }
+
+    fn tidy(&mut self, kept: impl Fn(&[u32; 2]) -> bool) {
+        self.all.sort_unstable();
+        self.all.dedup();
+        self.all.retain(kept);
+        self.tidied = self.all.len();
+    }
+}
+
+/// Of sorted pairs those that begin with a number.
+fn from(pairs: &[[u32; 2]], first: u32) -> &[[u32; 2]] {
+    let start = pairs.partition_point(|pair| pair[0] < first);
+    let end = start + pairs[start..].partition_point(|pair| pair[0] == first);
+    &pairs[start..end]
+}
+
+/// For how many others each waits, of those that are left.
+fn waiting(left: &[bool], before: &[[u32; 2]]) -> Vec<u32> {
+    let mut waits = vec![0; left.len()];
+    for [first, then] in before {
+        waits[*then as usize] += u32::from(left[*first as usize]);
+    }
+    waits
+}
+
+/// Takes away those that wait for none, and again, until there are no more.
+fn trim(left: &mut [bool], before: &[[u32; 2]]) {
+    let mut waits = waiting(left, before);
+    let mut ready: Vec<u32> = (0..left.len() as u32).collect();
+    ready.retain(|k| left[*k as usize] && waits[*k as usize] == 0);
+    while let Some(k) = ready.pop() {
+        left[k as usize] = false;
+        for &[_, then] in from(before, k) {
+            waits[then as usize] -= 1;
+            if left[then as usize] && waits[then as usize] == 0 {
+                ready.push(then);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_testkit::random::Random;
+
+    use super::*;
+    use crate::grid::tests::{WINDOW, corners, depth_at, sample};
+
+    fn facet(corners: [DVec3; 3], style: u32) -> Facet {
+        Facet { corners, style, opaque: true }
+    }
+
+    fn order(facets: &[Facet]) -> Vec<Facet> {
+        ordered(facets.to_vec(), WINDOW, Depth::Inverse, 1e-9)
+    }
+
+    /// A square of two triangles.
+    fn square(depth: f64, style: u32, opaque: bool, [x, y, s]: [f64; 3]) -> [Facet; 2] {
+        let at = |i: f64, j: f64| DVec3::new(x + i * s, y + j * s, depth);
+        let halves = [
+            [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0)],
+            [at(0.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)],
+        ];
+        halves.map(|corners| Facet { corners, style, opaque })
+    }
+
+    fn styles(facets: &[Facet]) -> Vec<u32> {
+        facets.iter().map(|facet| facet.style).collect()
+    }
+
+    /// Cells where another style was painted last than that of the nearest, and all that are covered.
+    fn wrong(given: &[Facet], painted: &[Facet]) -> [usize; 2] {
+        let grid = Grid::new(WINDOW, 1);
+        let [mut last, mut nearest] = [(); 2].map(|()| vec![None; grid.len()]);
+        for facet in painted {
+            grid.cover(facet.corners, |cell, _| last[cell] = Some(facet.style));
+        }
+        for (cell, nearest) in nearest.iter_mut().enumerate() {
+            let at = sample(cell, &grid);
+            let depths = given.iter().filter_map(|f| Some((depth_at(at, f.corners)?, f.style)));
+            *nearest = depths.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, style)| style);
+        }
+        let other = last.iter().zip(&nearest).filter(|(a, b)| a != b).count();
+        [other, nearest.iter().flatten().count()]
+    }
+
+    /// At each sample the nearest is painted last, even where they go through each other.
+    #[test]
+    fn the_nearest_is_painted_last() {
+        let mut random = Random::new(11);
+        let [mut other, mut all] = [0, 0];
+        for _ in 0..20 {
+            let facets: Vec<Facet> = (0..12).map(|k| facet(corners(&mut random), k)).collect();
+            let painted = order(&facets);
+            assert!(painted.len() < 6_000, "{} facets of 12", painted.len());
+            let [a, b] = wrong(&facets, &painted);
+            (other, all) = (other + a, all + b);
+        }
+        // Circles of facets as small as samples are cut open.
+        assert!(200 * other < all, "{other} of {all}");
+    }
+
+    /// What is translucent is painted after what it is before, and before what hides it; what is hidden
+    /// is not.
+    #[test]
+    fn the_translucent_is_between_the_far_and_the_near() {
+        let facets = [
+            square(3.0, 0, true, [20.0, 10.0, 20.0]),
+            square(2.0, 1, false, [10.0, 5.0, 25.0]),
+            square(1.0, 2, true, [5.0, 5.0, 20.0]),
+            square(0.5, 3, true, [23.0, 12.0, 10.0]),
+        ];
+        assert_eq!(styles(&order(&facets.concat())), [2, 2, 1, 1, 0, 0]);
+    }
+
+    /// Both are kept: either may be seen beside the other.
+    #[test]
+    fn what_lies_at_the_same_depth_is_no_circle() {
+        let pair = |a, b| {
+            [square(1.0, a, true, [5.0, 5.0, 20.0]), square(1.0, b, true, [8.0, 5.0, 20.0])]
+                .concat()
+        };
+        for facets in [pair(0, 1), pair(0, 0)] {
+            let painted = order(&facets);
+            assert_eq!(painted.len(), 4);
+            assert_eq!(order(&facets), painted, "the same again");
+        }
+    }
+
+    /// Three bars that lie on each other in a circle, and two squares that cross in the middle.
+    #[test]
+    fn circles_are_cut() {
+        let bar = |style: u32, [from, to]: [DVec3; 2]| {
+            let across = (to - from).truncate().perp().normalize() * 4.0;
+            let across = across.extend(0.0);
+            let halves = [[from, to, to + across], [from, to + across, from + across]];
+            halves.map(|corners| facet(corners, style))
+        };
+        let v = DVec3::new;
+        let around = [v(8.0, 8.0, 1.0), v(50.0, 10.0, 1.0), v(28.0, 36.0, 1.0)];
+        let bars: Vec<Facet> = (0..3)
+            .flat_map(|k| {
+                let [from, to] = [around[k], around[(k + 1) % 3]];
+                let beyond = (to - from) * 0.15;
+                bar(k as u32, [(from - beyond).with_z(0.5), (to + beyond).with_z(1.5)])
+            })
+            .collect();
+        let mut crossed = square(1.0, 0, true, [10.0, 5.0, 30.0]).to_vec();
+        crossed.extend(square(1.0, 1, true, [10.0, 5.0, 30.0]).map(|mut facet| {
+            for corner in &mut facet.corners {
+                corner.z = if corner.x > 20.0 { 1.4 } else { 0.7 };
+            }
+            facet
+        }));
+        for facets in [bars, crossed] {
+            let painted = order(&facets);
+            assert!(painted.len() > facets.len());
+            let [other, all] = wrong(&facets, &painted);
+            assert!(50 * other < all, "{other} of {all}");
+        }
+    }
+
+    #[test]
+    fn what_is_seen_from_its_edge_hides_nothing() {
+        let v = DVec3::new;
+        let mut facets = square(1.0, 0, true, [5.0, 5.0, 20.0]).to_vec();
+        facets.push(facet([v(6.0, 6.0, 2.0), v(12.0, 12.0, 2.0), v(20.0, 20.0, 2.0)], 1));
+        facets.push(facet([v(7.0, 9.0, 2.0); 3], 2));
+        let painted = order(&facets);
+        assert_eq!(styles(&painted)[..2], [0, 0]);
+        assert_eq!(wrong(&facets[..2], &painted)[0], 0);
+    }
+
+    #[test]
+    fn what_is_no_number_is_left_out() {
+        let good = square(1.0, 0, true, [5.0, 5.0, 20.0]);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for at in 0..9 {
+                let mut odd = good[0];
+                odd.style = 1;
+                odd.corners[at / 3][at % 3] = bad;
+                assert_eq!(styles(&order(&[odd, good[0], good[1]])), [0, 0], "{bad} at {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_beside_the_page_is_left_out() {
+        assert!(order(&square(1.0, 0, true, [70.0, 5.0, 20.0])).is_empty());
+        assert!(order(&[]).is_empty());
+        let nowhere = Frame { low: DVec2::ZERO, high: DVec2::ZERO };
+        let facets = square(1.0, 0, true, [5.0, 5.0, 20.0]).to_vec();
+        assert!(ordered(facets, nowhere, Depth::Inverse, 0.0).is_empty());
+    }
+
+    /// Triangles thinner than samples are seen too, by their longest sides.
+    #[test]
+    fn a_sliver_is_seen_where_nothing_hides_it() {
+        let v = DVec3::new;
+        let sliver = |depth: f64| {
+            facet([v(2.0, 10.3, depth), v(50.0, 10.3, depth), v(20.0, 10.31, depth)], 1)
+        };
+        let wall = square(1.0, 0, true, [10.0, 5.0, 20.0]);
+        assert_eq!(styles(&order(&[&wall[..], &[sliver(2.0)]].concat())), [0, 0, 1]);
+        assert_eq!(styles(&order(&[&[sliver(0.5)], &wall[..]].concat())), [1, 0, 0]);
+        let behind = facet([v(12.0, 10.3, 0.5), v(28.0, 10.3, 0.5), v(20.0, 10.31, 0.5)], 1);
+        assert_eq!(styles(&order(&[&[behind], &wall[..]].concat())), [0, 0]);
+    }
+
+    /// Sheets one behind the other, in any order, a few styles among them.
+    #[test]
+    fn many_triangles() {
+        let mut random = Random::new(5);
+        let mut facets = Vec::new();
+        for k in 0..10_000_u32 {
+            let (x, y) = (random.range(-5.0, 60.0), random.range(-5.0, 40.0));
+            facets.extend(square(random.range(0.5, 1.5), k, k % 3 > 0, [x, y, 4.0]));
+        }
+        let painted = order(&facets);
+        assert!(painted.len() < facets.len(), "what nobody sees is left out");
+        let opaque: Vec<Facet> = facets.iter().filter(|facet| facet.opaque).copied().collect();
+        let last: Vec<Facet> = painted.iter().filter(|facet| facet.opaque).copied().collect();
+        assert_eq!(wrong(&opaque, &last)[0], 0);
+    }
+}

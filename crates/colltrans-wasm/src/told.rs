@@ -1,0 +1,57 @@
+//! What is told of a cast: the record of the library, and what only a page needs.
+
+use colltrans::record::Record;
+use colltrans::{Certificate, Feature, Separation, SolidCertificate};
+use serde::{Deserialize, Serialize};
+
+/// An answer to `cast`; fields that do not apply are left out.
+#[derive(Serialize)]
+pub(crate) struct Told {
+    /// How the bodies were taken: `convex` or `solid`.
+    pub(crate) kind: &'static str,
+    /// Between convex bodies of when they meet, between solids of how far the moving one can go.
+    pub(crate) record: Record,
+    /// Between convex bodies: how far the moving one can go.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) clearance: Option<Record>,
+    /// What touches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) lit: Option<Touching>,
+    /// Of the answer; between solids only where it is short.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) proof: Option<Proof>,
+    /// Of the files of solids: a length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) precision: Option<f64>,
+}
+
+/// What anyone can check.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Proof {
+    Contact(Certificate),
+    Separation(Separation),
+    /// Between solids.
+    Clearance(SolidCertificate),
+}
+
+#[derive(Serialize)]
+pub(crate) struct Touching {
+    pub(crate) moving: Lit,
+    pub(crate) fixed: Lit,
+}
+
+/// A feature by the numbers of the body as it is drawn.
+#[derive(Serialize)]
+pub(crate) struct Lit {
+    vertices: Vec<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    face: Option<u32>,
+}
+
+impl Lit {
+    pub(crate) fn of<B: colltrans::Body>(feature: Feature, body: &B) -> Self {
+        let face = if let Feature::Face(face) = feature { Some(face) } else { None };
+        Self { vertices: feature.own_vertices(body), face }
+    }
+}

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use colltrans::{
-    Bounded, Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidError, SolidOptions,
-    StartOverlap, Workspace,
+use colltrans::solid::{
+    ShrinkReport, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
+use colltrans::{Bounded, Cast, Clearance, Pose, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -5,7 +5,8 @@
 
 use std::fmt::Display;
 
-use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError, SolidError};
+use colltrans::solid::SolidError;
+use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError};
 use colltrans_mesh::body::{LoadError, Refused};
 use pyo3::prelude::*;
 use pyo3::types::PyType;

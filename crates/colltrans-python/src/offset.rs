@@ -39,7 +39,7 @@ impl OffsetReport {
 
 /// What shrinking, or growing, could not do to a solid as it should.
 #[pyclass(frozen, module = "colltrans")]
-pub(crate) struct ShrinkReport(pub(crate) colltrans::ShrinkReport);
+pub(crate) struct ShrinkReport(pub(crate) colltrans::solid::ShrinkReport);
 
 #[pymethods]
 impl ShrinkReport {
@@ -70,12 +70,12 @@ impl ShrinkReport {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
-        let colltrans::ShrinkReport { farthest, stuck, inverted } = self.0.clone();
+        let colltrans::solid::ShrinkReport { farthest, stuck, inverted } = self.0.clone();
         saved(py, "ShrinkReport", (farthest, stuck, inverted))
     }
 
     fn __repr__(&self) -> String {
-        let colltrans::ShrinkReport { farthest, stuck, inverted } = &self.0;
+        let colltrans::solid::ShrinkReport { farthest, stuck, inverted } = &self.0;
         format!("ShrinkReport(farthest={farthest:?}, stuck={stuck:?}, inverted={inverted:?})")
     }
 }

@@ -3,7 +3,7 @@
 //! Every class says what it is made of ([`saved`]), and [`restore`] makes it again. What comes back is
 //! believed, as all that is pickled; a proof in it is checked by `verify` as ever.
 
-use colltrans::{SolidOptions, StartOverlap};
+use colltrans::solid::{SolidOptions, StartOverlap};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -126,7 +126,10 @@ fn convex<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, 
         }
         "ShrinkReport" => {
             let (farthest, stuck, inverted) = state.extract()?;
-            object(state, ShrinkReport(colltrans::ShrinkReport { farthest, stuck, inverted }))
+            object(
+                state,
+                ShrinkReport(colltrans::solid::ShrinkReport { farthest, stuck, inverted }),
+            )
         }
         _ => Err(unknown(class)),
     }

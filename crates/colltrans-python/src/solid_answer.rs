@@ -1,6 +1,7 @@
 //! Answers of queries about solids: frozen, with what they were asked.
 
-use colltrans::{Clearance, Overlap, SolidOverlap};
+use colltrans::Clearance;
+use colltrans::solid::{Overlap, SolidOverlap};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -15,7 +16,7 @@ use crate::solid_cast::SolidCast;
 /// Where a solid is stopped.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidContact {
-    pub(crate) contact: colltrans::SolidContact,
+    pub(crate) contact: colltrans::solid::SolidContact,
     pub(crate) query: Py<SolidCast>,
 }
 
@@ -317,7 +318,7 @@ fn surfaces(query: &Py<SolidCast>) -> PyResult<Vec<&'static str>> {
 
 /// The proof of a clearance between solids.
 #[pyclass(frozen, module = "colltrans")]
-pub(crate) struct SolidCertificate(pub(crate) colltrans::SolidCertificate);
+pub(crate) struct SolidCertificate(pub(crate) colltrans::solid::SolidCertificate);
 
 #[pymethods]
 impl SolidCertificate {
@@ -341,7 +342,7 @@ impl SolidCertificate {
     /// From what `to_json` has written. It is read, not believed.
     #[staticmethod]
     pub(crate) fn from_json(text: &str) -> PyResult<Self> {
-        colltrans::SolidCertificate::from_json(text).or_raise().map(Self)
+        colltrans::solid::SolidCertificate::from_json(text).or_raise().map(Self)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {

@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
-use colltrans::{SolidOptions, StartOverlap};
+use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans_mesh::body::between;
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;

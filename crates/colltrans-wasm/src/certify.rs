@@ -4,7 +4,8 @@
 //! start, then for each of the proof that nothing stops the body before: 0 where a pair of nodes was
 //! split, else the reason's number in [`REASONS`], from 1 on.
 
-use colltrans::{Cast, Cover, Overlap, Reason, Solid, SolidCertificate, StartProof};
+use colltrans::solid::{Cover, Overlap, Reason, SolidCertificate, StartProof};
+use colltrans::{Cast, Solid};
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, Refusal};

@@ -2,7 +2,8 @@
 //!
 //! Read by hand: what derived readers add would be a third of the download.
 
-use colltrans::{Certificate, Separation, Solver, StopProof, VertexPair};
+use colltrans::solid::StopProof;
+use colltrans::{Certificate, Separation, Solver, VertexPair};
 use colltrans_mesh::body::Take;
 use glam::DVec3;
 use serde_json::Value;

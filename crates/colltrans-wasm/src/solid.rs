@@ -1,6 +1,7 @@
 //! Casts between bodies of which at least one need not be convex.
 
-use colltrans::{Cast, Clearance, Solid, StartOverlap};
+use colltrans::solid::StartOverlap;
+use colltrans::{Cast, Clearance, Solid};
 use colltrans_mesh::body::between;
 use glam::DVec3;
 use serde_json::{Value, json};

@@ -123,13 +123,14 @@
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, and [`observe`]), `cast` (the queries) and
-//! `tracker`. `written` says how all of them are written.
+//! `tracker`. `written` says how all of them are written. [`solid`] holds what is of solids alone.
 
 mod answer;
 mod body;
 mod cast;
 mod number;
 mod setting;
+pub mod solid;
 mod solve;
 mod tracker;
 mod work;
@@ -141,17 +142,13 @@ pub use answer::{
     StartedFrom, Steps, WhyFree,
 };
 pub use body::error::{BuildError, PoseError, TopologyError};
-pub use body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, SolidReport};
+pub use body::solid::Solid;
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, Feature, HalfEdge, OffsetReport, Placed, Pose,
     convexity_defect,
 };
-pub use cast::solid::{
-    Claim, Cover, SolidCertificate, SolidOptions, SolidOverlap, SolidProof, StartOverlap,
-    StartProof, StopProof,
-};
 #[cfg(feature = "json")]
-pub use cast::{Case, CaseError, Contacts, ProofFile, SolidStatement, Statement, Stop};
+pub use cast::{Case, CaseError, Contacts, ProofFile, Statement, Stop};
 pub use cast::{Cast, Features, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
@@ -159,7 +156,6 @@ pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
-pub use solve::solid::{Overlap, Reason, SolidContact, Workspace};
 pub use tracker::Tracker;
 pub use written::UnknownName;
 

@@ -1,7 +1,8 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is. What the paper's
 //! algorithm makes of a body, it makes once.
 
-use colltrans::{AsSolid, Cast, Focus, Region, Solid, Solver, Tracker, Workspace};
+use colltrans::solid::{AsSolid, Workspace};
+use colltrans::{Cast, Focus, Region, Solid, Solver, Tracker};
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 use colltrans_testkit::oracle::solids::settings as solids;

@@ -1,9 +1,8 @@
 //! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
 #![cfg(feature = "json")]
 
-use colltrans::{
-    CaseError, Cast, ConvexPolyhedron, Pose, ProofFile, Solid, StartOverlap, Statement,
-};
+use colltrans::solid::StartOverlap;
+use colltrans::{CaseError, Cast, ConvexPolyhedron, Pose, ProofFile, Solid, Statement};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};
 use glam::{DQuat, DVec3};

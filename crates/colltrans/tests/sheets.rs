@@ -1,9 +1,8 @@
 //! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{
-    Aabb, Bounded, Cast, Clearance, Pose, ShellKind, Solid, SolidOptions, StartOverlap,
-};
+use colltrans::solid::{ShellKind, SolidOptions, StartOverlap};
+use colltrans::{Aabb, Bounded, Cast, Clearance, Pose, Solid};
 use colltrans_testkit::shapes::{self, Mesh};
 
 use self::common::cuboid;

@@ -1,9 +1,7 @@
 //! Solids in the situations that people have names for.
 
-use colltrans::{
-    Bounded, Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
-    SolidOverlap, StartOverlap,
-};
+use colltrans::solid::{Overlap, SolidError, SolidOptions, SolidOverlap, StartOverlap};
+use colltrans::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DQuat, DVec3};

@@ -1,7 +1,8 @@
 //! What of a solid is named where it is stopped: faces, edges and corners of the part, not of its
 //! triangulation, by the numbers of the input.
 
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Feature, Outcome, Pose, Solid, SolidContact};
+use colltrans::solid::SolidContact;
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Feature, Outcome, Pose, Solid};
 use colltrans_testkit::shapes;
 use colltrans_testkit::solids::{bolt, pin, slab, washer};
 use glam::{DQuat, DVec3};

@@ -1,9 +1,7 @@
 //! Proofs between solids: they hold, and what is changed in them is refused.
 
-use colltrans::{
-    Cast, CertificateError, Clearance, Overlap, Pose, Reason, Solid, SolidCertificate,
-    SolidOptions, StartOverlap, StartProof,
-};
+use colltrans::solid::{Overlap, Reason, SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use colltrans::{Cast, CertificateError, Clearance, Pose, Solid};
 use colltrans_testkit::oracle::solids::proof::approve;
 use colltrans_testkit::solids::{bolt, bumpy_ball, slab, washer};
 use glam::{DQuat, DVec3};

@@ -1,9 +1,10 @@
 //! What serde writes of an answer comes back in bits, and what is not one is refused.
 #![cfg(feature = "json")]
 
+use colltrans::solid::{SolidCertificate, SolidOptions, StartOverlap};
 use colltrans::{
     Bounded, Cast, Clearance, ContactRange, Intersection, NarrowFrom, Options, Outcome, Pose,
-    Solid, SolidCertificate, SolidOptions, Solver, StartOverlap, StartedFrom,
+    Solid, Solver, StartedFrom,
 };
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};

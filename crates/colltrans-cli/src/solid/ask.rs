@@ -3,10 +3,8 @@
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{
-    Bounded, Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid, SolidContact,
-    SolidOverlap, StartOverlap,
-};
+use colltrans::solid::{SolidContact, SolidOverlap, StartOverlap};
+use colltrans::{Bounded, Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between;
 
 use super::{Body, Piece};

@@ -12,10 +12,8 @@ mod orient;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use colltrans::{
-    BuildError, Cast, ConvexPolyhedron, Placed, QueryError, Solid, SolidError, SolidOptions,
-    StartOverlap, TopologyError,
-};
+use colltrans::solid::{SolidError, SolidOptions, StartOverlap};
+use colltrans::{BuildError, Cast, ConvexPolyhedron, Placed, QueryError, Solid, TopologyError};
 use glam::DVec3;
 use thiserror::Error;
 

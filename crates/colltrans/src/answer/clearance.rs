@@ -11,9 +11,9 @@ use crate::body::{Body, ConvexPolyhedron};
 ///
 /// | | [`ConvexPolyhedron`] | [`Solid`](crate::Solid) |
 /// |---|---|---|
-/// | `Blocked` | [`Contact`] | [`SolidContact`](crate::SolidContact) |
+/// | `Blocked` | [`Contact`] | [`SolidContact`](crate::solid::SolidContact) |
 /// | `Free` | [`WhyFree`] | a separating plane, where one was found |
-/// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::SolidOverlap) |
+/// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::solid::SolidOverlap) |
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -32,7 +32,7 @@ pub enum Clearance<B: Body = ConvexPolyhedron> {
     Blocked {
         /// How far it may safely move, in multiples of the direction: the lower bound of where it is
         /// stopped, and never negative. So it is less than the estimate, [`Contact::translation`] or
-        /// [`SolidContact::translation`](crate::SolidContact::translation), by the rounding error.
+        /// [`SolidContact::translation`](crate::solid::SolidContact::translation), by the rounding error.
         distance: f64,
         /// The contact that stops it.
         contact: B::Contact,

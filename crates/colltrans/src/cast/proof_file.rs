@@ -100,7 +100,7 @@ pub struct SolidStatement {
 pub struct Stop {
     /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
     pub facets: [u32; 2],
-    /// Where they meet in their true place: [`SolidContact::translation`](crate::SolidContact::translation).
+    /// Where they meet in their true place: [`SolidContact::translation`](crate::solid::SolidContact::translation).
     pub translation: Bounded,
 }
 

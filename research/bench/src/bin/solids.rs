@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans::{Cast, Clearance, Pose, Solid, Workspace};
+use colltrans::solid::Workspace;
+use colltrans::{Cast, Clearance, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
 use colltrans_bench::report::{self, Times};

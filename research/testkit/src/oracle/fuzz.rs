@@ -8,9 +8,8 @@
 use std::fs;
 use std::path::Path;
 
-use colltrans::{
-    Cast, Clearance, ConvexPolyhedron, Pose, PoseError, Solid, SolidOptions, Solver, StartProof,
-};
+use colltrans::solid::{SolidOptions, StartProof};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, PoseError, Solid, Solver};
 use glam::{DQuat, DVec3};
 
 use crate::oracle::input;

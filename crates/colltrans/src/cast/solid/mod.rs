@@ -268,7 +268,8 @@ impl<'a> Cast<'a, Solid> {
     ///
     /// ```
     /// use colltrans::glam::DVec3;
-    /// use colltrans::{Cast, ConvexPolyhedron, Overlap, Pose, StartOverlap};
+    /// use colltrans::solid::{Overlap, StartOverlap};
+    /// use colltrans::{Cast, ConvexPolyhedron, Pose};
     ///
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let plate = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 1.0))?;

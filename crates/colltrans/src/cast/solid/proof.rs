@@ -65,7 +65,7 @@ pub enum StartProof {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StopProof {
     /// Their least gap, of the shrunk bodies, in multiples of the direction, or 0: the value of
-    /// [`SolidContact::shrunk_distance`](crate::SolidContact::shrunk_distance).
+    /// [`SolidContact::shrunk_distance`](crate::solid::SolidContact::shrunk_distance).
     #[cfg_attr(feature = "serde", serde(rename = "distance"))]
     pub shrunk_distance: f64,
     /// Positions in [`Solid::triangles`] of the moving and of the fixed body.

@@ -174,7 +174,7 @@ impl<'a> Bodies<'a> {
     /// there is none that leaves both parts as they are but smaller.
     fn passes_with(&self, pair: [usize; 2]) -> Option<f64> {
         let [a, b] = pair.map(|k| self.solids[k].at(Pose::IDENTITY));
-        let tolerance = Cast::new(a, b, DVec3::Z).ok()?.depth()? * DEEPER;
+        let tolerance = Cast::new(a, b, DVec3::Z).ok()?.least_tolerance()? * DEEPER;
         let whole = |k: usize| {
             let solid = &self.solids[k];
             solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
@@ -407,7 +407,7 @@ impl<'a> Bodies<'a> {
         let at = |k: usize| parts[k].solid().at(Pose::IDENTITY);
         let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
         let cast = Cast::new(at(a), at(b), DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
-        cast.overlaps().then(|| cast.depth())
+        cast.overlaps().then(|| cast.least_tolerance())
     }
 
     /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, as they were
@@ -485,7 +485,7 @@ fn met(
     options: SolidOptions,
     workspace: &mut Workspace,
 ) -> Option<SolidContact> {
-    match placed(bodies, d, options)?.clearance_in(workspace) {
+    match placed(bodies, d, options)?.clearance_in(workspace).ok()? {
         Clearance::Blocked { contact, .. } => Some(contact),
         _ => None,
     }

@@ -1,6 +1,6 @@
 //! Answers about where the moving body is now: how far it can go, how deep it is, whether it meets.
 
-use colltrans::{Clearance, OverlapAhead, WhyFree};
+use colltrans::{CentralCast, Clearance, OverlapAhead, WhyFree};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -302,8 +302,9 @@ pub(crate) fn intersection(
     query: Query,
     of: colltrans::Intersection,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let query = Query { direction: of.direction, ..query };
-    let direction = coordinates(of.direction);
-    let outcome = outcome(py, query, of.outcome)?.unbind();
+    let CentralCast { direction, outcome: found } = of.evidence;
+    let query = Query { direction, ..query };
+    let direction = coordinates(direction);
+    let outcome = outcome(py, query, found)?.unbind();
     object(py, Intersection { meets: of.meets, direction, outcome })
 }

@@ -70,6 +70,10 @@ impl Raised for CaseError {
     const CLASS: &'static str = "CaseError";
 }
 
+impl Raised for QueryError {
+    const CLASS: &'static str = "QueryError";
+}
+
 impl Raised for colltrans_assembly::AssemblyError {
     const CLASS: &'static str = "AssemblyError";
 }

@@ -243,7 +243,7 @@ impl SolidOverlapping {
         let solids = [bodies[0].solid().or_raise()?, bodies[1].solid().or_raise()?];
         let face = |i: usize| Some(solids[i].facet_indices()[triangles[i]? as usize]);
         let place = [face(0), face(1)];
-        Ok(Self { depth: overlap.depth, place, query: query.clone().unbind() })
+        Ok(Self { depth: overlap.least_tolerance, place, query: query.clone().unbind() })
     }
 }
 
@@ -365,8 +365,8 @@ pub(crate) fn solid_answer<'py>(
             let contact = Py::new(py, contact)?;
             Bound::new(py, SolidBlocked { distance: *distance, contact })?.into_any()
         }
-        Clearance::Free(separation) => {
-            let separation = separation.as_ref().map(|s| {
+        Clearance::Free(free) => {
+            let separation = free.separation.as_ref().map(|s| {
                 let [x, y, z] = coordinates(s.normal);
                 [x, y, z, s.margin]
             });

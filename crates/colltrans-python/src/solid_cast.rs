@@ -146,7 +146,7 @@ impl SolidCast {
     /// -------
     /// SolidBlocked or SolidFree or SolidOverlapping
     pub(crate) fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let answer = Self::ask(slf, |cast| cast.clearance())?;
+        let answer = Self::ask(slf, |cast| cast.clearance())?.or_raise()?;
         solid_answer(slf, &answer)
     }
 
@@ -158,7 +158,7 @@ impl SolidCast {
     fn certified_clearance<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<(Bound<'py, PyAny>, SolidCertificate)> {
-        let (answer, proof) = Self::ask(slf, |cast| cast.certified_clearance())?;
+        let (answer, proof) = Self::ask(slf, |cast| cast.certified_clearance())?.or_raise()?;
         Ok((solid_answer(slf, &answer)?, SolidCertificate(proof)))
     }
 
@@ -184,13 +184,13 @@ impl SolidCast {
 
     /// Whether the bodies as they are, as closed sets, have a point in common.
     pub(crate) fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
-        Self::ask(slf, |cast| cast.intersects())
+        Ok(Self::ask(slf, |cast| cast.intersects())?.or_raise()?.meets)
     }
 
     /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
     /// none up to their size.
     fn depth(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
-        Self::ask(slf, |cast| cast.depth())
+        Self::ask(slf, |cast| cast.least_tolerance())
     }
 
     /// Where the bodies, shrunk by half the tolerance, overlap, and how deep; None if they do not: what

@@ -31,7 +31,7 @@ fn facets([moving, fixed]: [&Part; 2]) -> Result<[&Facets; 2], Refusal> {
 
 pub(crate) fn certify(bodies: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let cast = query(facets(bodies)?, pair)?;
-    let (_, certificate) = cast.certified_clearance();
+    let (_, certificate) = cast.certified_clearance().map_err(|error| error.to_string())?;
     let (overlap, start): (Value, Option<&Cover>) = match &certificate.start {
         StartProof::Assumed => (Value::Null, None),
         StartProof::Apart(cover) => (Value::Null, Some(cover)),

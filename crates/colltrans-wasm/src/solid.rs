@@ -14,7 +14,7 @@ use crate::question::Pair;
 pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);
     let cast = query([moving, fixed], pair)?;
-    let clearance = cast.clearance();
+    let clearance = cast.clearance().map_err(|error| error.to_string())?;
     let exit = cast.exit();
     // Which bodies are open, at least in part.
     let named = [("moving", moving), ("fixed", fixed)].into_iter();
@@ -29,13 +29,13 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
         "surfaces": surfaces,
     });
     let more: Value = match clearance {
-        Clearance::Free(plane) => json!({
+        Clearance::Free(free) => json!({
             "outcome": "free",
-            "sideways": plane.map(|plane| plane.normal.to_array()),
-            "margin": plane.map(|plane| plane.margin),
+            "sideways": free.separation.map(|plane| plane.normal.to_array()),
+            "margin": free.separation.map(|plane| plane.margin),
         }),
         Clearance::Overlapping(overlap) => {
-            json!({ "outcome": "overlapping", "depth": overlap.depth })
+            json!({ "outcome": "overlapping", "depth": overlap.least_tolerance })
         }
         Clearance::Blocked { distance, contact } => {
             json!({

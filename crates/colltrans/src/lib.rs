@@ -70,6 +70,11 @@
 //! | [`Cast::intersects`] | do they meet where they are? | [`Intersection`] |
 //! | [`Cast::verify`] | is this proof one? | the gap proven |
 //!
+//! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
+//! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
+//! [least tolerance](Cast::least_tolerance) of solids. Answers about convex bodies carry their proofs;
+//! between solids a proof costs more and is asked for apart, by [`Cast::certified_clearance`].
+//!
 //! A [`Tracker`] answers the same questions, starting from its last answer: for bodies that move a
 //! little between two queries.
 //!
@@ -137,9 +142,9 @@ mod work;
 mod written;
 
 pub use answer::{
-    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth,
-    Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver,
-    StartedFrom, Steps, WhyFree,
+    Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange,
+    DirectionalDepth, Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation,
+    Solver, StartedFrom, Steps, WhyFree,
 };
 pub use body::error::{BuildError, PoseError, TopologyError};
 pub use body::solid::Solid;

@@ -137,7 +137,7 @@ fn queries_between_solids_allocate_their_queue_only() {
             assert_eq!(again, Some(first), "{family}:{seed}");
             assert_eq!(count.count_total, 0, "{family}:{seed}");
             let count = allocation_counter::measure(|| {
-                assert!(cast.intersects() || !cast.overlaps());
+                assert!(cast.intersects().expect("an answer").meets || !cast.overlaps());
             });
             assert_eq!(count.count_total, 0, "{family}:{seed}");
         }

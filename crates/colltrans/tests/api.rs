@@ -213,8 +213,8 @@ fn overlapping_boxes() {
         let cast = cubes(&cube, DVec3::new(x, 0.25, 0.0), DVec3::Y);
         let found = cast.intersects().expect("an answer");
         // The proof is that of a cast along the line of the centres.
-        let along = cast.along(found.direction).expect("a direction");
-        match found.outcome {
+        let along = cast.along(found.evidence.direction).expect("a direction");
+        match found.evidence.outcome {
             Outcome::Contact(contact) => along.verify(&contact.certificate).expect("a proof"),
             Outcome::Separated(separated) => along.verify(&separated.certificate).expect("a proof"),
             Outcome::Grazing(_) => panic!("boxes with a volume"),

@@ -131,7 +131,7 @@ fn of_parts([a, b]: &[Solid; 2], at: DVec3, direction: DVec3, tolerance: f64) ->
     let Statement::Clearance(said) = proof.statement() else { panic!("solids") };
     assert_eq!(
         said.stop.is_some(),
-        matches!(cast.clearance(), colltrans::Clearance::Blocked { .. })
+        matches!(cast.clearance(), Ok(colltrans::Clearance::Blocked { .. }))
     );
     holds(&proof, "parts")
 }

@@ -156,7 +156,10 @@ fn ranges_and_clearances_are_those_of_one_off_queries() {
                 }
                 let found = tracker.intersects(&cast).expect("an answer");
                 let one_off = cast.intersects().expect("an answer");
-                assert_eq!((found.meets, found.direction), (one_off.meets, one_off.direction));
+                assert_eq!(
+                    (found.meets, found.evidence.direction),
+                    (one_off.meets, one_off.evidence.direction)
+                );
                 walk.advance();
             }
         }

@@ -53,7 +53,10 @@ fn answers_between_solids_come_back_in_bits() {
     ] {
         let pose = Pose::from_translation(from).expect("in range");
         let cast = Cast::new(bolt.at(pose), plate.at(Pose::IDENTITY), direction).expect("a query");
-        let (answer, certificate) = cast.certified_clearance();
+        let (answer, certificate) = cast.certified_clearance().expect("an answer");
+        again::<Outcome<Solid>>(&cast.first_contact().expect("an answer"));
+        again::<ContactRange<Solid>>(&cast.contact_range().expect("an answer"));
+        again::<Intersection<Solid>>(&cast.intersects().expect("an answer"));
         again::<Clearance<Solid>>(&answer);
         again::<SolidCertificate>(&certificate);
         again::<SolidOptions>(&cast.options());

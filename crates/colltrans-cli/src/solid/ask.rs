@@ -101,7 +101,7 @@ impl<'a> Question<'a> {
         let cast =
             self.cast(self.moving.solid(), self.fixed.solid(), precisions, self.tolerance)?;
         let tolerance = cast.tolerance();
-        let kind = match cast.clearance() {
+        let kind = match cast.clearance()? {
             Clearance::Free(_) => Kind::Free,
             Clearance::Blocked { distance, contact } => {
                 Kind::Blocked(Box::new(self.stop(distance, &contact)))
@@ -168,7 +168,7 @@ impl<'a> Question<'a> {
         for moving in &self.moving.pieces {
             for fixed in &self.fixed.pieces {
                 let cast = self.cast(&moving.solid, &fixed.solid, [0.0; 2], Some(tolerance))?;
-                if let Some(SolidOverlap { depth, .. }) = cast.start_overlap() {
+                if let Some(SolidOverlap { least_tolerance: depth, .. }) = cast.start_overlap() {
                     let (moving, fixed) = (moving.file.as_path(), fixed.file.as_path());
                     found.push(Overlap { moving, fixed, depth });
                 }

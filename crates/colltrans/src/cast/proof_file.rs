@@ -19,6 +19,7 @@ use crate::answer::{
 use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
 use crate::body::{ConvexPolyhedron, Pose};
+use crate::setting::error::QueryError;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";
@@ -176,7 +177,7 @@ impl ProofFile {
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
         let options = options(cast.options().start_overlap, cast.tolerance());
         let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
-        let statement = SolidStatement::of(&again.with_options(options)?);
+        let statement = SolidStatement::of(&again.with_options(options)?)?;
         let bodies = Bodies::Solids { made, of };
         Ok(Self { bodies, poses, direction, statement: Statement::Clearance(statement) })
     }
@@ -302,18 +303,18 @@ impl Statement {
 }
 
 impl SolidStatement {
-    fn of(cast: &Cast<'_, Solid>) -> Self {
-        let (clearance, certificate) = cast.certified_clearance();
+    fn of(cast: &Cast<'_, Solid>) -> Result<Self, QueryError> {
+        let (clearance, certificate) = cast.certified_clearance()?;
         let (stop, separation) = match clearance {
             Clearance::Blocked { contact, .. } => {
                 let facets = facets(cast, contact.triangles);
                 (facets.map(|facets| Stop { facets, translation: contact.translation }), None)
             }
-            Clearance::Free(plane) => (None, plane),
+            Clearance::Free(free) => (None, free.separation),
             Clearance::Overlapping(_) => (None, None),
         };
         let start_overlap = cast.options().start_overlap;
-        Self { start_overlap, certificate, stop, separation }
+        Ok(Self { start_overlap, certificate, stop, separation })
     }
 
     fn check(&self, cast: &Cast<'_, Solid>) -> Result<(), CertificateError> {

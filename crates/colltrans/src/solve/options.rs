@@ -1,6 +1,6 @@
 //! Choices of a query.
 
-use crate::answer::{Contact, OverlapAhead, Solver, WhyFree};
+use crate::answer::{CentralCast, Contact, Grazing, OverlapAhead, Separated, Solver, WhyFree};
 use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::error::QueryError;
 
@@ -25,8 +25,11 @@ pub struct Options {
 impl Body for ConvexPolyhedron {
     type Options = Options;
     type Contact = Contact;
+    type Grazing = Grazing;
+    type Separated = Separated;
     type Free = WhyFree;
     type Overlap = OverlapAhead;
+    type Evidence = CentralCast;
 }
 
 impl Options {

@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::Path;
 
-use colltrans::solid::{SolidOptions, StartProof};
+use colltrans::solid::{SolidFree, SolidOptions, StartProof};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, PoseError, Solid, Solver};
 use glam::{DQuat, DVec3};
 
@@ -191,10 +191,10 @@ pub fn solids(bytes: &[u8]) {
     let options = SolidOptions { tolerance: Some(tolerance), ..SolidOptions::default() };
     let cast = Cast::new(a.at(s), b.at(t), direction).and_then(|c| c.with_options(options));
     let Ok(cast) = cast else { return };
-    let (answer, certificate) = cast.certified_clearance();
-    assert_eq!(answer, cast.clearance(), "with its proof and without");
+    let (answer, certificate) = cast.certified_clearance().expect("an answer");
+    assert_eq!(Ok(answer), cast.clearance(), "with its proof and without");
     cast.verify(&certificate).unwrap_or_else(|e| panic!("{answer:?}: {e}"));
-    if let Clearance::Free(Some(plane)) = &answer {
+    if let Clearance::Free(SolidFree { separation: Some(plane), .. }) = &answer {
         cast.verify(plane).unwrap_or_else(|e| panic!("{answer:?}: {e}"));
     }
     let few = a.triangles().len() * b.triangles().len() <= MOST_PAIRS;

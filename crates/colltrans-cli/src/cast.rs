@@ -35,11 +35,9 @@ pub(crate) fn run(arguments: &PairArguments, asked: Asked) -> Result<(), Failure
     let fixed = body::load_or_fail(&arguments.fixed, &fixed_options)?;
     let (placed, mended) = (places.notes(), moving.notes.iter().chain(&fixed.notes));
     placed.iter().flatten().chain(mended).for_each(|text| note(text));
-    let options = Options {
-        solver: arguments.solver,
-        graze_tolerance: arguments.graze_tolerance,
-        ..Options::default()
-    };
+    let options = Options::default()
+        .with_solver(arguments.solver)
+        .with_graze_tolerance(arguments.graze_tolerance);
     let [moving_at, fixed_at] = [moving.body.at(moving_pose), fixed.body.at(fixed_pose)];
     let cast = |direction| Cast::new(moving_at, fixed_at, direction)?.with_options(options);
     let parts = [&moving, &fixed];

@@ -231,7 +231,7 @@ impl Record {
     }
 
     fn of_separated(separated: &Separated) -> Self {
-        let Separated { certificate, solver, steps } = separated;
+        let Separated { certificate, solver, steps, .. } = separated;
         Self {
             outcome: Name::Separated,
             normal: Some(coordinates(certificate.normal)),
@@ -278,7 +278,7 @@ impl FeatureRecord {
 impl StepCounts {
     fn of(steps: Steps) -> Self {
         // One-off queries start from scratch.
-        let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
+        let Steps { planar_problems, supports, pivots, .. } = steps;
         Self { planar_problems, supports, pivots }
     }
 }

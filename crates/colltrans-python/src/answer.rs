@@ -162,7 +162,7 @@ impl Grazing {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Saved<'py>> {
         let (contact, g) = (self.contact.clone_ref(py), &self.grazing);
-        saved(py, "Grazing", (contact, g.overlap, g.separating_direction.to_array()))
+        saved(py, "Grazing", (contact, written(g)?))
     }
 
     pub(crate) fn __repr__(&self) -> String {

@@ -302,7 +302,7 @@ pub(crate) fn intersection(
     query: Query,
     of: colltrans::Intersection,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let CentralCast { direction, outcome: found } = of.evidence;
+    let CentralCast { direction, outcome: found, .. } = of.evidence;
     let query = Query { direction, ..query };
     let direction = coordinates(direction);
     let outcome = outcome(py, query, found)?.unbind();

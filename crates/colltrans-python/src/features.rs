@@ -22,8 +22,9 @@ pub(crate) struct Steps {
 
 impl Steps {
     pub(crate) fn of(steps: colltrans::Steps) -> Self {
-        let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
-            steps;
+        let colltrans::Steps {
+            planar_problems, supports, pivots, iterations, started_from, ..
+        } = steps;
         let started_from = started_from.name();
         Self { planar_problems, supports, pivots, iterations, started_from }
     }

@@ -167,13 +167,8 @@ fn solids<'py>(class: &str, state: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, 
 }
 
 fn grazing(state: &Bound<'_, PyTuple>) -> PyResult<Grazing> {
-    let (contact, overlap, direction): (Py<Contact>, f64, [f64; 3]) = state.extract()?;
-    let grazing = colltrans::Grazing {
-        separating_direction: direction.into(),
-        overlap,
-        contact: contact.get().contact,
-    };
-    Ok(Grazing { grazing, contact })
+    let (contact, grazing): (Py<Contact>, String) = state.extract()?;
+    Ok(Grazing { grazing: read(&grazing)?, contact })
 }
 
 fn solid_cast(state: &Bound<'_, PyTuple>) -> PyResult<SolidCast> {
@@ -184,7 +179,9 @@ fn solid_cast(state: &Bound<'_, PyTuple>) -> PyResult<SolidCast> {
         bodies: [Piece::of(&moving, "moving")?, Piece::of(&fixed, "fixed")?],
         poses: poses.map(|pose| pose.get().0),
         direction: direction.into(),
-        options: SolidOptions { tolerance, start_overlap, ..SolidOptions::default() },
+        options: SolidOptions::default()
+            .with_tolerance(tolerance)
+            .with_start_overlap(start_overlap),
     })
 }
 
@@ -193,7 +190,8 @@ fn kind_of(name: &str) -> PyResult<&'static str> {
 }
 
 fn steps_of(counts: Counts, started_from: &str) -> PyResult<colltrans::Steps> {
-    let started_from = started_from.parse().map_err(|_| unknown(started_from))?;
-    let [planar_problems, supports, pivots, iterations] = counts;
-    Ok(colltrans::Steps { planar_problems, supports, pivots, iterations, started_from })
+    let mut steps = colltrans::Steps::default();
+    [steps.planar_problems, steps.supports, steps.pivots, steps.iterations] = counts;
+    steps.started_from = started_from.parse().map_err(|_| unknown(started_from))?;
+    Ok(steps)
 }

@@ -134,7 +134,9 @@ impl SolidCast {
             bodies: [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?],
             poses: [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?],
             direction: vector(direction, "direction")?,
-            options: SolidOptions { tolerance, start_overlap, ..SolidOptions::default() },
+            options: SolidOptions::default()
+                .with_tolerance(tolerance)
+                .with_start_overlap(start_overlap),
         };
         py.detach(|| cast.run(|_| ()))?;
         Ok(cast)

@@ -1,9 +1,7 @@
 //! What a search did: the library's recording, as a page reads it.
 
 use colltrans::observe::{Event, Recording};
-use colltrans::{
-    Cast, Focus, NarrowFrom, Narrowing, Options, Outcome, Pose, Region, Solver, Tracker,
-};
+use colltrans::{Cast, Focus, NarrowFrom, Narrowing, Outcome, Pose, Region, Solver, Tracker};
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -15,8 +13,8 @@ use crate::question::Search;
 pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
     let mut cast = query(bodies, &asked.pair)?;
     if let Some(gap) = asked.from_center {
-        let narrowing = Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell: false };
-        let options = Options { narrowing, ..cast.options() };
+        let narrowing = Narrowing::new(NarrowFrom::Center, gap);
+        let options = cast.options().with_narrowing(narrowing);
         cast = cast.with_options(options).map_err(|error| error.to_string())?;
     }
     let mut recording = Recording::default();
@@ -62,7 +60,7 @@ fn region(before: &Cast, cast: &Cast) -> Result<Value, Refusal> {
     let q = back(before.fixed_pose(), points.on_fixed);
     let apart = cast.fixed_pose().transform_point(q) - cast.moving_pose().transform_point(p);
     let half_side = apart.reject_from(cast.direction()).length();
-    let focus = Focus { features: false, region: Region::Fixed(half_side) };
+    let focus = Focus::NONE.with_region(Region::Fixed(half_side));
     let (mut seen, mut tracker) =
         (Recording::default(), Tracker::new().with_focus(focus).map_err(said)?);
     tracker.first_contact_observed(before, &mut seen).map_err(said)?;

@@ -113,6 +113,13 @@
 //! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. The feature `json`
 //! adds whole queries and proofs as files (`Case`, `ProofFile`).
 //!
+//! # What may change
+//!
+//! Choices, contacts, counts of work and errors may grow: make choices from their defaults
+//! (`Options::default().with_solver(..)`), match with `..`. Vectors and matrices are those of [`glam`],
+//! which is exported as `colltrans::glam`: use that one, and versions fit. A new major version of
+//! `glam` (a minor one while that is `0.x`) makes a new major version of this crate (minor while `0.x`).
+//!
 //! # How it works
 //!
 //! The Minkowski difference `M = {q - p}` is never built. A search narrows down which face of `M`

@@ -83,8 +83,8 @@ fn bytes(Bodies { moving, fixed }: &Bodies) -> [usize; 2] {
 fn tracked_queries_allocate_nothing() {
     let foci = [
         Focus::default(),
-        Focus { features: false, region: Region::Automatic },
-        Focus { features: false, region: Region::Fixed(0.1) },
+        Focus::NONE.with_region(Region::Automatic),
+        Focus::NONE.with_region(Region::Fixed(0.1)),
     ];
     for (family, ..) in FAMILIES {
         for seed in 0..4 {

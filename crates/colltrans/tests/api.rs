@@ -3,8 +3,8 @@
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
-    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, OverlapAhead, Pose,
-    PoseError, QueryError, Separation, TopologyError, WhyFree, cast,
+    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing, Options, Outcome, OverlapAhead,
+    Pose, PoseError, QueryError, Separation, TopologyError, WhyFree, cast,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
@@ -148,8 +148,8 @@ fn directions_are_checked() {
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
         let error = valid.with_graze_tolerance(tolerance).unwrap_err();
         assert!(matches!(error, QueryError::GrazeTolerance { .. }), "{error}");
-        let narrowing = Narrowing { gap: -1.0, ..Narrowing::default() };
-        let error = valid.with_options(Options { narrowing, ..Options::default() }).unwrap_err();
+        let narrowing = Narrowing::new(NarrowFrom::Ellipsoids, -1.0);
+        let error = valid.with_options(Options::default().with_narrowing(narrowing)).unwrap_err();
         assert!(matches!(error, QueryError::NarrowingGap { .. }), "{error}");
     }
 }

@@ -171,7 +171,7 @@ fn scenes() -> Vec<Scene> {
 fn ask(scene: &Scene, pose: Pose, tolerance: Option<f64>) -> (Clearance<Solid>, [Solid; 2]) {
     let [moving, fixed] = &scene.bodies;
     let direction = pose.rotation() * scene.direction;
-    let options = SolidOptions { tolerance, ..SolidOptions::default() };
+    let options = SolidOptions::default().with_tolerance(tolerance);
     let cast = Cast::new(moving.at(pose), fixed.at(pose), direction)
         .and_then(|cast| cast.with_options(options))
         .expect("a cast");

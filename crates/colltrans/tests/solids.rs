@@ -163,7 +163,7 @@ fn a_blind_press_fit() {
     };
     assert!((contact.translation.value - 1.0).abs() < 1e-9, "{contact:?}");
     // Ignored, the overlap does not hide the bottom either.
-    let ignore = SolidOptions { start_overlap: StartOverlap::Ignore, ..SolidOptions::default() };
+    let ignore = SolidOptions::default().with_start_overlap(StartOverlap::Ignore);
     let ignoring = press(DVec3::NEG_Z).with_options(ignore).expect("choices");
     assert!((distance(&ignoring) - 1.0).abs() < 1e-9);
 }

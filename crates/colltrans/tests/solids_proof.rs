@@ -39,9 +39,9 @@ fn answers_of_every_kind_are_proven() {
     assert!(up.lower == f64::INFINITY && up.stop.is_none());
     let deep = proven(&cast(&bolt, &plate, DVec3::X, DVec3::Z));
     assert!(matches!(deep.start, StartProof::Overlapping(_)));
-    let ignore = SolidOptions { start_overlap: StartOverlap::Ignore, ..SolidOptions::default() };
+    let ignore = SolidOptions::default().with_start_overlap(StartOverlap::Ignore);
     proven(&cast(&bolt, &plate, DVec3::X, DVec3::NEG_Z).with_options(ignore).expect("choices"));
-    let far = SolidOptions { before: Some(2.0), ..SolidOptions::default() };
+    let far = SolidOptions::default().with_before(2.0);
     let short = cast(&bolt, &plate, DVec3::ZERO, DVec3::NEG_Z).with_options(far).expect("choices");
     assert!((proven(&short).lower - 2.0).abs() < 1e-11);
     let turned = Pose::new(DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize(), DVec3::Z * 20.0);

@@ -43,7 +43,7 @@ fn agree(a: Said, b: Said) -> bool {
 }
 
 fn bare() -> SolidOptions {
-    SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() }
+    SolidOptions::default().with_tolerance(0.0)
 }
 
 /// A translation on the way is rounded, and what slides exactly may overlap by as much.
@@ -215,7 +215,7 @@ proptest! {
         if let Said::At(t) = said(&cast.clearance().expect("an answer"))
             && (t == 0.0 || t > 1e-9)
         {
-            let before = SolidOptions { before: Some(t * part), ..bare() };
+            let before = bare().with_before(t * part);
             let cut = said(&cast.with_options(before).expect("choices").clearance().expect("an answer"));
             if part < 0.999 || t == 0.0 {
                 prop_assert_eq!(cut, Said::Free);

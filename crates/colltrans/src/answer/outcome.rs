@@ -56,6 +56,7 @@ impl Outcome {
 /// Where the bodies first meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Contact {
     /// The collision translation in multiples of the direction (a length if the direction is a
     /// unit vector): the smallest `t` at which the moving body, moved by `t * direction`, meets the
@@ -94,6 +95,7 @@ impl Contact {
 /// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Grazing {
     /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the
     /// fixed one's.
@@ -112,6 +114,7 @@ pub struct Grazing {
 /// The bodies never meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Separated {
     /// The proof: a unit normal orthogonal to the direction, and the margin along it.
     pub certificate: Separation,

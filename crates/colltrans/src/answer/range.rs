@@ -106,6 +106,7 @@ impl ContactRange<Solid> {
 /// The answer of [`Cast::directional_depth`](crate::Cast::directional_depth).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct DirectionalDepth {
     /// How far the moving body has to go back, in multiples of the direction, until the overlap has
     /// ended: never less than the true depth; 0 if the bodies do not overlap.
@@ -117,6 +118,7 @@ pub struct DirectionalDepth {
 /// The answer of [`Cast::intersects`](crate::Cast::intersects).
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
+#[non_exhaustive]
 pub struct Intersection<B: Body = ConvexPolyhedron> {
     /// Whether the bodies, as closed sets, have a point in common: of convex ones to within rounding
     /// error, of [`Solid`]s exactly.
@@ -138,6 +140,7 @@ impl<B: Body> PartialEq for Intersection<B> {
 /// A cast of convex bodies along the line through their centres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct CentralCast {
     /// Its direction: between the centres.
     pub direction: DVec3,

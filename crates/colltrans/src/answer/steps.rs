@@ -24,6 +24,7 @@ pub enum Solver {
 /// Work done for one answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Steps {
     /// Planar problems solved (minimisation steps of the collision translation algorithm).
     pub planar_problems: u32,
@@ -38,9 +39,9 @@ pub struct Steps {
     pub started_from: StartedFrom,
 }
 
-impl Steps {
-    /// Counts another cast in; of both starts the one with more work stands.
-    pub(crate) fn add(&mut self, other: &Self) {
+/// Counts another cast in; of both starts the one with more work stands.
+impl std::ops::AddAssign for Steps {
+    fn add_assign(&mut self, other: Self) {
         self.planar_problems += other.planar_problems;
         self.supports += other.supports;
         self.pivots += other.pivots;
@@ -53,6 +54,7 @@ impl Steps {
 /// the body, and for the least tolerance of an overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidSteps {
     /// Pairs of nodes of the two trees that were looked at.
     pub nodes: u32,

@@ -176,13 +176,13 @@ impl Cast<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn with_graze_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
-        self.with_options(Options { graze_tolerance: tolerance, ..self.options })
+        self.with_options(self.options.with_graze_tolerance(tolerance))
     }
 
     /// With a solver. The answer, its certificate and its accuracy are the same.
     #[must_use]
     pub fn with_solver(self, solver: Solver) -> Self {
-        Self { options: Options { solver, ..self.options }, ..self }
+        Self { options: self.options.with_solver(solver), ..self }
     }
 
     /// At which translation do the bodies first meet, if they do?

@@ -282,7 +282,7 @@ fn between(first: Option<&Contact>, last: Option<&Contact>) -> Statement {
 }
 
 fn options(start_overlap: StartOverlap, tolerance: f64) -> SolidOptions {
-    SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() }
+    SolidOptions::default().with_start_overlap(start_overlap).with_tolerance(tolerance)
 }
 
 impl Statement {
@@ -333,7 +333,7 @@ impl SolidStatement {
         };
         let [moving, fixed] = stop.facets;
         let overlapping = Some(!matches!(self.certificate.start, StartProof::Apart(_)));
-        let of_pair = Cast { options: SolidOptions { overlapping, ..cast.options }, ..*cast };
+        let of_pair = Cast { options: cast.options.with_overlapping(overlapping), ..*cast };
         let found =
             of_pair.stop_by(triangles).filter(|_| facets(cast, triangles) == Some(stop.facets));
         let Some(found) = found else { return Err(CertificateError::Facets { moving, fixed }) };

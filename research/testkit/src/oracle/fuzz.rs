@@ -188,7 +188,7 @@ pub fn solids(bytes: &[u8]) {
     let (Some(s), Some(t)) = (pose(turned & 1 == 1), pose(turned & 2 == 2)) else { return };
     let direction = reader.vector();
     let tolerance = f64::from(reader.byte() % 32) / 64.0;
-    let options = SolidOptions { tolerance: Some(tolerance), ..SolidOptions::default() };
+    let options = SolidOptions::default().with_tolerance(tolerance);
     let cast = Cast::new(a.at(s), b.at(t), direction).and_then(|c| c.with_options(options));
     let Ok(cast) = cast else { return };
     let (answer, certificate) = cast.certified_clearance().expect("an answer");

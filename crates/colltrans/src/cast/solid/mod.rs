@@ -49,9 +49,10 @@ pub enum StartOverlap {
     Ignore,
 }
 
-/// Choices of a query between solids.
+/// Choices of a query between solids. More may be added: begin with the default ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidOptions {
     /// What an overlap at the start means.
     pub start_overlap: StartOverlap,
@@ -67,9 +68,36 @@ pub struct SolidOptions {
     pub overlapping: Option<bool>,
 }
 
+impl SolidOptions {
+    /// With a meaning of an overlap at the start.
+    #[must_use]
+    pub const fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
+        Self { start_overlap, ..self }
+    }
+
+    /// With a tolerance, a length, or the default one. It is checked where it is used.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: impl Into<Option<f64>>) -> Self {
+        Self { tolerance: tolerance.into(), ..self }
+    }
+
+    /// With an end, or without.
+    #[must_use]
+    pub fn with_before(self, before: impl Into<Option<f64>>) -> Self {
+        Self { before: before.into(), ..self }
+    }
+
+    /// With what is known of an overlap at the start.
+    #[must_use]
+    pub fn with_overlapping(self, overlapping: impl Into<Option<bool>>) -> Self {
+        Self { overlapping: overlapping.into(), ..self }
+    }
+}
+
 /// The overlap of two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidOverlap {
     /// One of the places where the bodies, shrunk by half the tolerance each, overlap: facets that
     /// cross, or a shell that is inside.
@@ -85,6 +113,7 @@ pub struct SolidOverlap {
 /// Nothing stops the moving body, or it never meets the other one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidFree {
     /// A plane between the bodies, parallel to the direction, where there is one that rounding can
     /// tell; not looked for where a query ends at [`SolidOptions::before`].
@@ -96,6 +125,7 @@ pub struct SolidFree {
 /// Whether solids meet where they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidMeeting {
     /// Two facets with a point in common, or a shell that is inside; `None` if the bodies do not meet.
     pub place: Option<Overlap>,
@@ -180,13 +210,13 @@ impl<'a> Cast<'a, Solid> {
     /// # Errors
     /// A tolerance that is negative or not finite.
     pub fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
-        self.with_options(SolidOptions { tolerance: Some(tolerance), ..self.options })
+        self.with_options(self.options.with_tolerance(tolerance))
     }
 
     /// The same with another meaning of an overlap at the start.
     #[must_use]
     pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
-        Self { options: SolidOptions { start_overlap, ..self.options }, ..self }
+        Self { options: self.options.with_start_overlap(start_overlap), ..self }
     }
 
     /// The tolerance that is used, as a length.

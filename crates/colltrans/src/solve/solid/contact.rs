@@ -49,6 +49,7 @@ use crate::body::solid::Solid;
 /// plane, else the edge that does, else the smallest, be it a corner, an edge or a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidContact {
     /// Where the facets that stop the shrunk bodies meet in their true place, in multiples of the
     /// direction: 7 for a head that stops at 7. Negative where these facets, as they are, overlap, and

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use colltrans::{
-    Bounded, Cast, Clearance, Pose, ShrinkReport, Solid, SolidContact, SolidError, SolidOptions,
-    StartOverlap, Workspace,
+use colltrans::solid::{
+    ShrinkReport, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
+use colltrans::{Bounded, Cast, Clearance, Pose, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -174,7 +174,7 @@ impl<'a> Bodies<'a> {
     /// there is none that leaves both parts as they are but smaller.
     fn passes_with(&self, pair: [usize; 2]) -> Option<f64> {
         let [a, b] = pair.map(|k| self.solids[k].at(Pose::IDENTITY));
-        let tolerance = Cast::new(a, b, DVec3::Z).ok()?.depth()? * DEEPER;
+        let tolerance = Cast::new(a, b, DVec3::Z).ok()?.least_tolerance()? * DEEPER;
         let whole = |k: usize| {
             let solid = &self.solids[k];
             solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
@@ -303,20 +303,17 @@ impl<'a> Bodies<'a> {
         if overlapping && start == StartOverlap::Refuse {
             return Room::Overlapping;
         }
-        let options = SolidOptions {
-            start_overlap: start,
-            tolerance: Some(0.0),
-            // A plane between the two, which comes with "free" where there is no limit, is not needed.
-            before: before.or(Some(f64::INFINITY)),
-            overlapping: Some(overlapping),
-        };
+        // A plane between the two, which comes with "free" where there is no limit, is not needed.
+        let options = SolidOptions::default()
+            .with_start_overlap(start)
+            .with_tolerance(0.0)
+            .with_before(before.unwrap_or(f64::INFINITY))
+            .with_overlapping(overlapping);
         let solids = [&self.solids[a], &self.solids[b]];
         let later = met(solids, d, options, workspace);
         let deeper = self.passing.get(&[a.min(b), a.max(b)]).and_then(|&tolerance| {
-            let (start_overlap, tolerance) = (StartOverlap::Refuse, Some(tolerance));
-            let options =
-                SolidOptions { start_overlap, tolerance, overlapping: Some(false), ..options };
-            met(solids, d, options, workspace)
+            let apart = options.with_start_overlap(StartOverlap::Refuse).with_overlapping(false);
+            met(solids, d, apart.with_tolerance(tolerance), workspace)
         });
         let stops = later.into_iter().chain(deeper);
         let stops = stops.map(|c| self.stop([a, b], d, c.triangles, &c));
@@ -333,12 +330,11 @@ impl<'a> Bodies<'a> {
         start: StartOverlap,
     ) -> Option<Stop> {
         let start = self.start_of(a, b, start);
-        let options = SolidOptions {
-            start_overlap: start,
-            tolerance: Some(0.0),
-            before: Some(f64::INFINITY),
-            overlapping: Some(start == StartOverlap::Ignore && self.overlaps(a, b)),
-        };
+        let options = SolidOptions::default()
+            .with_start_overlap(start)
+            .with_tolerance(0.0)
+            .with_before(f64::INFINITY)
+            .with_overlapping(start == StartOverlap::Ignore && self.overlaps(a, b));
         let cast = placed([&self.solids[a], &self.solids[b]], d, options)?;
         let contact = cast.stop_by(triangles)?;
         Some(self.stop([a, b], d, triangles, &contact))
@@ -405,9 +401,9 @@ impl<'a> Bodies<'a> {
     pub fn overlap_as_given(&self, a: usize, b: usize) -> Option<Option<f64>> {
         let parts = self.assembly.parts();
         let at = |k: usize| parts[k].solid().at(Pose::IDENTITY);
-        let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
+        let options = SolidOptions::default().with_tolerance(0.0);
         let cast = Cast::new(at(a), at(b), DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
-        cast.overlaps().then(|| cast.depth())
+        cast.overlaps().then(|| cast.least_tolerance())
     }
 
     /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, as they were
@@ -447,7 +443,7 @@ impl<'a> Bodies<'a> {
         self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let Ok(pose) = Pose::from_translation(by) else { return false };
         let moving = self.solids[a].at(pose);
-        let options = SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() };
+        let options = SolidOptions::default().with_tolerance(0.0);
         let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
@@ -485,7 +481,7 @@ fn met(
     options: SolidOptions,
     workspace: &mut Workspace,
 ) -> Option<SolidContact> {
-    match placed(bodies, d, options)?.clearance_in(workspace) {
+    match placed(bodies, d, options)?.clearance_in(workspace).ok()? {
         Clearance::Blocked { contact, .. } => Some(contact),
         _ => None,
     }

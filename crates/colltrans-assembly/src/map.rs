@@ -13,7 +13,8 @@ mod way;
 
 use std::collections::BTreeSet;
 
-use colltrans::{Aabb, StartOverlap, Workspace};
+use colltrans::Aabb;
+use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
-use colltrans::{Aabb, Solid, SolidError};
+use colltrans::solid::SolidError;
+use colltrans::{Aabb, Solid};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
 use glam::{DAffine3, DVec3};
@@ -116,7 +117,7 @@ fn solid(piece: &Piece) -> Result<Loaded<Solid>, Refused> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Ignored {
     /// The overlap at the start. Contacts that begin later block, as with
-    /// [`StartOverlap::Ignore`](colltrans::StartOverlap::Ignore), and so does what would make the overlap
+    /// [`StartOverlap::Ignore`](colltrans::solid::StartOverlap::Ignore), and so does what would make the overlap
     /// deeper than it is, where there is a tolerance with which there is none.
     Overlap,
     /// Everything: the two are never asked about.

@@ -17,7 +17,8 @@ mod single;
 
 use std::collections::{BTreeMap, HashSet};
 
-use colltrans::{Bounded, StartOverlap};
+use colltrans::Bounded;
+use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use petgraph::unionfind::UnionFind;
 

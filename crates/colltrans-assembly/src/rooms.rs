@@ -9,7 +9,7 @@
 //! (`Witnesses`), and once something stops it within `Bodies::noise`, no more of those that it
 //! overlaps are asked: which of them stops it "at once" is a matter of the files' last digits.
 
-use colltrans::{StartOverlap, Workspace};
+use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 

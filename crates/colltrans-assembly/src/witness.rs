@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use colltrans::StartOverlap;
+use colltrans::solid::StartOverlap;
 use glam::DVec3;
 
 use crate::bodies::{Bodies, Stop};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering::Relaxed;
 
-use colltrans::StartOverlap;
+use colltrans::solid::StartOverlap;
 use glam::DVec3;
 
 use crate::bodies::{Bodies, Fit};

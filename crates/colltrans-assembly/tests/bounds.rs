@@ -2,7 +2,8 @@
 
 mod common;
 
-use colltrans::{Solid, StartOverlap};
+use colltrans::Solid;
+use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::matrix::Matrix;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use colltrans::{StartOverlap, Workspace};
+use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};

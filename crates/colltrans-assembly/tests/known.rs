@@ -10,7 +10,7 @@ mod common;
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use colltrans::StartOverlap;
+use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Choice, Finer, Origin, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};

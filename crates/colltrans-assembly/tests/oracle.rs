@@ -3,7 +3,7 @@
 
 mod common;
 
-use colltrans::{StartOverlap, Workspace};
+use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::matrix::Matrix;

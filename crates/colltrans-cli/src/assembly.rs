@@ -7,8 +7,8 @@ mod output;
 
 use std::path::Path;
 
-use colltrans::StartOverlap;
 use colltrans::glam::DVec3;
+use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};

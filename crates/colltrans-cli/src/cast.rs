@@ -64,11 +64,9 @@ impl<'a> Request<'a> {
     pub(crate) fn convex(self, asked: Asked, parts: [&Part; 2]) -> Result<(), Failure> {
         self.tell(parts.map(|part| part.notes.as_slice()));
         let Self { arguments, poses, directions } = self;
-        let options = Options {
-            solver: arguments.solver,
-            graze_tolerance: arguments.graze_tolerance,
-            ..Options::default()
-        };
+        let options = Options::default()
+            .with_solver(arguments.solver)
+            .with_graze_tolerance(arguments.graze_tolerance);
         let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
         let cast = |direction| Cast::new(moving, fixed, direction)?.with_options(options);
         match directions {

@@ -279,6 +279,6 @@ pub(crate) fn feature(feature: &FeatureRecord) -> String {
 
 fn work(solver: Solver, steps: Steps) -> String {
     // One-off queries start from scratch.
-    let Steps { planar_problems, supports, pivots, iterations: _, started_from: _ } = steps;
+    let Steps { planar_problems, supports, pivots, .. } = steps;
     format!("{solver}: {planar_problems} planar problems, {supports} supports, {pivots} pivots")
 }

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-use colltrans::StartOverlap;
 use colltrans::glam::{DAffine3, DVec3};
+use colltrans::solid::StartOverlap;
 use colltrans_assembly::blocking::Blocking;
 use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;

@@ -169,7 +169,7 @@ impl Separation {
 /// The proof of a clearance between solids.
 #[pyclass(frozen, module = "colltrans")]
 #[derive(Serialize, Deserialize)]
-pub(crate) struct SolidCertificate(pub(crate) colltrans::SolidCertificate);
+pub(crate) struct SolidCertificate(pub(crate) colltrans::solid::SolidCertificate);
 
 pickled!(SolidCertificate);
 
@@ -195,7 +195,7 @@ impl SolidCertificate {
     /// From what `to_json` has written. It is read, not believed.
     #[staticmethod]
     pub(crate) fn from_json(text: &str) -> PyResult<Self> {
-        colltrans::SolidCertificate::from_json(text).or_raise().map(Self)
+        colltrans::solid::SolidCertificate::from_json(text).or_raise().map(Self)
     }
 
     fn __repr__(&self) -> String {

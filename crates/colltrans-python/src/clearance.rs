@@ -2,7 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::Record;
-use colltrans::{Clearance, OverlapAhead, ProofFile, WhyFree};
+use colltrans::{CentralCast, Clearance, OverlapAhead, ProofFile, WhyFree};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -181,13 +181,16 @@ impl Intersection {
     /// ndarray of shape (3,): The direction between the centres, of the cast that found out.
     #[getter]
     fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.found.direction)
+        row(py, self.found.evidence.direction)
     }
 
     /// Contact or Grazing or Separated: What that cast found.
     #[getter]
     fn outcome<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.found.outcome.object(&along(self.query.bind(py), self.found.direction)?)
+        self.found
+            .evidence
+            .outcome
+            .object(&along(self.query.bind(py), self.found.evidence.direction)?)
     }
 
     fn __bool__(&self) -> bool {
@@ -256,12 +259,14 @@ impl Answer for colltrans::Intersection {
     }
 
     fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
-        let mut record = self.outcome.record(&along(query, self.direction)?)?;
-        record.direction = Some(coordinates(self.direction));
+        let CentralCast { direction, outcome, .. } = self.evidence;
+        let mut record = outcome.record(&along(query, direction)?)?;
+        record.direction = Some(coordinates(direction));
         Ok(record)
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
-        self.outcome.proof(&along(query, self.direction)?)
+        let CentralCast { direction, outcome, .. } = self.evidence;
+        outcome.proof(&along(query, direction)?)
     }
 }

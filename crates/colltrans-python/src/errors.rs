@@ -5,7 +5,8 @@
 
 use std::fmt::Display;
 
-use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError, SolidError};
+use colltrans::solid::SolidError;
+use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError};
 use colltrans_mesh::body::{LoadError, Refused};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -67,6 +68,10 @@ impl Raised for CertificateError {
 
 impl Raised for CaseError {
     const CLASS: &'static str = "CaseError";
+}
+
+impl Raised for QueryError {
+    const CLASS: &'static str = "QueryError";
 }
 
 impl Raised for colltrans_assembly::AssemblyError {

@@ -49,8 +49,9 @@ impl Steps {
     }
 
     fn __repr__(&self) -> String {
-        let colltrans::Steps { planar_problems, supports, pivots, iterations, started_from } =
-            self.0;
+        let colltrans::Steps {
+            planar_problems, supports, pivots, iterations, started_from, ..
+        } = self.0;
         format!(
             "Steps(planar_problems={planar_problems}, supports={supports}, pivots={pivots}, \
              iterations={iterations}, started_from='{started_from}')"

@@ -288,7 +288,7 @@ impl Work<'_> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
         let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
         let graze_tolerance = self.graze_tolerances.row(row)[0];
-        let options = Options { graze_tolerance, ..self.options };
+        let options = self.options.with_graze_tolerance(graze_tolerance);
         Cast::new(moving.at(at), fixed.at(to), self.directions.vector(row))
             .and_then(|cast| cast.with_options(options))
             .and_then(|cast| self.question.ask(&cast))
@@ -442,7 +442,7 @@ pub(crate) fn ask_many<'py>(
         poses: [table("moving_pose", &moving_pose, n)?, table("fixed_pose", &fixed_pose, n)?],
         directions: table("direction", &direction, n)?,
         graze_tolerances: table("graze_tolerance", &graze_tolerance, n)?,
-        options: Options { solver: solver_called(Some(solver))?, ..Options::default() },
+        options: Options::default().with_solver(solver_called(Some(solver))?),
     };
     let mut columns = Columns::new(n, question.numbers().len());
     let failures = Failures::default();

@@ -56,9 +56,9 @@ pub(crate) struct ShrinkReport {
 match_args!(ShrinkReport("farthest", "stuck", "inverted"));
 pickled!(ShrinkReport);
 
-impl From<colltrans::ShrinkReport> for ShrinkReport {
-    fn from(report: colltrans::ShrinkReport) -> Self {
-        let colltrans::ShrinkReport { farthest, stuck, inverted } = report;
+impl From<colltrans::solid::ShrinkReport> for ShrinkReport {
+    fn from(report: colltrans::solid::ShrinkReport) -> Self {
+        let colltrans::solid::ShrinkReport { farthest, stuck, inverted } = report;
         Self { farthest, stuck, inverted }
     }
 }

@@ -86,11 +86,9 @@ impl Cast {
             fixed: fixed.clone().unbind(),
             poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
             direction: vector(direction, "direction")?,
-            options: Options {
-                solver: solver_called(solver)?,
-                graze_tolerance,
-                ..Options::default()
-            },
+            options: Options::default()
+                .with_solver(solver_called(solver)?)
+                .with_graze_tolerance(graze_tolerance),
         })
     }
 

@@ -79,7 +79,7 @@ impl SolidCast {
     /// -------
     /// SolidBlocked or SolidFree or SolidOverlapping
     fn clearance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        Self::ask(slf, |cast| cast.clearance())?.object(slf)
+        Self::ask(slf, |cast| cast.clearance())?.or_raise()?.object(slf)
     }
 
     /// The clearance, with a proof that :meth:`verify` checks.
@@ -90,7 +90,7 @@ impl SolidCast {
     fn certified_clearance<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<(Bound<'py, PyAny>, SolidCertificate)> {
-        let (answer, proof) = Self::ask(slf, |cast| cast.certified_clearance())?;
+        let (answer, proof) = Self::ask(slf, |cast| cast.certified_clearance())?.or_raise()?;
         Ok((answer.object(slf)?, SolidCertificate(proof)))
     }
 
@@ -116,13 +116,13 @@ impl SolidCast {
 
     /// Whether the bodies as they are, as closed sets, have a point in common.
     fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
-        Self::ask(slf, |cast| cast.intersects())
+        Ok(Self::ask(slf, |cast| cast.intersects())?.or_raise()?.meets)
     }
 
     /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
     /// none up to their size.
     fn depth(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
-        Self::ask(slf, |cast| cast.depth())
+        Self::ask(slf, |cast| cast.least_tolerance())
     }
 
     /// Where the bodies, shrunk by half the tolerance, overlap, and how deep; None if they do not: what

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use colltrans::glam::DVec3;
-use colltrans::{AsSolid, ShellKind};
+use colltrans::solid::{AsSolid, ShellKind};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused, load};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
@@ -49,7 +49,7 @@ impl Piece {
         Err(PyTypeError::new_err(message))
     }
 
-    pub(crate) fn solid(&self) -> Result<&colltrans::Solid, colltrans::SolidError> {
+    pub(crate) fn solid(&self) -> Result<&colltrans::Solid, colltrans::solid::SolidError> {
         match self {
             Self::Convex(body) => body.get().0.as_solid(),
             Self::Solid(solid) => solid.get().solid.as_solid(),
@@ -57,7 +57,7 @@ impl Piece {
     }
 
     /// What it is the union of, or itself.
-    pub(crate) fn pieces(&self) -> Result<Vec<&colltrans::Solid>, colltrans::SolidError> {
+    pub(crate) fn pieces(&self) -> Result<Vec<&colltrans::Solid>, colltrans::solid::SolidError> {
         match self {
             Self::Solid(solid) => match &*solid.get().source {
                 Source::Pieces(pieces) => {

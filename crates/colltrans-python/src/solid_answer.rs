@@ -1,7 +1,8 @@
 //! Answers of queries about solids.
 
 use colltrans::record::{Record, StartOverlapRecord};
-use colltrans::{Clearance, Overlap, ProofFile, Separation, SolidOverlap, StartOverlap};
+use colltrans::solid::{Overlap, SolidOverlap, StartOverlap};
+use colltrans::{Clearance, ProofFile};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -17,11 +18,11 @@ type SolidClearance = Clearance<colltrans::Solid>;
 /// Where a solid is stopped.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidContact {
-    contact: colltrans::SolidContact,
+    contact: colltrans::solid::SolidContact,
     query: Py<SolidCast>,
 }
 
-answer!(SolidContact("translation", "normal", "point") of colltrans::SolidContact, SolidCast, |it| it.contact);
+answer!(SolidContact("translation", "normal", "point") of colltrans::solid::SolidContact, SolidCast, |it| it.contact);
 
 #[pymethods]
 impl SolidContact {
@@ -98,7 +99,7 @@ fn feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidBlocked {
     distance: f64,
-    contact: colltrans::SolidContact,
+    contact: colltrans::solid::SolidContact,
     query: Py<SolidCast>,
 }
 
@@ -136,11 +137,11 @@ impl SolidBlocked {
 /// A solid can move as far as it likes.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidFree {
-    separation: Option<Separation>,
+    free: colltrans::solid::SolidFree,
     query: Py<SolidCast>,
 }
 
-answer!(SolidFree() of SolidClearance, SolidCast, |it| SolidClearance::Free(it.separation));
+answer!(SolidFree() of SolidClearance, SolidCast, |it| SolidClearance::Free(it.free));
 
 #[pymethods]
 impl SolidFree {
@@ -154,13 +155,13 @@ impl SolidFree {
     /// None if there is no such plane: it slides along, or moves away.
     #[getter]
     fn margin(&self) -> Option<f64> {
-        self.separation.map(|s| s.margin)
+        self.free.separation.map(|s| s.margin)
     }
 
     /// ndarray of shape (3,) or None: Unit normal of that plane, in the world.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.separation.map(|s| row(py, s.normal))
+        self.free.separation.map(|s| row(py, s.normal))
     }
 
     /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
@@ -196,7 +197,7 @@ impl SolidOverlapping {
     /// none, as for open surfaces.
     #[getter]
     fn depth(&self) -> Option<f64> {
-        self.overlap.depth
+        self.overlap.least_tolerance
     }
 
     /// tuple of (int or None, int or None): One of the places where the bodies, shrunk by half the
@@ -226,7 +227,7 @@ impl SolidOverlapping {
     fn __repr__(&self) -> String {
         format!(
             "SolidOverlapping(depth={})",
-            self.overlap.depth.map_or("None".into(), |d| format!("{d:?}"))
+            self.overlap.least_tolerance.map_or("None".into(), |d| format!("{d:?}"))
         )
     }
 }
@@ -260,7 +261,7 @@ impl Answer for SolidClearance {
             Self::Blocked { distance, contact } => {
                 object(py, SolidBlocked { distance, contact, query })
             }
-            Self::Free(separation) => object(py, SolidFree { separation, query }),
+            Self::Free(free) => object(py, SolidFree { free, query }),
             Self::Overlapping(overlap) => object(py, SolidOverlapping { overlap, query }),
         }
     }
@@ -272,7 +273,10 @@ impl Answer for SolidClearance {
             if cast.options().start_overlap == StartOverlap::Ignore {
                 record.start_overlaps = cast
                     .start_overlap()
-                    .map(|of| StartOverlapRecord { depth: of.depth, ..Default::default() })
+                    .map(|of| StartOverlapRecord {
+                        depth: of.least_tolerance,
+                        ..Default::default()
+                    })
                     .into_iter()
                     .collect();
             }
@@ -285,7 +289,7 @@ impl Answer for SolidClearance {
     }
 }
 
-impl Answer for colltrans::SolidContact {
+impl Answer for colltrans::solid::SolidContact {
     type Query = SolidCast;
 
     fn object<'py>(self, query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {

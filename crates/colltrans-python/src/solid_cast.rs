@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
-use colltrans::{SolidOptions, StartOverlap};
+use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans_mesh::body::between;
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
@@ -136,7 +136,9 @@ impl SolidCast {
             bodies: [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?],
             poses: [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?],
             direction: vector(direction, "direction")?,
-            options: SolidOptions { tolerance, start_overlap, ..SolidOptions::default() },
+            options: SolidOptions::default()
+                .with_tolerance(tolerance)
+                .with_start_overlap(start_overlap),
         };
         py.detach(|| cast.run(|_| ()))?;
         Ok(cast)

@@ -6,7 +6,8 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use colltrans::{ConvexPolyhedron, ShellKind, Solid};
+use colltrans::solid::ShellKind;
+use colltrans::{ConvexPolyhedron, Solid};
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, Take};
 use colltrans_mesh::{Format, Mesh, sides};
 use glam::DVec3;

@@ -1,6 +1,7 @@
 //! Proofs of answers between solids: made, told, and checked as they were told.
 
-use colltrans::{Cast, Cover, Reason, Solid, SolidCertificate, StartProof};
+use colltrans::solid::{Cover, Reason, SolidCertificate, StartProof};
+use colltrans::{Cast, Solid};
 use serde::Serialize;
 
 use crate::answer::{Answer, Refusal};
@@ -45,7 +46,7 @@ fn facets([moving, fixed]: [&Part; 2]) -> Result<[&Facets; 2], Refusal> {
 
 pub(crate) fn certify(bodies: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let cast = query(facets(bodies)?, pair)?;
-    let (_, certificate) = cast.certified_clearance();
+    let (_, certificate) = cast.certified_clearance().map_err(|error| error.to_string())?;
     let SolidCertificate { start, cover, .. } = &certificate;
     let apart = if let StartProof::Apart(cover) = start { Some(cover) } else { None };
     Ok(Answer::of(&Certified {

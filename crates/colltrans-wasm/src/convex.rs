@@ -16,8 +16,7 @@ use crate::told::{Lit, Proof, Told, Touching};
 pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
     let moving = moving.body.at(pose(pair.moving_pose, "moving")?);
     let fixed = fixed.body.at(pose(pair.fixed_pose, "fixed")?);
-    let options =
-        Options { solver: pair.solver, graze_tolerance: pair.graze, ..Options::default() };
+    let options = Options::default().with_solver(pair.solver).with_graze_tolerance(pair.graze);
     let cast = Cast::new(moving, fixed, DVec3::from_array(pair.direction));
     Ok(cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())?)
 }

@@ -2,7 +2,7 @@
 
 use colltrans::observe::{Event, Recording};
 use colltrans::{
-    Cast, Focus, NarrowFrom, Narrowing, Options, Outcome, Pose, Region, Solver, Steps, Tracker,
+    Cast, Focus, NarrowFrom, Narrowing, Outcome, Pose, Region, Solver, Steps, Tracker,
 };
 use glam::DVec3;
 use serde::Serialize;
@@ -47,8 +47,8 @@ struct Tracked {
 pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
     let mut cast = query(bodies, &asked.pair)?;
     if let Some(gap) = asked.from_center {
-        let narrowing = Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell: false };
-        let options = Options { narrowing, ..cast.options() };
+        let narrowing = Narrowing::new(NarrowFrom::Center, gap);
+        let options = cast.options().with_narrowing(narrowing);
         cast = cast.with_options(options).map_err(|error| error.to_string())?;
     }
     let mut recording = Recording::default();
@@ -87,7 +87,7 @@ fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, Refusal> {
     let q = back(before.fixed_pose(), points.on_fixed);
     let apart = cast.fixed_pose().transform_point(q) - cast.moving_pose().transform_point(p);
     let half_side = apart.reject_from(cast.direction()).length();
-    let focus = Focus { features: false, region: Region::Fixed(half_side) };
+    let focus = Focus::NONE.with_region(Region::Fixed(half_side));
     let (mut seen, mut tracker) =
         (Recording::default(), Tracker::new().with_focus(focus).map_err(said)?);
     tracker.first_contact_observed(before, &mut seen).map_err(said)?;

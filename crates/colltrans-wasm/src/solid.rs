@@ -1,7 +1,8 @@
 //! Casts between bodies of which at least one need not be convex.
 
 use colltrans::record::Record;
-use colltrans::{Cast, Clearance, Solid, StartOverlap};
+use colltrans::solid::StartOverlap;
+use colltrans::{Cast, Clearance, Solid};
 use colltrans_mesh::body::between;
 use glam::DVec3;
 
@@ -14,10 +15,10 @@ use crate::told::{Lit, Proof, Told, Touching};
 pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);
     let cast = query([moving, fixed], pair)?;
-    let clearance = cast.clearance();
+    let clearance = cast.clearance().map_err(|error| error.to_string())?;
     let (mut lit, mut proof) = (None, None);
     match &clearance {
-        Clearance::Free(plane) => proof = plane.map(Proof::Separation),
+        Clearance::Free(free) => proof = free.separation.map(Proof::Separation),
         Clearance::Overlapping(_) => {}
         Clearance::Blocked { contact, .. } => {
             lit = Some(Touching {

@@ -1,7 +1,8 @@
 //! What is told of a cast: the record of the library, and what only a page needs.
 
 use colltrans::record::Record;
-use colltrans::{Certificate, Feature, Separation, SolidCertificate};
+use colltrans::solid::SolidCertificate;
+use colltrans::{Certificate, Feature, Separation};
 use serde::{Deserialize, Serialize};
 
 /// An answer to `cast`; fields that do not apply are left out.

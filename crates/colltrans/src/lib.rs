@@ -70,6 +70,11 @@
 //! | [`Cast::intersects`] | do they meet where they are? | [`Intersection`] |
 //! | [`Cast::verify`] | is this proof one? | the gap proven |
 //!
+//! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
+//! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
+//! [least tolerance](Cast::least_tolerance) of solids. Answers about convex bodies carry their proofs;
+//! between solids a proof costs more and is asked for apart, by [`Cast::certified_clearance`].
+//!
 //! A [`Tracker`] answers the same questions, starting from its last answer: for bodies that move a
 //! little between two queries.
 //!
@@ -109,6 +114,13 @@
 //! ends write it, for people and programs that do not check it, is a `record::Record`. The feature
 //! `json` adds whole queries and proofs as files (`Case`, `ProofFile`).
 //!
+//! # What may change
+//!
+//! Choices, contacts, counts of work and errors may grow: make choices from their defaults
+//! (`Options::default().with_solver(..)`), match with `..`. Vectors and matrices are those of [`glam`],
+//! which is exported as `colltrans::glam`: use that one, and versions fit. A new major version of
+//! `glam` (a minor one while that is `0.x`) makes a new major version of this crate (minor while `0.x`).
+//!
 //! # How it works
 //!
 //! The Minkowski difference `M = {q - p}` is never built. A search narrows down which face of `M`
@@ -124,7 +136,7 @@
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, and [`observe`]), `cast` (the queries) and
-//! `tracker`. `written` and `record` say how all of them are written.
+//! `tracker`. `written` and `record` say how all of them are written. [`solid`] holds what is of solids alone.
 
 mod answer;
 mod body;
@@ -133,28 +145,25 @@ mod number;
 #[cfg(feature = "serde")]
 pub mod record;
 mod setting;
+pub mod solid;
 mod solve;
 mod tracker;
 mod work;
 mod written;
 
 pub use answer::{
-    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, DirectionalDepth,
-    Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation, Solver,
-    StartedFrom, Steps, WhyFree,
+    Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange,
+    DirectionalDepth, Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation,
+    Solver, StartedFrom, Steps, WhyFree,
 };
 pub use body::error::{BuildError, PoseError, TopologyError};
-pub use body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, SolidReport};
+pub use body::solid::Solid;
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, Feature, HalfEdge, OffsetReport, Placed, Pose,
     convexity_defect,
 };
-pub use cast::solid::{
-    Claim, Cover, SolidCertificate, SolidOptions, SolidOverlap, SolidProof, StartOverlap,
-    StartProof, StopProof,
-};
 #[cfg(feature = "json")]
-pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, SolidStatement, Statement, Stop};
+pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, Statement, Stop};
 pub use cast::{Cast, Features, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
@@ -162,7 +171,6 @@ pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
 pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
-pub use solve::solid::{Overlap, Reason, SolidContact, Workspace};
 pub use tracker::Tracker;
 pub use written::UnknownName;
 

@@ -222,7 +222,7 @@ impl Record {
         let record = match clearance {
             Clearance::Free(_) => Self { outcome: Ending::Free, ..Self::default() },
             Clearance::Overlapping(overlap) => {
-                let depth = overlap.depth;
+                let depth = overlap.least_tolerance;
                 let start_overlaps = vec![StartOverlapRecord { depth, ..Default::default() }];
                 Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() }
             }
@@ -249,7 +249,7 @@ impl Record {
     }
 
     fn separated(separated: &Separated) -> Self {
-        let Separated { certificate, solver, steps } = separated;
+        let Separated { certificate, solver, steps, .. } = separated;
         Self {
             outcome: Ending::Separated,
             normal: Some(coordinates(certificate.normal)),

@@ -191,7 +191,7 @@ impl<'a> Tracker<'a> {
         // Matched in place: an outcome is large, and moving it costs a tenth of a coherent query.
         let outcome = search(&cast.setting, &cast.options, &self.focus, &last, next, observer);
         if let Ok(outcome) = &outcome {
-            self.steps.add(&outcome.steps());
+            self.steps += outcome.steps();
         }
         outcome
     }

@@ -1,7 +1,8 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is. What the paper's
 //! algorithm makes of a body, it makes once.
 
-use colltrans::{AsSolid, Cast, Focus, Region, Solid, Solver, Tracker, Workspace};
+use colltrans::solid::{AsSolid, Workspace};
+use colltrans::{Cast, Focus, Region, Solid, Solver, Tracker};
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 use colltrans_testkit::oracle::solids::settings as solids;
@@ -82,8 +83,8 @@ fn bytes(Bodies { moving, fixed }: &Bodies) -> [usize; 2] {
 fn tracked_queries_allocate_nothing() {
     let foci = [
         Focus::default(),
-        Focus { features: false, region: Region::Automatic },
-        Focus { features: false, region: Region::Fixed(0.1) },
+        Focus::NONE.with_region(Region::Automatic),
+        Focus::NONE.with_region(Region::Fixed(0.1)),
     ];
     for (family, ..) in FAMILIES {
         for seed in 0..4 {
@@ -136,7 +137,7 @@ fn queries_between_solids_allocate_their_queue_only() {
             assert_eq!(again, Some(first), "{family}:{seed}");
             assert_eq!(count.count_total, 0, "{family}:{seed}");
             let count = allocation_counter::measure(|| {
-                assert!(cast.intersects() || !cast.overlaps());
+                assert!(cast.intersects().expect("an answer").meets || !cast.overlaps());
             });
             assert_eq!(count.count_total, 0, "{family}:{seed}");
         }

@@ -3,8 +3,8 @@
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
-    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, Narrowing, Options, Outcome, OverlapAhead, Pose,
-    PoseError, QueryError, Separation, TopologyError, WhyFree, cast,
+    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing, Options, Outcome, OverlapAhead,
+    Pose, PoseError, QueryError, Separation, TopologyError, WhyFree, cast,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
@@ -148,8 +148,8 @@ fn directions_are_checked() {
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
         let error = valid.with_graze_tolerance(tolerance).unwrap_err();
         assert!(matches!(error, QueryError::GrazeTolerance { .. }), "{error}");
-        let narrowing = Narrowing { gap: -1.0, ..Narrowing::default() };
-        let error = valid.with_options(Options { narrowing, ..Options::default() }).unwrap_err();
+        let narrowing = Narrowing::new(NarrowFrom::Ellipsoids, -1.0);
+        let error = valid.with_options(Options::default().with_narrowing(narrowing)).unwrap_err();
         assert!(matches!(error, QueryError::NarrowingGap { .. }), "{error}");
     }
 }
@@ -213,8 +213,8 @@ fn overlapping_boxes() {
         let cast = cubes(&cube, DVec3::new(x, 0.25, 0.0), DVec3::Y);
         let found = cast.intersects().expect("an answer");
         // The proof is that of a cast along the line of the centres.
-        let along = cast.along(found.direction).expect("a direction");
-        match found.outcome {
+        let along = cast.along(found.evidence.direction).expect("a direction");
+        match found.evidence.outcome {
             Outcome::Contact(contact) => along.verify(&contact.certificate).expect("a proof"),
             Outcome::Separated(separated) => along.verify(&separated.certificate).expect("a proof"),
             Outcome::Grazing(_) => panic!("boxes with a volume"),

@@ -183,14 +183,16 @@ fn solids(family: &str) -> u64 {
         let cast = cast.expect("a query");
         for tolerance in [0.0, 1.0 / 64.0] {
             let cast = cast.with_tolerance(tolerance).expect("a tolerance");
-            match cast.clearance() {
+            match cast.clearance().expect("an answer") {
                 Clearance::Free(_) => hash.bits(0),
                 Clearance::Blocked { contact, .. } => {
                     hash.number(contact.shrunk_distance.value);
                     hash.number(contact.translation.value);
                     hash.vector(contact.normal);
                 }
-                Clearance::Overlapping(overlap) => hash.number(overlap.depth.unwrap_or(-1.0)),
+                Clearance::Overlapping(overlap) => {
+                    hash.number(overlap.least_tolerance.unwrap_or(-1.0));
+                }
             }
             hash.number(cast.exit().map_or(-1.0, |exit| exit.value));
         }

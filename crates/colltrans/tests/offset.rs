@@ -303,8 +303,8 @@ fn compare_shrunk(
     }
     let solids = Cast::between(bodies[0].at(start), bodies[1].at(Pose::IDENTITY), direction)
         .and_then(|c| c.with_tolerance(tolerance))
-        .expect("a direction")
-        .clearance();
+        .and_then(|c| c.clearance())
+        .expect("an answer");
     let cast = Cast::new(shrunk[0].at(start), shrunk[1].at(Pose::IDENTITY), direction)
         .expect("a direction");
     match (cast.clearance().expect("an answer"), solids) {

@@ -1,9 +1,8 @@
 //! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
 #![cfg(feature = "json")]
 
-use colltrans::{
-    CaseError, Cast, ConvexPolyhedron, Pose, ProofFile, Solid, StartOverlap, Statement,
-};
+use colltrans::solid::StartOverlap;
+use colltrans::{CaseError, Cast, ConvexPolyhedron, Pose, ProofFile, Solid, Statement};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};
 use glam::{DQuat, DVec3};
@@ -170,7 +169,7 @@ fn of_parts([a, b]: &[Solid; 2], at: DVec3, direction: DVec3, tolerance: f64) ->
     let Statement::Clearance(said) = proof.statement() else { panic!("solids") };
     assert_eq!(
         said.stop.is_some(),
-        matches!(cast.clearance(), colltrans::Clearance::Blocked { .. })
+        matches!(cast.clearance(), Ok(colltrans::Clearance::Blocked { .. }))
     );
     holds(&proof, "parts")
 }
@@ -220,10 +219,16 @@ fn bounds_that_are_missing_or_wrong_are_told() {
     };
     let (low, high) = (json!(0.0), json!(9.0));
     for (proof, words) in [
-        (with(low.clone(), high.clone()), "the facets that do meet, as they are, between 0.0 and 9.0"),
+        (
+            with(low.clone(), high.clone()),
+            "the facets that do meet, as they are, between 0.0 and 9.0",
+        ),
         (with(Value::Null, high), "the facets that do meet, as they are, by 9.0"),
         (with(low, Value::Null), "the facets that do meet, as they are, not before 0.0"),
-        (with(Value::Null, Value::Null), "it is not said where the facets that do meet, as they are"),
+        (
+            with(Value::Null, Value::Null),
+            "it is not said where the facets that do meet, as they are",
+        ),
     ] {
         proof.check().expect("less than is proven");
         assert!(proof.to_string().ends_with(words), "{proof}");
@@ -248,7 +253,8 @@ fn shrunk_bodies_that_are_inside_out_are_told() {
     let inside_out = proof(1.5);
     let [bolt, washer] = inside_out.inverted();
     assert!(washer > 0, "{washer}");
-    let words = format!("; shrunk so far, {bolt} facets of the moving body and {washer} of the fixed");
+    let words =
+        format!("; shrunk so far, {bolt} facets of the moving body and {washer} of the fixed");
     assert!(inside_out.to_string().contains(&words), "{inside_out}");
 }
 
@@ -298,7 +304,9 @@ fn other_files_are_refused_in_words() {
     for says in [json!({"contacts": {}}), json!({}), both, solid_claim()] {
         let mut wrong = file.clone();
         wrong["statement"] = says;
-        assert!(said(&wrong.to_string()).starts_with("it has to say one thing, and one of such bodies"));
+        assert!(
+            said(&wrong.to_string()).starts_with("it has to say one thing, and one of such bodies")
+        );
     }
     let large = text.replacen("-3.1", "1e999", 1);
     assert!(said(&large).contains("a number is larger than any double"), "{}", said(&large));

@@ -156,7 +156,7 @@ proptest! {
         // that are hardly thicker than rounding may meet there within rounding.
         let gap = step * found.normal.dot(setting.direction);
         let there = at(before).unwrap();
-        let explained = value(&there.outcome).is_some_and(|(_, rounding)| rounding >= gap);
+        let explained = value(&there.evidence.outcome).is_some_and(|(_, rounding)| rounding >= gap);
         prop_assert!(!there.meets || explained, "{}: before", &setting);
         if after < exit - step {
             prop_assert!(at(after).unwrap().meets, "{}: after", &setting);

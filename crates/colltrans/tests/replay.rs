@@ -47,8 +47,8 @@ fn choices_come_back() {
     let setting = setting("boxes", 3);
     let bodies = setting.bodies().expect("bodies");
     for keeps_to_cell in [false, true] {
-        let narrowing = Narrowing { keeps_to_cell, ..Narrowing::default() };
-        let options = Options { narrowing, ..Options::default() };
+        let narrowing = Narrowing::default().with_keeps_to_cell(keeps_to_cell);
+        let options = Options::default().with_narrowing(narrowing);
         let cast = setting.query(&bodies).expect("a query").with_options(options).expect("valid");
         let case = Case::from_json(&cast.to_json()).expect("a case");
         assert_eq!(case.cast().expect("checked").options(), options);

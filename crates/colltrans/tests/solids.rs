@@ -1,9 +1,7 @@
 //! Solids in the situations that people have names for.
 
-use colltrans::{
-    Bounded, Cast, Clearance, ConvexPolyhedron, Overlap, Pose, Solid, SolidError, SolidOptions,
-    SolidOverlap, StartOverlap,
-};
+use colltrans::solid::{Overlap, SolidError, SolidOptions, SolidOverlap, StartOverlap};
+use colltrans::{Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, Outcome, Pose, Solid};
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DQuat, DVec3};
@@ -24,7 +22,7 @@ fn with_tolerance(cast: Cast<'_, Solid>, tolerance: f64) -> Cast<'_, Solid> {
 
 /// Of the shrunk bodies.
 fn distance(cast: &Cast<Solid>) -> f64 {
-    match cast.clearance() {
+    match cast.clearance().expect("an answer") {
         Clearance::Blocked { contact, .. } => contact.shrunk_distance.value,
         other => panic!("{other:?}"),
     }
@@ -44,7 +42,7 @@ fn pins_in_holes_of_one_radius() {
         let fit = chord_error(1.0, pin_sides) + chord_error(1.0, hole_sides);
         for direction in [DVec3::Z, DVec3::NEG_Z] {
             let out = with_tolerance(cast(&pin, &plate, direction), 2.0 * fit);
-            assert!(out.clearance().is_free(), "{pin_sides} in {hole_sides}");
+            assert!(out.clearance().expect("an answer").is_free(), "{pin_sides} in {hole_sides}");
             // Prisms of the same sides have no shadows in common; others are out after 3.
             match out.exit() {
                 None => assert_eq!(pin_sides, hole_sides),
@@ -60,7 +58,7 @@ fn pins_in_holes_of_one_radius() {
     // The same tessellation slides without any tolerance.
     let (pin, plate) =
         (solid(&pin(1.0, [-2.0, 3.0], 32)), solid(&washer([1.0, 4.0], [0.0, 1.0], 32)));
-    assert!(cast(&pin, &plate, DVec3::Z).clearance().is_free());
+    assert!(cast(&pin, &plate, DVec3::Z).clearance().expect("an answer").is_free());
     assert_eq!(distance(&cast(&pin, &plate, DVec3::X)), 0.0);
 }
 
@@ -70,8 +68,8 @@ fn a_bolt_whose_head_stops_at_seven() {
     let plate = solid(&washer([1.0, 4.0], [0.0, 1.0], 32));
     let fit = 2.0 * (chord_error(1.0, 48) + chord_error(1.0, 32));
     let in_hole = with_tolerance(cast(&bolt, &plate, DVec3::NEG_Z), fit);
-    let Clearance::Blocked { distance, contact } = in_hole.clearance() else {
-        panic!("{:?}", in_hole.clearance())
+    let Clearance::Blocked { distance, contact } = in_hole.clearance().expect("an answer") else {
+        panic!("{:?}", in_hole.clearance().expect("an answer"))
     };
     assert!(distance <= 7.0 && 7.0 - distance < 1e-12, "safe to move by: {distance}");
     let Bounded { value, lower, upper } = contact.translation;
@@ -81,7 +79,7 @@ fn a_bolt_whose_head_stops_at_seven() {
     assert!((shrunk.value - 7.0 - fit).abs() < 1e-9, "the shrunk bodies meet later: {shrunk:?}");
     assert!(shrunk.upper - shrunk.lower < 1e-12, "{shrunk:?}");
     assert_eq!(contact.normal, DVec3::NEG_Z);
-    assert!((in_hole.depth().expect("slivers overlap") - fit).abs() < fit);
+    assert!((in_hole.least_tolerance().expect("slivers overlap") - fit).abs() < fit);
 }
 
 #[test]
@@ -90,9 +88,9 @@ fn a_plate_that_rests_on_a_table() {
     let plate = solid(&slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.5), [5, 7, 2]));
     assert_eq!(distance(&cast(&plate, &table, DVec3::NEG_Z)), 0.0);
     for free in [DVec3::Z, DVec3::X, DVec3::NEG_Y, DVec3::new(0.3, -0.7, 0.0)] {
-        assert!(cast(&plate, &table, free).clearance().is_free(), "{free}");
+        assert!(cast(&plate, &table, free).clearance().expect("an answer").is_free(), "{free}");
     }
-    assert!(cast(&plate, &table, DVec3::Z).intersects());
+    assert!(cast(&plate, &table, DVec3::Z).intersects().expect("an answer").meets);
     assert!(!cast(&plate, &table, DVec3::Z).overlaps());
     assert_eq!(distance(&cast(&plate, &table, DVec3::new(1.0, 0.0, -1e-9))), 0.0);
 }
@@ -102,14 +100,16 @@ fn a_plate_pressed_into_a_table() {
     let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
     let plate = cuboid([-1.0, -1.0, -0.125], [1.0, 1.0, 0.5]);
     let down = cast(&plate, &table, DVec3::NEG_Z);
-    let Clearance::Overlapping(SolidOverlap { depth: Some(depth), .. }) = down.clearance() else {
-        panic!("{:?}", down.clearance())
+    let Clearance::Overlapping(SolidOverlap { least_tolerance: Some(depth), .. }) =
+        down.clearance().expect("an answer")
+    else {
+        panic!("{:?}", down.clearance().expect("an answer"))
     };
     assert!((depth - 0.125).abs() < 1e-9, "{depth}");
     let tolerated = |direction| with_tolerance(cast(&plate, &table, direction), depth);
     assert!(distance(&tolerated(DVec3::NEG_Z)) < 1e-9);
-    assert!(tolerated(DVec3::Z).clearance().is_free());
-    assert!(tolerated(DVec3::X).clearance().is_free());
+    assert!(tolerated(DVec3::Z).clearance().expect("an answer").is_free());
+    assert!(tolerated(DVec3::X).clearance().expect("an answer").is_free());
 }
 
 #[test]
@@ -117,22 +117,22 @@ fn what_was_ignored_at_the_start_is_told() {
     let table = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
     let plate = cuboid([-1.0, -1.0, -0.125], [1.0, 1.0, 0.5]);
     let aside = cast(&plate, &table, DVec3::X).with_start_overlap(StartOverlap::Ignore);
-    assert!(aside.clearance().is_free());
+    assert!(aside.clearance().expect("an answer").is_free());
     let told = aside.start_overlap().expect("it is pressed in");
-    assert!((told.depth.expect("a tolerance") - 0.125).abs() < 1e-9, "{told:?}");
+    assert!((told.least_tolerance.expect("a tolerance") - 0.125).abs() < 1e-9, "{told:?}");
     let Overlap::Facets(f, g) = told.place else { panic!("{told:?}") };
     // A facet that reaches from below the table's top to above it, and one of the top or the like.
     let heights = |s: &Solid, t: u32| s.triangles()[t as usize].map(|v| s.vertices()[v as usize].z);
     assert!(heights(&plate, f).contains(&-0.125), "{told:?}");
     assert!(heights(&table, g).contains(&0.0), "{told:?}");
     // The answer that refuses tells the same, and with a tolerance of the depth there is nothing.
-    let refused = aside.with_start_overlap(StartOverlap::Refuse).clearance();
+    let refused = aside.with_start_overlap(StartOverlap::Refuse).clearance().expect("an answer");
     assert!(matches!(refused, Clearance::Overlapping(same) if same == told), "{refused:?}");
-    let depth = told.depth.expect("a tolerance");
+    let depth = told.least_tolerance.expect("a tolerance");
     assert_eq!(aside.with_tolerance(depth).expect("a tolerance").start_overlap(), None);
     // Half of it tolerated changes where, but not how deep.
     let half = aside.with_tolerance(depth / 2.0).expect("a tolerance").start_overlap();
-    assert_eq!(half.expect("it still is").depth, told.depth);
+    assert_eq!(half.expect("it still is").least_tolerance, told.least_tolerance);
     // What is inside.
     let (block, part) = (cuboid([-3.0; 3], [3.0; 3]), cuboid([-0.5; 3], [0.5; 3]));
     let place = |a, b| cast(a, b, DVec3::X).start_overlap().map(|o| o.place);
@@ -151,17 +151,19 @@ fn a_blind_press_fit() {
     ));
     let pin = solid(&pin(1.01, [1.0, 6.0], 24));
     let press = |direction| cast(&pin, &cup, direction);
-    assert!(matches!(press(DVec3::Z).clearance(), Clearance::Overlapping(_)));
+    assert!(matches!(press(DVec3::Z).clearance().expect("an answer"), Clearance::Overlapping(_)));
     // The interference of the flat sides, and of the bodies' edges, which are 0.01 too far out.
     let interference = 0.02;
     let tolerated = |direction| with_tolerance(press(direction), interference);
-    assert!(tolerated(DVec3::Z).clearance().is_free());
-    let Clearance::Blocked { contact, .. } = tolerated(DVec3::NEG_Z).clearance() else {
+    assert!(tolerated(DVec3::Z).clearance().expect("an answer").is_free());
+    let Clearance::Blocked { contact, .. } =
+        tolerated(DVec3::NEG_Z).clearance().expect("an answer")
+    else {
         panic!("the bottom")
     };
     assert!((contact.translation.value - 1.0).abs() < 1e-9, "{contact:?}");
     // Ignored, the overlap does not hide the bottom either.
-    let ignore = SolidOptions { start_overlap: StartOverlap::Ignore, ..SolidOptions::default() };
+    let ignore = SolidOptions::default().with_start_overlap(StartOverlap::Ignore);
     let ignoring = press(DVec3::NEG_Z).with_options(ignore).expect("choices");
     assert!((distance(&ignoring) - 1.0).abs() < 1e-9);
 }
@@ -338,7 +340,7 @@ fn a_part_inside_solid_material() {
     let part = cuboid([-0.5; 3], [0.5; 3]);
     assert!(cast(&part, &block, DVec3::X).overlaps());
     assert!(cast(&block, &part, DVec3::X).overlaps());
-    assert!(cast(&part, &block, DVec3::X).intersects());
+    assert!(cast(&part, &block, DVec3::X).intersects().expect("an answer").meets);
     // Its corners touch the walls from inside: still inside.
     let octahedron = turned(&[[0.0, -3.0], [3.0, 0.0], [0.0, 3.0]], 4);
     assert!(cast(&solid(&octahedron), &block, DVec3::X).overlaps());
@@ -381,8 +383,8 @@ fn wedges_that_share_an_edge_and_part() {
     let ask = |direction| {
         Cast::new(upper.at(Pose::IDENTITY), lower.at(half_turn), direction).expect("a direction")
     };
-    assert!(ask(DVec3::Z).clearance().is_free());
-    assert!(ask(DVec3::X).clearance().is_free());
+    assert!(ask(DVec3::Z).clearance().expect("an answer").is_free());
+    assert!(ask(DVec3::X).clearance().expect("an answer").is_free());
     assert_eq!(distance(&ask(DVec3::NEG_Z)), 0.0);
 }
 
@@ -390,8 +392,8 @@ fn wedges_that_share_an_edge_and_part() {
 fn vertex_on_vertex() {
     let spike = solid(&turned(&[[0.0, 0.0], [1.0, 2.0], [0.0, 2.0]], 5));
     let under = solid(&turned(&[[0.0, -2.0], [1.0, -2.0], [0.0, 0.0]], 7));
-    assert!(cast(&spike, &under, DVec3::Z).clearance().is_free());
-    assert!(cast(&spike, &under, DVec3::X).clearance().is_free());
+    assert!(cast(&spike, &under, DVec3::Z).clearance().expect("an answer").is_free());
+    assert!(cast(&spike, &under, DVec3::X).clearance().expect("an answer").is_free());
     assert_eq!(distance(&cast(&spike, &under, DVec3::NEG_Z)), 0.0);
 }
 
@@ -415,6 +417,7 @@ fn a_zero_clearance_slide_of_100_000_facets() {
             Cast::new(bar.at(pose), groove.at(pose), pose.transform_vector(direction))
                 .expect("a direction")
                 .clearance()
+                .expect("an answer")
         };
         assert!(ask(DVec3::X).is_free(), "{rotation}");
         assert!(ask(DVec3::Z).is_free(), "{rotation}");
@@ -451,7 +454,7 @@ fn answers_do_not_depend_on_order_subdivision_or_displacement() {
         let (a, b) = (solid(mesh), solid(&b));
         let pose = Pose::from_translation(by).expect("in range");
         let cast = Cast::new(a.at(pose), b.at(pose), direction).expect("a direction");
-        match cast.clearance() {
+        match cast.clearance().expect("an answer") {
             Clearance::Blocked { contact, .. } => Some(contact.translation.value),
             Clearance::Free(_) => None,
             Clearance::Overlapping(_) => panic!("apart"),
@@ -473,4 +476,46 @@ fn answers_do_not_depend_on_order_subdivision_or_displacement() {
 fn a_negative_tolerance_is_refused() {
     let cube = cuboid([0.0; 3], [1.0; 3]);
     assert!(cast(&cube, &cube, DVec3::X).with_tolerance(-1.0).is_err());
+}
+
+#[test]
+fn a_range_has_the_contacts_at_both_ends_and_the_work() {
+    let (bolt, plate) = (bolt([1.0, 2.0], [-5.0, 8.0, 9.0], 12), washer([1.5, 4.0], [0.0, 1.0], 9));
+    let (bolt, plate) = (solid(&bolt), solid(&plate));
+    // In the hole: the shaft passes, and the head, from 8 to 9, meets the plate from both sides.
+    let down = cast(&bolt, &plate, DVec3::NEG_Z);
+    let ContactRange::Contact { first, last } = down.contact_range().expect("an answer") else {
+        panic!("the head is over the plate")
+    };
+    for (end, right) in [(first.translation, 7.0), (last.exit(), 9.0)] {
+        assert!(end.lower <= right && right <= end.upper && end.upper - end.lower < 1e-12);
+    }
+    assert!((first.normal - DVec3::NEG_Z).length() < 1e-15);
+    assert!((last.normal - DVec3::Z).length() < 1e-15);
+    assert_eq!(down.first_contact(), Ok(Outcome::Contact(first)));
+    // The same behind, and the other way round.
+    let range = down.reversed().contact_range().expect("an answer");
+    assert_eq!(range, ContactRange::Contact { first: last, last: first });
+    let far = Pose::from_translation(DVec3::X * 9.0).expect("in range");
+    let beside = Cast::new(bolt.at(far), plate.at(Pose::IDENTITY), DVec3::Z).expect("a direction");
+    let Ok(ContactRange::Separated(apart)) = beside.contact_range() else { panic!("beside") };
+    assert!(beside.verify(&apart.separation.expect("a plane")).expect("a plane") > 2.9);
+    let Ok(Clearance::Blocked { contact, .. }) = down.clearance() else { panic!("blocked") };
+    let Ok(Clearance::Free(free)) = down.reversed().clearance() else { panic!("free") };
+    for steps in [first.steps, last.steps, contact.steps, free.steps, apart.steps] {
+        assert!(steps.nodes > 0 && steps.leaves <= steps.nodes, "{steps:?}");
+    }
+    assert!(contact.steps.leaves > 0);
+}
+
+#[test]
+fn an_intersection_names_what_meets() {
+    let (cube, other) = (cuboid([0.0; 3], [1.0; 3]), cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]));
+    let touching = cast(&cube, &other, DVec3::X).intersects().expect("an answer");
+    assert!(touching.meets && matches!(touching.evidence.place, Some(Overlap::Facets(..))));
+    let inner = cuboid([0.25; 3], [0.75; 3]);
+    let inside = cast(&inner, &cube, DVec3::X).intersects().expect("an answer");
+    assert!(matches!(inside.evidence.place, Some(Overlap::MovingInside(_))));
+    let apart = cast(&inner, &other, DVec3::X).intersects().expect("an answer");
+    assert!(!apart.meets && apart.evidence.place.is_none() && apart.evidence.steps.nodes > 0);
 }

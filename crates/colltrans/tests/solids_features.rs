@@ -1,7 +1,8 @@
 //! What of a solid is named where it is stopped: faces, edges and corners of the part, not of its
 //! triangulation, by the numbers of the input.
 
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Feature, Outcome, Pose, Solid, SolidContact};
+use colltrans::solid::SolidContact;
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Feature, Outcome, Pose, Solid};
 use colltrans_testkit::shapes;
 use colltrans_testkit::solids::{bolt, pin, slab, washer};
 use glam::{DQuat, DVec3};
@@ -12,7 +13,7 @@ mod common;
 
 fn stopped(a: (&Solid, Pose), b: (&Solid, Pose), direction: DVec3) -> SolidContact {
     let cast = Cast::new(a.0.at(a.1), b.0.at(b.1), direction).expect("a direction");
-    match cast.clearance() {
+    match cast.clearance().expect("an answer") {
         Clearance::Blocked { contact, .. } => contact,
         other => panic!("{other:?}"),
     }
@@ -225,7 +226,9 @@ fn convex_bodies_are_named_by_their_input_too() {
     assert_eq!(cube.vertices()[own[0] as usize], points[lowest as usize]);
     // The same bodies as solids name the same.
     let between = Cast::between(cube.at(tilted), table.at(Pose::IDENTITY), DVec3::NEG_Z);
-    let Clearance::Blocked { contact, .. } = between.expect("a cast").clearance() else {
+    let Clearance::Blocked { contact, .. } =
+        between.expect("a cast").clearance().expect("an answer")
+    else {
         panic!("the table")
     };
     assert_eq!(contact.moving_feature, features.moving);

@@ -1,6 +1,7 @@
 //! What holds between solids for every setting, random or tied.
 
-use colltrans::{Cast, Clearance, Pose, ShellKind, Solid, SolidOptions};
+use colltrans::solid::{ShellKind, SolidOptions};
+use colltrans::{Cast, Clearance, Pose, Solid};
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
 use colltrans_testkit::oracle::solids::sheets;
 use glam::DVec3;
@@ -42,7 +43,7 @@ fn agree(a: Said, b: Said) -> bool {
 }
 
 fn bare() -> SolidOptions {
-    SolidOptions { tolerance: Some(0.0), ..SolidOptions::default() }
+    SolidOptions::default().with_tolerance(0.0)
 }
 
 /// A translation on the way is rounded, and what slides exactly may overlap by as much.
@@ -53,7 +54,7 @@ fn slightly_shrunk(cast: Cast<'_, Solid>) -> Cast<'_, Solid> {
 
 fn ask_at([a, b]: [&Solid; 2], poses: [Pose; 2], direction: DVec3) -> Said {
     let cast = Cast::new(a.at(poses[0]), b.at(poses[1]), direction).expect("a direction");
-    said(&cast.with_options(bare()).expect("choices").clearance())
+    said(&cast.with_options(bare()).expect("choices").clearance().expect("an answer"))
 }
 
 fn ask(meshes: [&Mesh; 2], poses: [Pose; 2], direction: DVec3) -> Said {
@@ -167,15 +168,15 @@ proptest! {
         let stuck = |s: &Solid| !s.shrink_report(1e-9).stuck.is_empty();
         prop_assume!(!stuck(&bodies[0]) && !stuck(&bodies[1]));
         let here = ask_from(0.0);
-        if let Said::At(t) = said(&here.clearance()) && t > 1e-9 {
+        if let Said::At(t) = said(&here.clearance().expect("an answer")) && t > 1e-9 {
             prop_assert!(!slightly_shrunk(ask_from(0.999 * t)).overlaps());
             // A sliver that only just blocks may be gone where the translation is rounded.
-            let shrunk = said(&slightly_shrunk(here).clearance());
+            let shrunk = said(&slightly_shrunk(here).clearance().expect("an answer"));
             let is_sliver = !matches!(shrunk, Said::At(s) if s < t + 1e-7 * (1.0 + t));
             prop_assert!(is_sliver || ask_from(t + 1e-6 * (1.0 + t)).overlaps());
         }
         let exit = here.exit().map_or(0.0, |exit| exit.upper * (1.0 + 1e-15));
-        let beyond = slightly_shrunk(ask_from(exit)).clearance();
+        let beyond = slightly_shrunk(ask_from(exit)).clearance().expect("an answer");
         prop_assert!(beyond.is_free(), "{exit}: {beyond:?}");
     }
 
@@ -187,10 +188,10 @@ proptest! {
         let cast = Cast::new(a.at(setting.poses[0]), b.at(setting.poses[1]), setting.direction)
             .and_then(|c| c.with_options(bare()))
             .expect("a direction");
-        let shrunk = cast.with_tolerance(tolerance).expect("a tolerance").clearance();
+        let shrunk = cast.with_tolerance(tolerance).expect("a tolerance").clearance().expect("an answer");
         let stuck = [&a, &b].iter().any(|s| !s.shrink_report(tolerance / 2.0).stuck.is_empty());
         if let (Said::At(t), Clearance::Blocked { distance, contact }) =
-            (said(&cast.clearance()), &shrunk)
+            (said(&cast.clearance().expect("an answer")), &shrunk)
         {
             // A vertex that stays leaves sloping facets around it, which are not inside the body.
             let (place, shrunk) = (contact.translation, contact.shrunk_distance);
@@ -211,11 +212,11 @@ proptest! {
             .and_then(|c| c.with_options(bare()))
             .expect("a direction");
         // A distance that is rounding noise may be 0 for one way of computing it.
-        if let Said::At(t) = said(&cast.clearance())
+        if let Said::At(t) = said(&cast.clearance().expect("an answer"))
             && (t == 0.0 || t > 1e-9)
         {
-            let before = SolidOptions { before: Some(t * part), ..bare() };
-            let cut = said(&cast.with_options(before).expect("choices").clearance());
+            let before = bare().with_before(t * part);
+            let cut = said(&cast.with_options(before).expect("choices").clearance().expect("an answer"));
             if part < 0.999 || t == 0.0 {
                 prop_assert_eq!(cut, Said::Free);
             } else if part > 1.001 {

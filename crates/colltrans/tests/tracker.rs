@@ -156,7 +156,10 @@ fn ranges_and_clearances_are_those_of_one_off_queries() {
                 }
                 let found = tracker.intersects(&cast).expect("an answer");
                 let one_off = cast.intersects().expect("an answer");
-                assert_eq!((found.meets, found.direction), (one_off.meets, one_off.direction));
+                assert_eq!(
+                    (found.meets, found.evidence.direction),
+                    (one_off.meets, one_off.evidence.direction)
+                );
                 walk.advance();
             }
         }
@@ -307,7 +310,7 @@ fn reset_forgets() {
 #[test]
 fn a_focus_is_checked() {
     for half_side in [-1.0, f64::NAN] {
-        let focus = Focus { features: true, region: Region::Fixed(half_side) };
+        let focus = Focus::NONE.with_features(true).with_region(Region::Fixed(half_side));
         let refused = Tracker::new().with_focus(focus);
         assert!(matches!(refused, Err(QueryError::RegionFocus { .. })), "{refused:?}");
     }
@@ -395,16 +398,15 @@ fn steps_are_those_of_all_casts() {
             assert_eq!(tracker.steps(), outcome.steps());
             let range = tracker.contact_range(&cast).expect("a range");
             let ends = range_ends(&range).into_iter().map(|end| end.steps());
-            let sum = ends.fold(
-                Steps { started_from: StartedFrom::Features, ..Steps::default() },
-                |a, b| Steps {
-                    planar_problems: a.planar_problems + b.planar_problems,
-                    supports: a.supports + b.supports,
-                    pivots: a.pivots + b.pivots,
-                    iterations: a.iterations + b.iterations,
-                    started_from: a.started_from.max(b.started_from),
-                },
-            );
+            let mut sum = Steps::default();
+            sum.started_from = StartedFrom::Features;
+            for steps in ends {
+                sum.planar_problems += steps.planar_problems;
+                sum.supports += steps.supports;
+                sum.pivots += steps.pivots;
+                sum.iterations += steps.iterations;
+                sum.started_from = sum.started_from.max(steps.started_from);
+            }
             assert_eq!(tracker.steps(), sum);
         }
     }

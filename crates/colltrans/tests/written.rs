@@ -2,9 +2,10 @@
 #![cfg(feature = "json")]
 
 use colltrans::record::Ending;
+use colltrans::solid::{SolidCertificate, SolidOptions, StartOverlap};
 use colltrans::{
     Bounded, Cast, Clearance, ContactRange, Intersection, NarrowFrom, Options, Outcome, Pose,
-    Solid, SolidCertificate, SolidOptions, Solver, StartOverlap, StartedFrom,
+    Solid, Solver, StartedFrom,
 };
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};
@@ -53,7 +54,10 @@ fn answers_between_solids_come_back_in_bits() {
     ] {
         let pose = Pose::from_translation(from).expect("in range");
         let cast = Cast::new(bolt.at(pose), plate.at(Pose::IDENTITY), direction).expect("a query");
-        let (answer, certificate) = cast.certified_clearance();
+        let (answer, certificate) = cast.certified_clearance().expect("an answer");
+        again::<Outcome<Solid>>(&cast.first_contact().expect("an answer"));
+        again::<ContactRange<Solid>>(&cast.contact_range().expect("an answer"));
+        again::<Intersection<Solid>>(&cast.intersects().expect("an answer"));
         again::<Clearance<Solid>>(&answer);
         again::<SolidCertificate>(&certificate);
         again::<SolidOptions>(&cast.options());

@@ -31,7 +31,7 @@ fn cast(criterion: &mut Criterion) {
         for (name, solver) in
             [("cta", Solver::Cta), ("portal", Solver::Portal), ("auto", Solver::Auto)]
         {
-            let options = Options { solver, ..Options::default() };
+            let options = Options::default().with_solver(solver);
             let mut cycle = settings.iter().cycle();
             group.bench_function(name, |bencher| {
                 bencher.iter(|| {

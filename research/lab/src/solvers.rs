@@ -59,8 +59,8 @@ impl Until {
             Self::End | Self::EndAcrossCells => END_GAP,
         };
         let keeps_to_cell = self != Self::EndAcrossCells;
-        let narrowing = Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell };
-        Options { solver: Solver::Cta, narrowing, ..Options::default() }
+        let narrowing = Narrowing::new(NarrowFrom::Center, gap).with_keeps_to_cell(keeps_to_cell);
+        Options::default().with_solver(Solver::Cta).with_narrowing(narrowing)
     }
 }
 
@@ -131,7 +131,7 @@ impl Who {
                     Region::Fixed(delta) => Region::Fixed(delta * bodies.diameter),
                     region => region,
                 };
-                Box::new(Tracked::new(bodies, Focus { features: false, region }, until.options()))
+                Box::new(Tracked::new(bodies, Focus::NONE.with_region(region), until.options()))
             }
             Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
             Self::Egjk(search) => Box::new(Egjk::new(moving, fixed).with_support_search(search)),

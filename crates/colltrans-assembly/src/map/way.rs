@@ -7,7 +7,7 @@
 //! What is held closely is found to be so without its rooms: along each sample one contact that is
 //! near enough will do, and mostly it is of facets that met before ([`Witnesses`]).
 
-use colltrans::Workspace;
+use colltrans::solid::Workspace;
 use glam::DVec3;
 use rayon::prelude::*;
 

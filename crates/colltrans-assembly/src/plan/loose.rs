@@ -13,7 +13,7 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-use colltrans::{StartOverlap, Workspace};
+use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -1,6 +1,7 @@
 //! A step, checked once more before it is reported.
 
-use colltrans::{Bounded, StartOverlap, Workspace};
+use colltrans::Bounded;
+use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
 use super::Way;

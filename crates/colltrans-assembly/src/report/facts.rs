@@ -1,6 +1,6 @@
 //! The findings as JSON.
 
-use colltrans::ShellKind;
+use colltrans::solid::ShellKind;
 use glam::DVec3;
 use serde_json::{Value, json};
 

@@ -201,11 +201,9 @@ impl<B> Query<'_, B> {
             let fields = "`tolerance` and `ignore_start_overlaps`";
             return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
         }
-        let options = Options {
-            solver: self.solver.unwrap_or_default(),
-            graze_tolerance: self.graze_tolerance.unwrap_or_default(),
-            ..Options::default()
-        };
+        let options = Options::default()
+            .with_solver(self.solver.unwrap_or_default())
+            .with_graze_tolerance(self.graze_tolerance.unwrap_or_default());
         let (moving_at, fixed_at) = (moving.body.at(poses[0]), fixed.body.at(poses[1]));
         let direction = DVec3::from_array(self.direction);
         let cast = Cast::new(moving_at, fixed_at, direction)

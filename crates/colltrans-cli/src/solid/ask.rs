@@ -2,9 +2,8 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeatureRecord, FeaturesRecord, Record, StartOverlapRecord};
-use colltrans::{
-    Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid, SolidOverlap, StartOverlap,
-};
+use colltrans::solid::{SolidOverlap, StartOverlap};
+use colltrans::{Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between;
 
 use super::{Body, Piece};
@@ -50,7 +49,7 @@ impl Question<'_> {
         let cast =
             self.cast(self.moving.solid(), self.fixed.solid(), precisions, self.tolerance)?;
         let tolerance = cast.tolerance();
-        let clearance = cast.clearance();
+        let clearance = cast.clearance()?;
         let mut record = Record::of_solids(&clearance, cast.exit(), &cast);
         if let Clearance::Blocked { contact, .. } = clearance {
             let (moving_file, moving) = self.moving.touch(contact.moving_feature);
@@ -105,7 +104,7 @@ impl Question<'_> {
         for moving in &self.moving.pieces {
             for fixed in &self.fixed.pieces {
                 let cast = self.cast(&moving.solid, &fixed.solid, [0.0; 2], Some(tolerance))?;
-                if let Some(SolidOverlap { depth, .. }) = cast.start_overlap() {
+                if let Some(SolidOverlap { least_tolerance: depth, .. }) = cast.start_overlap() {
                     let [moving, fixed] = [moving.name(), fixed.name()].map(Some);
                     found.push(StartOverlapRecord { moving, fixed, depth });
                 }

@@ -10,7 +10,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans::{ConvexPolyhedron, Pose, Solid, SolidError, SolidReport};
+use colltrans::solid::{SolidError, SolidReport};
+use colltrans::{ConvexPolyhedron, Pose, Solid};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid};
 

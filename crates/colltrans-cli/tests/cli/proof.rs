@@ -46,7 +46,12 @@ fn a_saved_proof_holds_and_is_told_in_one_line() {
             "the bodies first meet at a translation between 1.9",
             "translation_bounds",
         ),
-        ("clearance", "1", "the bodies slide along each other, seen along the direction", "overlap"),
+        (
+            "clearance",
+            "1",
+            "the bodies slide along each other, seen along the direction",
+            "overlap",
+        ),
     ] {
         let arguments = pair(command, y);
         let plain = answered(folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>());

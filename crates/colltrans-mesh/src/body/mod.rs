@@ -12,10 +12,8 @@ mod orient;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use colltrans::{
-    BuildError, Cast, ConvexPolyhedron, Placed, QueryError, Solid, SolidError, SolidOptions,
-    StartOverlap, TopologyError,
-};
+use colltrans::solid::{SolidError, SolidOptions, StartOverlap};
+use colltrans::{BuildError, Cast, ConvexPolyhedron, Placed, QueryError, Solid, TopologyError};
 use glam::DVec3;
 use thiserror::Error;
 
@@ -254,9 +252,7 @@ pub fn between<'a>(
     let cast = Cast::new(moving, fixed, direction)?;
     let of_files = PRECISIONS * (precisions[0] + precisions[1]);
     let tolerance = tolerance.unwrap_or_else(|| of_files.max(cast.tolerance()));
-    cast.with_options(SolidOptions {
-        start_overlap,
-        tolerance: Some(tolerance),
-        ..SolidOptions::default()
-    })
+    cast.with_options(
+        SolidOptions::default().with_start_overlap(start_overlap).with_tolerance(tolerance),
+    )
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use colltrans::SolidReport;
+use colltrans::solid::SolidReport;
 
 use super::Excess;
 use crate::words::{about, counted, six_digits};

@@ -7,7 +7,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use colltrans::StartOverlap;
+use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};

@@ -11,7 +11,7 @@
 
 use std::path::Path;
 
-use colltrans::StartOverlap;
+use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::{Liaison, liaisons};
 use colltrans_assembly::map::{MapOptions, RemovalMap};

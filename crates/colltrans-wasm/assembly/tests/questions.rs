@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use colltrans::StartOverlap;
+use colltrans::solid::StartOverlap;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_wasm_assembly::{Answer, State};

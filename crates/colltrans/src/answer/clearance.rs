@@ -1,7 +1,5 @@
 //! How far a body can move from where it is: three cases, told apart for all bodies in the same way.
 
-use std::fmt;
-
 use super::outcome::{Contact, Grazing, Separated};
 use crate::body::{Body, ConvexPolyhedron};
 
@@ -11,28 +9,21 @@ use crate::body::{Body, ConvexPolyhedron};
 ///
 /// | | [`ConvexPolyhedron`] | [`Solid`](crate::Solid) |
 /// |---|---|---|
-/// | `Blocked` | [`Contact`] | [`SolidContact`](crate::SolidContact) |
-/// | `Free` | [`WhyFree`] | a separating plane, where one was found |
-/// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::SolidOverlap) |
+/// | `Blocked` | [`Contact`] | [`SolidContact`](crate::solid::SolidContact) |
+/// | `Free` | [`WhyFree`] | [`SolidFree`](crate::solid::SolidFree): a separating plane, where one was found |
+/// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::solid::SolidOverlap) |
+#[derive(Debug, Clone)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(
-        rename_all = "snake_case",
-        bound(
-            serialize = "B::Contact: serde::Serialize, B::Free: serde::Serialize, \
-                B::Overlap: serde::Serialize",
-            deserialize = "B::Contact: serde::Deserialize<'de>, B::Free: serde::Deserialize<'de>, \
-                B::Overlap: serde::Deserialize<'de>"
-        )
-    )
+    serde(rename_all = "snake_case", bound = "")
 )]
 pub enum Clearance<B: Body = ConvexPolyhedron> {
     /// Until it touches.
     Blocked {
         /// How far it may safely move, in multiples of the direction: the lower bound of where it is
         /// stopped, and never negative. So it is less than the estimate, [`Contact::translation`] or
-        /// [`SolidContact::translation`](crate::SolidContact::translation), by the rounding error.
+        /// [`SolidContact::translation`](crate::solid::SolidContact::translation), by the rounding error.
         distance: f64,
         /// The contact that stops it.
         contact: B::Contact,
@@ -107,13 +98,7 @@ impl<B: Body> Clearance<B> {
     }
 }
 
-// Derived ones would ask the same of the body.
-impl<B: Body> Clone for Clearance<B> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
+// A derived one would ask the same of the body, as would the next.
 impl<B: Body> Copy for Clearance<B> {}
 
 impl<B: Body> PartialEq for Clearance<B> {
@@ -125,20 +110,6 @@ impl<B: Body> PartialEq for Clearance<B> {
             (Self::Free(a), Self::Free(b)) => a == b,
             (Self::Overlapping(a), Self::Overlapping(b)) => a == b,
             _ => false,
-        }
-    }
-}
-
-impl<B: Body> fmt::Debug for Clearance<B> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Blocked { distance, contact } => f
-                .debug_struct("Blocked")
-                .field("distance", distance)
-                .field("contact", contact)
-                .finish(),
-            Self::Free(free) => f.debug_tuple("Free").field(free).finish(),
-            Self::Overlapping(overlap) => f.debug_tuple("Overlapping").field(overlap).finish(),
         }
     }
 }

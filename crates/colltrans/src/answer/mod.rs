@@ -12,5 +12,5 @@ pub(crate) use certificate::{Along, gap_rounding};
 pub use certificate::{Certificate, CertificateError, Proof, Separation};
 pub use clearance::{Clearance, OverlapAhead, WhyFree};
 pub use outcome::{Contact, Grazing, Outcome, Separated};
-pub use range::{ContactRange, DirectionalDepth, Intersection};
-pub use steps::{Solver, StartedFrom, Steps};
+pub use range::{CentralCast, ContactRange, DirectionalDepth, Intersection};
+pub use steps::{SolidSteps, Solver, StartedFrom, Steps};

@@ -5,26 +5,42 @@ use glam::DVec3;
 use super::bounded::Bounded;
 use super::certificate::{Certificate, Separation};
 use super::steps::{Solver, Steps};
+use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::VertexPair;
 
 /// The answer of [`Cast::first_contact`](crate::Cast::first_contact): do the bodies meet along the direction, and where.
 ///
 /// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
-/// the graze tolerance, by no more than it, or not at all.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// the graze tolerance, by no more than it, or not at all. Between [`Solid`](crate::Solid)s there is no
+/// grazing: shadows overlap, or do not.
+#[derive(Debug, Clone)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", bound = "")
 )]
-pub enum Outcome {
+pub enum Outcome<B: Body = ConvexPolyhedron> {
     /// The moving body meets the fixed one at some translation (which may be negative).
-    Contact(Contact),
+    Contact(B::Contact),
     /// The shadows along the direction overlap sideways by no more than the graze tolerance:
     /// the bodies slide along each other.
-    Grazing(Grazing),
+    Grazing(B::Grazing),
     /// The bodies never meet along the direction, however far one moves, forwards or backwards.
-    Separated(Separated),
+    Separated(B::Separated),
+}
+
+// Derived ones would ask the same of the body.
+impl<B: Body> Copy for Outcome<B> {}
+
+impl<B: Body> PartialEq for Outcome<B> {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Contact(a), Self::Contact(b)) => a == b,
+            (Self::Grazing(a), Self::Grazing(b)) => a == b,
+            (Self::Separated(a), Self::Separated(b)) => a == b,
+            _ => false,
+        }
+    }
 }
 
 impl Outcome {
@@ -40,6 +56,7 @@ impl Outcome {
 /// Where the bodies first meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Contact {
     /// The collision translation in multiples of the direction (a length if the direction is a
     /// unit vector): the smallest `t` at which the moving body, moved by `t * direction`, meets the
@@ -78,6 +95,7 @@ impl Contact {
 /// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Grazing {
     /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the
     /// fixed one's.
@@ -96,6 +114,7 @@ pub struct Grazing {
 /// The bodies never meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Separated {
     /// The proof: a unit normal orthogonal to the direction, and the margin along it.
     pub certificate: Separation,

@@ -2,50 +2,78 @@
 
 use glam::DVec3;
 
+use super::bounded::Bounded;
 use super::clearance::{Clearance, WhyFree};
-use super::outcome::{Contact, Grazing, Outcome, Separated};
+use super::outcome::{Contact, Outcome};
+use crate::body::solid::Solid;
+use crate::body::{Body, ConvexPolyhedron};
 
-/// The answer of [`Cast::contact_range`](crate::Cast::contact_range): all translations at which the
-/// bodies meet, an interval, with the contact at either end.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The answer of [`Cast::contact_range`](crate::Cast::contact_range): the translations at which the
+/// bodies meet first and last, with the contact at either end. Convex bodies meet at all between them;
+/// [`Solid`](crate::Solid)s may part and meet again.
+#[derive(Debug, Clone)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", bound = "")
 )]
-pub enum ContactRange {
-    /// The bodies meet exactly for the translations in [`ContactRange::interval`].
+pub enum ContactRange<B: Body = ConvexPolyhedron> {
+    /// The bodies meet at translations in [`ContactRange::interval`] and at no other.
     Contact {
         /// First contact along the direction.
-        first: Contact,
+        first: B::Contact,
         /// Last contact along the direction: the first of the [reversed](crate::Cast::reversed)
         /// cast, as that one gives it (its certificate is for that direction, and its translation
         /// counts in multiples of it).
-        last: Contact,
+        last: B::Contact,
     },
     /// The shadows overlap by no more than the graze tolerance.
     Grazing {
         /// First contact along the direction.
-        first: Grazing,
+        first: B::Grazing,
         /// Last contact, of the reversed cast.
-        last: Grazing,
+        last: B::Grazing,
     },
     /// The bodies never meet.
-    Separated(Separated),
+    Separated(B::Separated),
+}
+
+// Derived ones would ask the same of the body.
+impl<B: Body> Copy for ContactRange<B> {}
+
+impl<B: Body> PartialEq for ContactRange<B> {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Contact { first, last }, Self::Contact { first: f, last: l }) => {
+                first == f && last == l
+            }
+            (Self::Grazing { first, last }, Self::Grazing { first: f, last: l }) => {
+                first == f && last == l
+            }
+            (Self::Separated(a), Self::Separated(b)) => a == b,
+            _ => false,
+        }
+    }
 }
 
 impl ContactRange {
-    /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet.
-    ///
-    /// Best estimates; the certificates' bounds enclose them, and are those of [`Contact::bounded`] of
-    /// the first contact and of [`Contact::exit`] of the last one.
+    /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet: best estimates, as
+    /// [`Self::bounds`] encloses them.
     pub fn interval(&self) -> Option<[f64; 2]> {
-        let (first, last) = match self {
-            Self::Contact { first, last } => (first, last),
-            Self::Grazing { first, last } => (&first.contact, &last.contact),
-            Self::Separated(_) => return None,
-        };
-        Some([first.translation, -last.translation])
+        self.ends().map(|[first, last]| [first.translation, -last.translation])
+    }
+
+    /// Where the bodies meet first and last along the direction, with proven bounds.
+    pub fn bounds(&self) -> Option<[Bounded; 2]> {
+        self.ends().map(|[first, last]| [first.bounded(), last.exit()])
+    }
+
+    fn ends(&self) -> Option<[&Contact; 2]> {
+        match self {
+            Self::Contact { first, last } => Some([first, last]),
+            Self::Grazing { first, last } => Some([&first.contact, &last.contact]),
+            Self::Separated(_) => None,
+        }
     }
 
     /// How far the moving body can move from where it is, as [`Cast::clearance`](crate::Cast::clearance)
@@ -61,9 +89,24 @@ impl ContactRange {
     }
 }
 
+impl ContactRange<Solid> {
+    /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet: best estimates, as
+    /// [`Self::bounds`] encloses them.
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        self.bounds().map(|ends| ends.map(|end| end.value))
+    }
+
+    /// Where the bodies meet first and last along the direction, with proven bounds.
+    pub fn bounds(&self) -> Option<[Bounded; 2]> {
+        let Self::Contact { first, last } = self else { return None };
+        Some([first.translation, last.exit()])
+    }
+}
+
 /// The answer of [`Cast::directional_depth`](crate::Cast::directional_depth).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct DirectionalDepth {
     /// How far the moving body has to go back, in multiples of the direction, until the overlap has
     /// ended: never less than the true depth; 0 if the bodies do not overlap.
@@ -73,13 +116,34 @@ pub struct DirectionalDepth {
 }
 
 /// The answer of [`Cast::intersects`](crate::Cast::intersects).
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
+#[non_exhaustive]
+pub struct Intersection<B: Body = ConvexPolyhedron> {
+    /// Whether the bodies, as closed sets, have a point in common: of convex ones to within rounding
+    /// error, of [`Solid`]s exactly.
+    pub meets: bool,
+    /// What shows it: a [`CentralCast`] of convex bodies, a [`SolidMeeting`](crate::solid::SolidMeeting).
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub evidence: B::Evidence,
+}
+
+// Derived ones would ask the same of the body.
+impl<B: Body> Copy for Intersection<B> {}
+
+impl<B: Body> PartialEq for Intersection<B> {
+    fn eq(&self, other: &Self) -> bool {
+        self.meets == other.meets && self.evidence == other.evidence
+    }
+}
+
+/// A cast of convex bodies along the line through their centres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Intersection {
-    /// Whether the bodies, as closed sets and to within rounding error, have a point in common.
-    pub meets: bool,
-    /// The direction along which the moving body was cast to find out: between the centres.
+#[non_exhaustive]
+pub struct CentralCast {
+    /// Its direction: between the centres.
     pub direction: DVec3,
-    /// What that cast found: a separation, or a first contact ahead, proves that they do not meet.
+    /// What it found: a separation, or a first contact ahead, proves that they do not meet.
     pub outcome: Outcome,
 }

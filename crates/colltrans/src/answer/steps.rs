@@ -24,6 +24,7 @@ pub enum Solver {
 /// Work done for one answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Steps {
     /// Planar problems solved (minimisation steps of the collision translation algorithm).
     pub planar_problems: u32,
@@ -39,14 +40,33 @@ pub struct Steps {
     pub started_from: StartedFrom,
 }
 
-impl Steps {
-    /// Counts another cast in; of both starts the one with more work stands.
-    pub(crate) fn add(&mut self, other: &Self) {
+/// Counts another cast in; of both starts the one with more work stands.
+impl std::ops::AddAssign for Steps {
+    fn add_assign(&mut self, other: Self) {
         self.planar_problems += other.planar_problems;
         self.supports += other.supports;
         self.pivots += other.pivots;
         self.iterations += other.iterations;
         self.started_from = self.started_from.max(other.started_from);
+    }
+}
+
+/// Work done for one answer between solids: of the searches for an overlap at the start, for what stops
+/// the body, and for the least tolerance of an overlap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct SolidSteps {
+    /// Pairs of nodes of the two trees that were looked at.
+    pub nodes: u32,
+    /// Pairs of leaves, facet by facet.
+    pub leaves: u32,
+}
+
+impl std::ops::AddAssign for SolidSteps {
+    fn add_assign(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.leaves += other.leaves;
     }
 }
 

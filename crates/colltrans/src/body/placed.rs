@@ -6,19 +6,45 @@ use super::{ConvexPolyhedron, Pose};
 
 /// What queries can be asked about: a [`ConvexPolyhedron`] or a
 /// [`Solid`](crate::Solid). Sealed.
-pub trait Body: sealed::Sealed {
+pub trait Body: sealed::Sealed + Clone + Debug {
     /// The choices of a query about two such bodies.
     type Options: Copy + Default + Debug;
-    /// What is said of the contact that stops it.
-    type Contact: Copy + Debug + PartialEq;
+    /// What is said of a contact.
+    type Contact: sealed::Told;
+    /// What is said of bodies that slide along each other, where a query tells.
+    type Grazing: sealed::Told;
+    /// What is said of bodies that never meet.
+    type Separated: sealed::Told;
     /// What is said where nothing stops it.
-    type Free: Copy + Debug + PartialEq;
+    type Free: sealed::Told;
     /// What is said of an overlap.
-    type Overlap: Copy + Debug + PartialEq;
+    type Overlap: sealed::Told;
+    /// What shows whether the bodies meet where they are.
+    type Evidence: sealed::Told;
 }
 
 pub(crate) mod sealed {
+    use std::fmt::Debug;
+
     use crate::body::Feature;
+
+    /// A part of an answer.
+    #[cfg(not(feature = "serde"))]
+    pub trait Told: Copy + Debug + PartialEq {}
+
+    #[cfg(not(feature = "serde"))]
+    impl<T: Copy + Debug + PartialEq> Told for T {}
+
+    /// A part of an answer.
+    #[cfg(feature = "serde")]
+    pub trait Told:
+        Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
+    {
+    }
+
+    #[cfg(feature = "serde")]
+    impl<T> Told for T where T: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
+    {}
 
     /// Bodies are those of this crate.
     pub trait Sealed {

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::Cast;
 use crate::answer::{
-    Clearance, Contact, ContactRange, DirectionalDepth, Grazing, Intersection, Outcome,
-    OverlapAhead, WhyFree,
+    Bounded, CentralCast, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
+    Intersection, Outcome, OverlapAhead, WhyFree,
 };
 use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::error::QueryError;
@@ -16,7 +16,7 @@ pub(crate) fn range_of<'a>(
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<ContactRange, QueryError> {
     // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
-    let mut range = match (run(cast)?, run(&cast.reversed())?) {
+    let mut range: ContactRange = match (run(cast)?, run(&cast.reversed())?) {
         (Outcome::Separated(separated), _) | (_, Outcome::Separated(separated)) => {
             ContactRange::Separated(separated)
         }
@@ -30,8 +30,10 @@ pub(crate) fn range_of<'a>(
         (Outcome::Grazing(first), Outcome::Grazing(last)) => ContactRange::Grazing { first, last },
     };
     match &mut range {
-        ContactRange::Contact { first, last } => in_order(first, last),
-        ContactRange::Grazing { first, last } => in_order(&mut first.contact, &mut last.contact),
+        ContactRange::Contact { first, last } => put_in_order(first, last),
+        ContactRange::Grazing { first, last } => {
+            put_in_order(&mut first.contact, &mut last.contact);
+        }
         ContactRange::Separated(_) => {}
     }
     Ok(range)
@@ -39,12 +41,15 @@ pub(crate) fn range_of<'a>(
 
 /// Where both ends are one, rounding may have turned the estimates round: then they are one number
 /// between the bounds of either end, which have some in common as both are right.
-fn in_order(first: &mut Contact, last: &mut Contact) {
-    let (enter, exit) = (first.translation, -last.translation);
-    if enter > exit {
-        let low = first.certificate.lower.max(-last.certificate.upper);
-        let high = first.certificate.upper.min(-last.certificate.lower);
-        let both = f64::midpoint(enter, exit).min(high).max(low);
+pub(crate) fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
+    (first.value > last.value).then(|| {
+        let [low, high] = [first.lower.max(last.lower), first.upper.min(last.upper)];
+        f64::midpoint(first.value, last.value).min(high).max(low)
+    })
+}
+
+fn put_in_order(first: &mut Contact, last: &mut Contact) {
+    if let Some(both) = common_end(first.bounded(), last.exit()) {
         (first.translation, last.translation) = (both, -both);
     }
 }
@@ -98,7 +103,7 @@ pub(crate) fn intersection_of<'a>(
         }
         Outcome::Separated(_) => false,
     };
-    Ok(Intersection { meets, direction, outcome })
+    Ok(Intersection { meets, evidence: CentralCast { direction, outcome } })
 }
 
 /// The unit vector from the moving body's centre to the fixed one's; any if they are one.

@@ -27,7 +27,7 @@ use crate::solve::observe::{Nobody, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{WarmStart, search};
 pub use contact::{Features, WitnessPoints};
-pub(crate) use derive::{clearance_of, depth_of, intersection_of, range_of};
+pub(crate) use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
 pub use proof_file::{Contacts, ProofFile, Slide, SolidStatement, Statement, Stop};
 #[cfg(feature = "json")]
@@ -65,20 +65,13 @@ pub use replay::{Case, CaseError};
 /// assert!(!cast.intersects()?.meets);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Cast<'a, B: Body = ConvexPolyhedron> {
     pub(crate) setting: Setting<'a, B>,
     pub(crate) options: B::Options,
 }
 
-// Derived ones would ask the same of the body.
-impl<B: Body> Clone for Cast<'_, B> {
-    #[inline]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
+// A derived one would ask the same of the body.
 impl<B: Body> Copy for Cast<'_, B> {}
 
 impl<'a, B: Body> Cast<'a, B> {
@@ -183,13 +176,13 @@ impl Cast<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn with_graze_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
-        self.with_options(Options { graze_tolerance: tolerance, ..self.options })
+        self.with_options(self.options.with_graze_tolerance(tolerance))
     }
 
     /// With a solver. The answer, its certificate and its accuracy are the same.
     #[must_use]
     pub fn with_solver(self, solver: Solver) -> Self {
-        Self { options: Options { solver, ..self.options }, ..self }
+        Self { options: self.options.with_solver(solver), ..self }
     }
 
     /// At which translation do the bodies first meet, if they do?

@@ -20,6 +20,7 @@ use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
 use crate::body::{ConvexPolyhedron, Pose};
 use crate::number::{extent, noise};
+use crate::setting::error::QueryError;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";
@@ -116,7 +117,7 @@ pub struct SolidStatement {
 pub struct Stop {
     /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
     pub facets: [u32; 2],
-    /// Where they meet in their true place: [`SolidContact::translation`](crate::SolidContact::translation).
+    /// Where they meet in their true place: [`SolidContact::translation`](crate::solid::SolidContact::translation).
     pub translation: Bounded,
 }
 
@@ -238,7 +239,7 @@ impl ProofFile {
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
         let options = options(cast.options().start_overlap, cast.tolerance());
         let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
-        let statement = SolidStatement::of(&again.with_options(options)?);
+        let statement = SolidStatement::of(&again.with_options(options)?)?;
         let bodies = Bodies::Solids { made, of };
         Ok(Self { bodies, poses, direction, statement: Statement::Clearance(statement) })
     }
@@ -348,7 +349,7 @@ impl ProofFile {
 }
 
 fn options(start_overlap: StartOverlap, tolerance: f64) -> SolidOptions {
-    SolidOptions { start_overlap, tolerance: Some(tolerance), ..SolidOptions::default() }
+    SolidOptions::default().with_start_overlap(start_overlap).with_tolerance(tolerance)
 }
 
 impl Statement {
@@ -370,18 +371,18 @@ impl Statement {
 }
 
 impl SolidStatement {
-    fn of(cast: &Cast<'_, Solid>) -> Self {
-        let (clearance, certificate) = cast.certified_clearance();
+    fn of(cast: &Cast<'_, Solid>) -> Result<Self, QueryError> {
+        let (clearance, certificate) = cast.certified_clearance()?;
         let (stop, separation) = match clearance {
             Clearance::Blocked { contact, .. } => {
                 let facets = facets(cast, contact.triangles);
                 (facets.map(|facets| Stop { facets, translation: contact.translation }), None)
             }
-            Clearance::Free(plane) => (None, plane),
+            Clearance::Free(free) => (None, free.separation),
             Clearance::Overlapping(_) => (None, None),
         };
         let start_overlap = cast.options().start_overlap;
-        Self { start_overlap, certificate, stop, separation }
+        Ok(Self { start_overlap, certificate, stop, separation })
     }
 
     fn check(&self, cast: &Cast<'_, Solid>) -> Result<(), CertificateError> {
@@ -400,7 +401,7 @@ impl SolidStatement {
         };
         let [moving, fixed] = stop.facets;
         let overlapping = Some(!matches!(self.certificate.start, StartProof::Apart(_)));
-        let of_pair = Cast { options: SolidOptions { overlapping, ..cast.options }, ..*cast };
+        let of_pair = Cast { options: cast.options.with_overlapping(overlapping), ..*cast };
         let found =
             of_pair.stop_by(triangles).filter(|_| facets(cast, triangles) == Some(stop.facets));
         let Some(found) = found else { return Err(CertificateError::Facets { moving, fixed }) };

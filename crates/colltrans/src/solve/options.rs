@@ -1,16 +1,24 @@
 //! Choices of a query.
 
-use crate::answer::{Contact, OverlapAhead, Solver, WhyFree};
+use crate::answer::{CentralCast, Contact, Grazing, OverlapAhead, Separated, Solver, WhyFree};
 use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::error::QueryError;
 
-/// Choices of a query; the default is right for most.
+/// Choices of a query; the default is right for most. More may be added: begin with it.
+///
+/// ```
+/// # use colltrans::{Narrowing, NarrowFrom, Options, Solver};
+/// let to_the_end = Narrowing::new(NarrowFrom::Center, 0.0);
+/// let options = Options::default().with_solver(Solver::Cta).with_narrowing(to_the_end);
+/// assert_eq!(options.graze_tolerance, 0.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(into = "OptionsRecord", try_from = "OptionsRecord")
 )]
+#[non_exhaustive]
 pub struct Options {
     /// How the search is narrowed.
     pub solver: Solver,
@@ -25,11 +33,32 @@ pub struct Options {
 impl Body for ConvexPolyhedron {
     type Options = Options;
     type Contact = Contact;
+    type Grazing = Grazing;
+    type Separated = Separated;
     type Free = WhyFree;
     type Overlap = OverlapAhead;
+    type Evidence = CentralCast;
 }
 
 impl Options {
+    /// With a solver.
+    #[must_use]
+    pub const fn with_solver(self, solver: Solver) -> Self {
+        Self { solver, ..self }
+    }
+
+    /// With a graze tolerance, a length. It is checked where it is used.
+    #[must_use]
+    pub const fn with_graze_tolerance(self, graze_tolerance: f64) -> Self {
+        Self { graze_tolerance, ..self }
+    }
+
+    /// With a narrowing.
+    #[must_use]
+    pub const fn with_narrowing(self, narrowing: Narrowing) -> Self {
+        Self { narrowing, ..self }
+    }
+
     #[inline]
     pub(crate) fn check(&self) -> Result<(), QueryError> {
         let tolerance = self.graze_tolerance;
@@ -50,6 +79,7 @@ impl Options {
 /// However wide the gap, planar problems end where the features that touch are seen to solve the
 /// problem (the paper's exit test); portal refinement then only proves them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Narrowing {
     /// Where the minimisation starts, if not in the region of a [`Tracker`](crate::Tracker)'s last
     /// solution.
@@ -63,10 +93,23 @@ pub struct Narrowing {
     pub keeps_to_cell: bool,
 }
 
+impl Narrowing {
+    /// From a start to a gap, and from cell to cell.
+    pub const fn new(start: NarrowFrom, gap: f64) -> Self {
+        Self { start, gap, keeps_to_cell: false }
+    }
+
+    /// With cell shifts that end in their cells, or not.
+    #[must_use]
+    pub const fn with_keeps_to_cell(self, keeps_to_cell: bool) -> Self {
+        Self { keeps_to_cell, ..self }
+    }
+}
+
 impl Default for Narrowing {
     /// Ellipsoids, a fifth, and from cell to cell.
     fn default() -> Self {
-        Self { start: NarrowFrom::default(), gap: 0.2, keeps_to_cell: false }
+        Self::new(NarrowFrom::Ellipsoids, 0.2)
     }
 }
 
@@ -90,6 +133,7 @@ pub enum NarrowFrom {
 /// depend on it, only the work does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Focus {
     /// Feature focus (the paper, section V-F): try first to end with the last contact features or
     /// their neighbours, and with the last separating direction.
@@ -102,6 +146,18 @@ pub struct Focus {
 impl Focus {
     /// Every query from scratch.
     pub const NONE: Self = Self { features: false, region: Region::Everywhere };
+
+    /// With feature focus, or without.
+    #[must_use]
+    pub const fn with_features(self, features: bool) -> Self {
+        Self { features, ..self }
+    }
+
+    /// With a region.
+    #[must_use]
+    pub const fn with_region(self, region: Region) -> Self {
+        Self { region, ..self }
+    }
 }
 
 impl Default for Focus {

@@ -57,15 +57,14 @@ const COMPARED: [Compared; 6] = [
     Compared { name: "paper region", solver: Solver::Cta, focus: REGION, narrowing: PAPER },
 ];
 
-const REGION: Focus = Focus { features: false, region: Region::Automatic };
-const BOTH: Focus = Focus { features: true, region: Region::Automatic };
+const REGION: Focus = Focus::NONE.with_region(Region::Automatic);
+const BOTH: Focus = Focus::NONE.with_features(true).with_region(Region::Automatic);
 
 /// What a user gets.
-const SHIPPED: Narrowing =
-    Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2, keeps_to_cell: false };
+const SHIPPED: Narrowing = Narrowing::new(NarrowFrom::Ellipsoids, 0.2);
 
 /// The paper's: from the centre of the levels, most of the way by planar problems.
-const PAPER: Narrowing = Narrowing { start: NarrowFrom::Center, gap: 0.01, keeps_to_cell: false };
+const PAPER: Narrowing = Narrowing::new(NarrowFrom::Center, 0.01);
 
 fn main() -> ExitCode {
     let Command { arguments } = Command::parse();
@@ -142,7 +141,7 @@ fn follow(
 ) -> Vec<Result<Outcome, QueryError>> {
     let stopwatch = Stopwatch::new();
     let Compared { solver, narrowing, focus, .. } = *compared;
-    let options = Options { solver, narrowing, ..Options::default() };
+    let options = Options::default().with_solver(solver).with_narrowing(narrowing);
     let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
     let mut outcomes = Vec::with_capacity(sequence.len());
     for setting in sequence {

@@ -47,9 +47,9 @@ const CHANGES: [f64; 3] = [0.01, 0.0025, 0.000_625];
 /// How a solver narrows the search: `None` is portal refinement alone.
 const COMPARED: [(&str, Option<Narrowing>); 4] = [
     ("portal", None),
-    ("cta", Some(Narrowing { start: NarrowFrom::Ellipsoids, gap: 0.2, keeps_to_cell: false })),
-    ("centre 1%", Some(Narrowing { start: NarrowFrom::Center, gap: 0.01, keeps_to_cell: false })),
-    ("centre end", Some(Narrowing { start: NarrowFrom::Center, gap: 0.0, keeps_to_cell: false })),
+    ("cta", Some(Narrowing::new(NarrowFrom::Ellipsoids, 0.2))),
+    ("centre 1%", Some(Narrowing::new(NarrowFrom::Center, 0.01))),
+    ("centre end", Some(Narrowing::new(NarrowFrom::Center, 0.0))),
 ];
 
 /// Bodies to measure on.
@@ -73,7 +73,7 @@ const KINDS: [Kind; 5] = [
 const STRETCH: f64 = 100.0;
 
 /// Only the region of the last solution is remembered.
-const REGION: Focus = Focus { features: false, region: Region::Automatic };
+const REGION: Focus = Focus::NONE.with_region(Region::Automatic);
 
 impl Kind {
     fn name(self) -> String {
@@ -191,8 +191,8 @@ fn to_json(measured: &Measured, unit: f64) -> Value {
 
 fn options(narrowing: Option<Narrowing>) -> Options {
     match narrowing {
-        None => Options { solver: Solver::Portal, ..Options::default() },
-        Some(narrowing) => Options { solver: Solver::Cta, narrowing, ..Options::default() },
+        None => Options::default().with_solver(Solver::Portal),
+        Some(narrowing) => Options::default().with_solver(Solver::Cta).with_narrowing(narrowing),
     }
 }
 
@@ -240,8 +240,7 @@ fn phases(blocks: &Blocks) -> Value {
 
 /// The same with region focus, in sequences.
 fn focused_phases(sequences: &Blocks) -> Value {
-    let options =
-        options(Some(Narrowing { start: NarrowFrom::Center, gap: 0.0, keeps_to_cell: false }));
+    let options = options(Some(Narrowing::new(NarrowFrom::Center, 0.0)));
     let mut spent = Spent::default();
     for (bodies, sequence) in sequences {
         let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");
@@ -290,8 +289,7 @@ fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
         for k in 0..compared.len() {
             let who = (turn + k) % compared.len();
             let (gap, focus) = compared[who];
-            let options =
-                options(Some(Narrowing { start: NarrowFrom::Center, gap, keeps_to_cell: false }));
+            let options = options(Some(Narrowing::new(NarrowFrom::Center, gap)));
             let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
             for setting in sequence {
                 let (outcome, spent) =

@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans::{Cast, Clearance, Pose, Solid, Workspace};
+use colltrans::solid::Workspace;
+use colltrans::{Cast, Clearance, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
 use colltrans_bench::report::{self, Times};
@@ -195,7 +196,7 @@ impl Placement {
     /// The distance after which the bodies meet, if they do.
     fn distance(&self, [p, q]: [&Solid; 2], workspace: &mut Workspace) -> Option<f64> {
         let cast = Cast::new(p.at(self.poses[0]), q.at(self.poses[1]), self.direction).ok()?;
-        cast.clearance_in(workspace).distance().filter(|d| d.is_finite())
+        cast.clearance_in(workspace).ok()?.distance().filter(|d| d.is_finite())
     }
 
     /// Of bodies that meet the same, the moving one put aside until they do not.
@@ -273,7 +274,7 @@ impl Pair {
                 };
                 let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
                 ours.add(time);
-                distances.push(answer.distance().filter(|d| d.is_finite()));
+                distances.push(answer.ok().and_then(|a| a.distance()).filter(|d| d.is_finite()));
             }
             for (Placement { poses: [s, t], direction }, distance) in block.iter().zip(distances) {
                 let placed = ParrySetting::placed([s, t], *direction);
@@ -375,7 +376,7 @@ fn flat(arguments: &Arguments) -> Vec<Value> {
             };
             let way = rotation * direction;
             let Ok(cast) = Cast::new(body.at(above), body.at(below), way) else { continue };
-            let answer = cast.clearance();
+            let answer = cast.clearance().expect("an answer");
             let mut times = Times::default();
             for _ in 0..if arguments.quick { 20 } else { 200 } {
                 times.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
@@ -384,7 +385,9 @@ fn flat(arguments: &Arguments) -> Vec<Value> {
             let said = match answer {
                 Clearance::Free(_) => "free".into(),
                 Clearance::Blocked { distance, .. } => format!("blocked at {distance}"),
-                Clearance::Overlapping(overlap) => format!("overlapping {:?}", overlap.depth),
+                Clearance::Overlapping(overlap) => {
+                    format!("overlapping {:?}", overlap.least_tolerance)
+                }
             };
             println!("{:<28} {:>8.1} us   {said}", format!("{name}{turned}"), times.median() / 1e3);
             let mut row = times.to_json();

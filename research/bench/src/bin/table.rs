@@ -162,7 +162,7 @@ fn tied(tie: Tie, placement: Placement, arguments: &Arguments) -> Row {
 
 /// Asks `colltrans`.
 fn ask(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, QueryError> {
-    setting.cast(bodies, &Options { solver, ..Options::default() })?.first_contact()
+    setting.cast(bodies, &Options::default().with_solver(solver))?.first_contact()
 }
 
 /// Asks all settings of a block.

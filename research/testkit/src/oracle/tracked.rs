@@ -26,7 +26,7 @@ pub struct Lane {
 pub fn lanes(reach: f64) -> [Lane; 7] {
     let (auto, cta) = (&[Solver::Auto][..], &[Solver::Cta][..]);
     let lane = |name, solvers, features, region| {
-        let focus = Focus { features, region };
+        let focus = Focus::NONE.with_features(features).with_region(region);
         Lane { name, solvers, focus }
     };
     [

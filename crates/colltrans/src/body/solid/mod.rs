@@ -67,7 +67,7 @@ pub(crate) use validate::Surface;
 /// let frame = Solid::from_mesh(&vertices, &facets)?;
 /// assert_eq!(frame.report().holes_through(), 1);
 /// assert_eq!(frame.volume(), 12.0);
-/// # Ok::<(), colltrans::SolidError>(())
+/// # Ok::<(), colltrans::solid::SolidError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Solid {

@@ -1,8 +1,8 @@
 //! How far a solid can move from where it is.
 //!
 //! With a tolerance `L` both bodies are shrunk by `L / 2`. If their interiors then share a point, they
-//! overlap, and the depth is the least tolerance with which they do not, from above: doubled until
-//! there is one, then halved between the two.
+//! overlap, and the least tolerance with which they do not is found from above: doubled until there is
+//! one, then halved between the two.
 
 mod proof;
 #[cfg(feature = "serde")]
@@ -11,8 +11,10 @@ mod verify;
 
 use glam::DVec3;
 
-use super::Cast;
-use crate::answer::{Bounded, Clearance, Separation};
+use super::{Cast, common_end};
+use crate::answer::{
+    Bounded, Clearance, ContactRange, Intersection, Outcome, Separation, SolidSteps,
+};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
 use crate::setting::error::QueryError;
@@ -26,8 +28,8 @@ pub use verify::SolidProof;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 const NOISES: f64 = 8.0;
-/// The depth is found to this share of itself.
-const DEPTH_ACCURACY: f64 = 1e-12;
+/// The least tolerance is found to this share of itself.
+const TOLERANCE_ACCURACY: f64 = 1e-12;
 /// Doublings and halvings of a tolerance.
 const MOST_HALVINGS: usize = 128;
 
@@ -47,9 +49,10 @@ pub enum StartOverlap {
     Ignore,
 }
 
-/// Choices of a query between solids.
+/// Choices of a query between solids. More may be added: begin with the default ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidOptions {
     /// What an overlap at the start means.
     pub start_overlap: StartOverlap,
@@ -65,25 +68,84 @@ pub struct SolidOptions {
     pub overlapping: Option<bool>,
 }
 
+impl SolidOptions {
+    /// With a meaning of an overlap at the start.
+    #[must_use]
+    pub const fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
+        Self { start_overlap, ..self }
+    }
+
+    /// With a tolerance, a length, or the default one. It is checked where it is used.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: impl Into<Option<f64>>) -> Self {
+        Self { tolerance: tolerance.into(), ..self }
+    }
+
+    /// With an end, or without.
+    #[must_use]
+    pub fn with_before(self, before: impl Into<Option<f64>>) -> Self {
+        Self { before: before.into(), ..self }
+    }
+
+    /// With what is known of an overlap at the start.
+    #[must_use]
+    pub fn with_overlapping(self, overlapping: impl Into<Option<bool>>) -> Self {
+        Self { overlapping: overlapping.into(), ..self }
+    }
+}
+
 /// The overlap of two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidOverlap {
     /// One of the places where the bodies, shrunk by half the tolerance each, overlap: facets that
     /// cross, or a shell that is inside.
     pub place: Overlap,
     /// The least tolerance with which they would not overlap, from above; `None` if there is none, as
-    /// where what overlaps is an open shell: see [`Cast::depth`].
-    pub depth: Option<f64>,
+    /// where what overlaps is an open shell: see [`Cast::least_tolerance`].
+    #[cfg_attr(feature = "serde", serde(rename = "depth"))]
+    pub least_tolerance: Option<f64>,
+    /// Work done.
+    pub steps: SolidSteps,
 }
+
+/// Nothing stops the moving body, or it never meets the other one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct SolidFree {
+    /// A plane between the bodies, parallel to the direction, where there is one that rounding can
+    /// tell; not looked for where a query ends at [`SolidOptions::before`].
+    pub separation: Option<Separation>,
+    /// Work done.
+    pub steps: SolidSteps,
+}
+
+/// Whether solids meet where they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct SolidMeeting {
+    /// Two facets with a point in common, or a shell that is inside; `None` if the bodies do not meet.
+    pub place: Option<Overlap>,
+    /// Work done.
+    pub steps: SolidSteps,
+}
+
+/// Solids do not graze: shadows that overlap, by however little, make a contact. There is no such value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum NoGrazing {}
 
 impl Body for Solid {
     type Options = SolidOptions;
     type Contact = SolidContact;
-    /// A plane between the bodies, parallel to the direction, where there is one that rounding can
-    /// tell; not looked for where a query ends at [`SolidOptions::before`].
-    type Free = Option<Separation>;
+    type Grazing = NoGrazing;
+    type Separated = SolidFree;
+    type Free = SolidFree;
     type Overlap = SolidOverlap;
+    type Evidence = SolidMeeting;
 }
 
 impl Solid {
@@ -109,7 +171,7 @@ impl<'a> Cast<'a, Solid> {
     /// let step = Solid::from_pieces([&cube, &post])?;
     /// let above = Pose::from_translation(DVec3::new(0.5, 0.5, 6.0))?;
     /// let down = Cast::between(cube.at(above), step.at(Pose::IDENTITY), DVec3::NEG_Z)?;
-    /// let distance = down.clearance().distance().expect("the step is below");
+    /// let distance = down.clearance()?.distance().expect("the step is below");
     /// assert!(distance <= 2.0 && distance > 2.0 - 1e-11);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -148,13 +210,13 @@ impl<'a> Cast<'a, Solid> {
     /// # Errors
     /// A tolerance that is negative or not finite.
     pub fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
-        self.with_options(SolidOptions { tolerance: Some(tolerance), ..self.options })
+        self.with_options(self.options.with_tolerance(tolerance))
     }
 
     /// The same with another meaning of an overlap at the start.
     #[must_use]
     pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
-        Self { options: SolidOptions { start_overlap, ..self.options }, ..self }
+        Self { options: self.options.with_start_overlap(start_overlap), ..self }
     }
 
     /// The tolerance that is used, as a length.
@@ -178,28 +240,90 @@ impl<'a> Cast<'a, Solid> {
     ///
     /// Free says without telling them apart that it slides along, moves away from or never meets the
     /// other body; where a plane lies between the two, it comes with it.
-    pub fn clearance(&self) -> Clearance<Solid> {
+    ///
+    /// # Errors
+    /// None at present: every search ends with an answer.
+    pub fn clearance(&self) -> Result<Clearance<Solid>, QueryError> {
         self.clearance_in(&mut Workspace::default())
     }
 
     /// The same with a queue that is kept.
-    pub fn clearance_in(&self, workspace: &mut Workspace) -> Clearance<Solid> {
+    ///
+    /// # Errors
+    /// As [`Self::clearance`].
+    pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
         let scene = self.asked();
+        let mut steps = SolidSteps::default();
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
             Some(true) if ignored => Aim::LaterStop,
-            _ => match overlap::find(&scene) {
+            _ => match overlap::find(&scene, &mut steps) {
                 Some(_) if ignored => Aim::LaterStop,
-                Some(place) => {
-                    let depth = self.depth();
-                    return Clearance::Overlapping(SolidOverlap { place, depth });
-                }
+                Some(place) => return Ok(Clearance::Overlapping(self.overlap_at(place, steps))),
                 None => Aim::Stop,
             },
         };
-        let found = first(&scene, aim, self.limit(&scene), workspace);
-        self.answer(&scene, found.as_ref())
+        let found = first(&scene, aim, self.limit(&scene), workspace, &mut steps);
+        Ok(self.answer(&scene, found.as_ref(), steps))
+    }
+
+    /// At which translation do the bodies, as they are, first meet, if they do? Over all translations,
+    /// behind and ahead: for "from here on" see [`Self::clearance`]. The tolerance plays no part.
+    ///
+    /// # Errors
+    /// As [`Self::clearance`].
+    pub fn first_contact(&self) -> Result<Outcome<Solid>, QueryError> {
+        self.first_contact_in(&mut Workspace::default())
+    }
+
+    /// The same with a queue that is kept.
+    ///
+    /// # Errors
+    /// As [`Self::clearance`].
+    pub fn first_contact_in(
+        &self,
+        workspace: &mut Workspace,
+    ) -> Result<Outcome<Solid>, QueryError> {
+        let (scene, mut steps) = (self.scene(0.0), SolidSteps::default());
+        let found = first(&scene, Aim::Least, f64::INFINITY, workspace, &mut steps);
+        Ok(match found {
+            Some(found) => Outcome::Contact(contact(&scene, &found, found.bounded(&scene), steps)),
+            None => Outcome::Separated(SolidFree { separation: separation(&scene), steps }),
+        })
+    }
+
+    /// Where the bodies, as they are, first and last meet, each with its contact: two searches, along
+    /// the direction and against it. In between they may part and meet again. The tolerance plays no
+    /// part.
+    ///
+    /// # Errors
+    /// As [`Self::clearance`].
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{Cast, ConvexPolyhedron, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+    /// let cast = Cast::between(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+    /// assert_eq!(cast.contact_range()?.interval(), Some([2.0, 4.0]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contact_range(&self) -> Result<ContactRange<Solid>, QueryError> {
+        let workspace = &mut Workspace::default();
+        let first = self.first_contact_in(workspace)?;
+        Ok(match (first, self.reversed().first_contact_in(workspace)?) {
+            (Outcome::Contact(mut first), Outcome::Contact(mut last)) => {
+                if let Some(both) = common_end(first.translation, last.exit()) {
+                    (first.translation.value, last.translation.value) = (both, -both);
+                }
+                ContactRange::Contact { first, last }
+            }
+            (Outcome::Separated(free), _) | (_, Outcome::Separated(free)) => {
+                ContactRange::Separated(free)
+            }
+        })
     }
 
     /// Where the moving body would be stopped if these two triangles, by their positions in
@@ -216,7 +340,8 @@ impl<'a> Cast<'a, Solid> {
         let aim = if later { Aim::LaterStop } else { Aim::Stop };
         let search = Search::new(&scene, aim, self.limit(&scene), |_, _| ());
         let found = search.of_pair(triangles)?;
-        Some(contact(&scene, &found, self.moving_pose().translation()))
+        // Nothing stops a body before 0.
+        Some(contact(&scene, &found, found.bounded(&scene).clamped(), SolidSteps::default()))
     }
 
     /// Where two triangles of these bodies, as they are, meet that stop them after
@@ -245,66 +370,90 @@ impl<'a> Cast<'a, Solid> {
     }
 
     /// What a search has found, as an answer.
-    pub(crate) fn answer(&self, scene: &Scene, found: Option<&Found>) -> Clearance<Solid> {
-        match found {
-            None if self.options.before.is_none() => Clearance::Free(separation(scene)),
-            None => Clearance::Free(None),
-            Some(found) => {
-                let contact = contact(scene, found, self.moving_pose().translation());
-                Clearance::Blocked { distance: contact.translation.lower.max(0.0), contact }
-            }
-        }
+    pub(crate) fn answer(
+        &self,
+        scene: &Scene,
+        found: Option<&Found>,
+        steps: SolidSteps,
+    ) -> Clearance<Solid> {
+        let Some(found) = found else {
+            let to_the_end = self.options.before.is_none();
+            let separation = to_the_end.then(|| separation(scene)).flatten();
+            return Clearance::Free(SolidFree { separation, steps });
+        };
+        // Nothing stops a body before 0.
+        let contact = contact(scene, found, found.bounded(scene).clamped(), steps);
+        Clearance::Blocked { distance: contact.translation.lower.max(0.0), contact }
+    }
+
+    pub(crate) fn overlap_at(&self, place: Overlap, mut steps: SolidSteps) -> SolidOverlap {
+        let least_tolerance = self.least_tolerance_counting(&mut steps);
+        SolidOverlap { place, least_tolerance, steps }
     }
 
     /// Whether the interiors of the bodies, shrunk by half the tolerance, have a point in common, or open
     /// shells pass through what is there.
     pub fn overlaps(&self) -> bool {
-        overlap::find(&self.asked()).is_some()
+        overlap::find(&self.asked(), &mut SolidSteps::default()).is_some()
     }
 
-    /// Where the bodies, shrunk by half the tolerance, overlap, and how deep; `None` if they do not:
+    /// Where the bodies, shrunk by half the tolerance, overlap, and by how much; `None` if they do not:
     /// what [`Clearance::Overlapping`] tells, and what an answer with [`StartOverlap::Ignore`] has
-    /// ignored. It costs some fifty times as much as [`Self::overlaps`], for the depth.
+    /// ignored. It costs some fifty times as much as [`Self::overlaps`], for the least tolerance.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
-    /// use colltrans::{Cast, ConvexPolyhedron, Overlap, Pose, StartOverlap};
+    /// use colltrans::solid::{Overlap, StartOverlap};
+    /// use colltrans::{Cast, ConvexPolyhedron, Pose};
     ///
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let plate = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 1.0))?;
     /// let sunk = Pose::from_translation(DVec3::Z * -0.125)?;
     /// let aside = Cast::between(plate.at(sunk), table.at(Pose::IDENTITY), DVec3::X)?
     ///     .with_start_overlap(StartOverlap::Ignore);
-    /// assert!(aside.clearance().is_free());
+    /// assert!(aside.clearance()?.is_free());
     /// let ignored = aside.start_overlap().expect("the plate is pressed into the table");
     /// assert!(matches!(ignored.place, Overlap::Facets(_, _)));
-    /// assert!((ignored.depth.expect("a tolerance") - 0.125).abs() < 1e-9);
+    /// assert!((ignored.least_tolerance.expect("there is one") - 0.125).abs() < 1e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn start_overlap(&self) -> Option<SolidOverlap> {
-        let place = overlap::find(&self.asked())?;
-        Some(SolidOverlap { place, depth: self.depth() })
+        let mut steps = SolidSteps::default();
+        let place = overlap::find(&self.asked(), &mut steps)?;
+        Some(self.overlap_at(place, steps))
     }
 
-    /// Whether the bodies as they are, as closed sets, have a point in common.
-    pub fn intersects(&self) -> bool {
-        overlap::touches(&self.scene(0.0))
+    /// Whether the bodies as they are, as closed sets, have a point in common, and where. Neither the
+    /// direction nor the tolerance plays a part.
+    ///
+    /// # Errors
+    /// As [`Self::clearance`].
+    pub fn intersects(&self) -> Result<Intersection<Solid>, QueryError> {
+        let mut steps = SolidSteps::default();
+        let place = overlap::touch(&self.scene(0.0), &mut steps);
+        let evidence = SolidMeeting { place, steps };
+        Ok(Intersection { meets: place.is_some(), evidence })
     }
 
     /// The least tolerance with which the bodies do not overlap, from above: 0 if they do not, `None`
     /// if there is none up to their size. Nor is there one where they overlap and one of them has open
-    /// shells: less of a solid does not free a sheet that passes through it.
-    pub fn depth(&self) -> Option<f64> {
+    /// shells: less of a solid does not free a sheet that passes through it. How far convex bodies have to
+    /// go back along a direction is another question: [`Cast::directional_depth`].
+    pub fn least_tolerance(&self) -> Option<f64> {
+        self.least_tolerance_counting(&mut SolidSteps::default())
+    }
+
+    fn least_tolerance_counting(&self, steps: &mut SolidSteps) -> Option<f64> {
         let bare = self.scene(0.0);
-        if overlap::find(&bare).is_none() {
+        if overlap::find(&bare, steps).is_none() {
             return Some(0.0);
         }
         if !(self.moving().is_closed() && self.fixed().is_closed()) {
             return None;
         }
-        let free = |tolerance: f64| {
+        let mut free = |tolerance: f64| {
             let half = tolerance / 2.0;
-            overlap::find(&bare.shrunk(half, half)).is_none()
+            overlap::find(&bare.shrunk(half, half), steps).is_none()
         };
         let (mut low, mut high) = (0.0, bare.noise);
         while !free(high) {
@@ -315,7 +464,7 @@ impl<'a> Cast<'a, Solid> {
         }
         for _ in 0..MOST_HALVINGS {
             let middle = low + 0.5 * (high - low);
-            if high - low <= DEPTH_ACCURACY * high || middle <= low || middle >= high {
+            if high - low <= TOLERANCE_ACCURACY * high || middle <= low || middle >= high {
                 break;
             }
             if free(middle) { high = middle } else { low = middle }
@@ -324,29 +473,31 @@ impl<'a> Cast<'a, Solid> {
     }
 
     /// The translation after which the bodies, as they are, never meet again, in multiples of the
-    /// direction: the largest gap between a back facet of the moving and a front facet of the fixed
-    /// body; `None` if none face each other. Beyond `upper` they are apart for certain.
+    /// direction: the last contact of [`Self::contact_range`] alone, and 0 if it lies behind; `None` if
+    /// they never meet. Beyond `upper` they are apart for certain.
     pub fn exit(&self) -> Option<Bounded> {
         self.exit_in(&mut Workspace::default())
     }
 
     /// The same with a queue that is kept.
     pub fn exit_in(&self, workspace: &mut Workspace) -> Option<Bounded> {
-        let scene = self.scene(0.0).reversed();
-        let found = first(&scene, Aim::Least, f64::INFINITY, workspace)?;
+        let scene = self.reversed().scene(0.0);
+        let steps = &mut SolidSteps::default();
+        let found = first(&scene, Aim::Least, f64::INFINITY, workspace, steps)?;
         Some(found.bounded(&scene).negated().clamped())
-    }
-
-    /// Pairs of nodes and of leaves that a search for the clearance looks at.
-    pub fn steps(&self) -> [u32; 2] {
-        let scene = self.asked();
-        let mut search = Search::new(&scene, Aim::Stop, f64::INFINITY, |_, _| ());
-        search.run(&mut Workspace::default());
-        search.steps
     }
 }
 
 /// The least gap below a limit.
-fn first(scene: &Scene, aim: Aim, limit: f64, workspace: &mut Workspace) -> Option<Found> {
-    Search::new(scene, aim, limit, |_, _| ()).run(workspace)
+fn first(
+    scene: &Scene,
+    aim: Aim,
+    limit: f64,
+    workspace: &mut Workspace,
+    steps: &mut SolidSteps,
+) -> Option<Found> {
+    let mut search = Search::new(scene, aim, limit, |_, _| ());
+    let found = search.run(workspace);
+    *steps += search.steps;
+    found
 }

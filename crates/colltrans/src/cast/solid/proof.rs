@@ -11,10 +11,11 @@
 
 use std::collections::HashMap;
 
-use super::{SolidOptions, SolidOverlap, StartOverlap};
-use crate::answer::Clearance;
+use super::{SolidOptions, StartOverlap};
+use crate::answer::{Clearance, SolidSteps};
 use crate::body::solid::Solid;
 use crate::cast::Cast;
+use crate::setting::error::QueryError;
 use crate::solve::solid::bound::{Profile, Reason, holds};
 use crate::solve::solid::leaf::{self, Facet, Gap};
 use crate::solve::solid::overlap::{self, Overlap};
@@ -65,7 +66,7 @@ pub enum StartProof {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StopProof {
     /// Their least gap, of the shrunk bodies, in multiples of the direction, or 0: the value of
-    /// [`SolidContact::shrunk_distance`](crate::SolidContact::shrunk_distance).
+    /// [`SolidContact::shrunk_distance`](crate::solid::SolidContact::shrunk_distance).
     #[cfg_attr(feature = "serde", serde(rename = "distance"))]
     pub shrunk_distance: f64,
     /// Positions in [`Solid::triangles`] of the moving and of the fixed body.
@@ -187,10 +188,17 @@ impl Cover {
 impl Cast<'_, Solid> {
     /// How far the moving body can move from where it is, as [`Self::clearance`] says, and the proof
     /// of it. Allocates what the proof takes: a byte for each pair of nodes.
-    pub fn certified_clearance(&self) -> (Clearance<Solid>, SolidCertificate) {
+    ///
+    /// Of convex bodies every answer carries its proof, which the search ends with anyway. Between solids
+    /// it takes a pass over all that the search left out, and as much space: so it is asked for apart.
+    ///
+    /// # Errors
+    /// As [`Self::clearance`].
+    pub fn certified_clearance(&self) -> Result<(Clearance<Solid>, SolidCertificate), QueryError> {
         let scene = self.asked();
         let bodies = [self.moving(), self.fixed()];
-        let start = self.prove_start(&scene);
+        let mut steps = SolidSteps::default();
+        let start = self.prove_start(&scene, &mut steps);
         let mut certificate = SolidCertificate {
             tolerance: self.tolerance(),
             start,
@@ -200,8 +208,8 @@ impl Cast<'_, Solid> {
         };
         let aim = match (certificate.aim(self.options()), &certificate.start) {
             (None, &StartProof::Overlapping(place)) => {
-                let overlap = SolidOverlap { place, depth: self.depth() };
-                return (Clearance::Overlapping(overlap), certificate);
+                let overlap = self.overlap_at(place, steps);
+                return Ok((Clearance::Overlapping(overlap), certificate));
             }
             (aim, _) => aim.unwrap_or(Aim::Stop),
         };
@@ -213,6 +221,7 @@ impl Cast<'_, Solid> {
         let mut search = Search::new(&scene, aim, limit, cut);
         let found = search.run(&mut Workspace::default());
         let end = search.limit;
+        steps += search.steps;
         certificate.cover = Cover::new(bodies, &cuts);
         certificate.stop = found.map(|found| StopProof {
             shrunk_distance: found.gap / scene.setting.length,
@@ -224,10 +233,10 @@ impl Cast<'_, Solid> {
             certificate.lower = 0.0;
             certificate.cover = Cover(vec![Some(Reason::NotBefore)]);
         }
-        (self.answer(&scene, found.as_ref()), certificate)
+        Ok((self.answer(&scene, found.as_ref(), steps), certificate))
     }
 
-    fn prove_start(&self, scene: &Scene) -> StartProof {
+    fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
         // An overlap that is the answer is looked for, to be named.
         let options = self.options();
         let is_answer =
@@ -236,9 +245,12 @@ impl Cast<'_, Solid> {
             return StartProof::Assumed;
         }
         let mut entries = Vec::new();
-        match overlap::find_with(scene, &mut |entry| entries.push(entry)) {
+        let mut note = |entry| {
+            steps.count(entry);
+            entries.push(entry);
+        };
+        match overlap::find_with(scene, &mut note) {
             Some(overlap) => StartProof::Overlapping(overlap),
-            None if entries.is_empty() => StartProof::Apart(Cover(vec![Some(Reason::Disjoint)])),
             None => StartProof::Apart(Cover(entries)),
         }
     }

@@ -35,7 +35,7 @@ use super::leaf::{self, Gap, Meeting, listed};
 use super::rim;
 use super::scene::{Scene, Side};
 use super::search::{Aim, Found, exact_gap};
-use crate::answer::Bounded;
+use crate::answer::{Bounded, SolidSteps};
 use crate::body::Feature;
 use crate::body::solid::Solid;
 
@@ -49,9 +49,11 @@ use crate::body::solid::Solid;
 /// plane, else the edge that does, else the smallest, be it a corner, an edge or a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct SolidContact {
     /// Where the facets that stop the shrunk bodies meet in their true place, in multiples of the
-    /// direction: 7 for a head that stops at 7. Negative where these facets, as they are, overlap.
+    /// direction: 7 for a head that stops at 7. Negative where these facets, as they are, overlap, and
+    /// for contacts behind, of [`Cast::first_contact`](crate::Cast::first_contact).
     ///
     /// Up to `lower` the shrunk bodies do not overlap, and these facets have not met; beyond `upper` the
     /// bodies overlap: as they are, where these facets meet; else shrunk, and so as they are, if
@@ -73,6 +75,16 @@ pub struct SolidContact {
     pub fixed_feature: Feature,
     /// The triangles, as positions in [`Solid::triangles`](crate::Solid::triangles).
     pub triangles: [u32; 2],
+    /// Work done for the answer that it is of.
+    pub steps: SolidSteps,
+}
+
+impl SolidContact {
+    /// Of the first contact of a [reversed](crate::Cast::reversed) cast: where the bodies meet last
+    /// along the direction itself, in multiples of it. Beyond `upper` they never meet.
+    pub fn exit(&self) -> Bounded {
+        self.translation.negated()
+    }
 }
 
 /// A point of one facet, by the weights of its corners.
@@ -115,8 +127,14 @@ fn bounded(scene: &Scene, (gap, error): (f64, f64), others: f64) -> Bounded {
     Bounded { value, lower, upper }
 }
 
-/// The contact of a search with the bodies as `scene` has them.
-pub(crate) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidContact {
+/// The contact of a search with the bodies as `scene` has them, which ended at `shrunk_distance`.
+pub(crate) fn contact(
+    scene: &Scene,
+    found: &Found,
+    shrunk_distance: Bounded,
+    steps: SolidSteps,
+) -> SolidContact {
+    let origin = scene.setting.translations[0];
     let (moving, fixed) = (&scene.moving, &scene.fixed);
     let of_f = Listed::new(scene, moving, found.moving);
     let of_g = Listed::new(scene, fixed, found.fixed);
@@ -156,8 +174,6 @@ pub(crate) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidConta
     let on_f = Foot { vertices: of_f.vertices, weights: on_f };
     let on_g = Foot { vertices: of_g.vertices, weights: on_g };
     let normal = (scene.frame.transpose() * normal).normalize_or_zero();
-    // Nothing stops a body before 0.
-    let shrunk_distance = found.bounded(scene).clamped();
     let translation = if moving.amount == 0.0 && fixed.amount == 0.0 {
         shrunk_distance
     } else {
@@ -174,6 +190,7 @@ pub(crate) fn contact(scene: &Scene, found: &Found, origin: DVec3) -> SolidConta
         moving_feature: feature(scene, moving, found.moving, &on_f, normal),
         fixed_feature: feature(scene, fixed, found.fixed, &on_g, normal),
         triangles: [found.moving, found.fixed],
+        steps,
     }
 }
 

@@ -29,6 +29,7 @@ use super::projected::Projected;
 use super::scene::{Corner, Scene, Side};
 use super::search::{children, splits_moving};
 use super::triangle::Triangle;
+use crate::answer::SolidSteps;
 use crate::body::solid::tree::Node;
 use crate::body::solid::wedge::{Axis, Ray, Wedge};
 
@@ -50,8 +51,8 @@ pub enum Overlap {
 }
 
 /// Whether the interiors have a point in common, or open shells pass through what is there, and where.
-pub(crate) fn find(scene: &Scene) -> Option<Overlap> {
-    find_with(scene, &mut |_| ())
+pub(crate) fn find(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
+    find_with(scene, &mut |entry| steps.count(entry))
 }
 
 /// The same, telling of every pair of nodes in the order of the descent whether it was split (`None`)
@@ -59,12 +60,11 @@ pub(crate) fn find(scene: &Scene) -> Option<Overlap> {
 pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
     let (a, b) = (Projected::new(scene, &scene.moving, 0), Projected::new(scene, &scene.fixed, 0));
     if never_overlap(scene, &a, &b) {
+        cut(Some(Reason::Disjoint));
         return None;
     }
-    if let Some((f, g)) = descend(scene, [0, 0], &a, &b, Judge::OVERLAP, cut) {
-        return Some(Overlap::Facets(f, g));
-    }
-    nested(scene)
+    let facets = descend(scene, [0, 0], &a, &b, Judge::OVERLAP, cut);
+    facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested(scene))
 }
 
 /// Whether the interiors of two whole bodies are disjoint by their boxes and slabs alone.
@@ -101,16 +101,24 @@ pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
     leaves(scene, a, b, Judge::OVERLAP).is_none()
 }
 
-/// Whether the solids, as closed sets, have a point in common.
-pub(crate) fn touches(scene: &Scene) -> bool {
+/// Where the solids, as closed sets, have a point in common.
+pub(crate) fn touch(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
     let (a, b) = (Projected::new(scene, &scene.moving, 0), Projected::new(scene, &scene.fixed, 0));
+    let mut count = |entry| steps.count(entry);
     if apart(scene, &a, &b) {
-        return false;
+        count(Some(Reason::Disjoint));
+        return None;
     }
-    if descend(scene, [0, 0], &a, &b, Judge::TOUCH, &mut |_| ()).is_some() {
-        return true;
+    let facets = descend(scene, [0, 0], &a, &b, Judge::TOUCH, &mut count);
+    facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested(scene))
+}
+
+impl SolidSteps {
+    /// Counts a pair of nodes that was split, or why it was not.
+    pub(crate) fn count(&mut self, entry: Option<Reason>) {
+        self.nodes += 1;
+        self.leaves += u32::from(entry == Some(Reason::Examined));
     }
-    nested(scene).is_some()
 }
 
 /// What is asked of two triangles, and whether nodes that lie face to face are of interest.

@@ -66,12 +66,6 @@ impl<'a> Scene<'a> {
         Self { setting: *setting, moving, fixed, frame, noise: Noise::of(size).point() }
     }
 
-    /// The same bodies, the other way.
-    pub(crate) fn reversed(&self) -> Self {
-        let amounts = [self.moving.amount, self.fixed.amount];
-        Self { noise: self.noise, ..Self::new(&self.setting.reversed(), amounts) }
-    }
-
     /// The same with other amounts to shrink by.
     pub(crate) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &Side<'a>, amount| {

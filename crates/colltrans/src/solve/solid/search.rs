@@ -16,6 +16,7 @@ use super::projected::Projected;
 use super::rim::{self, Upright};
 use super::scene::{Scene, Side};
 use super::separating_axes::{Reach, SeparatingAxes};
+use crate::answer::SolidSteps;
 use crate::body::solid::tree::Node;
 
 /// An answer may be larger than the least gap by so many times the noise of coordinates: bounds of
@@ -229,13 +230,20 @@ pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
     pub(crate) others: f64,
     /// Told of every pair of nodes that is not split, and why.
     pub(crate) cut: F,
-    /// Pairs of nodes looked at, and pairs of leaves.
-    pub(crate) steps: [u32; 2],
+    pub(crate) steps: SolidSteps,
 }
 
 impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     pub(crate) fn new(scene: &'s Scene<'a>, aim: Aim, limit: f64, cut: F) -> Self {
-        Self { scene, aim, limit, found: None, others: f64::INFINITY, cut, steps: [0; 2] }
+        Self {
+            scene,
+            aim,
+            limit,
+            found: None,
+            others: f64::INFINITY,
+            cut,
+            steps: SolidSteps::default(),
+        }
     }
 
     /// What two triangles make.
@@ -258,7 +266,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         let [p, q] = [&scene.moving, &scene.fixed].map(|side| Projected::new(scene, side, 0));
         if let Some(reason) = dismissed(&p, &q, self.limit, self.aim != Aim::Least) {
             // Most pairs of parts: no need for the directions of the query.
-            self.steps[0] += 1;
+            self.steps.nodes += 1;
             (self.cut)([0, 0], reason);
             return None;
         }
@@ -314,7 +322,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
 
     /// A pair with its bound, unless it is cut.
     fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
-        self.steps[0] += 1;
+        self.steps.nodes += 1;
         match self.bound(seen, views) {
             Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, views }),
             Err(reason) => {
@@ -332,7 +340,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
 
     /// All pairs of facets of two leaves.
     fn leaves(&mut self, seen: &mut [Seen; 2], views: [u32; 2]) {
-        self.steps[1] += 1;
+        self.steps.leaves += 1;
         let scene = self.scene;
         let front = seen[0].leaf(scene, &scene.moving, views[0]);
         let back = seen[1].leaf(scene, &scene.fixed, views[1]);

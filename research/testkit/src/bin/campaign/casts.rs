@@ -11,11 +11,7 @@ use crate::print;
 /// by default it seldom has to search.
 const WHO: [(&str, Solver, Option<Narrowing>); 4] = [
     ("Cta", Solver::Cta, None),
-    (
-        "Cta from the centre",
-        Solver::Cta,
-        Some(Narrowing { start: NarrowFrom::Center, gap: 0.0, keeps_to_cell: false }),
-    ),
+    ("Cta from the centre", Solver::Cta, Some(Narrowing::new(NarrowFrom::Center, 0.0))),
     ("Portal", Solver::Portal, None),
     ("Auto", Solver::Auto, None),
 ];
@@ -26,11 +22,10 @@ fn ask(
     solver: Solver,
     narrowing: Option<Narrowing>,
 ) -> Result<Outcome, QueryError> {
-    let options = Options {
-        solver,
-        narrowing: narrowing.unwrap_or_default(),
-        graze_tolerance: setting.graze_tolerance,
-    };
+    let options = Options::default()
+        .with_solver(solver)
+        .with_narrowing(narrowing.unwrap_or_default())
+        .with_graze_tolerance(setting.graze_tolerance);
     setting.query(bodies)?.with_options(options)?.first_contact()
 }
 

@@ -156,7 +156,7 @@ pub fn kind(outcome: &Outcome) -> &'static str {
 mod tests {
     use super::*;
     use crate::oracle::settings::{Setting, setting};
-    use colltrans::{Certificate, Contact, Grazing, Separated, Solver};
+    use colltrans::{Certificate, Contact, Separated, Solver};
 
     /// An answer, and what the judge says about it after a change.
     fn objects(setting: &Setting, outcome: &Outcome) -> bool {
@@ -196,6 +196,13 @@ mod tests {
         ];
         let contacts = answers(|o| matches!(o, Outcome::Contact(_)));
         assert_eq!(contacts.len(), 20);
+        let other = |kind: fn(&Outcome) -> bool| answers(kind).swap_remove(0).1;
+        let Outcome::Separated(separated) = other(|o| matches!(o, Outcome::Separated(_))) else {
+            unreachable!()
+        };
+        let Outcome::Grazing(grazing) = other(|o| matches!(o, Outcome::Grazing(_))) else {
+            unreachable!()
+        };
         for (setting, outcome) in contacts {
             assert!(!objects(&setting, &outcome), "{setting}");
             let Outcome::Contact(contact) = outcome else { unreachable!() };
@@ -206,20 +213,15 @@ mod tests {
             }
             let Certificate { normal, .. } = contact.certificate;
             let orthogonal = normal.cross(setting.direction).normalize();
-            let mut separated = Separated {
-                certificate: colltrans::Separation { normal: orthogonal, margin: 1e-3 },
-                solver: Solver::Portal,
-                steps: contact.steps,
-            };
+            let mut separated = separated;
+            separated.certificate = colltrans::Separation { normal: orthogonal, margin: 1e-3 };
             if !orthogonal.is_finite() {
                 separated.certificate.normal = setting.direction.any_orthonormal_vector();
             }
             assert!(objects(&setting, &Outcome::Separated(separated)), "{setting}: separated");
-            let grazing = Grazing {
-                separating_direction: separated.certificate.normal,
-                overlap: 0.0,
-                contact,
-            };
+            let mut grazing = grazing;
+            grazing.separating_direction = separated.certificate.normal;
+            (grazing.overlap, grazing.contact) = (0.0, contact);
             assert!(objects(&setting, &Outcome::Grazing(grazing)), "{setting}: grazing");
         }
     }
@@ -253,7 +255,8 @@ mod tests {
             assert!(!objects(&setting, &outcome), "{setting}");
             let Outcome::Grazing(grazing) = outcome else { unreachable!() };
             assert!(objects(&setting, &Outcome::Contact(grazing.contact)), "{setting}");
-            let aside = Grazing { overlap: grazing.overlap - 1e-3, ..grazing };
+            let mut aside = grazing;
+            aside.overlap -= 1e-3;
             assert!(objects(&setting, &Outcome::Grazing(aside)), "{setting}: overlap");
         }
     }

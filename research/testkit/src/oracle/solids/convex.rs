@@ -1,7 +1,7 @@
 //! Convex bodies as solids, against the convex core and against the rule over all pairs of facets; the
 //! bodies against the points that they were made of.
 
-use colltrans::{Bounded, Cast, Clearance, Outcome, Solid};
+use colltrans::{Bounded, Cast, Clearance, ContactRange, Outcome, Solid};
 
 use super::facets::{rule, triangles};
 use super::settings::Seen;
@@ -29,14 +29,38 @@ pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
     let (s, t) = (&setting.moving_pose, &setting.fixed_pose);
     let cast = exactly([&a, &b], [*s, *t], setting.direction)?;
     let overlaps = cast.overlaps();
-    let found = if overlaps { None } else { Some(cast.clearance()) };
+    let found = if overlaps { None } else { Some(cast.clearance().map_err(|e| e.to_string())?) };
     if let Some(found) = &found {
         against_rule(setting, &a, &b, found, cast.exit())?;
     }
-    let core = Cast::new(p.at(*s), q.at(*t), setting.direction).and_then(|c| c.first_contact());
+    let core = Cast::new(p.at(*s), q.at(*t), setting.direction).map_err(|e| e.to_string())?;
     let limits =
         Limits { noise: noise(setting, &a, &b), dented: NEARLY_FLAT.contains(&setting.family) };
-    against_core(core.map_err(|e| e.to_string())?, overlaps, found.as_ref(), &limits)
+    let range = cast.contact_range().map_err(|e| e.to_string())?;
+    against_range(&core.contact_range().map_err(|e| e.to_string())?, &range, &limits)?;
+    let first = core.first_contact().map_err(|e| e.to_string())?;
+    against_core(first, overlaps, found.as_ref(), &limits)
+}
+
+/// First and last contact are those of the core, where it is certain that there are any.
+fn against_range(
+    core: &ContactRange,
+    found: &ContactRange<Solid>,
+    limits: &Limits,
+) -> Result<(), String> {
+    let agree = match (core, found) {
+        (ContactRange::Contact { first, last }, ContactRange::Contact { first: f, last: l }) => {
+            [(first, f), (last, l)].into_iter().all(|(end, solid)| {
+                let tolerance = end.certificate.rounding + AGREEMENT * limits.noise;
+                let later = solid.translation.value - end.translation;
+                later >= -tolerance && (later <= tolerance || limits.dented)
+            })
+        }
+        (ContactRange::Contact { .. }, _) => limits.dented,
+        (ContactRange::Separated(_), found) => matches!(found, ContactRange::Separated(_)),
+        (ContactRange::Grazing { .. }, _) => true,
+    };
+    if agree { Ok(()) } else { Err(format!("{found:?}, but the core says {core:?}")) }
 }
 
 /// By how much a convex body as a solid may differ.

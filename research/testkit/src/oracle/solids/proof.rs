@@ -5,7 +5,8 @@
 
 use std::cmp::Ordering;
 
-use colltrans::{Cast, Claim, Reason, Solid, SolidCertificate, StartProof};
+use colltrans::solid::{Claim, Reason, SolidCertificate, StartProof};
+use colltrans::{Cast, Solid};
 
 use super::facets::{Gaps, Judge, Triangle, triangles};
 use crate::oracle::exact::Ratio;

@@ -1,6 +1,7 @@
 //! Settings of bodies made of cubes, most of them tied, and how an answer is judged.
 
-use colltrans::{Clearance, Pose, Solid};
+use colltrans::solid::SolidFree;
+use colltrans::{Bounded, Clearance, ContactRange, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::{Cells, Motion, motion};
@@ -111,15 +112,19 @@ impl Setting {
 
     /// What happens, exactly.
     pub fn expected(&self) -> Motion {
+        self.expected_along(self.direction)
+    }
+
+    fn expected_along(&self, direction: DVec3) -> Motion {
         let offset = Vector::new(self.poses[1].translation())
             .minus(&Vector::new(self.poses[0].translation()));
         let identity = DMat3::IDENTITY;
         if self.turns == [identity; 2] {
             let cells = (&self.cells[0], &self.cells[1]);
-            return motion(cells, [self.poses[0].matrix(), self.shear], &offset, self.direction);
+            return motion(cells, [self.poses[0].matrix(), self.shear], &offset, direction);
         }
         let [a, b] = [0, 1].map(|k| self.cells[k].turned(self.turns[k]));
-        motion((&a, &b), [identity; 2], &offset, self.direction)
+        motion((&a, &b), [identity; 2], &offset, direction)
     }
 
     /// Asks the library and compares; proofs of small bodies are judged in fractions if so said.
@@ -148,7 +153,19 @@ impl Setting {
                 return Err(format!("exit {found:?}, not {:?}", right.as_ref().map(Ratio::to_f64)));
             }
         }
-        let (found, certificate) = cast.certified_clearance();
+        let back = self.expected_along(-self.direction).exit;
+        let meets =
+            |found: Bounded, right: &Ratio| encloses(&found, right) && near(found.value, right);
+        match (cast.contact_range().map_err(|e| e.to_string())?, &back, &expected.exit) {
+            (ContactRange::Separated(_), None, None) => {}
+            (ContactRange::Contact { first, last }, Some(back), Some(exit))
+                if meets(first.exit(), back) && meets(last.exit(), exit) => {}
+            (found, back, exit) => {
+                let [back, exit] = [back, exit].map(|end| end.as_ref().map(Ratio::to_f64));
+                return Err(format!("{found:?}, not -{back:?} to {exit:?}"));
+            }
+        }
+        let (found, certificate) = cast.certified_clearance().map_err(|e| e.to_string())?;
         cast.verify(&certificate).map_err(|e| format!("{found:?}: {e}: {certificate:?}"))?;
         let pairs = a.triangles().len() * b.triangles().len();
         if in_fractions && pairs <= MOST_PAIRS {
@@ -158,7 +175,7 @@ impl Setting {
             let said = matches!(found, Clearance::Overlapping(_));
             return if said { Ok(Seen::Overlapping) } else { Err(format!("{found:?}")) };
         }
-        if let Clearance::Free(Some(separation)) = &found {
+        if let Clearance::Free(SolidFree { separation: Some(separation), .. }) = &found {
             cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
         }
         match (found, expected.overlaps, &expected.stop) {

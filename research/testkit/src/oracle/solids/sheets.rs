@@ -1,5 +1,6 @@
 //! Settings of open surfaces, most of them tied, and how an answer is judged.
 
+use colltrans::solid::SolidFree;
 use colltrans::{Clearance, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 
@@ -107,17 +108,17 @@ impl Setting {
                 return Err(format!("exit {:?}, not {}", cast.exit(), last.to_f64()));
             }
         }
-        let (found, certificate) = cast.certified_clearance();
+        let (found, certificate) = cast.certified_clearance().map_err(|e| e.to_string())?;
         cast.verify(&certificate).map_err(|e| format!("{found:?}: {e}: {certificate:?}"))?;
-        if found != cast.clearance() {
+        if Ok(found) != cast.clearance() {
             return Err(format!("{found:?}, and without a proof {:?}", cast.clearance()));
         }
-        if let Clearance::Free(Some(separation)) = &found {
+        if let Clearance::Free(SolidFree { separation: Some(separation), .. }) = &found {
             cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
         }
         let not_before = |stop: &Ratio| *stop >= Ratio::from_f64(certificate.lower);
         match (&found, expected.overlaps, &expected.stop) {
-            (Clearance::Overlapping(overlap), true, _) if overlap.depth.is_none() => {
+            (Clearance::Overlapping(overlap), true, _) if overlap.least_tolerance.is_none() => {
                 Ok(Seen::Overlapping)
             }
             (Clearance::Free(_), false, None) => Ok(Seen::Free),

@@ -13,7 +13,8 @@
 
 use std::collections::BTreeMap;
 
-use colltrans::{Solid, SolidError};
+use colltrans::Solid;
+use colltrans::solid::SolidError;
 use glam::{DMat3, DVec3};
 
 use super::cells::{Cells, InGrid, cut};

@@ -1,0 +1,12 @@
+//! What is of solids alone: the answers, proofs and choices of a [`Cast`](crate::Cast) of
+//! [`Solid`](crate::Solid)s, and what is said of their surfaces.
+
+pub use crate::answer::SolidSteps;
+pub use crate::body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, SolidError, SolidReport};
+#[cfg(feature = "json")]
+pub use crate::cast::SolidStatement;
+pub use crate::cast::solid::{
+    Claim, Cover, NoGrazing, SolidCertificate, SolidFree, SolidMeeting, SolidOptions, SolidOverlap,
+    SolidProof, StartOverlap, StartProof, StopProof,
+};
+pub use crate::solve::solid::{Overlap, Reason, SolidContact, Workspace};

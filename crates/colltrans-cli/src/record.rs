@@ -271,7 +271,10 @@ impl Record {
 
 impl FeatureRecord {
     fn of(feature: Feature, body: &ConvexPolyhedron) -> Self {
-        Self { kind: feature.kind(), vertices: feature.vertices(body) }
+        Self {
+            kind: feature.kind(),
+            vertices: feature.vertices(body).into_iter().map(u32::from).collect(),
+        }
     }
 }
 

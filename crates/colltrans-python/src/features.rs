@@ -87,7 +87,10 @@ impl Feature {
 }
 
 pub(crate) fn feature(feature: colltrans::Feature, body: &colltrans::ConvexPolyhedron) -> Feature {
-    Feature { kind: feature.kind(), vertices: feature.vertices(body) }
+    Feature {
+        kind: feature.kind(),
+        vertices: feature.vertices(body).into_iter().map(u32::from).collect(),
+    }
 }
 
 /// The parts of both bodies that touch.

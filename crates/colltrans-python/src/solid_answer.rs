@@ -110,7 +110,8 @@ impl SolidContact {
 
 /// A feature by the numbers of the input.
 fn feature(feature: colltrans::Feature, body: &Piece) -> PyResult<Feature> {
-    Ok(Feature::new(feature.kind(), feature.vertices(body.solid().or_raise()?)))
+    let vertices = feature.vertices(body.solid().or_raise()?);
+    Ok(Feature::new(feature.kind(), vertices.into_iter().map(u32::from).collect()))
 }
 
 /// A solid can move until it touches.

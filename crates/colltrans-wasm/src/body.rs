@@ -250,8 +250,9 @@ pub(crate) struct Lit {
 
 impl Lit {
     pub(crate) fn of<B: colltrans::Body>(feature: Feature, body: &B) -> Self {
-        let (vertices, file) = (feature.own_vertices(body), feature.vertices(body));
-        let face = if let Feature::Face(face) = feature { Some(face) } else { None };
+        let vertices = feature.own_vertices(body).into_iter().map(u32::from).collect();
+        let file = feature.vertices(body).into_iter().map(u32::from).collect();
+        let face = if let Feature::Face(face) = feature { Some(face.0) } else { None };
         Self { kind: feature.kind(), vertices, face, file }
     }
 

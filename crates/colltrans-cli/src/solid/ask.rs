@@ -203,7 +203,8 @@ impl<'a> Question<'a> {
 impl Body {
     /// The file of a feature, and the feature in its numbers.
     fn touch(&self, feature: Feature) -> Touch<'_> {
-        let mut vertices = feature.vertices(self.solid());
+        let mut vertices: Vec<u32> =
+            feature.vertices(self.solid()).into_iter().map(u32::from).collect();
         let (mut first, mut base) = (vertices.first().copied().unwrap_or(0), 0);
         let mut owner = &self.pieces[0];
         // The inputs of the pieces are numbered through.

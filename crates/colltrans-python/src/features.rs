@@ -72,7 +72,10 @@ match_args!(Feature("kind", "vertices"));
 impl Feature {
     /// By the numbers of the input.
     pub(crate) fn of<B: Body>(feature: colltrans::Feature, body: &B) -> Self {
-        Self { kind: feature.kind().into(), vertices: feature.vertices(body) }
+        Self {
+            kind: feature.kind().into(),
+            vertices: feature.vertices(body).into_iter().map(u32::from).collect(),
+        }
     }
 }
 

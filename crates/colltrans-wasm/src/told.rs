@@ -2,7 +2,7 @@
 
 use colltrans::record::Record;
 use colltrans::solid::SolidCertificate;
-use colltrans::{Certificate, Feature, Separation};
+use colltrans::{Certificate, FaceId, Feature, Separation, VertexId};
 use serde::{Deserialize, Serialize};
 
 /// An answer to `cast`; fields that do not apply are left out.
@@ -45,9 +45,9 @@ pub(crate) struct Touching {
 /// A feature by the numbers of the body as it is drawn.
 #[derive(Serialize)]
 pub(crate) struct Lit {
-    vertices: Vec<u32>,
+    vertices: Vec<VertexId>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    face: Option<u32>,
+    face: Option<FaceId>,
 }
 
 impl Lit {

@@ -13,7 +13,7 @@ use crate::answer::{
     Steps, WhyFree,
 };
 use crate::body::solid::Solid;
-use crate::body::{Body, Feature};
+use crate::body::{Body, Feature, InputVertex};
 use crate::cast::{Cast, Features};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
@@ -157,7 +157,7 @@ pub struct FeatureRecord {
     /// `vertex`, `edge` or `face`.
     pub kind: &'static str,
     /// Its vertices: one, two, or the corners of a face.
-    pub vertices: Vec<u32>,
+    pub vertices: Vec<InputVertex>,
 }
 
 impl Record {

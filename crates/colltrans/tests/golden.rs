@@ -10,7 +10,7 @@
 
 use colltrans::glam::{DMat3, DVec3};
 use colltrans::{
-    Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, Solid, Solver, Tracker,
+    Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, Solid, Solver, Tracker, VertexId,
 };
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, Setting, setting};
 use colltrans_testkit::oracle::solids;
@@ -99,7 +99,7 @@ impl Hash {
         self.vector(points.on_fixed);
         let features = contact.features(cast);
         for (feature, body) in [(features.moving, cast.moving()), (features.fixed, cast.fixed())] {
-            for vertex in feature.own_vertices(body) {
+            for VertexId(vertex) in feature.own_vertices(body) {
                 self.bits(vertex.into());
             }
         }

@@ -2,7 +2,9 @@
 //! triangulation, by the numbers of the input.
 
 use colltrans::solid::SolidContact;
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Feature, Outcome, Pose, Solid};
+use colltrans::{
+    Cast, Clearance, ConvexPolyhedron, FaceId, Feature, InputVertex, Outcome, Pose, Solid,
+};
 use colltrans_testkit::shapes;
 use colltrans_testkit::solids::{bolt, pin, slab, washer};
 use glam::{DQuat, DVec3};
@@ -22,7 +24,7 @@ fn stopped(a: (&Solid, Pose), b: (&Solid, Pose), direction: DVec3) -> SolidConta
 /// Where the vertices of a feature are.
 fn places(feature: Feature, body: &Solid) -> Vec<DVec3> {
     let own = feature.own_vertices(body).into_iter();
-    own.map(|v| body.vertices()[v as usize]).collect()
+    own.map(|v| body.vertices()[v.index()]).collect()
 }
 
 /// A block, its bottom at 0, finely cut.
@@ -46,7 +48,11 @@ fn a_diagonal_of_a_flat_face_is_the_face() {
     for x in [0.0, 0.1, -0.8, 0.8, 2.4] {
         for y in [0.0, 4.0 / 7.0, 0.3, 8.0 / 7.0] {
             let contact = stopped((&tip, at([x, y, 3.0])), (&table, Pose::IDENTITY), DVec3::NEG_Z);
-            assert_eq!(contact.moving_feature, Feature::Vertex(4), "{x} {y}: {contact:?}");
+            assert_eq!(
+                contact.moving_feature,
+                Feature::Vertex(InputVertex(4)),
+                "{x} {y}: {contact:?}"
+            );
             let Feature::Face(_) = contact.fixed_feature else { panic!("{x} {y}: {contact:?}") };
             let mut corners = places(contact.fixed_feature, &table);
             assert_eq!(corners.len(), 4, "{corners:?}");
@@ -73,7 +79,7 @@ fn a_polygon_has_one_number() {
     let Feature::Face(number) = numbers[0] else { panic!("{numbers:?}") };
     let is_top = |t: &[u32; 3]| t.iter().all(|v| table.vertices()[*v as usize].z == 0.0);
     let tops = table.triangles().iter().zip(table.facet_indices());
-    assert_eq!(tops.filter(|(t, _)| is_top(t)).map(|(_, f)| *f).min(), Some(number));
+    assert_eq!(tops.filter(|(t, _)| is_top(t)).map(|(_, f)| FaceId(*f)).min(), Some(number));
 }
 
 #[test]
@@ -141,7 +147,7 @@ fn facets_of_a_fine_cylinder_stay_facets() {
     let ends = places(contact.moving_feature, &round);
     assert!((ends[0] - ends[1]).length() == 1.0, "from end to end, not around: {ends:?}");
     let mut sizes: Vec<usize> = (0..round.facet_indices().len() as u32)
-        .map(Feature::Face)
+        .map(|f| Feature::Face(FaceId(f)))
         .filter(|f| !f.own_vertices(&round).is_empty())
         .map(|f| f.vertices(&round).len())
         .collect();
@@ -159,8 +165,8 @@ fn single_precision_does_not_cut_a_face() {
     let rounded = |v: &DVec3| (rotation * *v + DVec3::new(30.0, -7.0, 11.0)).as_vec3().as_dvec3();
     let vertices: Vec<DVec3> = mesh.vertices.iter().map(rounded).collect();
     let plate = Solid::from_mesh(&vertices, &mesh.faces).expect("a closed mesh");
-    let faces: std::collections::BTreeSet<Vec<u32>> = (0..mesh.faces.len() as u32)
-        .map(|f| Feature::Face(f).vertices(&plate))
+    let faces: std::collections::BTreeSet<Vec<InputVertex>> = (0..mesh.faces.len() as u32)
+        .map(|f| Feature::Face(FaceId(f)).vertices(&plate))
         .filter(|corners| !corners.is_empty())
         .collect();
     assert_eq!(faces.len(), 6, "{faces:?}");
@@ -191,7 +197,7 @@ fn numbers_are_those_of_the_input() {
     let down = |body: &Solid| {
         let contact =
             stopped((body, tilted(DVec3::Z * 5.0)), (&table, Pose::IDENTITY), DVec3::NEG_Z);
-        let Feature::Vertex(v) = contact.moving_feature else { panic!("{contact:?}") };
+        let Feature::Vertex(InputVertex(v)) = contact.moving_feature else { panic!("{contact:?}") };
         (v, contact.point_on_moving)
     };
     let (lowest, place) = down(&cube);
@@ -220,10 +226,10 @@ fn convex_bodies_are_named_by_their_input_too() {
     let Ok(Outcome::Contact(contact)) = cast.first_contact() else { panic!("the table") };
     let features = contact.features(&cast);
     let Feature::Vertex(lowest) = features.moving else { panic!("{features:?}") };
-    let there = tilted.transform_point(points[lowest as usize]);
+    let there = tilted.transform_point(points[lowest.index()]);
     assert!((there - contact.points(&cast).on_moving).length() < 1e-12, "{features:?}");
     let own = features.moving.own_vertices(&cube);
-    assert_eq!(cube.vertices()[own[0] as usize], points[lowest as usize]);
+    assert_eq!(cube.vertices()[own[0].index()], points[lowest.index()]);
     // The same bodies as solids name the same.
     let between = Cast::between(cube.at(tilted), table.at(Pose::IDENTITY), DVec3::NEG_Z);
     let Clearance::Blocked { contact, .. } =
@@ -235,7 +241,7 @@ fn convex_bodies_are_named_by_their_input_too() {
     let [Feature::Face(_), Feature::Face(_)] = [contact.fixed_feature, features.fixed] else {
         panic!("{contact:?} {features:?}")
     };
-    let sorted = |mut corners: Vec<u32>| {
+    let sorted = |mut corners: Vec<InputVertex>| {
         corners.sort_unstable();
         corners
     };
@@ -252,7 +258,7 @@ fn a_body_that_was_shrunk_has_the_faces_it_had() {
     let plate = Solid::from_mesh(&vertices, &mesh.faces).expect("a closed mesh");
     let (smaller, _) = plate.shrunk(0.01).expect("small");
     for face in 0..mesh.faces.len() as u32 {
-        let face = Feature::Face(face);
+        let face = Feature::Face(FaceId(face));
         assert_eq!(face.vertices(&plate), face.vertices(&smaller), "{face:?}");
     }
 }

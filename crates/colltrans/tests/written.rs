@@ -4,8 +4,8 @@
 use colltrans::record::Ending;
 use colltrans::solid::{SolidCertificate, SolidOptions, StartOverlap};
 use colltrans::{
-    Bounded, Cast, Clearance, ContactRange, Intersection, NarrowFrom, Options, Outcome, Pose,
-    Solid, Solver, StartedFrom,
+    Bounded, Cast, Clearance, ContactRange, FaceId, Feature, InputVertex, Intersection, NarrowFrom,
+    Options, Outcome, Pose, Solid, Solver, StartedFrom, VertexId,
 };
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};
@@ -68,6 +68,15 @@ fn answers_between_solids_come_back_in_bits() {
 fn an_infinite_bound_is_written_as_nothing() {
     let nothing = Bounded { value: 1.0, lower: f64::NEG_INFINITY, upper: f64::INFINITY };
     assert_eq!(again(&nothing), r#"{"value":1.0,"lower":null,"upper":null}"#);
+}
+
+#[test]
+fn typed_numbers_are_written_as_numbers() {
+    let ends = [3, 5].map(InputVertex);
+    assert_eq!(again(&Feature::Vertex(ends[0])), r#"{"vertex":3}"#);
+    assert_eq!(again(&Feature::Edge(ends)), r#"{"edge":[3,5]}"#);
+    assert_eq!(again(&Feature::Face(FaceId(7))), r#"{"face":7}"#);
+    assert_eq!(format!("{} {:>3}", ends[0], VertexId(4)), "3   4");
 }
 
 #[test]

@@ -35,9 +35,9 @@ pub(super) enum Mark {
 impl Mark {
     pub(super) fn of(feature: Feature, body: &ConvexPolyhedron) -> Self {
         match (feature, &feature.own_vertices(body)[..]) {
-            (Feature::Face(face), _) => Self::Face(face),
-            (Feature::Edge(_), &[a, b]) => Self::Edge([a, b]),
-            (_, vertices) => Self::Vertex(vertices[0]),
+            (Feature::Face(face), _) => Self::Face(face.0),
+            (Feature::Edge(_), &[a, b]) => Self::Edge([a.0, b.0]),
+            (_, vertices) => Self::Vertex(vertices[0].0),
         }
     }
 }

@@ -140,7 +140,7 @@ impl Body {
     /// The file of a feature, and the feature in its numbers.
     fn touch(&self, feature: Feature) -> (String, FeatureRecord) {
         let mut vertices = feature.vertices(self.solid());
-        let (mut first, mut base) = (vertices.first().copied().unwrap_or(0), 0);
+        let (mut first, mut base) = (vertices.first().map_or(0, |v| v.0), 0);
         let mut owner = &self.pieces[0];
         // The inputs of the pieces are numbered through.
         for piece in &self.pieces {
@@ -152,7 +152,7 @@ impl Body {
             (first, base) = (first - count, base + count);
         }
         for vertex in &mut vertices {
-            *vertex -= base;
+            vertex.0 -= base;
         }
         (owner.name(), FeatureRecord { kind: feature.kind(), vertices })
     }

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::ConvexPolyhedron;
 use super::placed::{Body, sealed};
+use super::{ConvexPolyhedron, FaceId, InputVertex, VertexId};
 
 /// A vertex, an edge or a face of a body, as an answer names it: **by the numbers of the input**, that
 /// is, of the points or mesh vertices that the body was made from, for bodies of either kind.
@@ -19,13 +19,13 @@ use super::placed::{Body, sealed};
 )]
 pub enum Feature {
     /// A vertex.
-    Vertex(u32),
+    Vertex(InputVertex),
     /// An edge, by its two ends.
-    Edge([u32; 2]),
+    Edge([InputVertex; 2]),
     /// A face: of a [`Solid`](crate::Solid) the least number of the input's facets that it is made of,
     /// of a [`ConvexPolyhedron`], whose faces are those of a hull, that of
     /// [`ConvexPolyhedron::face_vertices`].
-    Face(u32),
+    Face(FaceId),
 }
 
 impl Feature {
@@ -43,13 +43,13 @@ impl Feature {
     ///
     /// # Panics
     /// If the feature is not one of `body`.
-    pub fn vertices<B: Body>(self, body: &B) -> Vec<u32> {
+    pub fn vertices<B: Body>(self, body: &B) -> Vec<InputVertex> {
         match self {
             Self::Vertex(v) => vec![v],
             Self::Edge(ends) => ends.to_vec(),
             Self::Face(_) => {
                 let own = self.own_vertices(body);
-                own.into_iter().map(|v| body.inputs()[v as usize]).collect()
+                own.into_iter().map(|v| body.inputs()[v.index()].into()).collect()
             }
         }
     }
@@ -59,7 +59,7 @@ impl Feature {
     ///
     /// # Panics
     /// If the feature is not one of `body`.
-    pub fn own_vertices<B: Body>(self, body: &B) -> Vec<u32> {
+    pub fn own_vertices<B: Body>(self, body: &B) -> Vec<VertexId> {
         sealed::vertices_of(body, self)
     }
 }
@@ -75,11 +75,11 @@ pub(crate) enum Own {
 impl Own {
     /// By the numbers of the input.
     pub(crate) fn named(self, body: &ConvexPolyhedron) -> Feature {
-        let input = |v: u32| body.input_indices()[v as usize];
+        let input = |v: u32| InputVertex(body.input_indices()[v as usize]);
         match self {
             Self::Vertex(v) => Feature::Vertex(input(v)),
             Self::Edge(ends) => Feature::Edge(ends.map(input)),
-            Self::Face(face) => Feature::Face(face),
+            Self::Face(face) => Feature::Face(FaceId(face)),
         }
     }
 }

@@ -4,6 +4,7 @@ mod aabb;
 pub(crate) mod convex;
 pub(crate) mod error;
 mod feature;
+mod id;
 pub(crate) mod inertia;
 pub(crate) mod placed;
 pub(crate) mod pose;
@@ -15,6 +16,7 @@ pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defe
 pub(crate) use convex::{LargeFace, greatest_on_cycle};
 pub use feature::Feature;
 pub(crate) use feature::feature;
+pub use id::{FaceId, InputVertex, VertexId};
 pub(crate) use inertia::Inertia;
 pub use placed::{Body, Placed};
 pub use pose::Pose;

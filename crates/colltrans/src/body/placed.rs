@@ -26,7 +26,7 @@ pub trait Body: sealed::Sealed + Clone + Debug {
 pub(crate) mod sealed {
     use std::fmt::Debug;
 
-    use crate::body::Feature;
+    use crate::body::{Feature, InputVertex, VertexId};
 
     /// A part of an answer.
     #[cfg(not(feature = "serde"))]
@@ -55,15 +55,15 @@ pub(crate) mod sealed {
     }
 
     /// The vertices of a feature, as positions among the body's vertices.
-    pub(crate) fn vertices_of<B: Sealed>(body: &B, feature: Feature) -> Vec<u32> {
-        let position = |v: u32| {
-            let found = body.inputs().iter().position(|input| *input == v);
-            found.expect("a feature of this body") as u32
+    pub(crate) fn vertices_of<B: Sealed>(body: &B, feature: Feature) -> Vec<VertexId> {
+        let position = |v: InputVertex| {
+            let found = body.inputs().iter().position(|input| *input == v.0);
+            VertexId(found.expect("a feature of this body") as u32)
         };
         match feature {
             Feature::Vertex(v) => vec![position(v)],
             Feature::Edge(ends) => ends.map(position).to_vec(),
-            Feature::Face(face) => body.corners_of_face(face),
+            Feature::Face(face) => body.corners_of_face(face.0).into_iter().map(VertexId).collect(),
         }
     }
 }

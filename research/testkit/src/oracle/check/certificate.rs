@@ -16,7 +16,9 @@
 //!   the witness points from below: two bodies whose witness points come within `r` overlap by at
 //!   least `-r`.
 
-use colltrans::{Certificate, Contact, Feature, Grazing, Separated, VertexPair, WitnessPoints};
+use colltrans::{
+    Certificate, Contact, Feature, Grazing, Separated, VertexId, VertexPair, WitnessPoints,
+};
 use glam::DVec3;
 
 use super::{Judge, Objection, Proof, TWO_ROUNDINGS};
@@ -240,7 +242,7 @@ impl Judge<'_> {
         let top = points.iter().map(|v| normal.dot(v)).max().expect("a body has a point");
         // A body's own faces are flat up to what its hull states.
         let tolerance = (TWO_ROUNDINGS + 1.0) * self.scene.noise + 2.0 * body.hull_error();
-        for vertex in feature.own_vertices(body) {
+        for VertexId(vertex) in feature.own_vertices(body) {
             let depth = (&top - &normal.dot(&points[vertex as usize])).to_f64();
             require!(
                 depth <= tolerance,

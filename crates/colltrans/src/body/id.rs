@@ -1,0 +1,54 @@
+//! Numbers of vertices and faces, each kind a type: what a body has kept is numbered anew, and the
+//! input has numbers of its own.
+
+use std::fmt;
+
+macro_rules! numbers {
+    ($($(#[$doc:meta])* $name:ident;)+) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+        #[cfg_attr(
+            feature = "serde",
+            derive(serde::Serialize, serde::Deserialize),
+            serde(transparent)
+        )]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// As a position in a slice.
+            pub const fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+
+        impl From<u32> for $name {
+            fn from(number: u32) -> Self {
+                Self(number)
+            }
+        }
+
+        impl From<$name> for u32 {
+            fn from(number: $name) -> Self {
+                number.0
+            }
+        }
+    )+};
+}
+
+numbers! {
+    /// A vertex that a body has kept: its position in
+    /// [`ConvexPolyhedron::vertices`](crate::ConvexPolyhedron::vertices) or
+    /// [`Solid::vertices`](crate::Solid::vertices).
+    VertexId;
+    /// A face as a [`Feature`](crate::Feature) names it: of a convex polyhedron its own, of a solid the
+    /// least number of the input's facets that it is made of.
+    FaceId;
+    /// A point or mesh vertex of the input, by its number there.
+    InputVertex;
+}

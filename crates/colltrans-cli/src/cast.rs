@@ -4,7 +4,8 @@ use std::io::{self, Read as _};
 use std::path::Path;
 
 use colltrans::glam::DVec3;
-use colltrans::{Cast, Clearance, ContactRange, Options, Pose, ProofFile, QueryError};
+use colltrans::record::{Answer, Question};
+use colltrans::{Cast, Options, Pose, QueryError};
 use colltrans_mesh::body::{BodyOptions, LoadError};
 
 use crate::args::{self, CastArguments, DirectionArguments, PairArguments};
@@ -16,13 +17,7 @@ use crate::picture::{Scene, draw};
 use crate::proof::{self, refuse_proof};
 use crate::record::{Hulls, Line};
 use crate::replay;
-use crate::report::{self, Asked};
-
-/// One answer, to either question.
-enum Answer {
-    Contact(ContactRange),
-    Clearance(Clearance),
-}
+use crate::report;
 
 pub(crate) fn run(arguments: &CastArguments) -> Result<(), Failure> {
     let files = [&*arguments.moving, &*arguments.fixed];
@@ -30,7 +25,7 @@ pub(crate) fn run(arguments: &CastArguments) -> Result<(), Failure> {
     let parts = load(files, &arguments.pair.body_options());
     let [moving, fixed] =
         parts.map_err(|error| Failure::new(Code::Input, body::refusal(&error)))?;
-    request.convex(Asked::Contact, [&moving, &fixed])
+    request.convex(Question::Contact, [&moving, &fixed])
 }
 
 /// Both files as convex bodies.
@@ -61,7 +56,7 @@ impl<'a> Request<'a> {
     }
 
     /// Asked of convex bodies.
-    pub(crate) fn convex(self, asked: Asked, parts: [&Part; 2]) -> Result<(), Failure> {
+    pub(crate) fn convex(self, question: Question, parts: [&Part; 2]) -> Result<(), Failure> {
         self.tell(parts.map(|part| part.notes.as_slice()));
         let Self { arguments, poses, directions } = self;
         let options = Options::default()
@@ -70,10 +65,10 @@ impl<'a> Request<'a> {
         let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
         let cast = |direction| Cast::new(moving, fixed, direction)?.with_options(options);
         match directions {
-            Directions::One(direction) => answer_one(arguments, asked, &cast(direction)?, parts),
+            Directions::One(direction) => answer_one(arguments, question, &cast(direction)?, parts),
             Directions::Many(all) => {
                 let casts = all.into_iter().map(|direction| (direction, cast(direction)));
-                scan(arguments.json, asked, casts, parts)
+                scan(arguments.json, question, casts, parts)
             }
         }
     }
@@ -129,48 +124,27 @@ fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
 
 /// An answer, and what is said about it.
 fn ask(
-    asked: Asked,
+    question: Question,
     cast: &Cast<'_>,
     [moving, fixed]: [&Part; 2],
 ) -> Result<(Answer, Line), QueryError> {
-    let (answer, line) = match asked {
-        Asked::Contact => {
-            let answer = cast.contact_range()?;
-            let line = Line::of_range(&answer, cast);
-            (Answer::Contact(answer), line)
-        }
-        Asked::Clearance => {
-            let answer = cast.clearance()?;
-            let line = Line::of_clearance(&answer, cast);
-            (Answer::Clearance(answer), line)
-        }
-    };
-    Ok((answer, Line { hull: Hulls::of(moving.excess, fixed.excess), ..line }))
+    let answer = question.ask(cast)?;
+    let hull = Hulls::of(moving.excess, fixed.excess);
+    Ok((answer, Line { hull, ..answer.record(cast).into() }))
 }
 
 fn answer_one(
     arguments: &PairArguments,
-    asked: Asked,
+    question: Question,
     cast: &Cast<'_>,
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
-    let answered = ask(asked, cast, parts);
+    let answered = ask(question, cast, parts);
     let (answer, told) = answered.map_err(|error| replay::failure(error, cast))?;
-    let text = if arguments.json {
-        told.json()
-    } else {
-        match &answer {
-            Answer::Contact(answer) => report::cast(answer, &told, cast.direction()),
-            Answer::Clearance(answer) => report::clearance(answer, &told, cast.direction()),
-        }
-    };
-    print(&text)?;
+    let in_words = || report::answer(&answer, &told, cast.direction());
+    print(&if arguments.json { told.json() } else { in_words() })?;
     if let Some(path) = &arguments.save_proof {
-        let proof = match &answer {
-            Answer::Contact(range) => ProofFile::of_range(cast, range),
-            Answer::Clearance(clearance) => ProofFile::of_clearance(cast, clearance),
-        };
-        proof::save(path, &proof)?;
+        proof::save(path, &answer.proof(cast))?;
     }
     let Some(path) = &arguments.picture else { return Ok(()) };
     let range = match answer {
@@ -183,13 +157,13 @@ fn answer_one(
 /// One line for each direction, also for those without an answer.
 fn scan<'a>(
     as_json: bool,
-    asked: Asked,
+    question: Question,
     casts: impl ExactSizeIterator<Item = (DVec3, Result<Cast<'a>, QueryError>)>,
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
     let (count, mut failed) = (casts.len(), 0);
     if !as_json {
-        print(&report::scan_head(asked))?;
+        print(&report::scan_head(question))?;
         for (name, excess) in
             Hulls::of(parts[0].excess, parts[1].excess).iter().flat_map(Hulls::named)
         {
@@ -198,7 +172,7 @@ fn scan<'a>(
     }
     for (direction, cast) in casts {
         let answered = cast.map_err(Failure::from).and_then(|cast| {
-            let answered = ask(asked, &cast, parts);
+            let answered = ask(question, &cast, parts);
             answered.map_err(|error| replay::failure(error, &cast))
         });
         let mut line = match answered {
@@ -207,8 +181,11 @@ fn scan<'a>(
         };
         failed += usize::from(line.is_error());
         line.record.direction = Some(direction.to_array());
-        let text =
-            if as_json { line.json() } else { report::scan_line(&line.record, asked, direction) };
+        let text = if as_json {
+            line.json()
+        } else {
+            report::scan_line(&line.record, question, direction)
+        };
         print(&text)?;
     }
     all_answered(count, failed)

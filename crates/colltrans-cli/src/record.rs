@@ -2,7 +2,6 @@
 //! what only files have.
 
 use colltrans::record::{Ending, Record};
-use colltrans::{Cast, Clearance, ContactRange};
 use colltrans_mesh::body::Excess;
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -56,16 +55,6 @@ impl From<Record> for Line {
 }
 
 impl Line {
-    /// Of a query for both contacts.
-    pub(crate) fn of_range(range: &ContactRange, cast: &Cast) -> Self {
-        Record::of_contact_range(range, cast).into()
-    }
-
-    /// Of a query for the clearance.
-    pub(crate) fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
-        Record::of_clearance(clearance, cast).into()
-    }
-
     /// That there is no answer, and why.
     pub(crate) fn error(message: String) -> Self {
         Record::error(message).into()

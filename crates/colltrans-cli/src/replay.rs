@@ -3,6 +3,7 @@
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
+use colltrans::record::Question;
 use colltrans::{Case, Cast, QueryError};
 
 use crate::args::ReplayArguments;
@@ -18,10 +19,10 @@ pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
         .map_err(|error| input(format!("cannot be read: {error}")))?;
     let case = Case::from_json(&text).map_err(|error| input(error.to_string()))?;
     let cast = case.cast()?;
-    let answer = cast.contact_range()?;
-    let told = Line::of_range(&answer, &cast);
+    let answer = Question::Contact.ask(&cast)?;
+    let told = Line::from(answer.record(&cast));
     let text =
-        if arguments.json { told.json() } else { report::cast(&answer, &told, cast.direction()) };
+        if arguments.json { told.json() } else { report::answer(&answer, &told, cast.direction()) };
     print(&text)
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
-use colltrans::record::{Ending, FeatureRecord, Record};
+use colltrans::record::{Answer, Ending, FeatureRecord, Question, Record};
 use colltrans::{
     Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Solver, Steps,
     WhyFree,
@@ -12,17 +12,16 @@ use colltrans::{
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
 use crate::record::{Hulls, Line};
 
-/// Which question is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Asked {
-    /// Where the bodies meet.
-    Contact,
-    /// How far the moving one can go.
-    Clearance,
-}
-
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;
+
+/// The readable answer.
+pub(crate) fn answer(answer: &Answer, told: &Line, direction: DVec3) -> String {
+    match answer {
+        Answer::Contact(range) => cast(range, told, direction),
+        Answer::Clearance(far) => clearance(far, told, direction),
+    }
+}
 
 /// The readable answer of `colltrans cast`.
 pub(crate) fn cast(answer: &ContactRange, told: &Line, direction: DVec3) -> String {
@@ -49,7 +48,7 @@ pub(crate) fn cast(answer: &ContactRange, told: &Line, direction: DVec3) -> Stri
 }
 
 /// The readable answer of `colltrans clearance`.
-pub(crate) fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> String {
+fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> String {
     let (mut text, record) = (String::new(), &told.record);
     match answer {
         Clearance::Blocked { distance, contact: first } => {
@@ -94,13 +93,13 @@ pub(crate) fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> St
 }
 
 /// One line of a scan, under [`scan_head`].
-pub(crate) fn scan_line(record: &Record, asked: Asked, direction: DVec3) -> String {
+pub(crate) fn scan_line(record: &Record, question: Question, direction: DVec3) -> String {
     let (length, error) = (direction.length(), record.rounding.unwrap_or_default());
     let mut columns = vec![record.outcome.name().to_owned()];
-    match (record.outcome, asked) {
+    match (record.outcome, question) {
         (Ending::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
-        (_, Asked::Clearance) => columns.extend(safe(record.distance, direction)),
-        (_, Asked::Contact) => columns.extend(match record.translation {
+        (_, Question::Clearance) => columns.extend(safe(record.distance, direction)),
+        (_, Question::Contact) => columns.extend(match record.translation {
             Some(t) => [known(t, error), known(t * length, error * length)],
             None => ["-", "-"].map(str::to_owned),
         }),
@@ -126,10 +125,10 @@ fn safe(distance: Option<f64>, direction: DVec3) -> [String; 2] {
 }
 
 /// The names of the columns of a scan.
-pub(crate) fn scan_head(asked: Asked) -> String {
-    let far = match asked {
-        Asked::Contact => "translation",
-        Asked::Clearance => "distance",
+pub(crate) fn scan_head(question: Question) -> String {
+    let far = match question {
+        Question::Contact => "translation",
+        Question::Clearance => "distance",
     };
     let columns = ["outcome", far, "length", "normal"].map(str::to_owned);
     format!("{:<24} {}\n", "direction", align(&columns))

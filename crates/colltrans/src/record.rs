@@ -6,7 +6,7 @@
 //! that there are the answers themselves, which the feature `serde` writes whole, and `ProofFile`.
 
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::answer::{
     Bounded, Clearance, Contact, ContactRange, Grazing, Outcome, OverlapAhead, Separated, Solver,
@@ -15,6 +15,9 @@ use crate::answer::{
 use crate::body::solid::Solid;
 use crate::body::{Body, Feature, InputVertex};
 use crate::cast::{Cast, Features};
+use crate::setting::error::QueryError;
+use crate::solve::observe::{Nobody, Observer};
+use crate::written::{UnknownName, named};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
 ///
@@ -158,6 +161,86 @@ pub struct FeatureRecord {
     pub kind: &'static str,
     /// Its vertices: one, two, or the corners of a face.
     pub vertices: Vec<InputVertex>,
+}
+
+/// A question about two convex bodies and a direction, by its name: what command lines, batches and the
+/// page ask. Solids are asked for their clearance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Question {
+    /// [`Cast::contact_range`].
+    Contact,
+    /// [`Cast::clearance`].
+    Clearance,
+}
+
+/// The answer of a [`Question`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Answer {
+    /// Where they meet.
+    Contact(ContactRange),
+    /// How far one can go.
+    Clearance(Clearance),
+}
+
+named!("query", Question { Contact: "contact", Clearance: "clearance" });
+named!(
+    "outcome",
+    Ending {
+        Contact: "contact",
+        Grazing: "grazing",
+        Separated: "separated",
+        Free: "free",
+        Blocked: "blocked",
+        Slides: "slides",
+        Behind: "behind",
+        Overlapping: "overlapping",
+        Error: "error"
+    }
+);
+
+impl Question {
+    /// The answer.
+    ///
+    /// # Errors
+    /// As the question itself.
+    pub fn ask(self, cast: &Cast) -> Result<Answer, QueryError> {
+        self.ask_observed(cast, &mut Nobody)
+    }
+
+    /// The same, with an observer, as for [`Cast::first_contact_observed`].
+    ///
+    /// # Errors
+    /// As the question itself.
+    pub fn ask_observed<O: Observer>(
+        self,
+        cast: &Cast,
+        observer: &mut O,
+    ) -> Result<Answer, QueryError> {
+        Ok(match self {
+            Self::Contact => Answer::Contact(cast.contact_range_observed(observer)?),
+            Self::Clearance => Answer::Clearance(cast.clearance_observed(observer)?),
+        })
+    }
+}
+
+impl Answer {
+    /// As front ends write it; `cast` is the one that was asked.
+    pub fn record(&self, cast: &Cast) -> Record {
+        match self {
+            Self::Contact(range) => Record::of_contact_range(range, cast),
+            Self::Clearance(clearance) => Record::of_clearance(clearance, cast),
+        }
+    }
+
+    /// Its proof as a file; `cast` is the one that was asked.
+    #[cfg(feature = "json")]
+    pub fn proof(&self, cast: &Cast<'_>) -> crate::ProofFile {
+        match self {
+            Self::Contact(range) => crate::ProofFile::of_range(cast, range),
+            Self::Clearance(clearance) => crate::ProofFile::of_clearance(cast, clearance),
+        }
+    }
 }
 
 impl Record {

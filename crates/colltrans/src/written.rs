@@ -4,8 +4,6 @@ use thiserror::Error;
 
 use crate::answer::{Solver, StartedFrom};
 use crate::cast::solid::StartOverlap;
-#[cfg(feature = "serde")]
-use crate::record::Ending;
 use crate::solve::options::NarrowFrom;
 
 /// A text that names none of the choices.
@@ -51,24 +49,12 @@ macro_rules! named {
     };
 }
 
+#[cfg(feature = "serde")]
+pub(crate) use named;
+
 named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
 named!("start", StartedFrom { Features: "features", Region: "region", Scratch: "scratch" });
 named!("start", NarrowFrom { Ellipsoids: "ellipsoids", Center: "center" });
-#[cfg(feature = "serde")]
-named!(
-    "outcome",
-    Ending {
-        Contact: "contact",
-        Grazing: "grazing",
-        Separated: "separated",
-        Free: "free",
-        Blocked: "blocked",
-        Slides: "slides",
-        Behind: "behind",
-        Overlapping: "overlapping",
-        Error: "error"
-    }
-);
 named!("meaning of an overlap", StartOverlap { Refuse: "refuse", Ignore: "ignore" });
 
 /// A number that is infinite where nothing is known or nothing stops: JSON has no such number, so it

@@ -1,7 +1,7 @@
 //! What serde writes of an answer comes back in bits, and what is not one is refused.
 #![cfg(feature = "json")]
 
-use colltrans::record::Ending;
+use colltrans::record::{Ending, Question};
 use colltrans::solid::{SolidCertificate, SolidOptions, StartOverlap};
 use colltrans::{
     Bounded, Cast, Clearance, ContactRange, FaceId, Feature, InputVertex, Intersection, NarrowFrom,
@@ -107,6 +107,7 @@ fn names_are_those_that_serde_writes() {
     named(&[Solver::Auto, Solver::Cta, Solver::Portal]);
     named(&[StartedFrom::Features, StartedFrom::Region, StartedFrom::Scratch]);
     named(&[NarrowFrom::Ellipsoids, NarrowFrom::Center]);
+    named(&[Question::Contact, Question::Clearance]);
     named(&[StartOverlap::Refuse, StartOverlap::Ignore]);
     named(&[Ending::Contact, Ending::Grazing, Ending::Separated, Ending::Free, Ending::Blocked]);
     named(&[Ending::Slides, Ending::Behind, Ending::Overlapping, Ending::Error]);

@@ -6,11 +6,12 @@
 //! reads in the same way, to the last bit. What is said of a body is handed on as it is written.
 
 use colltrans::Solver;
+use colltrans::record::Question;
 use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use serde_json::value::RawValue;
 
-use super::source::{Asked, PoseSource, Query};
+use super::source::{PoseSource, Query};
 
 /// The query of a line, if it has the usual form.
 pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
@@ -28,7 +29,7 @@ pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
         moving_pose: found.moving_pose.unwrap_or_default(),
         fixed_pose: found.fixed_pose.unwrap_or_default(),
         direction: found.direction?,
-        asked: found.asked,
+        question: found.question,
         graze_tolerance: found.graze_tolerance,
         solver: found.solver,
         tolerance: None,
@@ -45,7 +46,7 @@ struct Found<'a> {
     moving_pose: Option<PoseSource>,
     fixed_pose: Option<PoseSource>,
     direction: Option<[f64; 3]>,
-    asked: Option<Asked>,
+    question: Option<Question>,
     graze_tolerance: Option<f64>,
     solver: Option<Solver>,
 }
@@ -60,7 +61,7 @@ impl<'a> Found<'a> {
             "fixed_pose" => once(&mut self.fixed_pose, reader.pose()?),
             "direction" => once(&mut self.direction, reader.numbers()?),
             "graze_tolerance" => once(&mut self.graze_tolerance, reader.number()?),
-            "query" => once(&mut self.asked, reader.word()?),
+            "query" => once(&mut self.question, reader.word()?),
             "solver" => once(&mut self.solver, reader.word()?),
             _ => None,
         }
@@ -243,7 +244,7 @@ mod tests {
             .chain(*graze_tolerance);
         let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
         let id = query.id.map_or("null", RawValue::get);
-        format!("{id} {bits:?} {:?} {:?}", query.asked, query.solver)
+        format!("{id} {bits:?} {:?} {:?}", query.question, query.solver)
     }
 
     /// Whether the line has the usual form; if so, that `serde_json` reads the same.

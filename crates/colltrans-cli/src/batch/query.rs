@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::record::Record;
+use colltrans::record::{Question, Record};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::BodyOptions;
@@ -16,13 +16,13 @@ use super::cache::{Built, Cache, Key, Shape};
 use super::fast_path;
 use super::pipeline::Line;
 use super::recent::Recent;
-use super::source::{Asked, BodySource, PoseSource, Query};
+use super::source::{BodySource, PoseSource, Query};
 use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
 use crate::record::{Hulls, Line as Told};
 use crate::replay;
-use crate::solid::{self, Question};
+use crate::solid::{self, PartsQuery};
 
 /// What all lines of a batch have in common.
 pub(crate) struct Batch {
@@ -209,18 +209,16 @@ impl<B> Query<'_, B> {
         let cast = Cast::new(moving_at, fixed_at, direction)
             .and_then(|cast| cast.with_options(options))
             .map_err(|error| error.to_string())?;
-        let answered = match self.asked.unwrap_or(Asked::Contact) {
-            Asked::Contact => cast.contact_range().map(|range| Told::of_range(&range, &cast)),
-            Asked::Clearance => cast.clearance().map(|far| Told::of_clearance(&far, &cast)),
-        };
-        let told = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
+        let answered = self.question.unwrap_or(Question::Contact).ask(&cast);
+        let answer = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
+        let told = Told::from(answer.record(&cast));
         let notes = [moving, fixed].into_iter().flat_map(|part| part.notes.clone()).collect();
         Ok(Told { hull: Hulls::of(moving.excess, fixed.excess), notes, ..told })
     }
 
     /// At least one of the bodies is a solid.
     fn of_solids(&self, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Told, String> {
-        if self.asked == Some(Asked::Contact) {
+        if self.question == Some(Question::Contact) {
             return Err(r#"solids are asked for their clearance: "query": "clearance""#.into());
         }
         if self.graze_tolerance.is_some() {
@@ -232,7 +230,7 @@ impl<B> Query<'_, B> {
         let [moving, fixed] = shapes.map(as_solid);
         let moving = moving.map_err(|e| format!("moving: {e}"))?;
         let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
-        let question = Question {
+        let question = PartsQuery {
             moving: moving.get(),
             moving_pose: poses[0],
             fixed: fixed.get(),

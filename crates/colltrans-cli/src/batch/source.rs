@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use colltrans::Solver;
+use colltrans::record::Question;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -20,19 +21,11 @@ pub(super) struct Query<'a, Body> {
     pub(super) fixed_pose: PoseSource,
     pub(super) direction: [f64; 3],
     #[serde(rename = "query")]
-    pub(super) asked: Option<Asked>,
+    pub(super) question: Option<Question>,
     pub(super) graze_tolerance: Option<f64>,
     pub(super) solver: Option<Solver>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
-}
-
-/// Which question is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Asked {
-    Contact,
-    Clearance,
 }
 
 #[derive(Debug, Deserialize)]

@@ -5,7 +5,7 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-use colltrans::record::{Ending, Record};
+use colltrans::record::{Ending, Question, Record};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::args::{ClearanceArguments, PairArguments, Sides, Taken};
@@ -17,8 +17,7 @@ use crate::picture::draw_solids;
 use crate::progress;
 use crate::proof;
 use crate::record::Line;
-use crate::report::Asked;
-use crate::solid::{Body, Question};
+use crate::solid::{Body, PartsQuery};
 
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let Sides { files, taken } = arguments.sides()?;
@@ -26,7 +25,7 @@ pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let request = Request::of(&arguments.pair, &inputs)?;
     if let ([moving, fixed], true) = (inputs.as_slice(), taken != Taken::Parts) {
         match cast::load([moving, fixed], &arguments.pair.body_options()) {
-            Ok([moving, fixed]) => return request.convex(Asked::Clearance, [&moving, &fixed]),
+            Ok([moving, fixed]) => return request.convex(Question::Clearance, [&moving, &fixed]),
             Err(error) if taken == Taken::AsTheyAre && is_part(&error) => {}
             Err(error) => return Err(Failure::new(Code::Input, refusal(&error))),
         }
@@ -43,7 +42,7 @@ fn parts(
     let [moving, fixed] = load(files, &arguments.part_options())?;
     request.tell([&moving.notes, &fixed.notes]);
     let [moving_pose, fixed_pose] = request.poses;
-    let question = |direction| Question {
+    let question = |direction| PartsQuery {
         moving: &moving,
         moving_pose,
         fixed: &fixed,
@@ -58,7 +57,7 @@ fn parts(
     }
 }
 
-fn answer_one(arguments: &PairArguments, question: &Question<'_>) -> Result<(), Failure> {
+fn answer_one(arguments: &PairArguments, question: &PartsQuery<'_>) -> Result<(), Failure> {
     let bar = progress::steps(question.pairs(), "looking");
     let answer = question.ask(|| bar.inc(1));
     bar.finish_and_clear();
@@ -83,7 +82,7 @@ fn answer_one(arguments: &PairArguments, question: &Question<'_>) -> Result<(), 
 /// One line for each direction, also for those without an answer.
 fn scan<'a>(
     as_json: bool,
-    questions: impl ExactSizeIterator<Item = Question<'a>>,
+    questions: impl ExactSizeIterator<Item = PartsQuery<'a>>,
 ) -> Result<(), Failure> {
     let (count, mut failed) = (questions.len(), 0);
     if !as_json {

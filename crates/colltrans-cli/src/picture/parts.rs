@@ -21,7 +21,7 @@ use super::size::working_size;
 use super::solid::Solid;
 use super::story::{Story, components, quantity, short};
 use super::{Cast, viewpoint};
-use crate::solid::{Answer, Question};
+use crate::solid::{Answer, PartsQuery};
 
 /// Hidden edges are drawn if no more edges than this are drawn at all.
 const FEW_EDGES: usize = 600;
@@ -31,7 +31,7 @@ const SLACK: f64 = 1e-4;
 const MOVING_TONES: usize = SHADES + 1;
 
 /// The SVG file of an answer.
-pub(crate) fn draw_solids(question: &Question<'_>, answer: &Answer) -> String {
+pub(crate) fn draw_solids(question: &PartsQuery<'_>, answer: &Answer) -> String {
     let direction = question.direction;
     let story = story(question, answer);
     let (vertices, triangles) = question.moving.surface(&question.moving_pose, story.origin);
@@ -52,7 +52,7 @@ pub(crate) fn draw_solids(question: &Question<'_>, answer: &Answer) -> String {
 }
 
 /// What the picture has to tell.
-fn story(question: &Question<'_>, answer: &Answer) -> Story {
+fn story(question: &PartsQuery<'_>, answer: &Answer) -> Story {
     let length = question.direction.length();
     let record = &answer.record;
     let mut details = Vec::new();

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-14;
 
 /// How far a body can move from where it is.
 #[derive(Clone, Copy)]
-pub(crate) struct Question<'a> {
+pub(crate) struct PartsQuery<'a> {
     pub(crate) moving: &'a Body,
     pub(crate) moving_pose: Pose,
     pub(crate) fixed: &'a Body,
@@ -37,7 +37,7 @@ pub(crate) struct Answer {
     pub(crate) error: f64,
 }
 
-impl Question<'_> {
+impl PartsQuery<'_> {
     /// Pairs of files that may be looked at.
     pub(crate) fn pairs(&self) -> usize {
         self.moving.pieces.len() * self.fixed.pieces.len()

@@ -17,7 +17,7 @@ use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid}
 
 use crate::body::{hint, of_file, refusal};
 use crate::numbers::counted;
-pub(crate) use ask::{Answer, Question};
+pub(crate) use ask::{Answer, PartsQuery};
 
 /// A body of one piece or several.
 #[derive(Debug)]

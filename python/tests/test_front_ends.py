@@ -91,15 +91,16 @@ def test_the_same_file_is_the_same_body(
     place = {"translation": pose[:3], "rotation": pose[3:]}
     asked = {"moving": body, "fixed": {"solid": str(plate)}, "direction": DIRECTION}
     (there,) = batch([{**asked, "moving_pose": place, "query": "clearance"}])
-    *loaded, seen = of_page(path, plate, pose, "open" if is_open else "solid")
+    *loaded, told = of_page(path, plate, pose, "open" if is_open else "solid")
+    seen = told["record"]
     found = here.contact
     assert query.tolerance == there["tolerance"] == seen["tolerance"]
     assert here.distance == there["distance"] == seen["distance"]
-    assert found.translation == there["translation"] == seen["first"]["t"]
+    assert found.translation == there["translation"] == seen["translation"]
     assert found.shrunk_distance == there["shrunk_distance"] == seen["shrunk_distance"]
     assert query.exit() == there["exit"] == seen["exit"]
     assert np.array_equal(found.normal, there["normal"])
-    assert found.normal.tolist() == seen["first"]["normal"]
+    assert found.normal.tolist() == seen["normal"]
     assert loaded[0]["body"]["notes"] == moving.notes
     assert there.get("notes", []) == [f"{path}: {note}" for note in moving.notes]
     if name.endswith((".ply", ".stl")):
@@ -122,7 +123,7 @@ def test_the_same_file_is_the_same_hull(batch: Batch) -> None:
     }
     (there,) = batch([{**asked, "direction": DIRECTION, "moving_pose": place}])
     *loaded, seen = of_page(bolt, bracket, TILTED, "hull")
-    assert here.first.translation == there["translation"] == seen["first"]["t"]
+    assert here.first.translation == there["translation"] == seen["record"]["translation"]
     # The page does not look at depths, so that it opens at once.
     (note,) = hull.notes
     assert note.startswith(loaded[0]["body"]["notes"][0])

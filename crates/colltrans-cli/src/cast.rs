@@ -19,13 +19,13 @@ use crate::record::{Hulls, Line};
 use crate::replay;
 use crate::report;
 
-pub(crate) fn run(arguments: &CastArguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &CastArguments, question: Question) -> Result<(), Failure> {
     let files = [&*arguments.moving, &*arguments.fixed];
     let request = Request::of(&arguments.pair, &files)?;
     let parts = load(files, &arguments.pair.body_options());
     let [moving, fixed] =
         parts.map_err(|error| Failure::new(Code::Input, body::refusal(&error)))?;
-    request.convex(Question::Contact, [&moving, &fixed])
+    request.convex(question, [&moving, &fixed])
 }
 
 /// Both files as convex bodies.
@@ -149,7 +149,7 @@ fn answer_one(
     let Some(path) = &arguments.picture else { return Ok(()) };
     let range = match answer {
         Answer::Contact(range) => range,
-        Answer::Clearance(_) => cast.contact_range()?,
+        _ => cast.contact_range()?,
     };
     outputs::write(path, draw(&Scene { cast, answer: &range }).as_bytes())
 }

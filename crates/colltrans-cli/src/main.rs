@@ -33,6 +33,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
+use colltrans::record::Question;
 
 use args::{Arguments, Command};
 
@@ -45,7 +46,7 @@ fn main() -> ExitCode {
         Err(told) => return told_by_the_parser(&told),
     };
     let result = match arguments.command {
-        Command::Cast(arguments) => cast::run(&arguments),
+        Command::Cast(arguments) => cast::run(&arguments, Question::Contact),
         Command::Clearance(arguments) => clearance::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Assembly(arguments) => assembly::run(&arguments),

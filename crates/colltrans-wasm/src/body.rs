@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use colltrans::solid::ShellKind;
-use colltrans::{ConvexPolyhedron, Solid};
+use colltrans::{Aabb, ConvexPolyhedron, Solid};
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, Take};
 use colltrans_mesh::{Format, Mesh, sides};
 use glam::DVec3;
@@ -130,8 +130,7 @@ fn refusal(name: &str, error: &Refused) -> Refusal {
 }
 
 fn bounds(vertices: &[DVec3]) -> [[f64; 3]; 2] {
-    let first = vertices.first().copied().unwrap_or_default();
-    let [low, high] = vertices.iter().fold([first; 2], |[low, high], &v| [low.min(v), high.max(v)]);
+    let Aabb { low, high } = Aabb::of_points(vertices.iter().copied());
     [low.to_array(), high.to_array()]
 }
 

@@ -9,14 +9,14 @@ use glam::DVec3;
 
 use super::super::scene::{Corner, Scene, Side};
 use super::super::sign::rough_turn;
+use crate::body::Aabb;
 
 /// A facet, its shadow running counter-clockwise.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facet {
     pub(crate) triangle: u32,
     pub(crate) corners: [Corner; 3],
-    pub(crate) low: DVec3,
-    pub(crate) high: DVec3,
+    pub(crate) bounds: Aabb,
     /// Its plane.
     slope: Slope,
 }
@@ -36,10 +36,8 @@ impl Facet {
             return None;
         }
         let places = corners.map(|c| c.at);
-        let [a, b, c] = places;
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let slope = Slope::new(scene, places);
-        Some(Self { triangle: triangle as u32, corners, low, high, slope })
+        let (bounds, slope) = (Aabb::of_triangle(places), Slope::new(scene, places));
+        Some(Self { triangle: triangle as u32, corners, bounds, slope })
     }
 
     /// At least so far all corners of another facet lie below the plane, for a `sign` of 1, or above it,

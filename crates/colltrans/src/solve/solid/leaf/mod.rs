@@ -84,8 +84,8 @@ pub(crate) enum Wanted {
 /// has to stay below.
 pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
     let noise = 4.0 * scene.noise;
-    let apart = |k: usize| g.low[k] - f.high[k] > noise || f.low[k] - g.high[k] > noise;
-    if apart(0) || apart(1) || g.low.z - f.high.z - noise >= limit {
+    let apart = |axis: usize| f.bounds.is_apart(&g.bounds, axis, noise);
+    if apart(0) || apart(1) || g.bounds.low.z - f.bounds.high.z - noise >= limit {
         return None;
     }
     // A gap is linear over either facet: nowhere less than at the corners of one.

@@ -149,7 +149,7 @@ fn convex_facts(body: &ConvexPolyhedron, notes: &[Note]) -> Facts {
 }
 
 fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
-    let faces = body.facet_indices().iter().max().map_or(0, |last| *last as usize + 1);
+    let faces = body.facet_indices().iter().max().map_or(0, |last| last.index() + 1);
     Facts {
         kind: "solid",
         faces,

@@ -4,7 +4,7 @@ use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
     HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing, Options, Outcome, OverlapAhead,
-    Pose, PoseError, QueryError, Separation, TopologyError, WhyFree, cast,
+    Pose, PoseError, QueryError, Separation, TopologyError, VertexId, WhyFree, cast,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
@@ -308,7 +308,7 @@ fn tampered_certificates_are_refused() {
         assert!(matches!(refused, CertificateError::Rounding { .. }), "{refused}");
     }
     let mut pairs = good.pairs;
-    pairs[0].fixed = 99;
+    pairs[0].fixed = VertexId(99);
     assert!(verify(&Certificate { pairs, ..good }).is_err());
     let beside = Pose::from_translation(DVec3::new(-3.0, 5.0, 0.0)).unwrap();
     let Outcome::Separated(separated) = cast(&cube, &beside, &cube, &world, DVec3::X).unwrap()

@@ -16,6 +16,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::body::InputFacet;
 use crate::number::extent;
 use crate::number::noise::{self, Noise};
 use crate::setting::{Setting, VertexPair};
@@ -153,14 +154,30 @@ pub enum CertificateError {
         /// Its number; the number of all if the cover ends too early.
         entry: usize,
     },
-    /// Two facets that do not stop the body.
-    #[error("facets {moving} and {fixed} do not stop the body")]
+    /// Two triangles that do not stop the body.
+    #[error("triangles {moving} and {fixed} do not stop the body")]
     Facets {
-        /// Of the moving body, by position.
+        /// Of the moving body, by its position in [`Solid::triangles`](crate::Solid::triangles).
         moving: u32,
         /// Of the fixed body.
         fixed: u32,
     },
+    /// Facets that are said to stop the body, but are not those of the proof.
+    #[error(
+        "facets {moving} and {fixed} of the input are not those that are proven to stop the body"
+    )]
+    OtherFacets {
+        /// Of the moving body.
+        moving: InputFacet,
+        /// Of the fixed body.
+        fixed: InputFacet,
+    },
+}
+
+impl CertificateError {
+    pub(crate) const fn triangles([moving, fixed]: [u32; 2]) -> Self {
+        Self::Facets { moving, fixed }
+    }
 }
 
 /// A proof to check: of a contact, or of a separation.
@@ -278,8 +295,8 @@ impl Certificate {
         let mut mean = DVec3::ZERO;
         for (pair, (&vertices, weight)) in self.pairs.iter().zip(weights).enumerate() {
             let VertexPair { moving, fixed } = vertices;
-            let known = (moving as usize) < setting.moving.vertices().len()
-                && (fixed as usize) < setting.fixed.vertices().len();
+            let known = moving.index() < setting.moving.vertices().len()
+                && fixed.index() < setting.fixed.vertices().len();
             if !known {
                 return Err(CertificateError::UnknownVertex { pair });
             }

@@ -2,7 +2,8 @@
 
 use colltrans::solid::{Overlap, SolidError, SolidOptions, SolidOverlap, StartOverlap};
 use colltrans::{
-    Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, InputFacet, Outcome, Pose, Solid,
+    Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, InputFacet, Outcome, Pose,
+    QueryError, Solid,
 };
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
@@ -520,4 +521,34 @@ fn an_intersection_names_what_meets() {
     assert!(matches!(inside.evidence.place, Some(Overlap::MovingInside(_))));
     let apart = cast(&inner, &other, DVec3::X).intersects().expect("an answer");
     assert!(!apart.meets && apart.evidence.place.is_none() && apart.evidence.steps.nodes > 0);
+}
+
+/// As thick as the tolerance, or less, in the body's own frame; whatever its pose.
+#[test]
+fn a_tolerance_that_leaves_nothing_of_a_body_is_an_error() {
+    let plate = cuboid([0.0; 3], [9.0, 9.0, 0.5]);
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let turned = Pose::new(DQuat::from_rotation_x(0.7), DVec3::Z * 20.0).expect("a pose");
+    let down = |a: &Solid, b: &Solid, tolerance: f64| {
+        let cast = Cast::new(a.at(turned), b.at(Pose::IDENTITY), DVec3::NEG_Z).expect("a query");
+        cast.with_tolerance(tolerance)?.clearance()
+    };
+    assert!(down(&plate, &cube, 0.499).is_ok() && down(&cube, &plate, 0.499).is_ok());
+    for tolerance in [0.5, 0.75, 1e6] {
+        let nothing_left = |which| QueryError::NothingLeft { which, tolerance, extent: 0.5 };
+        assert_eq!(down(&plate, &cube, tolerance), Err(nothing_left("moving")));
+        if tolerance < 1.0 {
+            assert_eq!(down(&cube, &plate, tolerance), Err(nothing_left("fixed")));
+        }
+    }
+    // Sheets are not shrunk, so they stay.
+    let sheet = Solid::from_open_mesh(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]);
+    assert!(down(&sheet.expect("a sheet"), &cube, 0.75).is_ok());
+    // The default tolerance of a turned pose, far away, is a tolerance too.
+    let film = cuboid([0.0; 3], [1.0, 1.0, 1e-9]);
+    let far = Pose::new(turned.rotation(), DVec3::Z * 1e9).expect("a pose");
+    let cast = Cast::new(film.at(far), cube.at(Pose::IDENTITY), DVec3::NEG_Z).expect("a query");
+    let refused = cast.clearance().map(|_| ()).expect_err("thinner than rounding");
+    assert!(matches!(refused, QueryError::NothingLeft { which: "moving", .. }), "{refused}");
+    assert_eq!(cast.certified_clearance().map(|_| ()), Err(refused));
 }

@@ -325,8 +325,35 @@ fn two_meshes_are_asked_as_what_they_are() {
     let parts = placed("block.off table.off --tolerance 0.1");
     assert_eq!(parts["tolerance"], 0.1, "{parts}");
     assert_eq!(placed("pin.off plate.off --hull")["solver"], "portal");
-    let thin = placed("block.off plate.off --tolerance 9");
+    // Nothing is left of the table, but something of both together.
+    let thin = placed("table.off block.off --from plate.off --tolerance 1.5");
     assert!(thin["notes"][0].as_str().unwrap().contains("inside out"), "{thin}");
+}
+
+#[test]
+fn a_tolerance_that_leaves_nothing_of_a_part_is_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    let words = "block.off --from table.off --direction -z --moving-pose 0,0,5 --tolerance";
+    ask(folder, &format!("{words} 0.999"));
+    for tolerance in ["1", "1.5"] {
+        let said = ["leaves nothing of the fixed body, which is 1 thick", tolerance];
+        refused(folder, &format!("{words} {tolerance}"), 2, &said);
+    }
+    // Of a file among others nothing is left, which is told; what it overlaps as it is is named.
+    let words = "table.off block.off --from plate.off --direction z --tolerance 1.5";
+    let (within, notes) = ask(folder, words);
+    assert_eq!(within["outcome"], "overlapping", "{within}");
+    assert_eq!(within["start_overlaps"].as_array().unwrap().len(), 1, "{within}");
+    assert!(notes.contains("table.off") && notes.contains("inside out"), "{notes}");
+    let solid = |name: &str| serde_json::json!({ "solid": name });
+    let batch = serde_json::json!({
+        "moving": solid("block.off"), "fixed": solid("table.off"), "direction": [0, 0, -1],
+        "moving_pose": { "translation": [0, 0, 5] }, "tolerance": 1
+    });
+    std::fs::write(folder.join("thin.jsonl"), batch.to_string()).unwrap();
+    let told = stdout(&colltrans(folder).args(["batch", "thin.jsonl"]).output().unwrap());
+    assert!(told.contains("which is 1 thick"), "{told}");
 }
 
 #[test]

@@ -19,6 +19,7 @@ use thiserror::Error;
 use crate::body::InputFacet;
 use crate::number::extent;
 use crate::number::noise::{self, Noise};
+use crate::setting::error::QueryError;
 use crate::setting::{Setting, VertexPair};
 
 /// Both bounds of a collision translation with their proofs (section 1 of the paper).
@@ -145,6 +146,9 @@ pub enum CertificateError {
         /// The one of the cast.
         asked: f64,
     },
+    /// What it is about cannot be asked.
+    #[error("there is no such query: {0}")]
+    Query(#[from] QueryError),
     /// The bodies do not do at the start what it says.
     #[error("what is said of the bodies where they are does not hold")]
     Start,

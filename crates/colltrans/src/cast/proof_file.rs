@@ -276,19 +276,18 @@ impl ProofFile {
     /// # Errors
     /// The first thing that is not proven.
     pub fn check(&self) -> Result<(), CertificateError> {
-        let impossible = |_| CertificateError::Start;
         let [moving, fixed] = self.poses;
         match (&self.bodies, &self.statement) {
             (Bodies::Convex(bodies), statement) => {
                 let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction).map_err(impossible)?;
+                let cast = Cast::new(placed[0], placed[1], self.direction)?;
                 statement.check(&cast)
             }
             (Bodies::Solids { made, .. }, Statement::Clearance(statement)) => {
                 let placed = [made[0].at(moving), made[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction).map_err(impossible)?;
+                let cast = Cast::new(placed[0], placed[1], self.direction)?;
                 let options = options(statement.start_overlap, statement.certificate.tolerance);
-                statement.check(&cast.with_options(options).map_err(impossible)?)
+                statement.check(&cast.with_options(options)?)
             }
             (Bodies::Solids { .. }, _) => Err(CertificateError::Start),
         }

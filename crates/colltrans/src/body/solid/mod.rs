@@ -322,6 +322,17 @@ impl Solid {
         !self.is_open(self.spans[shell as usize].triangle as usize)
     }
 
+    /// Whether nothing is left of a closed body when it is shrunk by this amount, seen by its box alone:
+    /// then every point of it is at most as deep.
+    pub(crate) fn vanishes(&self, amount: f64) -> bool {
+        amount > 0.0 && 2.0 * amount >= self.thickness() && self.is_closed()
+    }
+
+    /// The smallest side of its box.
+    pub(crate) fn thickness(&self) -> f64 {
+        self.bounds().size().min_element()
+    }
+
     /// Whether some shell is closed, so that there is an inside.
     pub(crate) fn has_inside(&self) -> bool {
         self.report.count(ShellKind::Closed) > 0

@@ -177,7 +177,8 @@ impl<'a> Bodies<'a> {
         let tolerance = Cast::new(a, b, DVec3::Z).ok()?.least_tolerance()? * DEEPER;
         let whole = |k: usize| {
             let solid = &self.solids[k];
-            solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
+            let fits = tolerance < solid.bounds().size().min_element();
+            fits && solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
                 report.inverted.is_empty() && volume(&smaller) > 0.0 && smaller.is_closed()
             })
         };

@@ -205,7 +205,7 @@ fn hull(points: &[DVec3]) -> Mesh {
         face.rotate_left(first);
     }
     faces.sort_unstable();
-    Mesh::new(kept.iter().map(|&k| points[k as usize]).collect(), faces)
+    Mesh::new(kept.iter().map(|v| points[v.index()]).collect(), faces)
 }
 
 /// The same surface, each polygon cut into a fan of triangles.

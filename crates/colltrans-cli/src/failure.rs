@@ -91,9 +91,9 @@ impl Failure {
 
 impl From<colltrans::QueryError> for Failure {
     fn from(error: colltrans::QueryError) -> Self {
-        use colltrans::QueryError::{Direction, GrazeTolerance};
+        use colltrans::QueryError::{Direction, GrazeTolerance, NothingLeft};
         let code = match error {
-            Direction { .. } | GrazeTolerance { .. } => Code::Usage,
+            Direction { .. } | GrazeTolerance { .. } | NothingLeft { .. } => Code::Usage,
             _ => Code::Query,
         };
         Self::new(code, error.to_string())

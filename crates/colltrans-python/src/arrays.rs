@@ -159,6 +159,14 @@ fn wrong_shape(array: &Bound<'_, PyAny>, name: &str, wanted: &str) -> PyErr {
     input(name, format_args!("an array of shape {shape}, not {wanted}"))
 }
 
+/// Numbers of vertices or facets for Python.
+pub(crate) fn ids<'py, T: Copy + Into<u32>>(
+    py: Python<'py>,
+    of: &[T],
+) -> Bound<'py, PyArray1<u32>> {
+    PyArray1::from_iter(py, of.iter().map(|&number| number.into()))
+}
+
 /// A vector for Python, without -0: as the command line writes it.
 pub(crate) fn row(py: Python<'_>, v: DVec3) -> Bound<'_, PyArray1<f64>> {
     PyArray1::from_slice(py, &coordinates(v))

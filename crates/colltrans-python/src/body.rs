@@ -8,7 +8,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::arrays::{self, faces, points, row, table, vector};
+use crate::arrays::{self, faces, ids, points, row, table, vector};
 use crate::errors::{OrRaise, error};
 use crate::offset::OffsetReport;
 
@@ -169,7 +169,7 @@ impl ConvexPolyhedron {
     /// ndarray of shape (N,): For each vertex its index in the points or mesh it was made from.
     #[getter]
     fn input_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, self.0.input_indices())
+        ids(py, self.0.input_indices())
     }
 
     /// list of ndarray: The vertices of each face, counter-clockwise as seen from outside.
@@ -225,7 +225,7 @@ impl ConvexPolyhedron {
     /// int
     ///     One of the farthest, to within rounding error.
     fn support(&self, direction: &Bound<'_, PyAny>) -> PyResult<u32> {
-        Ok(self.0.support(vector(direction, "direction")?))
+        Ok(self.0.support(vector(direction, "direction")?).0)
     }
 
     /// What lies at least so deep below every face plane.

@@ -78,7 +78,7 @@ impl Certificate {
     /// ndarray of shape (3, 2): Vertices of the moving and of the fixed body (their own numbers).
     #[getter]
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        table(py, self.proof.pairs.map(|pair| [pair.moving, pair.fixed]))
+        table(py, self.proof.pairs.map(|pair| [pair.moving.0, pair.fixed.0]))
     }
 
     /// ndarray of shape (3,): Weights of the pairs, not negative, of sum 1.

@@ -7,6 +7,7 @@ use std::fmt::Display;
 
 use colltrans::solid::SolidError;
 use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError};
+use colltrans_assembly::{AssemblyError, ReadError};
 use colltrans_mesh::body::{LoadError, Refused};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -46,40 +47,21 @@ pub(crate) trait Raised: Display {
     const CLASS: &'static str;
 }
 
-impl Raised for BuildError {
-    const CLASS: &'static str = "BuildError";
+macro_rules! raised {
+    ($($class:ident: $($error:ty),+;)+) => {$($(
+        impl Raised for $error {
+            const CLASS: &'static str = stringify!($class);
+        }
+    )+)+};
 }
 
-impl Raised for SolidError {
-    const CLASS: &'static str = "BuildError";
-}
-
-impl Raised for Refused {
-    const CLASS: &'static str = "BuildError";
-}
-
-impl Raised for PoseError {
-    const CLASS: &'static str = "PoseError";
-}
-
-impl Raised for CertificateError {
-    const CLASS: &'static str = "CertificateError";
-}
-
-impl Raised for CaseError {
-    const CLASS: &'static str = "CaseError";
-}
-
-impl Raised for QueryError {
-    const CLASS: &'static str = "QueryError";
-}
-
-impl Raised for colltrans_assembly::AssemblyError {
-    const CLASS: &'static str = "AssemblyError";
-}
-
-impl Raised for colltrans_assembly::ReadError {
-    const CLASS: &'static str = "AssemblyError";
+raised! {
+    BuildError: BuildError, SolidError, Refused;
+    PoseError: PoseError;
+    CertificateError: CertificateError;
+    CaseError: CaseError;
+    QueryError: QueryError;
+    AssemblyError: AssemblyError, ReadError;
 }
 
 /// What was computed, or an exception.

@@ -1,9 +1,11 @@
 //! Reports of shrinking and growing.
 
+use colltrans::{InputFacet, InputVertex};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::arrays::ids;
 use crate::frozen::{match_args, pickled};
 
 /// What became of a convex body whose faces were moved.
@@ -49,8 +51,8 @@ impl OffsetReport {
 #[derive(Serialize, Deserialize)]
 pub(crate) struct ShrinkReport {
     farthest: f64,
-    stuck: Vec<u32>,
-    inverted: Vec<u32>,
+    stuck: Vec<InputVertex>,
+    inverted: Vec<InputFacet>,
 }
 
 match_args!(ShrinkReport("farthest", "stuck", "inverted"));
@@ -75,7 +77,7 @@ impl ShrinkReport {
     /// indices of the input.
     #[getter]
     fn stuck<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.stuck)
+        ids(py, &self.stuck)
     }
 
     /// ndarray: Facets that turned inside out, or passed through others, because the body (or a gap in
@@ -83,11 +85,13 @@ impl ShrinkReport {
     /// order.
     #[getter]
     fn inverted<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.inverted)
+        ids(py, &self.inverted)
     }
 
     fn __repr__(&self) -> String {
-        let Self { farthest, stuck, inverted } = self;
+        let farthest = self.farthest;
+        let stuck: Vec<u32> = self.stuck.iter().map(|v| v.0).collect();
+        let inverted: Vec<u32> = self.inverted.iter().map(|f| f.0).collect();
         format!("ShrinkReport(farthest={farthest:?}, stuck={stuck:?}, inverted={inverted:?})")
     }
 }

@@ -16,7 +16,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{self, faces, points, table};
+use crate::arrays::{self, faces, ids, points, table};
 use crate::body::ConvexPolyhedron;
 use crate::errors::OrRaise;
 use crate::offset::ShrinkReport;
@@ -331,13 +331,13 @@ impl Solid {
     /// ndarray of shape (N,): For each vertex its index in the input.
     #[getter]
     fn input_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, self.solid.vertex_indices())
+        ids(py, self.solid.vertex_indices())
     }
 
     /// ndarray of shape (M,): For each triangle the face of the input that it is a part of.
     #[getter]
     fn face_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, self.solid.facet_indices())
+        ids(py, self.solid.facet_indices())
     }
 
     /// bool: Whether all shells are closed; if not, the body is a surface, at least in part.

@@ -208,7 +208,7 @@ impl SolidOverlapping {
     fn place(&self) -> PyResult<(Option<u32>, Option<u32>)> {
         let [moving, fixed] = &self.query.get().bodies;
         let face = |body: &Piece, at: u32| -> PyResult<_> {
-            Ok(Some(body.solid().or_raise()?.facet_indices()[at as usize]))
+            Ok(Some(body.solid().or_raise()?.facet_indices()[at as usize].0))
         };
         Ok(match self.overlap.place {
             Overlap::Facets(s, t) => (face(moving, s)?, face(fixed, t)?),

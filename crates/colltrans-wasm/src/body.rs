@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use colltrans::solid::ShellKind;
-use colltrans::{ConvexPolyhedron, Solid};
+use colltrans::{Aabb, ConvexPolyhedron, Solid};
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, Take};
 use colltrans_mesh::{Format, Mesh, sides};
 use glam::DVec3;
@@ -130,8 +130,7 @@ fn refusal(name: &str, error: &Refused) -> Refusal {
 }
 
 fn bounds(vertices: &[DVec3]) -> [[f64; 3]; 2] {
-    let first = vertices.first().copied().unwrap_or_default();
-    let [low, high] = vertices.iter().fold([first; 2], |[low, high], &v| [low.min(v), high.max(v)]);
+    let Aabb { low, high } = Aabb::of_points(vertices.iter().copied());
     [low.to_array(), high.to_array()]
 }
 
@@ -150,7 +149,7 @@ fn convex_facts(body: &ConvexPolyhedron, notes: &[Note]) -> Facts {
 }
 
 fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
-    let faces = body.facet_indices().iter().max().map_or(0, |last| *last as usize + 1);
+    let faces = body.facet_indices().iter().max().map_or(0, |last| last.index() + 1);
     Facts {
         kind: "solid",
         faces,

@@ -159,8 +159,8 @@ pub use answer::{
 pub use body::error::{BuildError, PoseError, TopologyError};
 pub use body::solid::Solid;
 pub use body::{
-    Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, HalfEdge, InputVertex,
-    OffsetReport, Placed, Pose, VertexId, convexity_defect,
+    Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, HalfEdge, InputFacet,
+    InputVertex, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, Statement, Stop};

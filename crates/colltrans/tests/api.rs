@@ -4,7 +4,7 @@ use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
     HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing, Options, Outcome, OverlapAhead,
-    Pose, PoseError, QueryError, Separation, TopologyError, WhyFree, cast,
+    Pose, PoseError, QueryError, Separation, TopologyError, VertexId, WhyFree, cast,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
@@ -284,7 +284,7 @@ fn tampered_certificates_are_refused() {
     assert!(verify(&good).is_ok());
     for bad in [f64::NAN, f64::INFINITY, 3.0] {
         assert!(verify(&Certificate { lower: bad, ..good }).is_err());
-        // An upper bound that is weaker than what is proven is true; an infinite one claims nothing.
+        // A larger upper bound claims less, an infinite one nothing.
         assert_eq!(verify(&Certificate { upper: bad, ..good }).is_ok(), !bad.is_nan());
         assert!(verify(&Certificate { rounding: bad, ..good }).is_err());
         assert!(verify(&Certificate { normal: DVec3::splat(bad), ..good }).is_err());
@@ -308,7 +308,7 @@ fn tampered_certificates_are_refused() {
         assert!(matches!(refused, CertificateError::Rounding { .. }), "{refused}");
     }
     let mut pairs = good.pairs;
-    pairs[0].fixed = 99;
+    pairs[0].fixed = VertexId(99);
     assert!(verify(&Certificate { pairs, ..good }).is_err());
     let beside = Pose::from_translation(DVec3::new(-3.0, 5.0, 0.0)).unwrap();
     let Outcome::Separated(separated) = cast(&cube, &beside, &cube, &world, DVec3::X).unwrap()

@@ -92,7 +92,7 @@ impl Hash {
             self.number(weight);
         }
         for pair in proof.pairs {
-            self.bits(u64::from(pair.moving) << 32 | u64::from(pair.fixed));
+            self.bits(u64::from(pair.moving.0) << 32 | u64::from(pair.fixed.0));
         }
         let points = contact.points(cast);
         self.vector(points.on_moving);

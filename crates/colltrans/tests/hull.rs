@@ -1,7 +1,7 @@
 //! The hull against brute force, on what other hulls get wrong.
 
 use colltrans::glam::DVec3;
-use colltrans::{BuildError, ConvexPolyhedron, TopologyError, convexity_defect};
+use colltrans::{BuildError, ConvexPolyhedron, InputVertex, TopologyError, convexity_defect};
 use colltrans::{Cast, Outcome, Pose};
 use colltrans_testkit::oracle::input;
 use colltrans_testkit::oracle::settings::{NEARLY_FLAT, narrow_rings, setting};
@@ -31,8 +31,8 @@ fn assert_box(points: &[DVec3], what: &str) {
 fn check(body: &ConvexPolyhedron, points: &[DVec3]) {
     let size = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     assert!(body.hull_error() <= 1e-13 * size, "hull error {:e} of {size}", body.hull_error());
-    for (k, &i) in body.input_indices().iter().enumerate() {
-        assert_eq!(body.vertices()[k], points[i as usize]);
+    for (k, input) in body.input_indices().iter().enumerate() {
+        assert_eq!(body.vertices()[k], points[input.index()]);
     }
     if body.dimension() < 3 {
         return;
@@ -243,7 +243,7 @@ fn unused_vertices_are_ignored_and_indices_kept() {
     let first = Mesh::of_points(vec![DVec3::splat(9.0)]);
     let Mesh { vertices, faces } = first.joined(&cube());
     let body = ConvexPolyhedron::from_mesh(&vertices, &faces, 0.0).unwrap();
-    assert_eq!(body.input_indices(), [1, 2, 3, 4, 5, 6, 7, 8]);
+    assert_eq!(body.input_indices(), [1, 2, 3, 4, 5, 6, 7, 8].map(InputVertex));
 }
 
 proptest! {
@@ -355,7 +355,7 @@ fn a_point_beyond_a_sharp_edge_is_a_vertex() {
     ]);
     let body = ConvexPolyhedron::from_points(&points).unwrap();
     let size = points.iter().map(|p| p.length()).fold(0.0, f64::max);
-    assert!(body.input_indices().contains(&3));
+    assert!(body.input_indices().contains(&InputVertex(3)));
     assert!(body.hull_error() <= 1e-14 * size, "{:e} of {size:e}", body.hull_error());
 }
 

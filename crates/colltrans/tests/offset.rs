@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use colltrans::{BuildError, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
+use colltrans::{BuildError, Cast, Clearance, ConvexPolyhedron, InputVertex, Pose, Solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{
     Mesh, cuboid, of_bits, prism, random_hull, ring_sphere, superellipsoid,
@@ -57,7 +57,7 @@ fn tight(body: &ConvexPolyhedron, vertex: u32) -> Option<DVec3> {
 
 /// Whether moving has left every edge between the vertices that it was between.
 fn same_edges(body: &ConvexPolyhedron, made: &ConvexPolyhedron) -> bool {
-    let edges = |of: &ConvexPolyhedron| -> BTreeSet<[u32; 2]> {
+    let edges = |of: &ConvexPolyhedron| -> BTreeSet<[InputVertex; 2]> {
         let index = of.input_indices();
         let around = |v: u32| of.neighbours(v).iter().map(move |&w| [v, w]);
         let all = (0..of.vertices().len() as u32).flat_map(around);
@@ -248,7 +248,7 @@ proptest! {
     ) {
         let rough = body(&random_hull(n, &mut Random::new(seed)).vertices);
         let body = body(rough.grown(0.5).expect("an amount").0.vertices());
-        prop_assume!(body.input_indices().iter().copied().eq(0..body.vertices().len() as u32));
+        prop_assume!(body.input_indices().iter().copied().eq((0..body.vertices().len() as u32).map(InputVertex)));
         let amount = share * fits(&body);
         let solid = Solid::from_convex(&body).expect("a body");
         let ((made, report), (same, said)) = if grows {
@@ -260,9 +260,9 @@ proptest! {
         prop_assume!(said.stuck.is_empty());
         let mut compared = 0;
         for (v, &from) in made.vertices().iter().zip(made.input_indices()) {
-            let Some(way) = tight(&body, from) else { continue };
+            let Some(way) = tight(&body, from.0) else { continue };
             // Rounding of planes moves a corner the farther the sharper it is.
-            let apart = v.distance(same.vertices()[from as usize]);
+            let apart = v.distance(same.vertices()[from.index()]);
             let sharpness = way.length_squared();
             prop_assert!(apart < 1e-12 * sharpness, "{apart:e}, sharpness {sharpness}");
             compared += 1;
@@ -372,7 +372,7 @@ fn boxes_prisms_and_the_solids_of_them() {
             for (made, same) in pairs {
                 assert_eq!(made.vertices().len(), same.vertices().len());
                 for (v, from) in made.vertices().iter().zip(made.input_indices()) {
-                    let apart = v.distance(same.vertices()[*from as usize]);
+                    let apart = v.distance(same.vertices()[from.index()]);
                     assert!(apart < 1e-13 * size(&body), "{apart:e}");
                 }
                 assert!((made.volume() - same.volume()).abs() < 1e-12 * made.volume());

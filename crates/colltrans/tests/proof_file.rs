@@ -2,9 +2,12 @@
 #![cfg(feature = "json")]
 
 use colltrans::solid::StartOverlap;
-use colltrans::{CaseError, Cast, ConvexPolyhedron, Pose, ProofFile, Solid, Statement};
+use colltrans::{
+    CaseError, Cast, CertificateError, ConvexPolyhedron, Pose, ProofFile, QueryError, Solid,
+    Statement,
+};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
-use colltrans_testkit::solids::{bolt, washer};
+use colltrans_testkit::solids::{bolt, turned, washer};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
@@ -249,13 +252,37 @@ fn shrunk_bodies_that_are_inside_out_are_told() {
     };
     assert_eq!(proof(0.25).inverted(), [0, 0]);
     assert!(!proof(0.25).to_string().contains("inside out"));
-    // The washer is one thick.
-    let inside_out = proof(1.5);
-    let [bolt, washer] = inside_out.inverted();
-    assert!(washer > 0, "{washer}");
-    let words =
-        format!("; shrunk so far, {bolt} facets of the moving body and {washer} of the fixed");
+    // Of the washer, one thick, nothing would be left; a cup whose bottom is as thick has walls.
+    let profile = [[0.0, 0.0], [9.0, 0.0], [9.0, 6.0], [7.0, 6.0], [7.0, 1.0], [0.0, 1.0]];
+    let parts = [solid(&bolt([1.0, 2.0], [-5.0, 8.0, 9.0], 12)), solid(&turned(&profile, 12))];
+    let file = of_parts(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, 1.5);
+    let inside_out = ProofFile::from_json(&file.to_string()).expect("a proof");
+    let [bolt, cup] = inside_out.inverted();
+    assert!(cup > 0, "{cup}");
+    let words = format!("; shrunk so far, {bolt} facets of the moving body and {cup} of the fixed");
     assert!(inside_out.to_string().contains(&words), "{inside_out}");
+}
+
+#[test]
+fn a_proof_of_bodies_of_which_nothing_is_left_is_refused() {
+    let mut file = of_parts(&parts(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.5);
+    file["statement"]["clearance"]["certificate"]["tolerance"] = 2.0.into();
+    let proof = ProofFile::from_json(&file.to_string()).expect("a proof");
+    let refused = proof.check().expect_err("nothing is left of the washer");
+    assert!(
+        matches!(refused, CertificateError::Query(QueryError::NothingLeft { .. })),
+        "{refused}"
+    );
+}
+
+#[test]
+fn facets_that_are_not_those_of_the_proof_are_refused() {
+    let mut file = of_parts(&parts(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.0);
+    let stop = &mut file["statement"]["clearance"]["stop"]["facets"][0];
+    *stop = (stop.as_u64().expect("a number") + 1).into();
+    let proof = ProofFile::from_json(&file.to_string()).expect("a proof");
+    let refused = proof.check().expect_err("another facet");
+    assert!(matches!(refused, CertificateError::OtherFacets { .. }), "{refused}");
 }
 
 /// What is said of solids.

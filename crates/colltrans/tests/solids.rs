@@ -1,7 +1,10 @@
 //! Solids in the situations that people have names for.
 
 use colltrans::solid::{Overlap, SolidError, SolidOptions, SolidOverlap, StartOverlap};
-use colltrans::{Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, Outcome, Pose, Solid};
+use colltrans::{
+    Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, InputFacet, Outcome, Pose,
+    QueryError, Solid,
+};
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DQuat, DVec3};
@@ -203,7 +206,7 @@ fn the_volumes_of_shrunk_and_grown_shells() {
     // other shells, 1 thick, passes through itself: that is said of all their facets.
     let (mirrored, said) = body.shrunk(0.75).expect("an amount");
     near(&mirrored, [-0.125, 91.125, -166.375]);
-    assert_eq!(said.inverted, (0..72).collect::<Vec<u32>>());
+    assert_eq!(said.inverted, (0..72).map(InputFacet).collect::<Vec<_>>());
     assert!(body.shrink_report(0.25).inverted.is_empty());
 }
 
@@ -220,14 +223,14 @@ fn a_wall_all_round_a_cavity_passes_through_itself() {
     for counts in [[1; 3], [3, 2, 4]] {
         let thin = hollow(DVec3::ONE, [-inside, inside], counts);
         let said = |amount: f64| thin.shrink_report(amount).inverted;
-        assert_eq!(said(0.49 * wall), Vec::<u32>::new());
+        assert_eq!(said(0.49 * wall), []);
         // Then both shells are named: each is on the wrong side of the other.
         for amount in [0.51 * wall, wall, 3.0 * wall] {
-            let all = thin.facet_indices().iter().max().expect("facets") + 1;
-            assert_eq!(said(amount), (0..all).collect::<Vec<u32>>(), "{amount}");
+            let last = thin.facet_indices().iter().max().expect("facets");
+            assert_eq!(said(amount), (0..=last.0).map(InputFacet).collect::<Vec<_>>(), "{amount}");
         }
         // Grown, the wall only gets thicker.
-        assert_eq!(thin.grown(0.25).expect("an amount").1.inverted, Vec::<u32>::new());
+        assert_eq!(thin.grown(0.25).expect("an amount").1.inverted, []);
         assert!(thin.shrunk(0.6 * wall).expect("an amount").1.stuck.is_empty());
     }
 }
@@ -238,7 +241,7 @@ fn a_wall_on_one_side_of_a_cavity_passes_through_itself() {
     for counts in [[1; 3], [3, 2, 4]] {
         let cavity = [DVec3::new(-0.5, -0.25, -0.25), DVec3::new(1.0 - wall, 0.5, 0.25)];
         let thin = hollow(DVec3::ONE, cavity, counts);
-        assert_eq!(thin.shrink_report(0.49 * wall).inverted, Vec::<u32>::new());
+        assert_eq!(thin.shrink_report(0.49 * wall).inverted, []);
         assert!(!thin.shrink_report(0.51 * wall).inverted.is_empty());
     }
     // Two cavities, and the wall between them.
@@ -249,7 +252,7 @@ fn a_wall_on_one_side_of_a_cavity_passes_through_itself() {
         slab(corner(low), corner(high), [1, 2, 1]).reversed()
     };
     let two = solid(&block.joined(&cavity(-1.0, -0.03)).joined(&cavity(0.03, 1.0)));
-    assert_eq!(two.shrink_report(0.029).inverted, Vec::<u32>::new());
+    assert_eq!(two.shrink_report(0.029).inverted, []);
     assert!(!two.shrink_report(0.031).inverted.is_empty());
 }
 
@@ -258,7 +261,7 @@ fn the_bottom_of_a_pocket_passes_through_the_underside() {
     // One shell, turned about z: a cup whose bottom is 0.01 thick and whose walls are 1.
     let profile = [[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [1.0, 3.0], [1.0, 0.01], [0.0, 0.01]];
     let cup = solid(&turned(&profile, 24));
-    assert_eq!(cup.shrink_report(0.0049).inverted, Vec::<u32>::new());
+    assert_eq!(cup.shrink_report(0.0049).inverted, []);
     assert!(!cup.shrink_report(0.0051).inverted.is_empty());
     // The other way round, a pocket of that width closes when the body grows.
     let slit = [
@@ -273,7 +276,7 @@ fn the_bottom_of_a_pocket_passes_through_the_underside() {
     ];
     let slit = solid(&turned(&slit, 64));
     let grown = |amount: f64| slit.grown(amount).expect("an amount").1.inverted;
-    assert_eq!(grown(0.0049), Vec::<u32>::new());
+    assert_eq!(grown(0.0049), []);
     assert!(!grown(0.0051).is_empty());
 }
 
@@ -282,13 +285,13 @@ fn pieces_that_overlap_are_no_thin_walls() {
     let bars =
         [cuboid([-3.0, -0.5, -0.5], [3.0, 0.5, 0.5]), cuboid([-0.4, -3.0, -0.7], [0.6, 3.0, 0.3])];
     let cross = Solid::from_pieces(&bars).expect("two pieces");
-    assert_eq!(cross.shrink_report(0.1).inverted, Vec::<u32>::new());
+    assert_eq!(cross.shrink_report(0.1).inverted, []);
     // A rod through the wall of a cavity, and loose parts in it.
     let block = hollow(DVec3::splat(4.0), [DVec3::splat(-2.0), DVec3::splat(2.0)], [3; 3]);
     let rod = solid(&slab(DVec3::new(1.0, -0.3, -0.2), DVec3::new(6.0, 0.31, 0.22), [9, 1, 1]));
     let loose = cuboid([-1.5; 3], [-1.0; 3]);
     let all = Solid::from_pieces([&block, &rod, &loose]).expect("three pieces");
-    assert_eq!(all.shrink_report(0.05).inverted, Vec::<u32>::new());
+    assert_eq!(all.shrink_report(0.05).inverted, []);
 }
 
 #[test]
@@ -518,4 +521,34 @@ fn an_intersection_names_what_meets() {
     assert!(matches!(inside.evidence.place, Some(Overlap::MovingInside(_))));
     let apart = cast(&inner, &other, DVec3::X).intersects().expect("an answer");
     assert!(!apart.meets && apart.evidence.place.is_none() && apart.evidence.steps.nodes > 0);
+}
+
+/// As thick as the tolerance, or less, in the body's own frame; whatever its pose.
+#[test]
+fn a_tolerance_that_leaves_nothing_of_a_body_is_an_error() {
+    let plate = cuboid([0.0; 3], [9.0, 9.0, 0.5]);
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let turned = Pose::new(DQuat::from_rotation_x(0.7), DVec3::Z * 20.0).expect("a pose");
+    let down = |a: &Solid, b: &Solid, tolerance: f64| {
+        let cast = Cast::new(a.at(turned), b.at(Pose::IDENTITY), DVec3::NEG_Z).expect("a query");
+        cast.with_tolerance(tolerance)?.clearance()
+    };
+    assert!(down(&plate, &cube, 0.499).is_ok() && down(&cube, &plate, 0.499).is_ok());
+    for tolerance in [0.5, 0.75, 1e6] {
+        let nothing_left = |which| QueryError::NothingLeft { which, tolerance, extent: 0.5 };
+        assert_eq!(down(&plate, &cube, tolerance), Err(nothing_left("moving")));
+        if tolerance < 1.0 {
+            assert_eq!(down(&cube, &plate, tolerance), Err(nothing_left("fixed")));
+        }
+    }
+    // Sheets are not shrunk, so they stay.
+    let sheet = Solid::from_open_mesh(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]);
+    assert!(down(&sheet.expect("a sheet"), &cube, 0.75).is_ok());
+    // The default tolerance of a turned pose, far away, is a tolerance too.
+    let film = cuboid([0.0; 3], [1.0, 1.0, 1e-9]);
+    let far = Pose::new(turned.rotation(), DVec3::Z * 1e9).expect("a pose");
+    let cast = Cast::new(film.at(far), cube.at(Pose::IDENTITY), DVec3::NEG_Z).expect("a query");
+    let refused = cast.clearance().map(|_| ()).expect_err("thinner than rounding");
+    assert!(matches!(refused, QueryError::NothingLeft { which: "moving", .. }), "{refused}");
+    assert_eq!(cast.certified_clearance().map(|_| ()), Err(refused));
 }

@@ -79,7 +79,7 @@ fn a_polygon_has_one_number() {
     let Feature::Face(number) = numbers[0] else { panic!("{numbers:?}") };
     let is_top = |t: &[u32; 3]| t.iter().all(|v| table.vertices()[*v as usize].z == 0.0);
     let tops = table.triangles().iter().zip(table.facet_indices());
-    assert_eq!(tops.filter(|(t, _)| is_top(t)).map(|(_, f)| FaceId(*f)).min(), Some(number));
+    assert_eq!(tops.filter(|(t, _)| is_top(t)).map(|(_, f)| FaceId(f.0)).min(), Some(number));
 }
 
 #[test]

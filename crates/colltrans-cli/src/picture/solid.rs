@@ -5,7 +5,7 @@
 //! part of the silhouette.
 
 use colltrans::glam::{DVec2, DVec3};
-use colltrans::{ConvexPolyhedron, Feature, Pose};
+use colltrans::{Aabb, ConvexPolyhedron, Feature, Pose};
 use colltrans_picture::{Page, Paint, SHADES, SMOOTH, Stroke, View};
 
 /// A placed body, relative to a point of the scene.
@@ -69,10 +69,8 @@ impl Solid {
 
     /// Centre of the box around the body, and half its diagonal.
     pub(super) fn ball(&self) -> (DVec3, f64) {
-        let first = self.vertices[0];
-        let (low, high) =
-            self.vertices.iter().fold((first, first), |(l, h), &v| (l.min(v), h.max(v)));
-        (0.5 * (low + high), 0.5 * (high - low).length())
+        let bounds = Aabb::of_points(self.vertices.iter().copied());
+        (bounds.center(), 0.5 * bounds.size().length())
     }
 
     /// The vertices furthest along `n` (within a part of the body's size) and their mean.

@@ -103,7 +103,12 @@ impl PartsQuery<'_> {
         let mut found = Vec::new();
         for moving in &self.moving.pieces {
             for fixed in &self.fixed.pieces {
-                let cast = self.cast(&moving.solid, &fixed.solid, [0.0; 2], Some(tolerance))?;
+                let of_files = |by| self.cast(&moving.solid, &fixed.solid, [0.0; 2], Some(by));
+                let cast = match of_files(tolerance) {
+                    // A file among others of which nothing is left is asked as it is.
+                    Err(QueryError::NothingLeft { .. }) => of_files(0.0)?,
+                    cast => cast?,
+                };
                 if let Some(SolidOverlap { least_tolerance: depth, .. }) = cast.start_overlap() {
                     let [moving, fixed] = [moving.name(), fixed.name()].map(Some);
                     found.push(StartOverlapRecord { moving, fixed, depth });

@@ -8,7 +8,7 @@ use glam::DVec3;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::support::{colltrans, data, json, stderr, stdout};
+use crate::support::{colltrans, data, fields, fields_without, json, stderr, stdout};
 
 fn pin(radius: f64, sides: usize, z: [f64; 2]) -> Mesh {
     extruded(&ring(sides, radius, 0.0).collect::<Vec<_>>(), z)
@@ -108,34 +108,28 @@ fn bounds(value: &Value, name: &str) -> [f64; 2] {
     [0, 1].map(|k| bounds[k].as_f64().unwrap_or_else(|| panic!("{name}: {value}")))
 }
 
-fn fields(value: &Value) -> Vec<&str> {
-    let mut names: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
-    names.sort_unstable();
-    names
-}
+/// The fields of a part that is blocked.
+const BLOCKED_FIELDS: [&str; 12] = [
+    "distance",
+    "exit",
+    "exit_bounds",
+    "features",
+    "normal",
+    "outcome",
+    "point",
+    "shrunk_distance",
+    "shrunk_distance_bounds",
+    "tolerance",
+    "translation",
+    "translation_bounds",
+];
 
 #[test]
 fn a_bolt_stops_where_its_head_does() {
     let words = "bolt.stl --from plate.off --direction -z --moving-pose 0,0,7";
     let (answer, notes) = ask(&data(), words);
     assert_eq!(notes, "");
-    let expected = [
-        "distance",
-        "exit",
-        "exit_bounds",
-        "features",
-        "fixed",
-        "moving",
-        "normal",
-        "outcome",
-        "point",
-        "shrunk_distance",
-        "shrunk_distance_bounds",
-        "tolerance",
-        "translation",
-        "translation_bounds",
-    ];
-    assert_eq!(fields(&answer), expected);
+    assert_eq!(fields_without(&answer, &["fixed", "moving"]), BLOCKED_FIELDS);
     assert_eq!(answer["outcome"], "blocked");
     let distance = number(&answer, "distance");
     assert!(distance <= 7.0 && distance > 7.0 - 1e-12, "safe to move by: {answer}");
@@ -331,8 +325,35 @@ fn two_meshes_are_asked_as_what_they_are() {
     let parts = placed("block.off table.off --tolerance 0.1");
     assert_eq!(parts["tolerance"], 0.1, "{parts}");
     assert_eq!(placed("pin.off plate.off --hull")["solver"], "portal");
-    let thin = placed("block.off plate.off --tolerance 9");
+    // Nothing is left of the table, but something of both together.
+    let thin = placed("table.off block.off --from plate.off --tolerance 1.5");
     assert!(thin["notes"][0].as_str().unwrap().contains("inside out"), "{thin}");
+}
+
+#[test]
+fn a_tolerance_that_leaves_nothing_of_a_part_is_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    let words = "block.off --from table.off --direction -z --moving-pose 0,0,5 --tolerance";
+    ask(folder, &format!("{words} 0.999"));
+    for tolerance in ["1", "1.5"] {
+        let said = ["leaves nothing of the fixed body, which is 1 thick", tolerance];
+        refused(folder, &format!("{words} {tolerance}"), 2, &said);
+    }
+    // Of a file among others nothing is left, which is told; what it overlaps as it is is named.
+    let words = "table.off block.off --from plate.off --direction z --tolerance 1.5";
+    let (within, notes) = ask(folder, words);
+    assert_eq!(within["outcome"], "overlapping", "{within}");
+    assert_eq!(within["start_overlaps"].as_array().unwrap().len(), 1, "{within}");
+    assert!(notes.contains("table.off") && notes.contains("inside out"), "{notes}");
+    let solid = |name: &str| serde_json::json!({ "solid": name });
+    let batch = serde_json::json!({
+        "moving": solid("block.off"), "fixed": solid("table.off"), "direction": [0, 0, -1],
+        "moving_pose": { "translation": [0, 0, 5] }, "tolerance": 1
+    });
+    std::fs::write(folder.join("thin.jsonl"), batch.to_string()).unwrap();
+    let told = stdout(&colltrans(folder).args(["batch", "thin.jsonl"]).output().unwrap());
+    assert!(told.contains("which is 1 thick"), "{told}");
 }
 
 #[test]
@@ -418,22 +439,7 @@ fn batches_take_solids() {
     let outcomes: Vec<&str> = results.iter().map(|r| r["outcome"].as_str().unwrap()).collect();
     assert_eq!(outcomes[..4], ["blocked", "free", "blocked", "blocked"], "{results:?}");
     assert_eq!(outcomes[4..9], ["error"; 5], "{results:?}");
-    let names = [
-        "distance",
-        "exit",
-        "exit_bounds",
-        "features",
-        "id",
-        "normal",
-        "outcome",
-        "point",
-        "shrunk_distance",
-        "shrunk_distance_bounds",
-        "tolerance",
-        "translation",
-        "translation_bounds",
-    ];
-    assert_eq!(fields(&results[0]), names);
+    assert_eq!(fields_without(&results[0], &["id"]), BLOCKED_FIELDS);
     assert!((number(&results[0], "translation") - 3.0).abs() < 1e-9);
     assert!((number(&results[2], "translation") - 2.0).abs() < 1e-9, "block on plate");
     assert!((number(&results[3], "distance") - 1.0).abs() < 1e-9, "as convex bodies");

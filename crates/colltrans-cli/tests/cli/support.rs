@@ -58,6 +58,35 @@ pub(crate) fn folder() -> TempDir {
 pub(crate) const CAST: [&str; 7] =
     ["cast", "cube.off", "cube.off", "--direction", "1,0,0", "--moving-pose", "-3,0.25,-0.5"];
 
+/// The fields of a contact as JSON, in order.
+pub(crate) const CONTACT_FIELDS: [&str; 11] = [
+    "exit",
+    "exit_bounds",
+    "features",
+    "normal",
+    "outcome",
+    "point",
+    "rounding",
+    "solver",
+    "steps",
+    "translation",
+    "translation_bounds",
+];
+
+/// The names of an object's fields, in order.
+pub(crate) fn fields(value: &Value) -> Vec<&str> {
+    let mut names: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
+    names.sort_unstable();
+    names
+}
+
+/// The same but for some that are wanted.
+pub(crate) fn fields_without<'a>(value: &'a Value, others: &[&str]) -> Vec<&'a str> {
+    let names = fields(value);
+    assert!(others.iter().all(|name| names.contains(name)), "{value}");
+    names.into_iter().filter(|name| !others.contains(name)).collect()
+}
+
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }

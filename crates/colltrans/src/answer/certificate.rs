@@ -16,8 +16,10 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::body::InputFacet;
 use crate::number::extent;
 use crate::number::noise::{self, Noise};
+use crate::setting::error::QueryError;
 use crate::setting::{Setting, VertexPair};
 
 /// Both bounds of a collision translation with their proofs (section 1 of the paper).
@@ -144,6 +146,9 @@ pub enum CertificateError {
         /// The one of the cast.
         asked: f64,
     },
+    /// What it is about cannot be asked.
+    #[error("there is no such query: {0}")]
+    Query(#[from] QueryError),
     /// The bodies do not do at the start what it says.
     #[error("what is said of the bodies where they are does not hold")]
     Start,
@@ -153,14 +158,30 @@ pub enum CertificateError {
         /// Its number; the number of all if the cover ends too early.
         entry: usize,
     },
-    /// Two facets that do not stop the body.
-    #[error("facets {moving} and {fixed} do not stop the body")]
+    /// Two triangles that do not stop the body.
+    #[error("triangles {moving} and {fixed} do not stop the body")]
     Facets {
-        /// Of the moving body, by position.
+        /// Of the moving body, by its position in [`Solid::triangles`](crate::Solid::triangles).
         moving: u32,
         /// Of the fixed body.
         fixed: u32,
     },
+    /// Facets that are said to stop the body, but are not those of the proof.
+    #[error(
+        "facets {moving} and {fixed} of the input are not those that are proven to stop the body"
+    )]
+    OtherFacets {
+        /// Of the moving body.
+        moving: InputFacet,
+        /// Of the fixed body.
+        fixed: InputFacet,
+    },
+}
+
+impl CertificateError {
+    pub(crate) const fn triangles([moving, fixed]: [u32; 2]) -> Self {
+        Self::Facets { moving, fixed }
+    }
 }
 
 /// A proof to check: of a contact, or of a separation.
@@ -278,8 +299,8 @@ impl Certificate {
         let mut mean = DVec3::ZERO;
         for (pair, (&vertices, weight)) in self.pairs.iter().zip(weights).enumerate() {
             let VertexPair { moving, fixed } = vertices;
-            let known = (moving as usize) < setting.moving.vertices().len()
-                && (fixed as usize) < setting.fixed.vertices().len();
+            let known = moving.index() < setting.moving.vertices().len()
+                && fixed.index() < setting.fixed.vertices().len();
             if !known {
                 return Err(CertificateError::UnknownVertex { pair });
             }

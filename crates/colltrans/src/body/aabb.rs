@@ -22,6 +22,12 @@ impl Aabb {
         all
     }
 
+    /// The least box that holds three points.
+    #[inline]
+    pub(crate) fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
+        Self { low: a.min(b).min(c), high: a.max(b).max(c) }
+    }
+
     /// Makes room for a point.
     #[inline]
     pub fn add(&mut self, point: DVec3) {
@@ -46,6 +52,12 @@ impl Aabb {
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         self.low.cmple(other.high).all() && self.high.cmpge(other.low).all()
+    }
+
+    /// Whether there is more than so much between the boxes along an axis.
+    #[inline]
+    pub(crate) fn is_apart(&self, other: &Self, axis: usize, by: f64) -> bool {
+        self.low[axis] - other.high[axis] > by || other.low[axis] - self.high[axis] > by
     }
 
     /// Whether this box holds all of the other one.

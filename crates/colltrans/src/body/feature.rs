@@ -49,7 +49,7 @@ impl Feature {
             Self::Edge(ends) => ends.to_vec(),
             Self::Face(_) => {
                 let own = self.own_vertices(body);
-                own.into_iter().map(|v| body.inputs()[v.index()].into()).collect()
+                own.into_iter().map(|v| body.inputs()[v.index()]).collect()
             }
         }
     }
@@ -75,7 +75,7 @@ pub(crate) enum Own {
 impl Own {
     /// By the numbers of the input.
     pub(crate) fn named(self, body: &ConvexPolyhedron) -> Feature {
-        let input = |v: u32| InputVertex(body.input_indices()[v as usize]);
+        let input = |v: u32| body.input_indices()[v as usize];
         match self {
             Self::Vertex(v) => Feature::Vertex(input(v)),
             Self::Edge(ends) => Feature::Edge(ends.map(input)),

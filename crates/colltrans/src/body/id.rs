@@ -1,5 +1,14 @@
 //! Numbers of vertices and faces, each kind a type: what a body has kept is numbered anew, and the
 //! input has numbers of its own.
+//!
+//! What leads from one numbering to the other, or is told in an answer, has these types. Plain `u32` are the
+//! body's own numbers where nothing else can be meant: lists of corners that bodies are built and drawn from
+//! ([`Solid::triangles`](crate::Solid::triangles), [`ConvexPolyhedron::face_vertices`]), positions of
+//! triangles in such a list, and walks over a body's edges ([`HalfEdge`](crate::HalfEdge),
+//! [`ConvexPolyhedron::neighbours`]): there types would be taken off again at every use.
+//!
+//! [`ConvexPolyhedron::face_vertices`]: crate::ConvexPolyhedron::face_vertices
+//! [`ConvexPolyhedron::neighbours`]: crate::ConvexPolyhedron::neighbours
 
 use std::fmt;
 
@@ -51,4 +60,7 @@ numbers! {
     FaceId;
     /// A point or mesh vertex of the input, by its number there.
     InputVertex;
+    /// A facet of the input mesh of a [`Solid`](crate::Solid), by its number there: a part of it is a
+    /// triangle of the body, which has a position in [`Solid::triangles`](crate::Solid::triangles).
+    InputFacet;
 }

@@ -16,7 +16,7 @@ pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defe
 pub(crate) use convex::{LargeFace, greatest_on_cycle};
 pub use feature::Feature;
 pub(crate) use feature::feature;
-pub use id::{FaceId, InputVertex, VertexId};
+pub use id::{FaceId, InputFacet, InputVertex, VertexId};
 pub(crate) use inertia::Inertia;
 pub use placed::{Body, Placed};
 pub use pose::Pose;

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{ConvexPolyhedron, Pose};
+use super::{ConvexPolyhedron, InputVertex, Pose};
 
 /// What queries can be asked about: a [`ConvexPolyhedron`] or a
 /// [`Solid`](crate::Solid). Sealed.
@@ -49,7 +49,7 @@ pub(crate) mod sealed {
     /// Bodies are those of this crate.
     pub trait Sealed {
         /// For each vertex of the body its number in the input.
-        fn inputs(&self) -> &[u32];
+        fn inputs(&self) -> &[InputVertex];
         /// The corners of a face, as positions among the body's vertices.
         fn corners_of_face(&self, face: u32) -> Vec<u32>;
     }
@@ -57,7 +57,7 @@ pub(crate) mod sealed {
     /// The vertices of a feature, as positions among the body's vertices.
     pub(crate) fn vertices_of<B: Sealed>(body: &B, feature: Feature) -> Vec<VertexId> {
         let position = |v: InputVertex| {
-            let found = body.inputs().iter().position(|input| *input == v.0);
+            let found = body.inputs().iter().position(|input| *input == v);
             VertexId(found.expect("a feature of this body") as u32)
         };
         match feature {
@@ -69,7 +69,7 @@ pub(crate) mod sealed {
 }
 
 impl sealed::Sealed for ConvexPolyhedron {
-    fn inputs(&self) -> &[u32] {
+    fn inputs(&self) -> &[InputVertex] {
         self.input_indices()
     }
 

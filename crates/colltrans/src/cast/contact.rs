@@ -56,11 +56,10 @@ impl Contact {
         let setting = &cast.setting;
         let noise = setting.noise().point();
         let outward = [setting.moving_normal(self.normal), -setting.fixed_normal(self.normal)];
+        let [p, q] = self.support.numbers();
         Features {
-            moving: feature(setting.moving, outward[0], self.support.moving, noise)
-                .named(setting.moving),
-            fixed: feature(setting.fixed, outward[1], self.support.fixed, noise)
-                .named(setting.fixed),
+            moving: feature(setting.moving, outward[0], p, noise).named(setting.moving),
+            fixed: feature(setting.fixed, outward[1], q, noise).named(setting.fixed),
         }
     }
 

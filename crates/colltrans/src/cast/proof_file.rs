@@ -18,7 +18,7 @@ use crate::answer::{
 };
 use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
-use crate::body::{ConvexPolyhedron, Pose};
+use crate::body::{ConvexPolyhedron, InputFacet, Pose};
 use crate::number::{extent, noise};
 use crate::setting::error::QueryError;
 
@@ -116,9 +116,16 @@ pub struct SolidStatement {
 #[serde(deny_unknown_fields)]
 pub struct Stop {
     /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
-    pub facets: [u32; 2],
+    pub facets: [InputFacet; 2],
     /// Where they meet in their true place: [`SolidContact::translation`](crate::solid::SolidContact::translation).
     pub translation: Bounded,
+}
+
+impl Stop {
+    const fn refused(&self) -> CertificateError {
+        let [moving, fixed] = self.facets;
+        CertificateError::OtherFacets { moving, fixed }
+    }
 }
 
 impl Slide {
@@ -269,19 +276,18 @@ impl ProofFile {
     /// # Errors
     /// The first thing that is not proven.
     pub fn check(&self) -> Result<(), CertificateError> {
-        let impossible = |_| CertificateError::Start;
         let [moving, fixed] = self.poses;
         match (&self.bodies, &self.statement) {
             (Bodies::Convex(bodies), statement) => {
                 let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction).map_err(impossible)?;
+                let cast = Cast::new(placed[0], placed[1], self.direction)?;
                 statement.check(&cast)
             }
             (Bodies::Solids { made, .. }, Statement::Clearance(statement)) => {
                 let placed = [made[0].at(moving), made[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction).map_err(impossible)?;
+                let cast = Cast::new(placed[0], placed[1], self.direction)?;
                 let options = options(statement.start_overlap, statement.certificate.tolerance);
-                statement.check(&cast.with_options(options).map_err(impossible)?)
+                statement.check(&cast.with_options(options)?)
             }
             (Bodies::Solids { .. }, _) => Err(CertificateError::Start),
         }
@@ -393,18 +399,16 @@ impl SolidStatement {
         let (stop, triangles) = match (self.stop, self.certificate.stop) {
             (None, None) => return Ok(()),
             (Some(stop), Some(proof)) => (stop, proof.triangles),
-            (stop, proof) => {
-                let named = stop.map(|stop| stop.facets).or(proof.map(|proof| proof.triangles));
-                let [moving, fixed] = named.unwrap_or_default();
-                return Err(CertificateError::Facets { moving, fixed });
-            }
+            (Some(stop), None) => return Err(stop.refused()),
+            (None, Some(proof)) => return Err(CertificateError::triangles(proof.triangles)),
         };
-        let [moving, fixed] = stop.facets;
+        if facets(cast, triangles) != Some(stop.facets) {
+            return Err(stop.refused());
+        }
         let overlapping = Some(!matches!(self.certificate.start, StartProof::Apart(_)));
         let of_pair = Cast { options: cast.options.with_overlapping(overlapping), ..*cast };
-        let found =
-            of_pair.stop_by(triangles).filter(|_| facets(cast, triangles) == Some(stop.facets));
-        let Some(found) = found else { return Err(CertificateError::Facets { moving, fixed }) };
+        let refused = CertificateError::triangles(triangles);
+        let found = of_pair.stop_by(triangles).ok_or(refused)?;
         let (claimed, proven) = (stop.translation, found.translation);
         let Bounded { value, lower, upper } = claimed;
         if !(lower <= value && value <= upper) {
@@ -421,7 +425,7 @@ impl SolidStatement {
 }
 
 /// The facets of the input that two triangles are parts of.
-fn facets(cast: &Cast<'_, Solid>, [s, t]: [u32; 2]) -> Option<[u32; 2]> {
+fn facets(cast: &Cast<'_, Solid>, [s, t]: [u32; 2]) -> Option<[InputFacet; 2]> {
     let of = |body: &Solid, at: u32| body.facet_indices().get(at as usize).copied();
     Some([of(cast.moving(), s)?, of(cast.fixed(), t)?])
 }

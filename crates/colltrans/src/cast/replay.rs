@@ -12,7 +12,7 @@ use super::Cast;
 use crate::body::error::{BuildError, PoseError};
 use crate::body::pose::PoseRecord;
 use crate::body::solid::SolidError;
-use crate::body::{ConvexPolyhedron, Pose};
+use crate::body::{ConvexPolyhedron, InputVertex, Pose};
 use crate::setting::error::QueryError;
 use crate::solve::options::{Options, OptionsRecord};
 
@@ -218,7 +218,7 @@ pub(super) struct BodyRecord {
     vertices: Vec<[f64; 3]>,
     /// None for a segment or a point; front and back for a flat polygon.
     faces: Vec<Vec<u32>>,
-    input_indices: Vec<u32>,
+    input_indices: Vec<InputVertex>,
     hull_error: f64,
 }
 

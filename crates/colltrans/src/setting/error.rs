@@ -31,6 +31,21 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// Nothing is left of a closed body that is shrunk by half the tolerance: each of its points is that
+    /// near to its surface. Nothing follows for the body as it is; a part of which only walls are thinner
+    /// than the tolerance is not refused ([`Solid::shrink_report`](crate::Solid::shrink_report)).
+    #[error(
+        "the tolerance {tolerance} leaves nothing of the {which} body, which is {extent} thick: \
+         it has to be less than that"
+    )]
+    NothingLeft {
+        /// `"moving"` or `"fixed"`.
+        which: &'static str,
+        /// The tolerance, as given or as chosen.
+        tolerance: f64,
+        /// The smallest side of the body's box in its own frame. Any tolerance below leaves something.
+        extent: f64,
+    },
     /// A convex body that is no solid.
     #[error("a convex body is no solid: {0}")]
     NoSolid(#[from] SolidError),

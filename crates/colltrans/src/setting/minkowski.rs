@@ -120,16 +120,16 @@ impl<'a> MinkowskiDifference<'a> {
         let (near_p, near_q) = (p.support_guess(in_moving), q.support_guess(in_fixed));
         let moving = p.support_from_guess(in_moving, near_p);
         let fixed = q.support_from_guess(in_fixed, near_q);
-        self.point(VertexPair { moving, fixed }, normal)
+        self.point(VertexPair::of(moving, fixed), normal)
     }
 
     /// The same, climbing from a pair believed to be near.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
-        let moving = self.setting.moving.support_from(self.in_moving(normal), near.moving);
-        let fixed = self.setting.fixed.support_from(-self.in_fixed(normal), near.fixed);
-        self.point(VertexPair { moving, fixed }, normal)
+        let moving = self.setting.moving.support_from(self.in_moving(normal), near.moving.0);
+        let fixed = self.setting.fixed.support_from(-self.in_fixed(normal), near.fixed.0);
+        self.point(VertexPair::of(moving, fixed), normal)
     }
 
     /// A normal of the shadow frame in the moving body's frame.
@@ -179,8 +179,8 @@ impl<'a> MinkowskiDifference<'a> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
-        let p = self.setting.moving.vertices()[pair.moving as usize];
-        let q = self.setting.fixed.vertices()[pair.fixed as usize];
+        let p = self.setting.moving.vertices()[pair.moving.index()];
+        let q = self.setting.fixed.vertices()[pair.fixed.index()];
         let at = (transposed(&self.fixed_from_shadow, q) - transposed(&self.moving_from_shadow, p))
             + self.offset;
         Point { at, pair }

@@ -9,21 +9,34 @@ pub(crate) mod minkowski;
 
 use glam::{DMat3, DVec3};
 
-use crate::body::{ConvexPolyhedron, Placed};
+use crate::body::{ConvexPolyhedron, Placed, VertexId};
 use crate::number::error_free::difference_error;
 use crate::number::noise::Noise;
 use crate::number::orientation::Terms;
 use crate::number::range::in_exact_range;
 use crate::setting::error::QueryError;
 
-/// One vertex of each body, by index into [`ConvexPolyhedron::vertices`].
+/// One vertex of each body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VertexPair {
-    /// Index into the moving body's vertices.
-    pub moving: u32,
-    /// Index into the fixed body's vertices.
-    pub fixed: u32,
+    /// Of the moving body.
+    pub moving: VertexId,
+    /// Of the fixed body.
+    pub fixed: VertexId,
+}
+
+impl VertexPair {
+    #[inline]
+    pub(crate) const fn of(moving: u32, fixed: u32) -> Self {
+        Self { moving: VertexId(moving), fixed: VertexId(fixed) }
+    }
+
+    /// As searches walk on: of the moving and of the fixed body.
+    #[inline]
+    pub(crate) const fn numbers(self) -> [u32; 2] {
+        [self.moving.0, self.fixed.0]
+    }
 }
 
 /// # Errors
@@ -130,7 +143,7 @@ impl Setting<'_> {
     /// A pair's vertices, in the frames of the moving and the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
-        [self.moving.vertices()[pair.moving as usize], self.fixed.vertices()[pair.fixed as usize]]
+        [self.moving.vertices()[pair.moving.index()], self.fixed.vertices()[pair.fixed.index()]]
     }
 
     /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
@@ -168,9 +181,9 @@ impl Setting<'_> {
     /// have found; and how far the bodies may reach towards each other beyond it.
     #[inline]
     pub(crate) fn settled(&self, normals: &[DVec3; 2], found: VertexPair) -> (VertexPair, f64) {
-        let (moving, p) = self.moving.settled(normals[0], found.moving);
-        let (fixed, q) = self.fixed.settled(-normals[1], found.fixed);
-        (VertexPair { moving, fixed }, p + q)
+        let (moving, p) = self.moving.settled(normals[0], found.moving.0);
+        let (fixed, q) = self.fixed.settled(-normals[1], found.fixed.0);
+        (VertexPair::of(moving, fixed), p + q)
     }
 
     /// `q - p` for a pair of vertices, as the sum of products that defines it.

@@ -326,7 +326,7 @@ impl<O: Observer> Run<'_, '_, O> {
             return Start::Enclosed(Enclosure::Portal(portal, Known::Around));
         }
         let [moving, fixed] = narrowed.vertices;
-        let near = VertexPair { moving: moving[0], fixed: fixed[0] };
+        let near = VertexPair::of(moving[0], fixed[0]);
         let in_shadow = |normal| self.context.difference.setting_from_shadow.transpose() * normal;
         Start::Normal(match narrowed.guess {
             Guess::Contact { normal } => FirstNormal::guided(in_shadow(normal), near),

@@ -1,6 +1,6 @@
 //! The Minkowski difference of two bodies, by its support points only.
 
-use colltrans::{ConvexPolyhedron, VertexPair};
+use colltrans::{ConvexPolyhedron, VertexId, VertexPair};
 use glam::DVec3;
 
 use super::SupportSearch;
@@ -50,8 +50,8 @@ impl<'a> Difference<'a> {
 
     /// The corner of a vertex pair.
     pub(crate) fn corner(&self, relative: &Relative, pair: VertexPair) -> Corner {
-        let p = relative.point(self.moving.vertices()[pair.moving as usize]);
-        Corner { pair, point: self.fixed.vertices()[pair.fixed as usize] - p }
+        let p = relative.point(self.moving.vertices()[pair.moving.index()]);
+        Corner { pair, point: self.fixed.vertices()[pair.fixed.index()] - p }
     }
 
     /// The lowest point of `M` along `direction`; `climbed` counts as in [`climb`].
@@ -62,9 +62,11 @@ impl<'a> Difference<'a> {
         climbed: &mut u32,
     ) -> Corner {
         let in_moving = relative.to_moving(direction);
-        let mut find = |body: &ConvexPolyhedron, along: DVec3, from: u32| match self.search {
-            SupportSearch::Climbing => climb(body, along, from, climbed),
-            SupportSearch::Linear => scan(body, along, climbed),
+        let mut find = |body: &ConvexPolyhedron, along: DVec3, from: VertexId| {
+            VertexId(match self.search {
+                SupportSearch::Climbing => climb(body, along, from.0, climbed),
+                SupportSearch::Linear => scan(body, along, climbed),
+            })
         };
         self.seed = VertexPair {
             moving: find(self.moving, in_moving, self.seed.moving),
@@ -78,8 +80,8 @@ impl<'a> Difference<'a> {
     pub(crate) fn nearest_points(&self, simplex: &Simplex) -> [DVec3; 2] {
         let mut points = [DVec3::ZERO; 2];
         for (pair, weight) in simplex.weighted_pairs() {
-            points[0] += self.moving.vertices()[pair.moving as usize] * weight;
-            points[1] += self.fixed.vertices()[pair.fixed as usize] * weight;
+            points[0] += self.moving.vertices()[pair.moving.index()] * weight;
+            points[1] += self.fixed.vertices()[pair.fixed.index()] * weight;
         }
         points
     }

@@ -95,7 +95,7 @@ fn coarser_body(body: &ConvexPolyhedron) -> Option<(ConvexPolyhedron, Vec<u32>)>
     let points: Vec<_> = kept.iter().map(|&v| body.vertices()[v as usize]).collect();
     let coarse =
         ConvexPolyhedron::from_points(&points).ok().filter(|body| body.dimension() == 3)?;
-    let finer = coarse.input_indices().iter().map(|&i| kept[i as usize]).collect();
+    let finer = coarse.input_indices().iter().map(|v| kept[v.index()]).collect();
     (kept.len() < count).then_some((coarse, finer))
 }
 

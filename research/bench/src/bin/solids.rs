@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::solid::Workspace;
-use colltrans::{Cast, Clearance, Pose, Solid};
+use colltrans::{Aabb, Cast, Clearance, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
 use colltrans_bench::report::{self, Times};
@@ -137,11 +137,8 @@ fn load(path: &Path) -> Option<Mesh> {
 }
 
 fn centered(mesh: Mesh) -> Mesh {
-    let (low, high) = mesh
-        .vertices
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    mesh.translated((low + high) * -0.5)
+    let middle = Aabb::of_points(mesh.vertices.iter().copied()).center();
+    mesh.translated(-middle)
 }
 
 fn radius(mesh: &Mesh) -> f64 {

@@ -125,8 +125,8 @@ pub fn from_mesh(bytes: &[u8]) {
         faces.push((0..corners).map(|_| u32::from(reader.byte())).collect::<Vec<u32>>());
     }
     let Ok(body) = ConvexPolyhedron::from_mesh(&vertices, &faces, tolerance) else { return };
-    for (vertex, &index) in body.vertices().iter().zip(body.input_indices()) {
-        assert_eq!(*vertex, vertices[index as usize], "a vertex that is not the mesh's");
+    for (vertex, input) in body.vertices().iter().zip(body.input_indices()) {
+        assert_eq!(*vertex, vertices[input.index()], "a vertex that is not the mesh's");
     }
     check_surface(&body);
 }

@@ -86,11 +86,11 @@ pub fn judge(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Kept, Objectio
 fn dropped(points: &[DVec3], body: &ConvexPolyhedron) -> Result<Vec<usize>, Objection> {
     let bits = |v: &DVec3| v.to_array().map(f64::to_bits);
     let mut is_vertex = vec![false; points.len()];
-    for (vertex, &index) in body.vertices().iter().zip(body.input_indices()) {
-        if points.get(index as usize).map(bits) != Some(bits(vertex)) {
-            return Err(Objection(format!("vertex {vertex} is not the point {index}")));
+    for (vertex, input) in body.vertices().iter().zip(body.input_indices()) {
+        if points.get(input.index()).map(bits) != Some(bits(vertex)) {
+            return Err(Objection(format!("vertex {vertex} is not the point {input}")));
         }
-        is_vertex[index as usize] = true;
+        is_vertex[input.index()] = true;
     }
     Ok((0..points.len()).filter(|&i| !is_vertex[i]).collect())
 }

@@ -16,9 +16,9 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use crate::body::Inertia;
 use crate::body::solid::{Solid, SolidError};
 use crate::body::topology::{HalfEdge, Topology};
+use crate::body::{Inertia, InputVertex, VertexId};
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use excess::LargeFace;
@@ -38,7 +38,7 @@ pub(crate) use support::greatest_on_cycle;
 #[derive(Debug, Clone)]
 pub struct ConvexPolyhedron {
     vertices: Vec<DVec3>,
-    input_index: Vec<u32>,
+    input_index: Vec<InputVertex>,
     dimension: u8,
     hull_error: f64,
     /// The largest distance of a corner from its polygon's plane.
@@ -60,8 +60,8 @@ impl ConvexPolyhedron {
         &self.vertices
     }
 
-    /// For each vertex, its index in the points or mesh vertices the polyhedron was made from.
-    pub fn input_indices(&self) -> &[u32] {
+    /// For each vertex, its number in the points or mesh vertices the polyhedron was made from.
+    pub fn input_indices(&self) -> &[InputVertex] {
         &self.input_index
     }
 
@@ -161,18 +161,18 @@ impl ConvexPolyhedron {
     /// `O(log n)`. One of the farthest, to within rounding error, if there are several.
     ///
     /// ```
-    /// use colltrans::ConvexPolyhedron;
     /// use colltrans::glam::DVec3;
+    /// use colltrans::{ConvexPolyhedron, InputVertex};
     ///
     /// let needle = ConvexPolyhedron::from_points(&[DVec3::X * 100.0, DVec3::Y, DVec3::Z])?;
     /// let tip = needle.support(DVec3::new(1.0, -0.5, 0.25));
-    /// assert_eq!(needle.vertices()[tip as usize], DVec3::new(100.0, 0.0, 0.0));
-    /// assert_eq!(needle.input_indices()[tip as usize], 0);
+    /// assert_eq!(needle.vertices()[tip.index()], DVec3::new(100.0, 0.0, 0.0));
+    /// assert_eq!(needle.input_indices()[tip.index()], InputVertex(0));
     /// # Ok::<(), colltrans::BuildError>(())
     /// ```
     #[inline]
-    pub fn support(&self, direction: DVec3) -> u32 {
-        self.support.extreme(&self.vertices, &self.topology, direction)
+    pub fn support(&self, direction: DVec3) -> VertexId {
+        VertexId(self.support.extreme(&self.vertices, &self.topology, direction))
     }
 
     /// A vertex near the support point.

@@ -17,7 +17,7 @@ use glam::DVec3;
 use super::Solid;
 use super::edges::NONE;
 use super::tree;
-use crate::body::{FaceId, Feature, InputVertex};
+use crate::body::{FaceId, Feature};
 
 /// Precision of coordinates, in multiples of the largest distance from the origin.
 const SINGLE: f64 = 1.0 / (1_u64 << 22) as f64;
@@ -52,7 +52,7 @@ impl Faces {
             let mut plane = Plane::default();
             let mut take = |t: u32, members: &mut Vec<u32>, of: &mut Vec<u32>| {
                 plane.add(solid.corners_of(t), areas[t as usize]);
-                of[t as usize] = solid.facet_index[t as usize];
+                of[t as usize] = solid.facet_index[t as usize].0;
                 members.push(t);
                 plane
             };
@@ -219,7 +219,7 @@ impl Solid {
         match sharp.count {
             0 => self.face_feature(triangle),
             2 if self.is_straight([a, vertex, b]) => self.edge_through([a, vertex, b], [s, t]),
-            _ => Feature::Vertex(InputVertex(self.vertex_index[vertex as usize])),
+            _ => Feature::Vertex(self.vertex_index[vertex as usize]),
         }
     }
 
@@ -312,7 +312,7 @@ impl Solid {
     fn edge_of(&self, ends: [u32; 2]) -> Feature {
         let mut ends = ends.map(|v| self.vertex_index[v as usize]);
         ends.sort_unstable();
-        Feature::Edge(ends.map(InputVertex))
+        Feature::Edge(ends)
     }
 
     /// From a vertex `before` to the next one, a corner of the triangle, and on as far as the edge is

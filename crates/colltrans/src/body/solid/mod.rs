@@ -24,9 +24,8 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3Swizzles};
 
-use crate::body::Aabb;
-use crate::body::ConvexPolyhedron;
 use crate::body::placed::sealed;
+use crate::body::{Aabb, ConvexPolyhedron, InputFacet, InputVertex};
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
@@ -72,9 +71,9 @@ pub(crate) use validate::Surface;
 #[derive(Debug, Clone)]
 pub struct Solid {
     vertices: Vec<DVec3>,
-    vertex_index: Vec<u32>,
+    vertex_index: Vec<InputVertex>,
     triangles: Vec<[u32; 3]>,
-    facet_index: Vec<u32>,
+    facet_index: Vec<InputFacet>,
     neighbours: Vec<[u32; 3]>,
     kinds: Vec<ShellKind>,
     nodes: Vec<Node>,
@@ -89,7 +88,7 @@ pub struct Solid {
 }
 
 impl sealed::Sealed for Solid {
-    fn inputs(&self) -> &[u32] {
+    fn inputs(&self) -> &[InputVertex] {
         &self.vertex_index
     }
 
@@ -189,9 +188,10 @@ impl Solid {
             let (v, t) = (all.vertices.len() as u32, all.triangles.len() as u32);
             let [vertex_base, facet_base] = all.input_counts;
             all.vertices.extend_from_slice(&piece.vertices);
-            all.vertex_index.extend(piece.vertex_index.iter().map(|i| i + vertex_base));
+            all.vertex_index
+                .extend(piece.vertex_index.iter().map(|v| InputVertex(v.0 + vertex_base)));
             all.triangles.extend(piece.triangles.iter().map(|c| c.map(|k| k + v)));
-            all.facet_index.extend(piece.facet_index.iter().map(|f| f + facet_base));
+            all.facet_index.extend(piece.facet_index.iter().map(|f| InputFacet(f.0 + facet_base)));
             let shift = |n: u32| if n == edges::NONE { n } else { n + t };
             all.neighbours.extend(piece.neighbours.iter().map(|n| n.map(shift)));
             all.kinds.extend_from_slice(&piece.kinds);
@@ -223,9 +223,9 @@ impl Solid {
         let mut solid = Self::from_mesh(body.vertices(), &facets)?;
         let inputs = body.input_indices();
         for v in &mut solid.vertex_index {
-            *v = inputs[*v as usize];
+            *v = inputs[v.index()];
         }
-        solid.input_counts[0] = inputs.iter().max().map_or(0, |last| last + 1);
+        solid.input_counts[0] = inputs.iter().max().map_or(0, |last| last.0 + 1);
         Ok(solid)
     }
 
@@ -286,8 +286,8 @@ impl Solid {
         &self.vertices
     }
 
-    /// For each of [`Self::vertices`], its index in the input.
-    pub fn vertex_indices(&self) -> &[u32] {
+    /// For each of [`Self::vertices`], its number in the input.
+    pub fn vertex_indices(&self) -> &[InputVertex] {
         &self.vertex_index
     }
 
@@ -303,7 +303,7 @@ impl Solid {
     }
 
     /// For each of [`Self::triangles`], the facet of the input that it is a part of.
-    pub fn facet_indices(&self) -> &[u32] {
+    pub fn facet_indices(&self) -> &[InputFacet] {
         &self.facet_index
     }
 
@@ -320,6 +320,17 @@ impl Solid {
     /// The same of a shell, in the order of [`Self::spans`].
     fn is_shell_closed(&self, shell: u32) -> bool {
         !self.is_open(self.spans[shell as usize].triangle as usize)
+    }
+
+    /// Whether nothing is left of a closed body when it is shrunk by this amount, seen by its box alone:
+    /// then every point of it is at most as deep.
+    pub(crate) fn vanishes(&self, amount: f64) -> bool {
+        amount > 0.0 && 2.0 * amount >= self.thickness() && self.is_closed()
+    }
+
+    /// The smallest side of its box.
+    pub(crate) fn thickness(&self) -> f64 {
+        self.bounds().size().min_element()
     }
 
     /// Whether some shell is closed, so that there is an inside.

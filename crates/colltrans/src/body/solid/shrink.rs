@@ -28,7 +28,7 @@ use super::error::SolidError;
 use super::tree::{self, Node};
 use super::{ShellKind, Solid, Surface};
 use super::{self_intersection, shells};
-use crate::body::Aabb;
+use crate::body::{Aabb, InputFacet, InputVertex};
 use crate::number::range::{in_exact_range, without_traces};
 
 /// Facets less high than this share of the body's size are noise.
@@ -73,10 +73,10 @@ pub struct ShrinkReport {
     pub farthest: f64,
     /// Vertices that stay, because no displacement is inwards for all facets around them; indices of
     /// the input.
-    pub stuck: Vec<u32>,
+    pub stuck: Vec<InputVertex>,
     /// Facets that turned inside out, or passed through others, because the body (or a gap in it that
     /// grows shut) is thinner than twice the amount there; indices of the input, in increasing order.
-    pub inverted: Vec<u32>,
+    pub inverted: Vec<InputFacet>,
 }
 
 impl Solid {
@@ -149,7 +149,7 @@ impl Solid {
     fn volumes_of(&self, vertices: &[DVec3]) -> Vec<f64> {
         let shell_of = shells::components(&self.neighbours);
         let volumes = shells::volumes(&shell_of, &self.triangles, |v| vertices[v as usize]);
-        let mut first = vec![NONE; volumes.len()];
+        let mut first = vec![InputFacet(NONE); volumes.len()];
         for (&shell, &facet) in shell_of.iter().zip(&self.facet_index) {
             first[shell as usize] = facet.min(first[shell as usize]);
         }
@@ -177,7 +177,7 @@ impl Solid {
             let shell = shell_of[*t] as usize;
             self.is_shell_closed(shell_of[*t]) && (before[shell] < 0.0) != (after[shell] < 0.0)
         };
-        let mut facets: Vec<u32> = (0..self.triangles.len())
+        let mut facets: Vec<InputFacet> = (0..self.triangles.len())
             .filter(|t| mirrored(t) || inverted(t))
             .chain(self_intersection::facets(self, &moved, &shell_of, &before))
             .map(|t| self.facet_index[t])

@@ -16,6 +16,7 @@ use super::faces::Faces;
 use super::polygon::triangulate;
 use super::report::{ShellKind, SolidReport};
 use super::weld::first_equals;
+use crate::body::{InputFacet, InputVertex};
 use crate::number::range::in_exact_range;
 
 /// Rounds of subdivision: each joins at least one pair of edges in every slit that can be closed.
@@ -26,10 +27,10 @@ pub(crate) struct Surface {
     /// The vertices in use.
     pub(crate) vertices: Vec<DVec3>,
     /// Their indices in the input.
-    pub(crate) vertex_index: Vec<u32>,
+    pub(crate) vertex_index: Vec<InputVertex>,
     pub(crate) triangles: Vec<[u32; 3]>,
     /// The input facet of each triangle.
-    pub(crate) facet_index: Vec<u32>,
+    pub(crate) facet_index: Vec<InputFacet>,
     pub(crate) neighbours: Vec<[u32; 3]>,
     /// How many vertices and facets the input had.
     pub(crate) input_counts: [u32; 2],
@@ -126,7 +127,7 @@ fn check_input<F: AsRef<[u32]>>(vertices: &[DVec3], facets: &[F]) -> Result<(), 
 /// Triangles with areas, over the input's vertices.
 struct Soup {
     triangles: Vec<[u32; 3]>,
-    facet_index: Vec<u32>,
+    facet_index: Vec<InputFacet>,
 }
 
 impl Soup {
@@ -147,13 +148,13 @@ impl Soup {
             report.facets_without_area += 1;
             return Ok(());
         }
-        self.push_ring(vertices, facet as u32, &ring)
+        self.push_ring(vertices, InputFacet(facet as u32), &ring)
     }
 
     fn push_ring(
         &mut self,
         vertices: &[DVec3],
-        facet: u32,
+        facet: InputFacet,
         ring: &[u32],
     ) -> Result<(), SolidError> {
         if let &[a, b, c] = ring {
@@ -162,7 +163,7 @@ impl Soup {
             return Ok(());
         }
         let points: Vec<DVec3> = ring.iter().map(|&v| vertices[v as usize]).collect();
-        let cut = triangulate(&points).ok_or(SolidError::Polygon { facet: facet as usize })?;
+        let cut = triangulate(&points).ok_or(SolidError::Polygon { facet: facet.index() })?;
         for corners in cut {
             self.triangles.push(corners.map(|k| ring[k]));
             self.facet_index.push(facet);
@@ -230,7 +231,7 @@ impl Soup {
     fn check_edges(&self, edges: &Edges, open: bool) -> Result<(), SolidError> {
         let name = |h: u32| {
             let [from, to] = edges::ends(&self.triangles, h).map(|v| v as usize);
-            (from, to, self.facet_index[h as usize / 3] as usize)
+            (from, to, self.facet_index[h as usize / 3].index())
         };
         if let Some(&h) = edges.inconsistent.first() {
             let (from, to, facet) = name(h);
@@ -261,15 +262,15 @@ impl Soup {
         }
         let repeated = first.iter().enumerate().filter(|&(v, &f)| v as u32 != f).count();
         report.vertices_merged += repeated;
-        let vertex_index: Vec<u32> =
-            (0..vertices.len() as u32).filter(|&v| used[v as usize]).collect();
+        let vertex_index: Vec<InputVertex> =
+            (0..vertices.len() as u32).map(InputVertex).filter(|v| used[v.index()]).collect();
         let mut position = vec![0; vertices.len()];
         for (k, &v) in vertex_index.iter().enumerate() {
-            position[v as usize] = k as u32;
+            position[v.index()] = k as u32;
         }
         Surface {
             // Adding 0 turns -0 into 0 and changes nothing else.
-            vertices: vertex_index.iter().map(|&v| vertices[v as usize] + 0.0).collect(),
+            vertices: vertex_index.iter().map(|v| vertices[v.index()] + 0.0).collect(),
             triangles: self.triangles.iter().map(|t| t.map(|v| position[v as usize])).collect(),
             vertex_index,
             kinds: vec![ShellKind::Closed; self.facet_index.len()],

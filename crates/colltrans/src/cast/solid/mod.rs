@@ -187,14 +187,27 @@ impl<'a> Cast<'a, Solid> {
     /// The same with other choices.
     ///
     /// # Errors
-    /// A tolerance that is negative or not finite.
+    /// A tolerance that is negative or not finite, or so large that nothing is left of a closed body
+    /// ([`QueryError::NothingLeft`]).
     pub fn with_options(self, options: SolidOptions) -> Result<Self, QueryError> {
-        if let Some(tolerance) = options.tolerance
-            && !(tolerance.is_finite() && tolerance >= 0.0)
-        {
-            return Err(QueryError::Tolerance { tolerance });
+        if let Some(tolerance) = options.tolerance {
+            if !(tolerance.is_finite() && tolerance >= 0.0) {
+                return Err(QueryError::Tolerance { tolerance });
+            }
+            self.check_left(tolerance)?;
         }
         Ok(Self { options, ..self })
+    }
+
+    /// Refuses a tolerance that leaves nothing of a body.
+    pub(crate) fn check_left(&self, tolerance: f64) -> Result<(), QueryError> {
+        for (which, solid) in [("moving", self.moving()), ("fixed", self.fixed())] {
+            if solid.vanishes(tolerance / 2.0) {
+                let extent = solid.thickness();
+                return Err(QueryError::NothingLeft { which, tolerance, extent });
+            }
+        }
+        Ok(())
     }
 
     /// The same with both bodies shrunk by half of this length. A graze tolerance would depend on how
@@ -208,7 +221,7 @@ impl<'a> Cast<'a, Solid> {
     /// ```
     ///
     /// # Errors
-    /// A tolerance that is negative or not finite.
+    /// As [`Self::with_options`].
     pub fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
         self.with_options(self.options.with_tolerance(tolerance))
     }
@@ -236,13 +249,20 @@ impl<'a> Cast<'a, Solid> {
         self.scene(self.tolerance())
     }
 
+    /// The same, of bodies that the default tolerance leaves something of.
+    pub(crate) fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
+        let tolerance = self.tolerance();
+        self.check_left(tolerance)?;
+        Ok(self.scene(tolerance))
+    }
+
     /// How far the moving body can move from where it is.
     ///
     /// Free says without telling them apart that it slides along, moves away from or never meets the
     /// other body; where a plane lies between the two, it comes with it.
     ///
     /// # Errors
-    /// None at present: every search ends with an answer.
+    /// A body so thin that the default tolerance leaves nothing of it, [`QueryError::NothingLeft`].
     pub fn clearance(&self) -> Result<Clearance<Solid>, QueryError> {
         self.clearance_in(&mut Workspace::default())
     }
@@ -252,7 +272,7 @@ impl<'a> Cast<'a, Solid> {
     /// # Errors
     /// As [`Self::clearance`].
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
-        let scene = self.asked();
+        let scene = self.asked_of_something()?;
         let mut steps = SolidSteps::default();
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
@@ -272,7 +292,7 @@ impl<'a> Cast<'a, Solid> {
     /// behind and ahead: for "from here on" see [`Self::clearance`]. The tolerance plays no part.
     ///
     /// # Errors
-    /// As [`Self::clearance`].
+    /// None at present: every search ends with an answer.
     pub fn first_contact(&self) -> Result<Outcome<Solid>, QueryError> {
         self.first_contact_in(&mut Workspace::default())
     }
@@ -280,7 +300,7 @@ impl<'a> Cast<'a, Solid> {
     /// The same with a queue that is kept.
     ///
     /// # Errors
-    /// As [`Self::clearance`].
+    /// As [`Self::first_contact`].
     pub fn first_contact_in(
         &self,
         workspace: &mut Workspace,
@@ -298,7 +318,7 @@ impl<'a> Cast<'a, Solid> {
     /// part.
     ///
     /// # Errors
-    /// As [`Self::clearance`].
+    /// None at present: every search ends with an answer.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -427,7 +447,7 @@ impl<'a> Cast<'a, Solid> {
     /// direction nor the tolerance plays a part.
     ///
     /// # Errors
-    /// As [`Self::clearance`].
+    /// None at present: every search ends with an answer.
     pub fn intersects(&self) -> Result<Intersection<Solid>, QueryError> {
         let mut steps = SolidSteps::default();
         let place = overlap::touch(&self.scene(0.0), &mut steps);

@@ -195,7 +195,7 @@ impl Cast<'_, Solid> {
     /// # Errors
     /// As [`Self::clearance`].
     pub fn certified_clearance(&self) -> Result<(Clearance<Solid>, SolidCertificate), QueryError> {
-        let scene = self.asked();
+        let scene = self.asked_of_something()?;
         let bodies = [self.moving(), self.fixed()];
         let mut steps = SolidSteps::default();
         let start = self.prove_start(&scene, &mut steps);

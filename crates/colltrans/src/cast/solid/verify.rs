@@ -149,7 +149,7 @@ fn verify_cover(
 /// Checks that two facets stop the body where it is said.
 fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), CertificateError> {
     let [s, t] = stop.triangles;
-    let refused = CertificateError::Facets { moving: s, fixed: t };
+    let refused = CertificateError::triangles(stop.triangles);
     let within = |side: bool, k: u32| (k as usize) < scene.side(side).solid.triangles().len();
     if !within(true, s) || !within(false, t) {
         return Err(refused);

@@ -368,16 +368,16 @@ impl ExitTest<'_, '_> {
                     [topology.half_edge(h).origin, topology.target(h)]
                 };
                 let (p, q) = (ends(0, e), ends(1, f));
-                let pair = |i: usize, j: usize| VertexPair { moving: p[i], fixed: q[j] };
+                let pair = |i: usize, j: usize| VertexPair::of(p[i], q[j]);
                 Some([pair(0, 0), pair(1, 0), pair(1, 1), pair(0, 1)])
             }
             [Feature::Vertex(moving), Feature::Face(h)] => {
                 let at = self.at(0, moving) - self.setting.offset;
-                Some(self.around(1, h, at).map(|fixed| VertexPair { moving, fixed }))
+                Some(self.around(1, h, at).map(|fixed| VertexPair::of(moving, fixed)))
             }
             [Feature::Face(h), Feature::Vertex(fixed)] => {
                 let at = self.at(1, fixed) + self.setting.offset;
-                Some(self.around(0, h, at).map(|moving| VertexPair { moving, fixed }))
+                Some(self.around(0, h, at).map(|moving| VertexPair::of(moving, fixed)))
             }
             _ => None,
         }

@@ -67,7 +67,7 @@ impl SectionPair<'_> {
         let normal = self.setting.moving_matrix * focus.normal;
         let lateral = normal - self.frame.axes[0] * normal.dot(self.setting.unit);
         let right = usize::from(lateral.dot(self.frame.shadow[1]) > 0.0);
-        let vertices = [focus.pair.moving, focus.pair.fixed];
+        let vertices = focus.pair.numbers();
         let [p, q] = [0, 1].map(|body| self.sides[body].height_of(focus.touching[body]));
         let edges = [0, 1].map(|body| self.sides[body].edge_at(vertices[body]));
         Hint { height: p.max(q), levels, last: Last::Facing { right, edges } }

@@ -50,7 +50,7 @@ fn between(difference: &MinkowskiDifference) -> Option<(Portal, Face)> {
     let corner = |moving: u32, fixed: u32| {
         let origin = |body: &ConvexPolyhedron, h: u32| body.topology().half_edge(h).origin;
         let (moving, fixed) = (origin(setting.moving, moving), origin(setting.fixed, fixed));
-        difference.vertex(VertexPair { moving, fixed })
+        difference.vertex(VertexPair::of(moving, fixed))
     };
     // The farther of two that are opposite each other, seen from the middle.
     let ([p, ..], [q, opposite, _]) = (f.half_edges, g.half_edges);

@@ -88,7 +88,7 @@ fn in_plane(
     pair: VertexPair,
     normal: DVec3,
 ) -> (InPlane, InPlane) {
-    let VertexPair { moving, fixed } = pair;
+    let [moving, fixed] = pair.numbers();
     let setting = difference.setting;
     // Along the normal times its length.
     let near = difference.touching() * normal.length();
@@ -124,7 +124,7 @@ fn farthest(difference: &MinkowskiDifference, (p, q): (InPlane, InPlane), outwar
     let setting = difference.setting;
     let moving = farthest_of(setting.moving, p, -difference.in_moving(outward));
     let fixed = farthest_of(setting.fixed, q, difference.in_fixed(outward));
-    difference.vertex(VertexPair { moving, fixed })
+    difference.vertex(VertexPair::of(moving, fixed))
 }
 
 fn farthest_of(body: &ConvexPolyhedron, part: InPlane, direction: DVec3) -> u32 {

@@ -62,13 +62,13 @@ impl Plane {
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
         let length = normal.length();
         let most = 0.5 * difference.noise.point();
-        let (moving, p) = setting.moving.support_at(normals[0], length, near.moving, most)?;
-        let (fixed, q) = setting.fixed.support_at(-normals[1], length, near.fixed, most)?;
+        let (moving, p) = setting.moving.support_at(normals[0], length, near.moving.0, most)?;
+        let (fixed, q) = setting.fixed.support_at(-normals[1], length, near.fixed.0, most)?;
         let to_unit = 1.0 / length;
         Some(Self {
             normal: normal * to_unit,
             normals: normals.map(|n| n * to_unit),
-            lowest: VertexPair { moving, fixed },
+            lowest: VertexPair::of(moving, fixed),
             beyond: p + q,
         })
     }
@@ -85,11 +85,11 @@ impl Plane {
         let setting = difference.setting;
         let normal = (difference.setting_from_shadow * normal).normalize();
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        let lowest = VertexPair { moving: f.corners[0], fixed: g.corners[0] };
+        let lowest = VertexPair::of(f.corners[0], g.corners[0]);
         let noise = difference.noise.point();
         let most = 0.5 * noise;
-        let beyond = setting.moving.excess_of_face(f, normals[0], 1.0, lowest.moving, most)?
-            + setting.fixed.excess_of_face(g, -normals[1], 1.0, lowest.fixed, most)?;
+        let beyond = setting.moving.excess_of_face(f, normals[0], 1.0, lowest.moving.0, most)?
+            + setting.fixed.excess_of_face(g, -normals[1], 1.0, lowest.fixed.0, most)?;
         let plane = Self { normal, normals, lowest, beyond };
         (beyond <= MOST_BEYOND * noise).then_some(plane)
     }

@@ -12,6 +12,7 @@ use super::enclose::nearest_share;
 use super::refine::{Optimum, largest, plane_normal, weights};
 use super::wrap::{Tilt, first_met};
 use super::{Context, Known, Line, Plane, Portal, normal_of};
+use crate::body::VertexId;
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -46,10 +47,13 @@ pub(super) fn pointed<O: Observer>(
     let optimum = |weights| Optimum { normal, lowest: vertex.pair, weights };
     let at_corner = || {
         let portal =
-            context.difference.setting.fixed.neighbours(vertex.pair.fixed).first().and_then(|&q| {
-                let to = context.difference.vertex(VertexPair { fixed: q, ..vertex.pair });
-                corner(&context.difference, vertex, &to)
-            });
+            context.difference.setting.fixed.neighbours(vertex.pair.fixed.0).first().and_then(
+                |&q| {
+                    let to =
+                        context.difference.vertex(VertexPair { fixed: VertexId(q), ..vertex.pair });
+                    corner(&context.difference, vertex, &to)
+                },
+            );
         match portal {
             Some(portal) => {
                 let weights = weights_of(&portal, vertex, 0.0);
@@ -107,15 +111,15 @@ fn weights_of(portal: &Portal, from: &Point, share: f64) -> [f64; 3] {
 /// A triangle with an edge of `M` and another edge of the same body at its end `from`,
 /// counter-clockwise.
 fn corner(difference: &MinkowskiDifference, from: &Point, to: &Point) -> Option<Portal> {
-    let VertexPair { moving, fixed } = from.pair;
+    let [moving, fixed] = from.pair.numbers();
     let setting = difference.setting;
     let other = |neighbours: &[u32], not: u32| neighbours.iter().copied().find(|&w| w != not);
-    let third = if to.pair.fixed == fixed {
-        let moving = other(setting.moving.neighbours(moving), to.pair.moving)?;
-        VertexPair { moving, fixed }
+    let third = if to.pair.fixed.0 == fixed {
+        let moving = other(setting.moving.neighbours(moving), to.pair.moving.0)?;
+        VertexPair::of(moving, fixed)
     } else {
-        let fixed = other(setting.fixed.neighbours(fixed), to.pair.fixed)?;
-        VertexPair { moving, fixed }
+        let fixed = other(setting.fixed.neighbours(fixed), to.pair.fixed.0)?;
+        VertexPair::of(moving, fixed)
     };
     let third = difference.vertex(third);
     let (way, across) = (to.shadow() - from.shadow(), third.shadow() - from.shadow());

@@ -32,7 +32,7 @@ pub(super) fn first_met(
     vertex: &Point,
     tilt: &Tilt,
 ) -> Option<Point> {
-    let VertexPair { moving, fixed } = vertex.pair;
+    let [moving, fixed] = vertex.pair.numbers();
     let setting = difference.setting;
     let (normal, outward) = (tilt.normal, tilt.outward.extend(0.0));
     // A neighbour closer to the axis than this is not beyond it.
@@ -49,7 +49,7 @@ pub(super) fn first_met(
     }
     let moving = select_unpredictable(of_fixed, moving, found);
     let fixed = select_unpredictable(of_fixed, found, fixed);
-    Some(difference.vertex(VertexPair { moving, fixed }))
+    Some(difference.vertex(VertexPair::of(moving, fixed)))
 }
 
 /// A turn seen from one body's frame: `up` and `out` measure rise and run.

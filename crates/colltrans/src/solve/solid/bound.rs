@@ -128,13 +128,14 @@ pub(crate) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit
 
 /// Whether the interiors of the boxes' shadows are disjoint.
 fn boxes_apart(a: &Projected, b: &Projected) -> bool {
+    let (a, b) = (&a.bounds, &b.bounds);
     let (low, high) = (a.low.max(b.low), a.high.min(b.high));
     low.x >= high.x || low.y >= high.y
 }
 
 /// Bounds of all gaps, by the boxes.
 fn box_gaps(a: &Projected, b: &Projected) -> [f64; 2] {
-    [b.low.z - a.high.z, b.high.z - a.low.z]
+    [b.bounds.low.z - a.bounds.high.z, b.bounds.high.z - a.bounds.low.z]
 }
 
 /// The same by the slabs: a plane along one bounds the heights of its node, and how far the other is
@@ -178,9 +179,7 @@ fn least_slab_gap(scene: &Scene, a: &Projected, b: &Projected) -> f64 {
 /// Whether no point of one node is a point of the other, by boxes and slabs.
 pub(crate) fn apart(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
-    (0..3).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k])
-        || beyond(scene, (p, a), (q, b))
-        || beyond(scene, (q, b), (p, a))
+    !a.bounds.meets(&b.bounds) || beyond(scene, (p, a), (q, b)) || beyond(scene, (q, b), (p, a))
 }
 
 /// Whether a node is certainly beyond a side of another's box or slab.

@@ -14,6 +14,7 @@ use super::projected::Projected;
 use super::scene::{Corner, ExactPoint, Scene, Side, place_exactly};
 use super::search::children;
 use super::triangle::{Triangle, lies_on};
+use crate::body::Aabb;
 use crate::body::solid::edges::NONE;
 use crate::number::integer::Integer;
 
@@ -39,10 +40,10 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
         let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
         let extent = DVec3::from_array(extent) + DVec3::splat(swell + 4.0 * scene.noise);
         // A shell that reaches out of the other's box is not inside it.
-        let within = (at + extent).cmple(room.high + 16.0 * scene.noise).all()
-            && (at - extent).cmpge(room.low - 16.0 * scene.noise).all();
+        let around = Aabb { low: at - extent, high: at + extent };
+        let within = room.bounds.grown(16.0 * scene.noise).holds(&around);
         // The other's box is loose where it is not aligned; then all that overlap are asked.
-        let meets = (at + extent).cmpge(room.low).all() && (at - extent).cmple(room.high).all();
+        let meets = room.bounds.meets(&around);
         let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
         if meets && (within || !aligned) && decide(scene, own, other, span.triangle) {
             return Some(span.triangle);
@@ -128,9 +129,8 @@ fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -
     let (p, noise) = (point.at(), 4.0 * scene.noise);
     let node = &side.solid.nodes()[at as usize];
     let projected = Projected::new(scene, side, at as usize);
-    let beside =
-        (0..2).any(|k| p[k] < projected.low[k] - noise || p[k] > projected.high[k] + noise);
-    if beside || p.z > projected.high.z + noise {
+    let Aabb { low, high } = projected.bounds.grown(noise);
+    if (0..2).any(|k| p[k] < low[k] || p[k] > high[k]) || p.z > high.z {
         return Some(0);
     }
     if !node.is_leaf() {

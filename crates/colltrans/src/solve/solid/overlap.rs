@@ -72,7 +72,8 @@ pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool
     let (p, q) = (&scene.moving, &scene.fixed);
     beyond(scene, (p, a), (q, b))
         || beyond(scene, (q, b), (p, a))
-        || (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k])
+        || a.bounds.low.cmpge(b.bounds.high).any()
+        || b.bounds.low.cmpge(a.bounds.high).any()
 }
 
 /// Whether a shell of one body lies inside the other, of bodies whose surfaces do not cross.
@@ -202,7 +203,7 @@ fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)>
 /// Whether two triangles show that the solids overlap: cases 1 to 3.
 fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let noise = 4.0 * scene.noise;
-    if (0..3).any(|k| f.high[k] + noise < g.low[k] || g.high[k] + noise < f.low[k]) {
+    if (0..3).any(|axis| f.bounds.is_apart(&g.bounds, axis, noise)) {
         return false;
     }
     let of_g = f.sides(scene, g);

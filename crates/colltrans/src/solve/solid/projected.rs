@@ -22,8 +22,7 @@ const STEEP: f64 = 1e-3;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Projected {
     pub(crate) node: u32,
-    pub(crate) low: DVec3,
-    pub(crate) high: DVec3,
+    pub(crate) bounds: Aabb,
     /// The box in the body frame, after shrinking.
     pub(crate) local: Aabb,
     /// The node's axis and its slab.
@@ -42,8 +41,7 @@ impl Projected {
         let shift = axis.dot(side.view_offset);
         let mut projected = Self {
             node: at as u32,
-            low: node.bounds.low,
-            high: node.bounds.high,
+            bounds: node.bounds,
             local: node.bounds,
             axis,
             slab: [node.slab[0] + shift - scene.noise, node.slab[1] + shift + scene.noise],
@@ -56,11 +54,10 @@ impl Projected {
         let terms = (node.axis * side.along).abs().element_sum();
         projected.spread +=
             if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
-        (projected.low, projected.high) = boxed(scene, side, projected.local);
+        projected.bounds = boxed(scene, side, projected.local);
         if node.is_open() {
             // What is on edge has a shadow without a width, but counts.
-            projected.low -= scene.noise;
-            projected.high += scene.noise;
+            projected.bounds = projected.bounds.grown(scene.noise);
         }
         projected
     }
@@ -82,10 +79,11 @@ impl Projected {
     /// Whether both nodes lie in one plane, exactly, and look at each other. Boxes without thickness are
     /// exact: others are rounded outwards.
     pub(crate) fn is_face_to_face(&self, other: &Self) -> bool {
+        let (a, b) = (&self.bounds, &other.bounds);
         let flat = |k: usize| {
-            self.low[k] == self.high[k]
-                && other.low[k] == other.high[k]
-                && self.low[k] == other.low[k]
+            a.low[k] == a.high[k]
+                && b.low[k] == b.high[k]
+                && a.low[k] == b.low[k]
                 && self.axis[k] * other.axis[k] < 0.0
         };
         self.spread < 1.0 && other.spread < 1.0 && (0..3).any(flat)
@@ -136,13 +134,13 @@ impl Projected {
 }
 
 /// The node's box in the query frame: exact along aligned axes, rounded outwards along others.
-fn boxed(scene: &Scene, side: &Side, local: Aabb) -> (DVec3, DVec3) {
+fn boxed(scene: &Scene, side: &Side, local: Aabb) -> Aabb {
     let (center, half) = (local.center(), local.size() * 0.5);
     let middle = side.view * center + side.view_offset;
     let DMat3 { x_axis, y_axis, z_axis } = side.view;
     let extent = x_axis.abs() * half.x + y_axis.abs() * half.y + z_axis.abs() * half.z;
     let extent = extent + scene.noise;
-    let (mut low, mut high) = (middle - extent, middle + extent);
+    let mut bounds = Aabb { low: middle - extent, high: middle + extent };
     if side.shrinking.is_none() && side.aligned != [false; 3] {
         let rows = side.view.transpose();
         for (k, row) in [rows.x_axis, rows.y_axis, rows.z_axis].into_iter().enumerate() {
@@ -150,12 +148,12 @@ fn boxed(scene: &Scene, side: &Side, local: Aabb) -> (DVec3, DVec3) {
                 let (a, b) = (row.dot(local.low), row.dot(local.high));
                 let offset = side.view_offset[k];
                 let exact = side.moving || side.offset[1] == DVec3::ZERO;
-                low[k] = rounded_sum(a.min(b), offset, exact, -1);
-                high[k] = rounded_sum(a.max(b), offset, exact, 1);
+                bounds.low[k] = rounded_sum(a.min(b), offset, exact, -1);
+                bounds.high[k] = rounded_sum(a.max(b), offset, exact, 1);
             }
         }
     }
-    (low, high)
+    bounds
 }
 
 /// `a + b`, rounded downwards or upwards unless it is exact.

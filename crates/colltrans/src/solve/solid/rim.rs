@@ -23,10 +23,9 @@
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
 
-use glam::DVec3;
-
 use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP, over_facet, over_side};
 use super::scene::{Corner, Scene, Side};
+use crate::body::Aabb;
 use crate::body::solid::edges::NONE;
 use crate::number::integer::{Integer, LARGE, SMALL};
 
@@ -40,8 +39,7 @@ pub(crate) struct Upright {
     leads: [Ordering; 3],
     /// The corners at the ends of the shadow.
     ends: [usize; 2],
-    low: DVec3,
-    high: DVec3,
+    bounds: Aabb,
 }
 
 /// Whether two nodes have facets without a side.
@@ -120,16 +118,14 @@ impl Upright {
         if scene.turn(a, b, c) != Equal {
             return None;
         }
-        let [p, q, r] = corners.map(|c| c.at);
-        let (low, high) = (p.min(q).min(r), p.max(q).max(r));
+        let bounds = Aabb::of_triangle(corners.map(|c| c.at));
         let mut upright = Self {
             triangle: triangle as u32,
             corners,
             moving,
             leads: [Equal; 3],
             ends: [0, 1],
-            low,
-            high,
+            bounds,
         };
         upright.leads = [0, 1, 2].map(|k| upright.lead(scene, k));
         // The two corners that are farthest apart along the shadow.
@@ -179,14 +175,13 @@ impl Upright {
     }
 
     /// Whether boxes say that nothing is met.
-    fn is_beside(&self, scene: &Scene, low: DVec3, high: DVec3) -> bool {
-        let noise = 4.0 * scene.noise;
-        (0..2).any(|k| self.low[k] - high[k] > noise || low[k] - self.high[k] > noise)
+    fn is_beside(&self, scene: &Scene, bounds: &Aabb) -> bool {
+        (0..2).any(|axis| self.bounds.is_apart(bounds, axis, 4.0 * scene.noise))
     }
 
     /// The gaps of the leading sides and a facet of the other body.
     fn with_facet(&self, scene: &Scene, facet: &Facet, take: &mut dyn FnMut(Gap)) {
-        if self.is_beside(scene, facet.low, facet.high) {
+        if self.is_beside(scene, &facet.bounds) {
             return;
         }
         for k in self.leading() {
@@ -322,7 +317,7 @@ fn enters(scene: &Scene, upright: &Upright, facet: &Facet, j: usize) -> bool {
 
 /// The gap of a moving and a fixed upright facet.
 fn with_upright(scene: &Scene, f: &Upright, g: &Upright) -> Option<Gap> {
-    if f.is_beside(scene, g.low, g.high) {
+    if f.is_beside(scene, &g.bounds) {
         return None;
     }
     let of_f = [0, 1].map(|k| scene.turn(f.end(0), f.end(1), g.end(k)));

@@ -2,9 +2,8 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
-
 use super::scene::{Corner, ExactPoint, Scene, Side};
+use crate::body::Aabb;
 use crate::body::solid::edges::NONE;
 
 /// A triangle of one body.
@@ -12,16 +11,14 @@ pub(crate) struct Triangle<'s, 'a> {
     pub(crate) side: &'s Side<'a>,
     pub(crate) index: usize,
     pub(crate) corners: [Corner; 3],
-    pub(crate) low: DVec3,
-    pub(crate) high: DVec3,
+    pub(crate) bounds: Aabb,
 }
 
 impl<'s, 'a> Triangle<'s, 'a> {
     pub(crate) fn new(side: &'s Side<'a>, index: usize) -> Self {
         let corners = side.corners(index);
-        let [a, b, c] = corners.map(|c| c.at);
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        Self { side, index, corners, low, high }
+        let bounds = Aabb::of_triangle(corners.map(|c| c.at));
+        Self { side, index, corners, bounds }
     }
 
     /// On which side of the plane the corners of another triangle are.
@@ -62,9 +59,8 @@ impl<'s, 'a> Triangle<'s, 'a> {
 /// Whether a point lies on a triangle, its rim included.
 pub(crate) fn lies_on(scene: &Scene, point: &impl ExactPoint, triangle: &Triangle) -> bool {
     let [a, b, c] = &triangle.corners;
-    let (at, noise) = (point.at(), 4.0 * scene.noise);
-    let boxed =
-        (0..3).all(|k| at[k] >= triangle.low[k] - noise && at[k] <= triangle.high[k] + noise);
+    let at = Aabb { low: point.at(), high: point.at() };
+    let boxed = triangle.bounds.grown(4.0 * scene.noise).holds(&at);
     if !boxed || scene.outside(a, b, c, point) != Ordering::Equal {
         return false;
     }

@@ -132,13 +132,13 @@ impl Judge<'_> {
     fn differences(&self, pairs: &[VertexPair; 3]) -> Result<[Vector; 3], Objection> {
         for pair in pairs {
             require!(
-                (pair.moving as usize) < self.scene.moving.len()
-                    && (pair.fixed as usize) < self.scene.fixed.len(),
+                pair.moving.index() < self.scene.moving.len()
+                    && pair.fixed.index() < self.scene.fixed.len(),
                 "{pair:?} names a vertex that does not exist"
             );
         }
         Ok(pairs.map(|pair| {
-            self.scene.fixed[pair.fixed as usize].minus(&self.scene.moving[pair.moving as usize])
+            self.scene.fixed[pair.fixed.index()].minus(&self.scene.moving[pair.moving.index()])
         }))
     }
 

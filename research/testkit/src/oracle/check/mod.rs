@@ -156,7 +156,7 @@ pub fn kind(outcome: &Outcome) -> &'static str {
 mod tests {
     use super::*;
     use crate::oracle::settings::{Setting, setting};
-    use colltrans::{Certificate, Contact, Separated, Solver};
+    use colltrans::{Certificate, Contact, Separated, Solver, VertexId};
 
     /// An answer, and what the judge says about it after a change.
     fn objects(setting: &Setting, outcome: &Outcome) -> bool {
@@ -192,7 +192,7 @@ mod tests {
                 c.certificate.normal = c.normal;
             }),
             ("weights", |c| c.certificate.weights = [1.0, -1.0, 1.0]),
-            ("vertex", |c| c.certificate.pairs[0].fixed = 99),
+            ("vertex", |c| c.certificate.pairs[0].fixed = VertexId(99)),
         ];
         let contacts = answers(|o| matches!(o, Outcome::Contact(_)));
         assert_eq!(contacts.len(), 20);

@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::hull::{self, Hull, Locator};
 use crate::body::error::{BuildError, TopologyError};
 use crate::body::topology::Topology;
-use crate::body::{ConvexPolyhedron, Inertia};
+use crate::body::{ConvexPolyhedron, Inertia, InputVertex};
 use crate::number::plane::polygon_normal;
 
 /// How far a mesh is from convex.
@@ -162,14 +162,11 @@ impl Surface {
         hull::hull_of_mesh(&self.points, &self.topology)
     }
 
-    fn body(&self, mut hull: Hull) -> ConvexPolyhedron {
-        let mut body_index = std::mem::take(&mut hull.vertices);
-        hull.vertices.clone_from(&body_index);
-        for v in &mut body_index {
-            *v = self.index[*v as usize];
-        }
+    fn body(&self, hull: Hull) -> ConvexPolyhedron {
         let mut body = ConvexPolyhedron::from_hull(&self.points, hull);
-        body.input_index = body_index;
+        for v in &mut body.input_index {
+            *v = InputVertex(self.index[v.index()]);
+        }
         body
     }
 

@@ -10,10 +10,10 @@ use glam::DVec3;
 
 use super::ConvexPolyhedron;
 use super::support::SupportIndex;
-use crate::body::Inertia;
 use crate::body::error::BuildError;
 #[cfg(any(test, feature = "json"))]
 use crate::body::topology::Topology;
+use crate::body::{Inertia, InputVertex};
 use hull::Hull;
 pub use mesh::{ConvexityDefect, convexity_defect};
 pub use offset::OffsetReport;
@@ -114,7 +114,7 @@ impl ConvexPolyhedron {
     pub(crate) fn from_own_faces(
         vertices: &[DVec3],
         faces: &[Vec<u32>],
-        input_indices: &[u32],
+        input_indices: &[InputVertex],
         hull_error: f64,
     ) -> Result<Self, BuildError> {
         hull::check_points(vertices)?;
@@ -149,13 +149,13 @@ impl ConvexPolyhedron {
     }
 
     fn from_hull(points: &[DVec3], hull: Hull) -> Self {
-        let Hull { dimension, vertices: input_index, topology, violation } = hull;
-        let vertices: Vec<DVec3> = input_index.iter().map(|&i| points[i as usize]).collect();
+        let Hull { dimension, vertices: input, topology, violation } = hull;
+        let vertices: Vec<DVec3> = input.iter().map(|&i| points[i as usize]).collect();
         let inertia = Inertia::new(&vertices, &topology, dimension);
         let support = SupportIndex::build(&vertices, &topology, &inertia);
         let mut body = Self {
             vertices,
-            input_index,
+            input_index: input.into_iter().map(InputVertex).collect(),
             dimension,
             hull_error: violation,
             flatness: 0.0,

@@ -125,12 +125,12 @@ impl ConvexPolyhedron {
         let mut body = Self::from_hull(&cell.corners, cell.hull);
         let mut farthest = 0.0_f64;
         for k in 0..body.vertices.len() {
-            let corner = body.input_index[k];
+            let corner = body.input_index[k].0;
             let outwards = cell.polar.topology.face_vertices(corner);
             let normal_of = |p: u32| planes[cell.polar.vertices[p as usize] as usize].normal;
             let source = self.support(outwards.map(normal_of).sum());
-            body.input_index[k] = self.input_index[source as usize];
-            farthest = farthest.max(body.vertices[k].distance(self.vertices[source as usize]));
+            body.input_index[k] = self.input_index[source.index()];
+            farthest = farthest.max(body.vertices[k].distance(self.vertices[source.index()]));
         }
         let mut stays = vec![false; planes.len()];
         for &p in &cell.polar.vertices {
@@ -158,7 +158,7 @@ impl Plane {
 /// polygon also those that stand on its edges.
 fn planes_of(body: &ConvexPolyhedron) -> Vec<Plane> {
     let at = |v: u32| body.vertices[v as usize];
-    let supporting = |normal: DVec3| Plane { normal, on: at(body.support(normal)) };
+    let supporting = |normal: DVec3| Plane { normal, on: at(body.support(normal).0) };
     let faces = (0..body.face_count() as u32).map(|face| body.face_normal(face));
     let mut planes: Vec<Plane> = faces.map(supporting).collect();
     if body.dimension == 2 {

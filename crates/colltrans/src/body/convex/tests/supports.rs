@@ -50,7 +50,7 @@ fn no_vertex_is_farther_than_the_support_point() {
             let d = direction(&mut random, k);
             let farthest = vertices.iter().map(|v| d.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
             let near = random.index(vertices.len()) as u32;
-            for found in [body.support(d), body.support_from(d, near)] {
+            for found in [body.support(d).0, body.support_from(d, near)] {
                 let short = farthest - d.dot(vertices[found as usize]);
                 // Corners are rounded, so the boundary may rise and fall by as much.
                 let rounding = 64.0 * f64::EPSILON * d.abs().dot(size);

@@ -1,0 +1,256 @@
+//! Two facets: whether their pair counts, and for how much.
+//!
+//! `f` is a front facet of the moving body (its shadow runs counter-clockwise), `g` a back facet of
+//! the fixed one, its corners listed backwards so that its shadow runs counter-clockwise too. The
+//! interiors of the shadows overlap unless a side of one separates them. Over the common shadow the
+//! gap `h_g - h_f` is linear; its corners are corners of `f` under `g`, corners of `g` over `f`, and
+//! crossings of sides. The pair *counts* if the largest gap is positive, or zero all over. A facet of an
+//! open shell has no side: it is both a front and a back facet, unless it is [on edge](super::rim).
+//!
+//! All that is decided is decided exactly: rounded values are used where their error bounds allow,
+//! and else the signs are those of
+//! `outside(g, f_i)` (corner of `f` under `g`), `outside(f, g_j)` (corner of `g` over `f`) and
+//! `-outside(p, q, r, s) turn(p, q, s)` (side `p q` of `f` under side `r s` of `g`).
+//!
+//! [`facet`] has a facet and the turns of its sides, [`rounded`] the gap with bounds of its error, [`exact`]
+//! the gap in whole numbers; here they are asked in turn.
+
+mod exact;
+mod facet;
+mod rounded;
+
+use std::cmp::Ordering;
+
+pub(crate) use exact::{Above, NO_GAP, over_facet, over_side};
+pub(crate) use facet::{Facet, listed};
+
+use super::scene::Scene;
+use exact::exact;
+use facet::{Turns, may_cross, separates};
+use rounded::{Rounded, crossing, each_gap, rounded};
+
+/// Rounded gaps are used while their error is below so many times the noise of coordinates, `2e-10 S`;
+/// the one that decides is taken again exactly if its error is not below [`FINE`] times the noise.
+pub(crate) const SHARP: f64 = 65_536.0;
+pub(crate) const FINE: f64 = 256.0;
+
+/// What meets what at a corner of the common shadow; numbers are positions among the [`listed`] corners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Meeting {
+    /// A corner of the moving facet and the fixed facet.
+    Corner(u8),
+    /// The moving facet and a corner of the fixed one.
+    Under(u8),
+    /// Two sides, each named by its first corner.
+    Sides(u8, u8),
+    /// A corner of the moving facet and a side of the fixed one.
+    OnSide(u8, u8),
+    /// A side of the moving facet and a corner of the fixed one.
+    UnderSide(u8, u8),
+}
+
+/// The range of the gap over the common shadow.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Gap {
+    /// The least gap, as a length.
+    pub(crate) least: f64,
+    pub(crate) largest: f64,
+    /// Their signs, exactly.
+    pub(crate) signs: [Ordering; 2],
+    /// Where the gap is least.
+    pub(crate) at: Meeting,
+    /// Bound of the error of its values.
+    pub(crate) error: f64,
+}
+
+impl Gap {
+    /// Whether the largest gap is positive, or the gap zero all over.
+    pub(crate) fn counts(&self) -> bool {
+        matches!(self.signs, [_, Ordering::Greater] | [Ordering::Equal, Ordering::Equal])
+    }
+}
+
+/// Which pairs are of interest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    All,
+    /// The largest gap is not negative; the sign of the least one is not needed.
+    NotParting,
+    /// Nor is the least.
+    NotCrossing,
+}
+
+/// The gap where the interiors of the shadows overlap and the pair is of interest; `limit` is what it
+/// has to stay below.
+pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
+    let noise = 4.0 * scene.noise;
+    let apart = |axis: usize| f.bounds.is_apart(&g.bounds, axis, noise);
+    if apart(0) || apart(1) || g.bounds.low.z - f.bounds.high.z - noise >= limit {
+        return None;
+    }
+    // A gap is linear over either facet: nowhere less than at the corners of one.
+    if f.least_off(g, -1.0).max(g.least_off(f, 1.0)) >= limit {
+        return None;
+    }
+    let mut of_f = Turns::unless_apart(scene, f, g)?;
+    let mut of_g = Turns::unless_apart(scene, g, f)?;
+    let separated = (0..3).any(|k| !of_f.admits(k) && separates(scene, f, k, g))
+        || (0..3).any(|k| !of_g.admits(k) && separates(scene, g, k, f));
+    if separated {
+        return None;
+    }
+    of_f.resolve(scene, f, g);
+    of_g.resolve(scene, g, f);
+    let range = rounded(scene, f, g, &of_f, &of_g);
+    // Certain whatever the other corners are: nothing more needs to be known of slivers that cross.
+    let parting = wanted != Wanted::All && range.bound[1] < 0.0;
+    if parting || wanted == Wanted::NotCrossing && range.negative {
+        return None;
+    }
+    match range.judge(SHARP * scene.noise, wanted == Wanted::NotCrossing) {
+        Rounded::Known(gap) => Some(gap),
+        Rounded::Beyond(least) if least >= limit => None,
+        Rounded::Beyond(_) => Some(exact(scene, f, g, &of_f, &of_g, |_| true)),
+    }
+}
+
+/// The least gap of two facets whose shadows overlap, exact but for its last roundings, and where.
+/// Corners of the common shadow that rounding says are not the lowest are left out.
+pub(crate) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meeting) {
+    let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
+    let mut least = f64::INFINITY;
+    each_gap(scene, f, g, &of_f, &of_g, |(value, error), _| least = least.min(value + error));
+    let low = |(value, error): (f64, f64)| value - error <= least;
+    let mut near = [None; 15];
+    let mut count = 0;
+    each_gap(scene, f, g, &of_f, &of_g, |gap, at| {
+        if low(gap) {
+            near[count] = Some(at);
+            count += 1;
+        }
+    });
+    let keep = |at: Meeting| near[..count].contains(&Some(at));
+    let gap = exact(scene, f, g, &of_f, &of_g, keep);
+    (gap.least, gap.at)
+}
+
+/// The gap of two facets whose shadows overlap, exact but for its last roundings.
+pub(crate) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
+    let (of_f, of_g) = (Turns::exact(scene, f, g), Turns::exact(scene, g, f));
+    exact(scene, f, g, &of_f, &of_g, |_| true)
+}
+
+/// The least gap of two triangles, the moving body's first, where they certainly block each other, and
+/// its error; `None` as well where only whole numbers could tell that, which would take longer than a
+/// search.
+pub(crate) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
+    let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
+    let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
+    let mut of_f = Turns::unless_apart(scene, &f, &g)?;
+    let mut of_g = Turns::unless_apart(scene, &g, &f)?;
+    if scene.is_aligned() {
+        // Coordinates are exact, and so are signs of them, at no cost.
+        of_f.resolve(scene, &f, &g);
+        of_g.resolve(scene, &g, &f);
+        let separated = (0..3).any(|k| separates(scene, &f, k, &g) || separates(scene, &g, k, &f));
+        if separated {
+            return None;
+        }
+    } else if !of_f.are_certain() || !of_g.are_certain() {
+        return None;
+    }
+    match rounded(scene, &f, &g, &of_f, &of_g).judge(SHARP * scene.noise, false) {
+        Rounded::Known(gap) if !gap.counts() => None,
+        Rounded::Known(gap) if gap.error <= FINE * scene.noise => Some((gap.least, gap.error)),
+        // Slivers.
+        Rounded::Known(_) => Some((least_exactly(scene, &f, &g).0, 0.0)),
+        Rounded::Beyond(_) => None,
+    }
+}
+
+/// Two triangles, the moving body's first, have no smaller gap than this where the interiors of their
+/// shadows overlap, whatever rounding leaves in doubt; infinite if they face away or certainly do not
+/// overlap.
+pub(crate) fn least_in_doubt(scene: &Scene, [moving, fixed]: [u32; 2]) -> f64 {
+    let f = Facet::facing(scene, true, moving as usize, Ordering::Greater);
+    let g = Facet::facing(scene, false, fixed as usize, Ordering::Less);
+    let (Some(f), Some(g)) = (&f, &g) else { return f64::INFINITY };
+    let of_f = Turns::unless_apart(scene, f, g);
+    let of_g = Turns::unless_apart(scene, g, f);
+    let (Some(of_f), Some(of_g)) = (of_f, of_g) else { return f64::INFINITY };
+    // The gap is linear over either facet, so nowhere less than at the corners of one; and least at a
+    // corner of the common shadow, which is one of those that may be.
+    let anywhere = f.least_off(g, -1.0).max(g.least_off(f, 1.0));
+    let mut least = f64::INFINITY;
+    let mut add = |(value, error): (f64, f64)| least = least.min(value - error);
+    for k in 0..3 {
+        if of_g.may_contain(k) {
+            add(g.height_above(f.corners[k].at));
+        }
+        if of_f.may_contain(k) {
+            let (height, error) = f.height_above(g.corners[k].at);
+            add((-height, error));
+        }
+        for j in (0..3).filter(|&j| may_cross(&of_f, &of_g, [k, j])) {
+            add(crossing(scene, [f, g], [k, j], &of_f, &of_g));
+        }
+    }
+    least.max(anywhere)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+    use proptest::prelude::*;
+
+    use super::super::search::{Aim, exact_gap};
+    use super::*;
+    use crate::body::Pose;
+    use crate::body::solid::Solid;
+    use crate::cast::Cast;
+
+    fn point() -> impl Strategy<Value = DVec3> {
+        (-2_i8..=2, -2_i8..=2, -2_i8..=2)
+            .prop_map(|(x, y, z)| DVec3::from([x, y, z].map(f64::from)))
+    }
+
+    fn triangle() -> impl Strategy<Value = Solid> {
+        [point(), point(), point()].prop_filter_map("no area", |corners| {
+            Solid::from_open_mesh(&corners, &[[0, 1, 2]]).ok()
+        })
+    }
+
+    fn rotation() -> impl Strategy<Value = DQuat> {
+        let turned = [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, 0.25..1.0];
+        let turned = turned.prop_map(|q| DQuat::from_array(q).normalize());
+        prop_oneof![Just(DQuat::IDENTITY), turned]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4_000))]
+
+        /// Corners over corners, sides over sides: in turned poses rounding leaves them in doubt.
+        #[test]
+        fn no_gap_is_less_than_the_least_possible_one(
+            a in triangle(), b in triangle(), q in rotation(), d in point(), t in point(),
+        ) {
+            prop_assume!(d != DVec3::ZERO);
+            let turned = |t| Pose::new(q, q * t).expect("a rotation");
+            let cast = Cast::new(a.at(turned(DVec3::ZERO)), b.at(turned(t)), q * d).expect("a query");
+            let cast = cast.with_tolerance(0.0).expect("a tolerance");
+            let scene = cast.asked();
+            let f = Facet::facing(&scene, true, 0, Ordering::Greater);
+            let g = Facet::facing(&scene, false, 0, Ordering::Less);
+            if let (Some(f), Some(g)) = (f, g)
+                && gap(&scene, &f, &g, f64::INFINITY, Wanted::All).is_some()
+            {
+                let least = sharpened(&scene, &f, &g).least;
+                let possible = least_in_doubt(&scene, [0, 0]);
+                prop_assert!(possible <= least + scene.noise, "{possible}, but {least}");
+                if let Some((exact, _)) = exact_gap(&scene, Aim::Stop, [0, 0]) {
+                    prop_assert_eq!(exact, least);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The gap of two facets from rounded coordinates: its values at the corners of the common shadow with bounds
+//! of their errors, and what these leave certain.
+
+use std::cmp::Ordering;
+
+use super::facet::{Facet, Turn, Turns, cross};
+use super::{Gap, Meeting};
+use crate::solve::solid::scene::Scene;
+
+/// The gap from rounded coordinates.
+pub(super) enum Rounded {
+    /// Errors are small and the signs are certain.
+    Known(Gap),
+    /// The least gap is certainly not smaller than this.
+    Beyond(f64),
+}
+
+/// Gathers gaps at the corners of the common shadow.
+pub(super) struct Range {
+    least: f64,
+    largest: f64,
+    at: Meeting,
+    pub(super) negative: bool,
+    positive: bool,
+    /// Bounds of all gaps, and the largest error of one.
+    pub(super) bound: [f64; 2],
+    worst: f64,
+}
+
+impl Range {
+    fn add(&mut self, (value, error): (f64, f64), at: Meeting) {
+        if value < self.least {
+            (self.least, self.at) = (value, at);
+        }
+        self.largest = self.largest.max(value);
+        self.worst = self.worst.max(error);
+        self.bound = [self.bound[0].min(value - error), self.bound[1].max(value + error)];
+        self.negative |= value < -error;
+        self.positive |= value > error;
+    }
+
+    pub(super) fn judge(self, sharp: f64, needed: bool) -> Rounded {
+        let [low, high] = self.bound;
+        let least = if low > 0.0 {
+            Some(Ordering::Greater)
+        } else {
+            (self.negative || !needed).then_some(Ordering::Less)
+        };
+        let largest = if self.positive {
+            Some(Ordering::Greater)
+        } else {
+            (high < 0.0).then_some(Ordering::Less)
+        };
+        match (least, largest) {
+            (Some(a), Some(b)) if self.worst <= sharp => {
+                let Self { least, largest, at, worst, .. } = self;
+                Rounded::Known(Gap { least, largest, signs: [a, b], at, error: worst })
+            }
+            _ => Rounded::Beyond(low),
+        }
+    }
+}
+
+pub(super) fn rounded(scene: &Scene, f: &Facet, g: &Facet, of_f: &Turns, of_g: &Turns) -> Range {
+    let mut range = Range {
+        least: f64::INFINITY,
+        largest: f64::NEG_INFINITY,
+        at: Meeting::Corner(0),
+        negative: false,
+        positive: false,
+        bound: [f64::INFINITY, f64::NEG_INFINITY],
+        worst: 0.0,
+    };
+    each_gap(scene, f, g, of_f, of_g, |gap, at| range.add(gap, at));
+    range
+}
+
+/// The rounded gap at each corner of the common shadow, and a bound of its error.
+pub(super) fn each_gap(
+    scene: &Scene,
+    f: &Facet,
+    g: &Facet,
+    of_f: &Turns,
+    of_g: &Turns,
+    mut add: impl FnMut((f64, f64), Meeting),
+) {
+    for k in 0..3 {
+        if of_g.contain(k) {
+            add(g.height_above(f.corners[k].at), Meeting::Corner(k as u8));
+        }
+        if of_f.contain(k) {
+            let (height, error) = f.height_above(g.corners[k].at);
+            add((-height, error), Meeting::Under(k as u8));
+        }
+    }
+    for k in 0..3 {
+        for j in 0..3 {
+            if cross(of_f, of_g, [k, j]) {
+                let gap = crossing(scene, [f, g], [k, j], of_f, of_g);
+                add(gap, Meeting::Sides(k as u8, j as u8));
+            }
+        }
+    }
+}
+
+/// The gap where side `k` of `f` crosses side `j` of `g`, and a bound of its error.
+pub(super) fn crossing(
+    scene: &Scene,
+    [f, g]: [&Facet; 2],
+    [k, j]: [usize; 2],
+    of_f: &Turns,
+    of_g: &Turns,
+) -> (f64, f64) {
+    let next = |k: usize| (k + 1) % 3;
+    let (r, s) = (of_f.0[k][j], of_f.0[k][next(j)]);
+    let (p, q) = (of_g.0[j][k], of_g.0[j][next(k)]);
+    let ([a, b], [c, e]) = (f.side(k).map(|c| c.at), g.side(j).map(|c| c.at));
+    let (across, back) = (p.value - q.value, r.value - s.value);
+    let gap = c.z + (e.z - c.z) * (r.value / back) - a.z - (b.z - a.z) * (p.value / across);
+    // Where on its side the crossing is, and what that makes of the height.
+    let slide = |width: f64, x: Turn, y: Turn, rise: f64| {
+        let share = (x.error + y.error) / width.abs();
+        if share < 0.25 { 2.0 * share * rise.abs() } else { f64::INFINITY }
+    };
+    let error = 8.0 * scene.noise + slide(across, p, q, b.z - a.z) + slide(back, r, s, e.z - c.z);
+    if gap.is_finite() && error.is_finite() { (gap, error) } else { (0.0, f64::INFINITY) }
+}

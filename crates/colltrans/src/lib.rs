@@ -169,7 +169,7 @@ pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, Statement, Stop};
 pub use cast::{Cast, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
-pub use pair::Pair;
+pub use pair::{Pair, PairProof};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;

@@ -1,5 +1,9 @@
 //! Two placed bodies and no direction: how far apart they are, how deep they overlap.
 
+mod convex;
+mod verify;
+
+use crate::answer::{NearPoints, PlaneGap};
 use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
@@ -11,6 +15,28 @@ use crate::setting::error::QueryError;
 #[derive(Debug, Clone)]
 pub struct Pair<'a, B: Body = ConvexPolyhedron> {
     pub(crate) bodies: TwoBodies<'a, B>,
+}
+
+/// A proof to check about two convex bodies where they are.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum PairProof<'a> {
+    /// That they are not nearer to each other than a number.
+    Gap(&'a PlaneGap),
+    /// That they are not farther from each other than a number.
+    Near(&'a NearPoints),
+}
+
+impl<'a> From<&'a PlaneGap> for PairProof<'a> {
+    fn from(plane: &'a PlaneGap) -> Self {
+        Self::Gap(plane)
+    }
+}
+
+impl<'a> From<&'a NearPoints> for PairProof<'a> {
+    fn from(points: &'a NearPoints) -> Self {
+        Self::Near(points)
+    }
 }
 
 // A derived one would ask the same of the body.

@@ -8,6 +8,7 @@ use glam::{DMat3, DVec3};
 
 use crate::body::{ConvexPolyhedron, Placed, Pose};
 use crate::number::error_free::difference_error;
+use crate::number::extent;
 use crate::number::noise::Noise;
 use crate::number::orientation::Terms;
 use crate::setting::VertexPair;
@@ -103,7 +104,11 @@ impl TwoBodies<'_> {
     /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory they stall their reader")]
-    pub(crate) fn weighted(&self, pairs: &[VertexPair; 3], weights: &[f64; 3]) -> [DVec3; 2] {
+    pub(crate) fn weighted<const N: usize>(
+        &self,
+        pairs: &[VertexPair; N],
+        weights: &[f64; N],
+    ) -> [DVec3; 2] {
         let mut means = [DVec3::ZERO; 2];
         for (pair, &weight) in pairs.iter().zip(weights) {
             let [p, q] = self.vertices(*pair);
@@ -141,5 +146,12 @@ impl TwoBodies<'_> {
             moving: (&self.moving_matrix, p),
             offset: [self.offset, self.offset_error],
         }
+    }
+
+    /// At most `min_Q n.q - max_P n.p`, and less by hardly more than a rounding: all vertices are looked at.
+    pub(crate) fn distance_along(&self, normal: DVec3) -> f64 {
+        let fixed = (self.fixed.vertices(), &self.fixed_matrix);
+        let moving = (self.moving.vertices(), &self.moving_matrix);
+        extent::distance(normal, fixed, moving, self.exact_offset())
     }
 }

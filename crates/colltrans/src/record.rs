@@ -13,8 +13,8 @@ use crate::answer::{
     Steps, WhyFree,
 };
 use crate::body::solid::Solid;
-use crate::body::{Body, Feature, InputVertex};
-use crate::cast::{Cast, Features};
+use crate::body::{Body, Feature, Features, InputVertex};
+use crate::cast::Cast;
 use crate::setting::error::QueryError;
 use crate::solve::observe::{Nobody, Observer};
 use crate::written::{UnknownName, named};

@@ -96,6 +96,12 @@ pub enum CertificateError {
         /// The weights.
         weights: [f64; 3],
     },
+    /// The weights of two points are negative or their sum is not 1.
+    #[error("the weights {weights:?} are not those of a mean")]
+    PointWeights {
+        /// The weights.
+        weights: [f64; 4],
+    },
     /// The witness points do not come together.
     #[error("the witness points miss each other by {residual:e} (tolerated: {tolerance:e})")]
     Residual {
@@ -239,13 +245,6 @@ impl Along {
     }
 }
 
-/// At most `min_Q n.q - max_P n.p`: all vertices are looked at.
-fn distance_along(setting: &Setting, normal: DVec3) -> f64 {
-    let fixed = (setting.fixed.vertices(), &setting.fixed_matrix);
-    let moving = (setting.moving.vertices(), &setting.moving_matrix);
-    extent::distance(normal, fixed, moving, setting.exact_offset())
-}
-
 /// What rounding, and a widening sideways, can make of the difference between the estimates of the
 /// upper and the lower bound for a normal, in multiples of the direction.
 #[inline]
@@ -326,7 +325,7 @@ fn proven_lower(setting: &Setting, normal: DVec3) -> Result<f64, CertificateErro
     if least <= 0.0 {
         return Err(CertificateError::Normal { normal });
     }
-    let distance = distance_along(setting, normal);
+    let distance = setting.distance_along(normal);
     // Rounded down, whichever sign.
     Ok((distance / if distance < 0.0 { least } else { most }).next_down())
 }
@@ -356,7 +355,7 @@ impl Separation {
         }
         // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
         let closing = normal.dot(setting.unit).abs() * setting.scale();
-        let (proven, claimed) = (distance_along(setting, normal), self.margin);
+        let (proven, claimed) = (setting.distance_along(normal), self.margin);
         if claimed > 0.0 && claimed <= proven && proven > closing {
             Ok(proven)
         } else {

@@ -11,7 +11,9 @@ pub(crate) mod orientation;
 pub(crate) mod plane;
 pub(crate) mod predicates;
 pub(crate) mod range;
+pub(crate) mod real;
 pub(crate) mod symmetric;
+pub(crate) mod volume;
 
 #[cfg(test)]
 mod tests {

@@ -36,6 +36,11 @@
 //! - *Residual.* The witness points of a certificate are the same weighted mean, so they miss each
 //!   other by at most two noises sideways, and one that the weights' sum may be off; of bodies that
 //!   were widened by the corner of the widest rectangle, and by one noise for each body.
+//! - *Mean.* A point of `M` in the setting frame is off by less than `9 u S` (three products in each
+//!   coordinate of either body, `3 u sqrt(3)`, the sums `3 u`), the weighted mean of four by `4 u S` more, as
+//!   their sum of weights by `3 u`, its length by `2 u`: together less than `18 u S`. Whoever computes the
+//!   points nearly without rounding is off by `12 u S` in all. So a distance of two points is raised by one
+//!   noise and a half, of which a check demands a fourth of that.
 //! - *Unit vector.* Normalising leaves `4 u`, rotating into the world `3 u sqrt(3)`, normalising
 //!   again `4 u`; an orthogonal one inherits the same from its axes. Tolerated is twice their sum.
 //! - *Gain.* A dot product of a direction with an edge vector, itself rounded, has an error of `4 u`
@@ -84,6 +89,10 @@ const RAISED: f64 = 4.0;
 
 /// By how many noises witness points may miss each other.
 const RESIDUAL: f64 = 3.0;
+
+/// By how many noises the length of a weighted mean of points of `M` is raised to be an upper bound, and what
+/// of that is demanded if the points are computed nearly without rounding.
+const MEAN: [f64; 2] = [1.5, 0.375];
 
 /// Relative error of a unit vector's length and of its product with one it should be orthogonal to.
 pub(crate) const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
@@ -167,6 +176,17 @@ impl Noise {
     #[inline]
     pub(crate) fn raised(self) -> f64 {
         RAISED * self.0
+    }
+
+    /// By how much the length of a weighted mean of points of `M` has to be raised to be an upper bound.
+    #[inline]
+    pub(crate) fn mean_raised(self) -> f64 {
+        MEAN[0] * self.0
+    }
+
+    /// The same for points that are computed nearly without rounding.
+    pub(crate) fn mean_checked(self) -> f64 {
+        MEAN[1] * self.0
     }
 
     /// By how much an upper bound along `n` has to lie above the weighted mean of the corners, if

@@ -24,6 +24,7 @@ use glam::{DMat3, DVec2, DVec3};
 use super::double::{Double, Sums};
 use super::error_free::{difference_error, sum_error};
 use super::integer::{Integer, LARGE, SMALL};
+use super::real::{Twice, Vector};
 
 /// A point of `M` as the sum of products that defines it: `R_Q q - R_P p + high + low`.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +53,18 @@ impl Terms<'_> {
     /// The point, rounded as if its coordinates had been computed without rounding, or nearly so.
     pub(crate) fn point(&self) -> DVec3 {
         DVec3::from_array(self.rounded([0, 1, 2]).map(|coordinate| coordinate.high))
+    }
+
+    /// The point in twice the usual precision.
+    pub(crate) fn twice(&self) -> Vector<Twice> {
+        Vector(
+            self.rounded([0, 1, 2]).map(|coordinate| Twice::new(coordinate.high, coordinate.low)),
+        )
+    }
+
+    /// The point, exactly.
+    pub(super) fn coordinates<const N: usize>(&self) -> [Integer<N>; 3] {
+        std::array::from_fn(|row| self.coordinate(row))
     }
 
     fn coordinate<const N: usize>(&self, row: usize) -> Integer<N> {

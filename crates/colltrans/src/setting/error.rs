@@ -25,6 +25,12 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// The length that a distance is compared with is negative or not a number.
+    #[error("the length {length} is negative or not a number")]
+    Length {
+        /// The length as given.
+        length: f64,
+    },
     /// The tolerance by which solids are shrunk is negative or not finite.
     #[error("the tolerance {tolerance} is negative or not finite")]
     Tolerance {
@@ -82,6 +88,17 @@ pub enum Stalled {
     /// Portals followed each other without an end.
     #[error("portals followed each other in a circle")]
     Cycle,
+    /// The plane and the points of a distance, or of a depth, are farther apart than rounding explains. In
+    /// world units; both are proven bounds.
+    #[error("the bounds did not meet: {lower} to {upper}, gap tolerated: {tolerance:e}")]
+    Distance {
+        /// The lower bound.
+        lower: f64,
+        /// The upper bound.
+        upper: f64,
+        /// The gap that would have been accepted.
+        tolerance: f64,
+    },
     /// The lowest plane found and the portal are farther apart than rounding explains. All in multiples
     /// of the direction, and as computed: neither number is a proven bound.
     #[error("the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}")]

@@ -11,6 +11,7 @@
 //! ([`Plane::at`], which is also the proof), and a support point is searched only if it does not.
 
 pub(crate) mod cta;
+pub(crate) mod nearest;
 pub mod observe;
 pub(crate) mod options;
 pub(crate) mod portal;

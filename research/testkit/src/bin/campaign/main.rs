@@ -2,6 +2,7 @@
 //! re-verified in exact arithmetic, and a sample compared with the rational linear programme. Or
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
+//! Or distances of settings as they are, near contact and overlapping.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -10,12 +11,14 @@
 //! campaign --sequences QUERIES [--seed S] [--only FAMILY]
 //! campaign --solids N [--seed S] [--only FAMILY]
 //! campaign --bodies N [--seed S] [--only FAMILY]
+//! campaign --distances N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 //! ```
 //! Exit code 1 if anything disagrees.
 
 mod bodies;
 mod casts;
+mod distances;
 mod sequences;
 mod solids;
 
@@ -35,6 +38,7 @@ struct Arguments {
     sequences: Option<u64>,
     solids: Option<u64>,
     bodies: Option<u64>,
+    distances: Option<u64>,
     lp: u64,
     seed: u64,
     only: Option<String>,
@@ -62,6 +66,8 @@ fn main() -> ExitCode {
     let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
     exit_code(if let Some(count) = arguments.bodies {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
+    } else if let Some(count) = arguments.distances {
+        run(&arguments, &families, count, distances::examine)
     } else if let Some(queries) = arguments.sequences {
         run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
     } else {
@@ -82,6 +88,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         sequences: None,
         solids: None,
         bodies: None,
+        distances: None,
         lp: 1_000,
         seed: 1,
         only: None,
@@ -93,6 +100,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--settings" => arguments.settings = number(&value)?,
             "--sequences" => arguments.sequences = Some(number(&value)?),
             "--solids" => arguments.solids = Some(number(&value)?),
+            "--distances" => arguments.distances = Some(number(&value)?),
             "--bodies" => arguments.bodies = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,

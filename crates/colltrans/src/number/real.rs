@@ -1,0 +1,198 @@
+//! Numbers that a search computes with: `f64`, or [`Twice`] its precision where that does not tell.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use glam::DVec3;
+
+use super::error_free::{product_error, sum_error};
+
+/// A number to compute with.
+pub(crate) trait Real:
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    const ZERO: Self;
+
+    fn of(x: f64) -> Self;
+
+    /// The nearest `f64`.
+    fn value(self) -> f64;
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+
+    #[inline]
+    fn of(x: f64) -> Self {
+        x
+    }
+
+    #[inline]
+    fn value(self) -> f64 {
+        self
+    }
+}
+
+/// The sum of a number and of what rounding took from it: 106 bits, less a few. Of numbers that are not
+/// tiny: what underflows is lost.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(crate) struct Twice {
+    high: f64,
+    low: f64,
+}
+
+impl Twice {
+    /// The sum of two, the second small against the first.
+    #[inline]
+    pub(crate) fn new(high: f64, low: f64) -> Self {
+        let sum = high + low;
+        Self { high: sum, low: sum_error(high, low, sum) }
+    }
+}
+
+impl Real for Twice {
+    const ZERO: Self = Self { high: 0.0, low: 0.0 };
+
+    fn of(x: f64) -> Self {
+        Self { high: x, low: 0.0 }
+    }
+
+    fn value(self) -> f64 {
+        self.high
+    }
+}
+
+impl Add for Twice {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let high = self.high + other.high;
+        let low = self.low + other.low;
+        let first = Self::new(high, sum_error(self.high, other.high, high) + low);
+        Self::new(first.high, first.low + sum_error(self.low, other.low, low))
+    }
+}
+
+impl Neg for Twice {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+}
+
+impl Sub for Twice {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Twice {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let high = self.high * other.high;
+        let rest = product_error(self.high, other.high, high);
+        Self::new(high, rest + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl Div for Twice {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let first = self.high / other.high;
+        let rest = self - other * Self::of(first);
+        Self::new(first, rest.high / other.high)
+    }
+}
+
+/// A vector of such numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Vector<T>(pub(crate) [T; 3]);
+
+impl<T: Real> Vector<T> {
+    pub(crate) const ZERO: Self = Self([T::ZERO; 3]);
+
+    #[inline]
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([a - x, b - y, c - z])
+    }
+
+    #[inline]
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([a + x, b + y, c + z])
+    }
+
+    #[inline]
+    pub(crate) fn times(&self, factor: T) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+
+    #[inline]
+    pub(crate) fn dot(&self, other: &Self) -> T {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        a * x + b * y + c * z
+    }
+
+    #[inline]
+    pub(crate) fn cross(&self, other: &Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+    }
+
+    /// The nearest one of `f64`.
+    #[inline]
+    pub(crate) fn value(&self) -> DVec3 {
+        DVec3::from_array(self.0.map(T::value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use dashu_ratio::RBig;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::number::tests::rational;
+
+    /// Numbers of like size, zero among them.
+    fn number() -> impl Strategy<Value = Twice> {
+        let high = || prop_oneof![Just(0.0), (-4_i32..=4).prop_map(f64::from), -2.0..2.0_f64];
+        (high(), -1.0..1.0_f64).prop_map(|(high, low)| Twice::new(high, low * 1e-17))
+    }
+
+    fn exact(x: Twice) -> RBig {
+        rational(x.high) + rational(x.low)
+    }
+
+    /// Whether two numbers differ by less than `1e-30` of a size.
+    fn agree(found: Twice, truth: RBig, size: f64) -> bool {
+        (exact(found) - truth).to_f64().value().abs() <= 1e-30 * size
+    }
+
+    proptest! {
+        #[test]
+        fn twice_the_digits_are_right(a in number(), b in number()) {
+            prop_assert!(agree(a + b, exact(a) + exact(b), a.high.abs() + b.high.abs()));
+            prop_assert!(agree(a - b, exact(a) - exact(b), a.high.abs() + b.high.abs()));
+            prop_assert!(agree(a * b, exact(a) * exact(b), (a.high * b.high).abs()));
+            if b.high.abs() > 1e-10 {
+                prop_assert!(agree(a / b, exact(a) / exact(b), (a.high / b.high).abs()));
+            }
+        }
+    }
+}

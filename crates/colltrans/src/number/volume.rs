@@ -1,0 +1,49 @@
+//! On which side of the plane through three points of `M` the origin is: exact signs of determinants.
+//!
+//! A rounded determinant decides where its error allows. Coordinates that were computed in twice the usual
+//! precision are rounded by `2 u` of themselves and `2^-100` of the size, the determinant by `8 u` of the
+//! sum of its terms' magnitudes; whole numbers tell the rest.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::integer::{LARGE, SMALL, determinant};
+use super::orientation::Terms;
+
+/// Error of a rounded determinant, in its terms' magnitudes, and in the third power of the size.
+const ERROR: [f64; 2] = [64.0 * f64::EPSILON, f64::from_bits((1023 - 90) << 52)];
+
+/// The sign of `det[a, b, c]`: positive if the three are counter-clockwise as seen from beyond their plane,
+/// from the origin's other side. `size` is that of the configuration.
+pub(crate) fn sign(points: [&Terms; 3], size: f64) -> Ordering {
+    let [a, b, c] = points.map(Terms::point);
+    let det = a.dot(b.cross(c));
+    let [relative, absolute] = ERROR;
+    if det.abs() > relative * magnitude(a, b, c) + absolute * (size * size * size) {
+        return det.total_cmp(&0.0);
+    }
+    by_integers::<SMALL>(points).or_else(|| by_integers::<LARGE>(points)).unwrap_or(Ordering::Equal)
+}
+
+/// The sum of the magnitudes of the determinant's terms.
+fn magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    let [a, b, c] = [a, b, c].map(DVec3::abs);
+    let minors = DVec3::new(b.y * c.z + b.z * c.y, b.z * c.x + b.x * c.z, b.x * c.y + b.y * c.x);
+    a.dot(minors)
+}
+
+#[inline(never)]
+fn by_integers<const N: usize>(points: [&Terms; 3]) -> Option<Ordering> {
+    let [a, b, c] = points.map(Terms::coordinates::<N>);
+    determinant(&a, &b, &c).sign()
+}
+
+/// Whether a tetrahedron with some volume contains the origin, certainly; on its surface does.
+pub(crate) fn encloses(corners: &[Terms; 4], size: f64) -> bool {
+    let [a, b, c, d] = corners;
+    let signs = [[b, c, d], [a, d, c], [a, b, d], [a, c, b]].map(|face| sign(face, size));
+    let none = |unwanted| signs.iter().all(|sign| *sign != unwanted);
+    let some = signs.iter().any(|sign| sign.is_ne());
+    some && (none(Ordering::Less) || none(Ordering::Greater))
+}

@@ -1,0 +1,154 @@
+//! The questions about two convex bodies.
+
+use super::{PairProof, verify};
+use crate::answer::{CertificateError, Distance, Within};
+use crate::body::{Features, feature};
+use crate::pair::Pair;
+use crate::setting::error::{QueryError, Stalled};
+use crate::setting::{TwoBodies, VertexPair};
+use crate::solve::nearest::{Difference, Found, Plane, nearest};
+
+/// How far apart bounds may be, in noises, besides what the bodies reach beyond support points: more than four
+/// were seen of bodies less than 1000 noises thick only.
+const WIDEST: f64 = 64.0;
+
+impl Pair<'_> {
+    /// How far apart are the bodies, and where?
+    ///
+    /// The bounds hold exactly. They are at most four noises apart (`128 u S`, see
+    /// [the crate's introduction](crate#accuracy)), however near the bodies are to each other, unless one is
+    /// thinner than a thousand noises: then 64. Of bodies that overlap the lower bound is 0.
+    ///
+    /// # Errors
+    /// Only a search that ends without an answer: see [`QueryError::NotConverged`].
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{ConvexPolyhedron, Pair, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let there = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
+    /// let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(there))?;
+    ///
+    /// let distance = pair.distance()?;
+    /// assert!(distance.lower <= 5.0 && 5.0 <= distance.upper);
+    /// assert!(distance.upper - distance.lower < 1e-13);
+    /// let features = distance.features.expect("they are apart");
+    /// assert_eq!((features.moving.kind(), features.fixed.kind()), ("edge", "edge"));
+    /// // The proofs: checked against the two bodies alone.
+    /// let gap = distance.gap.expect("they are apart");
+    /// assert!(pair.verify(&gap)? >= distance.lower);
+    /// assert!(pair.verify(&distance.near)? <= distance.upper);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn distance(&self) -> Result<Distance, QueryError> {
+        let difference = Difference::new(&self.bodies);
+        answer(&difference, &nearest(&difference, [].into_iter(), None))
+    }
+
+    /// Are the bodies closer than a length, in world units? Ended as soon as that is known: for bodies
+    /// that are far from each other or overlap, after a few steps.
+    ///
+    /// # Errors
+    /// A length that is negative or not a number; and as [`Self::distance`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{ConvexPolyhedron, Pair, Pose, Within};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let there = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
+    /// let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(there))?;
+    /// assert!(matches!(pair.within(5.1)?, Within::Closer(_)));
+    /// let Within::Farther(plane) = pair.within(4.9)? else { unreachable!("they are 5 apart") };
+    /// assert!(pair.verify(&plane)? > 4.9);
+    /// assert!(matches!(pair.within(5.0)?, Within::Undecided(_)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn within(&self, length: f64) -> Result<Within, QueryError> {
+        if length.is_nan() || length < 0.0 {
+            return Err(QueryError::Length { length });
+        }
+        let difference = Difference::new(&self.bodies);
+        let found = nearest(&difference, [].into_iter(), Some(length));
+        if let Some(decided) = decide(&difference, &found, length) {
+            return Ok(decided);
+        }
+        let found = nearest(&difference, found.simplex().take(3), None);
+        match decide(&difference, &found, length) {
+            Some(decided) => Ok(decided),
+            None => answer(&difference, &found).map(Within::Undecided),
+        }
+    }
+
+    /// The vertex, edge or face of each body that faces the other one: what lies in the planes across the
+    /// shortest way between them. `None` if they overlap, or are less apart than rounding can tell.
+    ///
+    /// # Errors
+    /// As [`Self::distance`].
+    pub fn closest_features(&self) -> Result<Option<Features>, QueryError> {
+        Ok(self.distance()?.features)
+    }
+
+    /// Checks a proof against the two bodies, and returns what is really proven, in world units: the gap
+    /// of a plane, the distance of two points, or a depth that is not exceeded by the true one.
+    ///
+    /// Nothing of the search is used: all vertices are looked at for a plane, the pairs named for points
+    /// and surfaces.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify<'p>(&self, proof: impl Into<PairProof<'p>>) -> Result<f64, CertificateError> {
+        match proof.into() {
+            PairProof::Gap(plane) => verify::gap(&self.bodies, plane),
+            PairProof::Near(points) => verify::near(&self.bodies, points),
+        }
+    }
+}
+
+/// Whether what was found proves that the bodies are closer than a length, or not.
+fn decide(difference: &Difference, found: &Found, length: f64) -> Option<Within> {
+    let near = found.near(difference);
+    if near.distance <= length {
+        return Some(Within::Closer(near));
+    }
+    let plane = found.plane(difference)?;
+    (plane.gap.gap > length).then_some(Within::Farther(plane.gap))
+}
+
+/// The distance, by what a search has found.
+pub(crate) fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError> {
+    let bodies = difference.bodies;
+    let near = found.near(difference);
+    let plane = found.plane(difference);
+    let beyond = plane.map_or(0.0, |plane| plane.beyond);
+    let plane = plane.filter(|plane| plane.gap.gap > 0.0);
+    let lower = plane.map_or(0.0, |plane| plane.gap.gap);
+    let tolerance = WIDEST * difference.noise.point() + beyond;
+    if near.distance - lower > tolerance {
+        let reason = Stalled::Distance { lower, upper: near.distance, tolerance };
+        return Err(QueryError::NotConverged { reason });
+    }
+    let [p, q] = bodies.weighted(&near.pairs, &near.weights);
+    let origin = bodies.translations[0];
+    Ok(Distance {
+        lower,
+        upper: near.distance,
+        on_moving: bodies.moving_matrix * p + origin,
+        on_fixed: bodies.fixed_matrix * q + bodies.offset + origin,
+        normal: plane.map(|plane| plane.gap.normal),
+        features: plane.map(|plane| facing(bodies, &plane, difference.noise.point())),
+        near,
+        gap: plane.map(|plane| plane.gap),
+    })
+}
+
+/// The parts of the bodies that lie in the planes across a normal.
+fn facing(bodies: &TwoBodies, plane: &Plane, noise: f64) -> Features {
+    let normal = plane.gap.normal;
+    let VertexPair { moving, fixed } = plane.lowest;
+    let [out, back] = [bodies.moving_normal(normal), -bodies.fixed_normal(normal)];
+    Features {
+        moving: feature(bodies.moving, out, moving.0, noise).named(bodies.moving),
+        fixed: feature(bodies.fixed, back, fixed.0, noise).named(bodies.fixed),
+    }
+}

@@ -1,0 +1,230 @@
+//! The nearest points of two convex bodies, and a plane between them.
+//!
+//! Notation. `M = {q - p}` in the setting frame (the axes of the world, the origin at the moving body's
+//! translation); `v` is its point nearest to the origin, `n` a unit normal, `S` the size, `u = 2^-53`.
+//!
+//! The way: [`gjk`] descends to `v` over simplices of points of `M`, first in rounded numbers, and where
+//! these leave the bounds apart, once more in numbers of twice their precision. Rounding turns the direction
+//! of a short `v` by `u S / |v|`, which costs a plane across it the size of the bodies times as much: so
+//! planes are across *simplices*, whose edges are not short, and what is still open has ties that only more
+//! digits tell apart. Both are the same descent, and both only propose a plane and two points.
+//!
+//! Invariant. The bounds are those of what was proposed, whatever led there:
+//!
+//! - *Upper.* The points are a weighted mean of vertices; their distance is raised by what it may be off
+//!   ([`Noise::mean_raised`]).
+//! - *Lower.* The height along a rounded unit normal is off by less than one noise, as in a cast; it is
+//!   taken off, and what bodies reach beyond the support points ([`TwoBodies::settled`]).
+//!
+//! The descent ends when the bounds are one noise apart as computed. So they are proven to within three
+//! noises and a half, and what the bodies reach beyond support points: half a noise if each vertex is looked
+//! at, nothing where no edge lies in the plane.
+
+mod gjk;
+mod simplex;
+
+use glam::DVec3;
+
+use self::gjk::{Goal, descend};
+use self::simplex::{Corner, Simplex};
+use crate::answer::{NearPoints, PlaneGap};
+use crate::number::noise::Noise;
+use crate::number::real::{Real, Twice, Vector};
+use crate::number::volume::encloses;
+use crate::setting::{TwoBodies, VertexPair};
+
+/// `M` in the setting frame.
+pub(crate) struct Difference<'a> {
+    pub(crate) bodies: &'a TwoBodies<'a>,
+    pub(crate) noise: Noise,
+}
+
+impl<'a> Difference<'a> {
+    #[inline]
+    pub(crate) fn new(bodies: &'a TwoBodies<'a>) -> Self {
+        Self { bodies, noise: bodies.noise() }
+    }
+
+    /// The point of a pair of vertices.
+    #[inline]
+    fn point(&self, pair: VertexPair) -> DVec3 {
+        let [p, q] = self.bodies.vertices(pair);
+        self.bodies.fixed_matrix * q - self.bodies.moving_matrix * p + self.bodies.offset
+    }
+
+    /// The lowest point along a normal, from a pair that may be near.
+    #[inline]
+    fn lowest(&self, normal: DVec3, near: Option<VertexPair>) -> Corner<f64> {
+        let bodies = self.bodies;
+        let (in_moving, in_fixed) = (bodies.moving_normal(normal), -bodies.fixed_normal(normal));
+        let (moving, fixed) = match near {
+            Some(near) => (
+                bodies.moving.support_from(in_moving, near.moving.0),
+                bodies.fixed.support_from(in_fixed, near.fixed.0),
+            ),
+            None => (bodies.moving.support(in_moving).0, bodies.fixed.support(in_fixed).0),
+        };
+        self.corner(VertexPair::of(moving, fixed))
+    }
+
+    #[inline]
+    fn corner(&self, pair: VertexPair) -> Corner<f64> {
+        Corner { at: Vector(self.point(pair).to_array()), pair }
+    }
+
+    /// A direction in which the fixed body may be.
+    fn guess(&self) -> DVec3 {
+        let bodies = self.bodies;
+        let [p, q] = [bodies.moving.inertia().center, bodies.fixed.inertia().center];
+        let toward = bodies.fixed_matrix * q - bodies.moving_matrix * p + bodies.offset;
+        toward.try_normalize().unwrap_or(DVec3::X)
+    }
+}
+
+/// The best plane and the best points that a descent has seen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Found {
+    /// The plane's gap as computed, and its normal.
+    lower: f64,
+    normal: DVec3,
+    /// A pair of support points along it, as a climb has found them, or settled.
+    lowest: Option<VertexPair>,
+    /// How far the bodies may reach beyond these, once they are.
+    beyond: Option<f64>,
+    /// The distance of the points as computed.
+    upper: f64,
+    pairs: [VertexPair; 4],
+    weights: [f64; 4],
+    /// Whether the pairs are four that seem to enclose the origin.
+    full: bool,
+}
+
+impl Found {
+    fn nothing() -> Self {
+        Self {
+            lower: f64::NEG_INFINITY,
+            normal: DVec3::ZERO,
+            lowest: None,
+            beyond: None,
+            upper: f64::INFINITY,
+            pairs: [VertexPair::default(); 4],
+            weights: [0.0; 4],
+            full: false,
+        }
+    }
+
+    #[inline]
+    fn note_point<T: Real>(&mut self, distance: f64, simplex: &Simplex<T>) {
+        if distance < self.upper {
+            self.upper = distance;
+            (self.pairs, self.weights) = simplex.weighted();
+            self.full = simplex.is_full();
+        }
+    }
+
+    #[inline]
+    fn note_plane(&mut self, normal: DVec3, lowest: &Corner<f64>) {
+        let lower = normal.dot(lowest.at.value());
+        if lower > self.lower || self.lowest.is_none() {
+            self.lower = lower;
+            self.normal = normal;
+            self.lowest = Some(lowest.pair);
+            self.beyond = None;
+        }
+    }
+
+    /// The lowest point along the normal of the plane, whatever a climb has made of it.
+    fn settle(&mut self, difference: &Difference) -> Corner<f64> {
+        let pair = self.lowest.unwrap_or_default();
+        if self.beyond.is_some() {
+            return difference.corner(pair);
+        }
+        let bodies = difference.bodies;
+        let normals = [bodies.moving_normal(self.normal), bodies.fixed_normal(self.normal)];
+        let (settled, beyond) = bodies.settled(&normals, pair);
+        (self.lowest, self.beyond) = (Some(settled), Some(beyond));
+        let corner = difference.corner(settled);
+        if settled != pair {
+            self.lower = self.normal.dot(corner.at.value());
+        }
+        corner
+    }
+
+    /// The pairs that the nearest point is made of.
+    pub(crate) fn simplex(&self) -> impl Iterator<Item = VertexPair> + '_ {
+        let weighted = self.pairs.iter().zip(self.weights);
+        weighted.filter(|(_, weight)| *weight > 0.0).map(|(pair, _)| *pair)
+    }
+}
+
+/// The nearest points and a plane; with a length, until they are known to be nearer or farther. `start`
+/// are up to three pairs to begin with.
+#[inline]
+pub(crate) fn nearest(
+    difference: &Difference,
+    start: impl Iterator<Item = VertexPair>,
+    than: Option<f64>,
+) -> Found {
+    let noise = difference.noise.point();
+    // What is proven is less than what is computed by this, mostly.
+    let than = than.map(|than| [than + 3.0 * noise, than - 1.5 * noise]);
+    let goal = Goal { gap: noise, than };
+    let mut found = Found::nothing();
+    let simplex = begin(difference, start);
+    descend::<f64>(difference, simplex, &goal, &mut found);
+    if !goal.is_reached(&found) {
+        descend_with_more_digits(difference, &goal, &mut found);
+    }
+    found
+}
+
+/// The simplex of some pairs; of a first support point, if there are none.
+fn begin(difference: &Difference, start: impl Iterator<Item = VertexPair>) -> Simplex<f64> {
+    let corners = start.take(3).map(|pair| difference.corner(pair));
+    Simplex::of(corners)
+        .unwrap_or_else(|| Simplex::new(difference.lowest(difference.guess(), None)))
+}
+
+/// The rest of the way, where ties are told apart by digits that rounding has lost.
+#[cold]
+#[inline(never)]
+fn descend_with_more_digits(difference: &Difference, goal: &Goal, found: &mut Found) {
+    let corner = |pair| Corner { at: difference.bodies.terms(pair).twice(), pair };
+    if let Some(simplex) = Simplex::<Twice>::of(found.simplex().take(3).map(corner)) {
+        descend::<Twice>(difference, simplex, goal, found);
+    }
+}
+
+/// A plane between the bodies.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plane {
+    /// What it proves, if that is positive.
+    pub(crate) gap: PlaneGap,
+    /// A pair of support points along it.
+    pub(crate) lowest: VertexPair,
+    /// How far the bodies may reach beyond these.
+    pub(crate) beyond: f64,
+}
+
+impl Found {
+    /// The best plane, if there is one.
+    #[inline]
+    pub(crate) fn plane(&self, difference: &Difference) -> Option<Plane> {
+        self.lowest?;
+        let mut settled = *self;
+        let lowest = settled.settle(difference).pair;
+        let (normal, beyond) = (self.normal, settled.beyond?);
+        let gap = (settled.lower - difference.noise.lowered() - beyond).next_down();
+        Some(Plane { gap: PlaneGap { normal, gap }, lowest, beyond })
+    }
+
+    /// The points, with what they prove.
+    #[inline]
+    pub(crate) fn near(&self, difference: &Difference) -> NearPoints {
+        let Self { pairs, weights, .. } = *self;
+        let bodies = difference.bodies;
+        let met = self.full && encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale());
+        let raised = (self.upper + difference.noise.mean_raised()).next_up();
+        NearPoints { pairs, weights, distance: if met { 0.0 } else { raised } }
+    }
+}

@@ -1,0 +1,190 @@
+//! Distances: what is known in closed form, named cases, degenerate bodies, proofs and changed ones.
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::{ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, Within};
+use colltrans_testkit::oracle::nearest::Judge;
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::random_hull;
+
+fn body(points: &[DVec3]) -> ConvexPolyhedron {
+    ConvexPolyhedron::from_points(points).expect("points")
+}
+
+fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
+    ConvexPolyhedron::cuboid(low, high).expect("a box")
+}
+
+fn pose(rotation: DQuat, at: DVec3) -> Pose {
+    Pose::new(rotation, at).expect("a pose")
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    pose(DQuat::IDENTITY, DVec3::new(x, y, z))
+}
+
+/// The judged distance, and how many noises its bounds are apart.
+fn judged(p: &ConvexPolyhedron, a: Pose, q: &ConvexPolyhedron, b: Pose) -> (Distance, f64) {
+    let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
+    let distance = pair.distance().expect("an answer");
+    let noises = Judge::new(pair).check(&distance).expect("a right answer");
+    (distance, noises)
+}
+
+#[test]
+fn all_families_are_right() {
+    let mut apart = 0;
+    for (family, _) in FAMILIES {
+        for seed in 0..60 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let (distance, noises) =
+                judged(&bodies.moving, setting.moving_pose, &bodies.fixed, setting.fixed_pose);
+            assert!(noises <= 4.0 || family.starts_with("nearly"), "{setting}: {noises}");
+            apart += u32::from(distance.lower > 0.0);
+        }
+    }
+    assert!(apart > 600, "{apart}");
+}
+
+#[test]
+fn aligned_boxes_have_distances_known_in_closed_form() {
+    for size in [1e58, 1.0, 1e-10, 1e-20, 1e-30, 1e-40, 1e-50, 1e-58] {
+        let cube = cuboid(DVec3::ZERO, DVec3::splat(size));
+        for share in [0.5, 1e-3, 1e-6, 1e-9, 1e-12] {
+            let gap = (1.0 + share) * size - size;
+            let (distance, noises) =
+                judged(&cube, Pose::IDENTITY, &cube, at(size + gap, size * 0.25, size * 0.5));
+            assert!(distance.lower > 0.0 && noises <= 4.0, "{size:e} {share:e}: {noises}");
+            assert_eq!(distance.normal, Some(DVec3::X));
+            let features = distance.features.expect("apart");
+            assert_eq!((features.moving.kind(), features.fixed.kind()), ("face", "face"));
+        }
+    }
+}
+
+#[test]
+fn near_contact_is_never_contact() {
+    let mut random = Random::new(3);
+    for vertices in [4, 8, 20, 60, 300] {
+        for gap in [1e-3, 1e-6, 1e-9, 1e-12] {
+            let [p, q] = [0, 1].map(|_| body(&random_hull(vertices, &mut random).vertices));
+            let (a, b) =
+                (pose(random.rotation(), DVec3::ZERO), pose(random.rotation(), DVec3::X * 5.0));
+            let way = judged(&p, a, &q, b).0;
+            let normal = way.normal.expect("apart");
+            let near = a.translated(normal * (way.upper - gap)).expect("a pose");
+            let (distance, noises) = judged(&p, near, &q, b);
+            assert!(distance.lower > 0.9 * gap && noises <= 4.0, "{vertices} {gap:e}: {noises}");
+        }
+    }
+}
+
+#[test]
+fn bodies_of_any_dimension_and_place() {
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let shapes = [
+        body(&[DVec3::ZERO]),
+        body(&[x, -x]),
+        body(&[x, y, -x - y]),
+        cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)),
+        cuboid(DVec3::splat(-1e7), DVec3::splat(1e7)),
+        cuboid(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 1e-9)),
+        body(&[z * 1e-6, -z * 1e-6]),
+    ];
+    let turn = DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.7);
+    let far = DVec3::new(1e9, -3e8, 2e5);
+    for p in &shapes {
+        for q in &shapes {
+            for by in [DVec3::ZERO, x * 2.0, y, z * 0.5, x + y + z] {
+                for rotation in [DQuat::IDENTITY, turn] {
+                    for from in [DVec3::ZERO, far] {
+                        judged(p, pose(DQuat::IDENTITY, from), q, pose(rotation, from + by));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Two boxes of MuJoCo's issue 3383 and the like: apart by a little, faces parallel, and never 0.
+#[test]
+fn touching_faces_part_by_one_rounding() {
+    let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
+    let (touching, _) = judged(&cube, Pose::IDENTITY, &cube, at(1.0, 0.0, 0.0));
+    assert!(touching.lower == 0.0 && touching.upper < 1e-13);
+    let (overlapping, _) = judged(&cube, Pose::IDENTITY, &cube, at(0.9, 0.3, 0.2));
+    assert_eq!((overlapping.bounds(), overlapping.normal), ([0.0, 0.0], None));
+    for gap in [1e-13, 1e-12, 1e-9] {
+        let (apart, _) = judged(&cube, Pose::IDENTITY, &cube, at(1.0 + gap, 0.0, 0.0));
+        assert!(apart.lower > 0.0, "{gap:e}");
+    }
+}
+
+#[test]
+fn within_a_length_or_not() {
+    for (family, _) in FAMILIES {
+        for seed in 0..20 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let [p, q] =
+                [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
+            let pair = Pair::new(p, q).expect("a pair");
+            let judge = Judge::new(pair);
+            let truth = judge.truth.to_f64();
+            for length in [0.0, 0.5 * truth, truth, truth + 4.0 * judge.noise, 2.0 * truth, 1e9] {
+                let within = pair.within(length).expect("an answer");
+                judge.check_within(length, &within).expect("a right one");
+                let clear = (length - truth).abs() > 70.0 * judge.noise;
+                assert!(!clear || !matches!(within, Within::Undecided(_)), "{setting} {length:e}");
+            }
+            for length in [-1.0, f64::NAN] {
+                assert!(matches!(pair.within(length), Err(QueryError::Length { .. })));
+            }
+        }
+    }
+}
+
+/// One bit of a claim, or a corner: what is not proven any more is refused.
+#[test]
+fn changed_proofs_are_refused() {
+    let mut random = Random::new(11);
+    for vertices in [4, 8, 60] {
+        let [p, q] = [0, 1].map(|_| body(&random_hull(vertices, &mut random).vertices));
+        let (a, b) =
+            (pose(random.rotation(), DVec3::ZERO), pose(random.rotation(), DVec3::X * 5.0));
+        let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
+        let distance = pair.distance().expect("an answer");
+        let (plane, near) = (distance.gap.expect("apart"), distance.near);
+        let proven = pair.verify(&plane).expect("a proof");
+        pair.verify(&PlaneGap { gap: proven, ..plane }).expect("all that is proven");
+        let refused = [
+            PlaneGap { gap: proven.next_up(), ..plane },
+            PlaneGap { gap: f64::NAN, ..plane },
+            PlaneGap { normal: -plane.normal, ..plane },
+            PlaneGap { normal: plane.normal * 1.001, ..plane },
+            PlaneGap { normal: (plane.normal + DVec3::Y * 1e-3).normalize(), ..plane },
+        ];
+        for changed in refused {
+            assert!(pair.verify(&changed).is_err(), "{changed:?}");
+        }
+        let proven = pair.verify(&near).expect("a proof");
+        pair.verify(&NearPoints { distance: proven, ..near }).expect("all that is proven");
+        let mut other = near;
+        other.pairs[0].moving = 10_000;
+        let [w, ..] = near.weights;
+        let mut negative = near;
+        negative.weights = [1.0 + w, -w, 0.0, 0.0];
+        let refused = [
+            NearPoints { distance: proven.next_down(), ..near },
+            NearPoints { distance: 0.0, ..near },
+            NearPoints { distance: f64::NAN, ..near },
+            NearPoints { weights: [w, 0.0, 0.0, 0.0].map(|w| w * 0.5), ..near },
+            other,
+            negative,
+        ];
+        for changed in refused {
+            assert!(pair.verify(&changed).is_err(), "{changed:?}");
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Distances: of settings as they are drawn, brought near contact along their direction, to touch, and to
+//! overlap.
+
+use colltrans::{Outcome, Pair, Pose};
+use colltrans_testkit::oracle::check::Objection;
+use colltrans_testkit::oracle::nearest::Judge;
+use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
+use colltrans_testkit::random::Random;
+
+/// What became of the settings of one family.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Tally {
+    settings: u64,
+    apart: u64,
+    meeting: u64,
+    /// Of those apart, less than `1e-6` of the size.
+    near: u64,
+    /// Meeting ones that are proven to.
+    proven: u64,
+    undecided: u64,
+    /// The most that bounds are apart, in noises.
+    widest: f64,
+    /// More than four noises apart.
+    wide: u64,
+    disagreements: Vec<String>,
+}
+
+impl crate::Tally for Tally {
+    const CHUNK: u64 = 64;
+
+    fn header() -> String {
+        format!(
+            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>6}",
+            "settings",
+            "apart",
+            "near",
+            "meeting",
+            "proven",
+            "undecided",
+            "widest",
+            "wide",
+            "wrong"
+        )
+    }
+
+    fn line(&self) -> String {
+        format!(
+            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8.2} {:>8} {:>6}",
+            self.settings,
+            self.apart,
+            self.near,
+            self.meeting,
+            self.proven,
+            self.undecided,
+            self.widest,
+            self.wide,
+            self.disagreements.len()
+        )
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        self.settings += other.settings;
+        self.apart += other.apart;
+        self.near += other.near;
+        self.meeting += other.meeting;
+        self.proven += other.proven;
+        self.undecided += other.undecided;
+        self.widest = self.widest.max(other.widest);
+        self.wide += other.wide;
+        self.disagreements.extend(other.disagreements);
+        self
+    }
+
+    fn disagreements(&self) -> &[String] {
+        &self.disagreements
+    }
+}
+
+/// Asks for the distance of a setting's bodies, and judges it.
+pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
+    let setting = setting(family, seed);
+    tally.settings += 1;
+    let Ok(bodies) = setting.bodies() else { return };
+    let mut random = Random::new(seed ^ 0x5eed);
+    let moving = moved(&setting, &bodies, &mut random).unwrap_or(setting.moving_pose);
+    let verdict = judge(&setting, &bodies, moving, &mut random, tally);
+    if let Err(objection) = verdict {
+        tally.disagreements.push(format!("{setting} {objection}"));
+    }
+}
+
+/// As it is drawn, or brought to a gap, or a depth, along the direction: of `1e-3` to `1e-15` of the size,
+/// or none.
+fn moved(setting: &Setting, bodies: &Bodies, random: &mut Random) -> Option<Pose> {
+    let kind = random.index(8);
+    if kind < 2 {
+        return None;
+    }
+    let cast = setting.query(bodies).ok()?;
+    let Outcome::Contact(contact) = cast.first_contact().ok()? else { return None };
+    let way = cast.direction() * contact.translation;
+    let size = [&bodies.moving, &bodies.fixed]
+        .map(|body| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max));
+    let gap = 10.0_f64.powf(-random.range(3.0, 15.0)) * (size[0] + size[1]);
+    let back = cast.direction().normalize()
+        * match kind {
+            2..=5 => gap,
+            6 => 0.0,
+            _ => -gap,
+        };
+    setting.moving_pose.translated(way - back).ok()
+}
+
+fn judge(
+    setting: &Setting,
+    bodies: &Bodies,
+    moving: Pose,
+    random: &mut Random,
+    tally: &mut Tally,
+) -> Result<(), Objection> {
+    let error = |e: &dyn std::fmt::Display| Objection(e.to_string());
+    let pair = Pair::new(bodies.moving.at(moving), bodies.fixed.at(setting.fixed_pose))
+        .map_err(|e| error(&e))?;
+    let judge = Judge::new(pair);
+    let answer = pair.distance().map_err(|e| error(&e))?;
+    let apart = judge.check(&answer)?;
+    tally.widest = tally.widest.max(apart);
+    tally.wide += u64::from(apart > 4.0);
+    let truth = judge.truth.to_f64();
+    if judge.truth.intersects() {
+        tally.meeting += 1;
+        tally.proven += u64::from(answer.upper == 0.0);
+    } else {
+        tally.apart += 1;
+        tally.near += u64::from(truth < judge.noise * 1e8);
+    }
+    for length in [truth, truth * random.range(0.0, 2.0), truth + judge.noise * 4.0, 0.0] {
+        let within = pair.within(length).map_err(|e| error(&e))?;
+        tally.undecided += u64::from(matches!(within, colltrans::Within::Undecided(_)));
+        judge.check_within(length, &within)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,175 @@
+//! Judges answers about distance and depth, in exact arithmetic.
+//!
+//! Notation as in [`distance`]. Every number of an answer and of a proof is taken as exact.
+//!
+//! - *Bounds.* `lower^2 <= |v|^2 <= upper^2`, with `v` from [`distance`].
+//! - *Plane.* `min_Q n.q - max_P n.p >= gap |n|`, as squares.
+//! - *Points.* The weighted means of the pairs are at most the stated distance apart; of a distance of 0 the
+//!   pairs enclose the origin.
+
+use colltrans::{Distance, NearPoints, Pair, PlaneGap, VertexPair, Within};
+
+use crate::oracle::check::Objection;
+use crate::oracle::distance::{self, distance};
+use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
+
+macro_rules! require {
+    ($condition:expr, $($text:tt)+) => {
+        let holds: bool = $condition;
+        if !holds {
+            return Err(Objection(format!($($text)+)));
+        }
+    };
+}
+
+/// The truth about two placed bodies.
+#[derive(Debug)]
+pub struct Judge<'a> {
+    pair: Pair<'a>,
+    moving: Vec<Vector>,
+    fixed: Vec<Vector>,
+    /// The exact distance.
+    pub truth: distance::Distance,
+    /// What the library states as its rounding error, `32 u S`.
+    pub noise: f64,
+}
+
+impl<'a> Judge<'a> {
+    /// Of answers about a pair.
+    pub fn new(pair: Pair<'a>) -> Self {
+        let [p, q] = [pair.moving_pose(), pair.fixed_pose()];
+        let moving = place(p.matrix(), p.translation(), pair.moving().vertices());
+        let fixed = place(q.matrix(), q.translation(), pair.fixed().vertices());
+        let reach = |body: &colltrans::ConvexPolyhedron| {
+            body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
+        };
+        let offset = (q.translation() - p.translation()).length();
+        let size = reach(pair.moving()) + reach(pair.fixed()) + offset;
+        let truth = distance(&moving, &fixed);
+        let noise = 16.0 * f64::EPSILON * size.max(colltrans::MIN_MAGNITUDE);
+        Self { pair, moving, fixed, truth, noise }
+    }
+
+    /// Everything that an answer says; how far apart its bounds are, in noises.
+    ///
+    /// # Errors
+    /// The first statement of it that is not true.
+    pub fn check(&self, answer: &Distance) -> Result<f64, Objection> {
+        let [lower, upper] = answer.bounds();
+        require!(0.0 <= lower && lower <= upper, "bounds {lower:e} and {upper:e}");
+        let truth = self.truth.to_f64();
+        require!(square(lower) <= self.truth.square, "lower bound {lower:e} of {truth:e}");
+        require!(square(upper) >= self.truth.square, "upper bound {upper:e} of {truth:e}");
+        require!(answer.near.distance == upper, "the points are of another bound");
+        self.check_points(&answer.near)?;
+        match answer.gap {
+            Some(plane) => {
+                require!(plane.gap == lower && lower > 0.0, "the plane is of another bound");
+                require!(answer.normal == Some(plane.normal), "two different normals");
+                require!(answer.features.is_some(), "there is a plane and no feature");
+                self.check_plane(&plane)?;
+            }
+            None => {
+                require!(lower == 0.0 && answer.normal.is_none(), "a bound without a plane");
+            }
+        }
+        let apart = (answer.on_fixed - answer.on_moving).length();
+        let world = self.pair.moving_pose().translation().length();
+        let rounding = 4.0 * self.noise + 32.0 * f64::EPSILON * world;
+        require!(
+            (apart - truth).abs() <= rounding,
+            "the points are {apart:e} apart, not {truth:e}"
+        );
+        Ok((upper - lower) / self.noise)
+    }
+
+    /// An answer to whether the bodies are closer than a length.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    pub fn check_within(&self, length: f64, answer: &Within) -> Result<(), Objection> {
+        let truth = self.truth.to_f64();
+        match answer {
+            Within::Closer(near) => {
+                require!(near.distance <= length, "points {:e} apart", near.distance);
+                require!(square(length) >= self.truth.square, "{truth:e} is not within {length:e}");
+                self.check_points(near)
+            }
+            Within::Farther(plane) => {
+                require!(plane.gap > length, "a gap of {:e}", plane.gap);
+                require!(square(length) < self.truth.square, "{truth:e} is within {length:e}");
+                self.check_plane(plane)
+            }
+            Within::Undecided(distance) => {
+                let [lower, upper] = distance.bounds();
+                require!(lower <= length && length < upper, "the bounds decide");
+                self.check(distance).map(|_| ())
+            }
+            _ => Err(Objection("an unknown answer".into())),
+        }
+    }
+
+    fn check_plane(&self, plane: &PlaneGap) -> Result<(), Objection> {
+        let PlaneGap { normal, gap } = *plane;
+        require!((normal.length() - 1.0).abs() < 1e-14, "the normal {normal} is no unit vector");
+        let n = Vector::new(normal);
+        let along = self.along(&n);
+        let claimed = &Dyadic::new(gap) * &Dyadic::new(gap);
+        require!(
+            !along.is_negative() && &along * &along >= &claimed * &n.dot(&n),
+            "a gap of {gap:e}, and the plane proves {:e}",
+            along.to_f64()
+        );
+        let verified = self.pair.verify(plane).map_err(|e| Objection(format!("gap: {e}")))?;
+        require!(verified >= gap, "verified {verified:e} of {gap:e}");
+        Ok(())
+    }
+
+    /// `min_Q n.q - max_P n.p`.
+    fn along(&self, n: &Vector) -> Dyadic {
+        let nearest = self.fixed.iter().map(|q| n.dot(q)).min();
+        let farthest = self.moving.iter().map(|p| n.dot(p)).max();
+        &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
+    }
+
+    fn check_points(&self, near: &NearPoints) -> Result<(), Objection> {
+        let NearPoints { pairs, weights, distance } = near;
+        let differences = pairs.map(|pair| self.difference(pair));
+        if *distance == 0.0 {
+            require!(enclose(&differences), "four points that do not enclose the origin");
+        } else {
+            require!(weights.iter().all(|w| *w >= 0.0), "negative weights");
+            let sum = weights.iter().fold(Dyadic::ZERO, |sum, w| &sum + &Dyadic::new(*w));
+            require!(sum.is_positive(), "no weights");
+            let zero = Vector([Dyadic::ZERO, Dyadic::ZERO, Dyadic::ZERO]);
+            let mean = differences
+                .iter()
+                .zip(weights)
+                .fold(zero, |mean, (m, w)| mean.plus(&m.times(&Dyadic::new(*w))));
+            let claimed = &Dyadic::new(*distance) * &sum;
+            require!(
+                mean.dot(&mean) <= &claimed * &claimed,
+                "the points are more than {distance:e} apart"
+            );
+        }
+        let verified = self.pair.verify(near).map_err(|e| Objection(format!("points: {e}")))?;
+        require!(verified <= *distance, "verified {verified:e} of {distance:e}");
+        Ok(())
+    }
+
+    fn difference(&self, pair: VertexPair) -> Vector {
+        self.fixed[pair.fixed.index()].minus(&self.moving[pair.moving.index()])
+    }
+}
+
+/// Whether a tetrahedron that is not flat contains the origin.
+fn enclose([a, b, c, d]: &[Vector; 4]) -> bool {
+    let volumes = [[b, c, d], [a, d, c], [a, b, d], [a, c, b]].map(|[x, y, z]| x.dot(&y.cross(z)));
+    let some = volumes.iter().any(|v| !v.is_zero());
+    let none_less = volumes.iter().all(|v| !v.is_negative());
+    some && (none_less || volumes.iter().all(|v| !v.is_positive()))
+}
+
+fn square(x: f64) -> Ratio {
+    Ratio::from_f64(x).times(&Ratio::from_f64(x))
+}

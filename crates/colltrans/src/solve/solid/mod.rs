@@ -10,6 +10,7 @@ pub(crate) mod bound;
 pub(crate) mod contact;
 mod inside;
 pub(crate) mod leaf;
+pub(crate) mod nearest;
 pub(crate) mod overlap;
 pub(crate) mod projected;
 pub(crate) mod rim;

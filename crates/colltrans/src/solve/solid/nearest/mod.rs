@@ -1,0 +1,3 @@
+//! How far two solids are apart.
+
+pub(crate) mod triangle;

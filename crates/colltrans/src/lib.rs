@@ -142,6 +142,7 @@ mod answer;
 mod body;
 mod cast;
 mod number;
+mod pair;
 #[cfg(feature = "serde")]
 pub mod record;
 mod setting;
@@ -152,21 +153,23 @@ mod work;
 mod written;
 
 pub use answer::{
-    Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange,
-    DirectionalDepth, Grazing, Intersection, Outcome, OverlapAhead, Proof, Separated, Separation,
-    Solver, StartedFrom, Steps, WhyFree,
+    Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth,
+    DirectionalDepth, Distance, Enclosure, Grazing, Intersection, NearPoints, Outcome,
+    OverlapAhead, PlaneGap, Proof, Separated, Separation, Solver, StartedFrom, Steps, WhyFree,
+    Within,
 };
 pub use body::error::{BuildError, PoseError, TopologyError};
 pub use body::solid::Solid;
 pub use body::{
-    Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, HalfEdge, InputVertex,
-    OffsetReport, Placed, Pose, VertexId, convexity_defect,
+    Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge,
+    InputVertex, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, Statement, Stop};
-pub use cast::{Cast, Features, WitnessPoints, cast};
+pub use cast::{Cast, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
+pub use pair::Pair;
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;

@@ -13,8 +13,8 @@ use crate::answer::{
     Steps, WhyFree,
 };
 use crate::body::solid::Solid;
-use crate::body::{Body, Feature, InputVertex};
-use crate::cast::{Cast, Features};
+use crate::body::{Body, Feature, Features, InputVertex};
+use crate::cast::Cast;
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
 ///

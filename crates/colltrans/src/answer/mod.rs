@@ -3,6 +3,7 @@
 mod bounded;
 mod certificate;
 mod clearance;
+mod distance;
 mod outcome;
 mod range;
 mod steps;
@@ -11,6 +12,7 @@ pub use bounded::Bounded;
 pub(crate) use certificate::{Along, gap_rounding};
 pub use certificate::{Certificate, CertificateError, Proof, Separation};
 pub use clearance::{Clearance, OverlapAhead, WhyFree};
+pub use distance::{Depth, Distance, Enclosure, NearPoints, PlaneGap, Within};
 pub use outcome::{Contact, Grazing, Outcome, Separated};
 pub use range::{CentralCast, ContactRange, DirectionalDepth, Intersection};
 pub use steps::{SolidSteps, Solver, StartedFrom, Steps};

@@ -64,6 +64,16 @@ impl Feature {
     }
 }
 
+/// The vertex, edge or face of each body that lies in the contact plane, to within rounding error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Features {
+    /// Of the moving body.
+    pub moving: Feature,
+    /// Of the fixed body.
+    pub fixed: Feature,
+}
+
 /// A feature of a convex body by its own numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Own {

@@ -21,6 +21,10 @@ pub trait Body: sealed::Sealed + Clone + Debug {
     type Overlap: sealed::Told;
     /// What shows whether the bodies meet where they are.
     type Evidence: sealed::Told;
+    /// What proves that two bodies are not farther from each other than a number.
+    type Near: sealed::Told;
+    /// What proves that they are not nearer to each other.
+    type Gap: sealed::Told;
 }
 
 pub(crate) mod sealed {

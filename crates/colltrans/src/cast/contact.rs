@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Cast;
 use crate::answer::Contact;
 use crate::body::error::PoseError;
-use crate::body::{Feature, Pose, feature};
+use crate::body::{Features, Pose, feature};
 
 /// A contact point on each body, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,16 +16,6 @@ pub struct WitnessPoints {
     /// On the fixed body: the contact point. It is `on_moving + translation * direction` up to
     /// rounding. Where an edge or a face lies on the other body, it is one of many.
     pub on_fixed: DVec3,
-}
-
-/// The vertex, edge or face of each body that lies in the contact plane, to within rounding error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Features {
-    /// Of the moving body.
-    pub moving: Feature,
-    /// Of the fixed body.
-    pub fixed: Feature,
 }
 
 /// Steps back from a contact before the pose is left where it was.

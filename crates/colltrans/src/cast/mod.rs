@@ -26,7 +26,7 @@ use crate::setting::error::QueryError;
 use crate::solve::observe::{Nobody, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{WarmStart, search};
-pub use contact::{Features, WitnessPoints};
+pub use contact::WitnessPoints;
 pub(crate) use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
 pub use proof_file::{Contacts, ProofFile, Slide, SolidStatement, Statement, Stop};
@@ -105,9 +105,7 @@ impl<'a, B: Body> Cast<'a, B> {
     /// # Errors
     /// A direction that is zero, not finite or out of range.
     pub fn along(&self, direction: DVec3) -> Result<Self, QueryError> {
-        let moving = Placed { body: self.setting.moving, pose: self.moving_pose() };
-        let fixed = Placed { body: self.setting.fixed, pose: self.fixed_pose() };
-        Ok(Self { setting: Setting::new(moving, fixed, direction)?, ..*self })
+        Ok(Self { setting: Setting::of(self.setting.bodies, direction)?, ..*self })
     }
 
     /// The moving body.
@@ -122,12 +120,12 @@ impl<'a, B: Body> Cast<'a, B> {
 
     /// Where the moving body is.
     pub fn moving_pose(&self) -> Pose {
-        Pose::checked(self.setting.moving_matrix, self.setting.translations[0])
+        self.setting.moving_placed().pose
     }
 
     /// Where the fixed body is.
     pub fn fixed_pose(&self) -> Pose {
-        Pose::checked(self.setting.fixed_matrix, self.setting.translations[1])
+        self.setting.fixed_placed().pose
     }
 
     /// The direction, as given.

@@ -1,20 +1,18 @@
-//! The setting of a query: two placed bodies and a direction, in a frame that all solvers share.
-//!
-//! The *setting frame* has the axes of the world and its origin at the moving body's translation:
-//! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both
-//! bodies, however large, costs no accuracy.
+//! The setting of a query: two placed bodies, and of a cast a direction, in a frame that all solvers
+//! share.
 
 pub(crate) mod error;
 pub(crate) mod minkowski;
+mod two_bodies;
 
-use glam::{DMat3, DVec3};
+use std::ops::Deref;
+
+use glam::DVec3;
 
 use crate::body::{ConvexPolyhedron, Placed};
-use crate::number::error_free::difference_error;
-use crate::number::noise::Noise;
-use crate::number::orientation::Terms;
 use crate::number::range::in_exact_range;
 use crate::setting::error::QueryError;
+pub(crate) use two_bodies::TwoBodies;
 
 /// One vertex of each body, by index into [`ConvexPolyhedron::vertices`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -39,26 +37,25 @@ pub(crate) fn check_direction(direction: DVec3) -> Result<(), QueryError> {
 /// Two placed bodies and a direction.
 #[derive(Debug)]
 pub(crate) struct Setting<'a, B = ConvexPolyhedron> {
-    /// The moving body P.
-    pub(crate) moving: &'a B,
-    /// Its rotation `R_P`.
-    pub(crate) moving_matrix: DMat3,
-    /// The fixed body Q.
-    pub(crate) fixed: &'a B,
-    /// Its rotation `R_Q`.
-    pub(crate) fixed_matrix: DMat3,
-    /// `t_P` and `t_Q`.
-    pub(crate) translations: [DVec3; 2],
-    /// `t_Q - t_P`, rounded.
-    pub(crate) offset: DVec3,
-    /// What rounding took from `offset`, exactly.
-    offset_error: DVec3,
+    /// The bodies.
+    pub(crate) bodies: TwoBodies<'a, B>,
     /// The direction as given.
     pub(crate) direction: DVec3,
     /// Its length.
     pub(crate) length: f64,
     /// `direction` at length 1.
     pub(crate) unit: DVec3,
+}
+
+/// What is of the bodies alone is asked of them.
+impl<'a, B> Deref for Setting<'a, B> {
+    type Target = TwoBodies<'a, B>;
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "it is a field")]
+    fn deref(&self) -> &Self::Target {
+        &self.bodies
+    }
 }
 
 // Derived ones would ask the same of the body.
@@ -79,32 +76,16 @@ impl<'a, B> Setting<'a, B> {
         fixed: Placed<'a, B>,
         direction: DVec3,
     ) -> Result<Self, QueryError> {
-        check_direction(direction)?;
-        let length = direction.length();
-        let translations = [moving.pose.translation(), fixed.pose.translation()];
-        let [t_p, t_q] = translations;
-        Ok(Self {
-            moving: moving.body,
-            moving_matrix: moving.pose.matrix(),
-            fixed: fixed.body,
-            fixed_matrix: fixed.pose.matrix(),
-            translations,
-            offset: t_q - t_p,
-            offset_error: DVec3::new(
-                difference_error(t_q.x, t_p.x),
-                difference_error(t_q.y, t_p.y),
-                difference_error(t_q.z, t_p.z),
-            ),
-            direction,
-            length,
-            unit: direction * (1.0 / length),
-        })
+        Self::of(TwoBodies::new(moving, fixed), direction)
     }
 
-    /// `t_Q - t_P`, and what rounding took from it.
-    #[inline]
-    pub(crate) fn exact_offset(&self) -> [DVec3; 2] {
-        [self.offset, self.offset_error]
+    /// Of bodies that are placed.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    pub(crate) fn of(bodies: TwoBodies<'a, B>, direction: DVec3) -> Result<Self, QueryError> {
+        check_direction(direction)?;
+        let length = direction.length();
+        Ok(Self { bodies, direction, length, unit: direction * (1.0 / length) })
     }
 
     /// The same bodies, and the direction turned round.
@@ -115,71 +96,10 @@ impl<'a, B> Setting<'a, B> {
 }
 
 impl Setting<'_> {
-    /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
-    #[inline]
-    pub(crate) fn scale(&self) -> f64 {
-        self.moving.inertia().reach + self.fixed.inertia().reach + self.offset.length()
-    }
-
-    /// The bounds on rounding errors that belong to the size.
-    #[inline]
-    pub(crate) fn noise(&self) -> Noise {
-        Noise::of(self.scale())
-    }
-
-    /// A pair's vertices, in the frames of the moving and the fixed body.
-    #[inline]
-    pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
-        [self.moving.vertices()[pair.moving as usize], self.fixed.vertices()[pair.fixed as usize]]
-    }
-
-    /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory they stall their reader")]
-    pub(crate) fn weighted(&self, pairs: &[VertexPair; 3], weights: &[f64; 3]) -> [DVec3; 2] {
-        let mut means = [DVec3::ZERO; 2];
-        for (pair, &weight) in pairs.iter().zip(weights) {
-            let [p, q] = self.vertices(*pair);
-            means = [means[0] + p * weight, means[1] + q * weight];
-        }
-        means
-    }
-
     /// How far two points, in the frames of the moving and of the fixed body, are apart sideways:
     /// for those that met in an earlier query, what poses and direction have changed since.
     pub(crate) fn displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
         let apart = self.fixed_matrix * q + self.offset - self.moving_matrix * p;
         apart.reject_from_normalized(self.unit).length()
-    }
-
-    /// A normal of the setting frame in the moving body's frame: `n.(R v) = (R^T n).v`.
-    #[inline]
-    pub(crate) fn moving_normal(&self, normal: DVec3) -> DVec3 {
-        self.moving_matrix.transpose() * normal
-    }
-
-    /// A normal of the setting frame in the fixed body's frame.
-    #[inline]
-    pub(crate) fn fixed_normal(&self, normal: DVec3) -> DVec3 {
-        self.fixed_matrix.transpose() * normal
-    }
-
-    /// A pair of support points along a unit normal, given in both bodies' frames, from one that climbs
-    /// have found; and how far the bodies may reach towards each other beyond it.
-    #[inline]
-    pub(crate) fn settled(&self, normals: &[DVec3; 2], found: VertexPair) -> (VertexPair, f64) {
-        let (moving, p) = self.moving.settled(normals[0], found.moving);
-        let (fixed, q) = self.fixed.settled(-normals[1], found.fixed);
-        (VertexPair { moving, fixed }, p + q)
-    }
-
-    /// `q - p` for a pair of vertices, as the sum of products that defines it.
-    pub(crate) fn terms(&self, pair: VertexPair) -> Terms<'_> {
-        let [p, q] = self.vertices(pair);
-        Terms {
-            fixed: (&self.fixed_matrix, q),
-            moving: (&self.moving_matrix, p),
-            offset: [self.offset, self.offset_error],
-        }
     }
 }

@@ -1,6 +1,8 @@
 //! Choices of a query.
 
-use crate::answer::{CentralCast, Contact, Grazing, OverlapAhead, Separated, Solver, WhyFree};
+use crate::answer::{
+    CentralCast, Contact, Grazing, NearPoints, OverlapAhead, PlaneGap, Separated, Solver, WhyFree,
+};
 use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::error::QueryError;
 
@@ -38,6 +40,8 @@ impl Body for ConvexPolyhedron {
     type Free = WhyFree;
     type Overlap = OverlapAhead;
     type Evidence = CentralCast;
+    type Near = NearPoints;
+    type Gap = PlaneGap;
 }
 
 impl Options {

@@ -146,6 +146,8 @@ impl Body for Solid {
     type Free = SolidFree;
     type Overlap = SolidOverlap;
     type Evidence = SolidMeeting;
+    type Near = ();
+    type Gap = ();
 }
 
 impl Solid {

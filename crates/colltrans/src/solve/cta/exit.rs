@@ -20,7 +20,7 @@ use super::planar::Planar;
 use super::region::Region;
 use super::side::Side;
 use crate::body::topology::Topology;
-use crate::setting::{Setting, VertexPair};
+use crate::setting::{Setting, TwoBodies, VertexPair};
 
 /// The height of a supporting plane is that of the best point if they differ by less than this
 /// share of the extent along the direction.
@@ -333,7 +333,7 @@ impl ExitTest<'_, '_> {
 
     /// The rotation of the body.
     fn matrix(&self, body: usize) -> &DMat3 {
-        let Setting { moving_matrix, fixed_matrix, .. } = self.setting;
+        let TwoBodies { moving_matrix, fixed_matrix, .. } = &self.setting.bodies;
         if body == 0 { moving_matrix } else { fixed_matrix }
     }
 

@@ -1,0 +1,48 @@
+//! Two placed bodies and no direction: how far apart they are, how deep they overlap.
+
+use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
+use crate::setting::TwoBodies;
+use crate::setting::error::QueryError;
+
+/// A moving body and a fixed one, where they are: what is asked of both and no direction. Nothing moves;
+/// the names tell them apart, as in a [`Cast`](crate::Cast).
+///
+/// Made once, asked as often as one likes: nothing is searched before a question is asked.
+#[derive(Debug, Clone)]
+pub struct Pair<'a, B: Body = ConvexPolyhedron> {
+    pub(crate) bodies: TwoBodies<'a, B>,
+}
+
+// A derived one would ask the same of the body.
+impl<B: Body> Copy for Pair<'_, B> {}
+
+impl<'a, B: Body> Pair<'a, B> {
+    /// Of two placed bodies.
+    ///
+    /// # Errors
+    /// None today: what a body and a pose admit, a pair does.
+    #[inline]
+    pub fn new(moving: Placed<'a, B>, fixed: Placed<'a, B>) -> Result<Self, QueryError> {
+        Ok(Self { bodies: TwoBodies::new(moving, fixed) })
+    }
+
+    /// The moving body.
+    pub fn moving(&self) -> &'a B {
+        self.bodies.moving
+    }
+
+    /// The fixed body.
+    pub fn fixed(&self) -> &'a B {
+        self.bodies.fixed
+    }
+
+    /// Where the moving body is.
+    pub fn moving_pose(&self) -> Pose {
+        self.bodies.moving_placed().pose
+    }
+
+    /// Where the fixed body is.
+    pub fn fixed_pose(&self) -> Pose {
+        self.bodies.fixed_placed().pose
+    }
+}

@@ -1,5 +1,7 @@
 //! Two placed bodies and no direction: how far apart they are, how deep they overlap.
 
+pub(crate) mod solid;
+
 use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;

@@ -25,6 +25,12 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// The length that a distance is compared with is negative or not a number.
+    #[error("the length {length} is negative or not a number")]
+    Length {
+        /// The length as given.
+        length: f64,
+    },
     /// The tolerance by which solids are shrunk is negative or not finite.
     #[error("the tolerance {tolerance} is negative or not finite")]
     Tolerance {

@@ -136,6 +136,16 @@ pub(crate) fn examine(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Optio
     }
 }
 
+/// Two points of the triangles that are nearest, and a plane between.
+pub(crate) fn nearest(f: &Corners, g: &Corners, noise: f64) -> Nearest {
+    examine(f, g, f64::INFINITY, noise).unwrap_or_else(|| {
+        // No plane is infinitely far from another; any points will do.
+        let weights = [DVec3::X; 2];
+        let length = length(f, g, weights);
+        Nearest { weights, length, normal: DVec3::X, gap: f64::NEG_INFINITY }
+    })
+}
+
 /// What [`by_features`] comes to.
 enum Quick {
     /// No two points are as near as asked.

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::answer::{CertificateError, Distance, Within};
+use crate::answer::{CertificateError, Distance, SolidSteps, Within};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Features, Placed};
 use crate::cast::solid::{Claim, Cover};
@@ -213,6 +213,14 @@ impl<'a> Pair<'a, Solid> {
                 Ok(upper - lower)
             }
         }
+    }
+
+    /// The work that [`Self::distance`] does, done for its count.
+    pub fn distance_steps(&self) -> SolidSteps {
+        let Ok(scene) = self.scene() else { return SolidSteps::default() };
+        let mut search = Search::new(&scene, Until::LEAST, |_, _| ());
+        search.run();
+        search.steps
     }
 
     fn scene(&self) -> Result<Scene<'a>, QueryError> {

@@ -138,3 +138,19 @@ mod file {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_of_either_cover_come_back() {
+        let letters: String = Reason::LETTERS.iter().map(|l| l.1).chain([SPLIT]).collect();
+        let cover = Cover::<Reason>::try_from(letters.clone()).expect("all are known");
+        assert_eq!(String::from(cover), letters);
+        let letters: String = Apart::LETTERS.iter().map(|l| l.1).chain([SPLIT]).collect();
+        let cover = Cover::<Apart>::try_from(letters.clone()).expect("all are known");
+        assert_eq!(String::from(cover), letters);
+        assert!(Cover::<Apart>::try_from("sz".to_owned()).is_err());
+    }
+}

@@ -229,6 +229,9 @@ fn mesh(family: &str, random: &mut Random) -> Mesh {
 }
 
 /// The square of the distance of two surfaces.
+///
+/// # Panics
+/// If one has no facets.
 pub fn surfaces([moving, fixed]: &[Vec<Triangle>; 2]) -> Ratio {
     let origin = moving[0][0].clone();
     let balls = |all: &[Triangle]| -> Vec<(DVec3, f64)> {

@@ -9,4 +9,7 @@ pub use crate::cast::solid::{
     Claim, Cover, NoGrazing, SolidCertificate, SolidFree, SolidMeeting, SolidOptions, SolidOverlap,
     SolidProof, StartOverlap, StartProof, StopProof,
 };
-pub use crate::solve::solid::{Overlap, Reason, SolidContact, Workspace};
+pub use crate::pair::solid::{DistanceCertificate, SolidPairProof};
+pub use crate::solve::solid::{
+    Apart, Overlap, Reason, SolidContact, SolidGap, SolidNear, Workspace,
+};

@@ -1,7 +1,9 @@
 //! Distances: what is known in closed form, named cases, degenerate bodies, proofs and changed ones.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::{ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, Within};
+use colltrans::{
+    ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, VertexId, Within,
+};
 use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
@@ -171,7 +173,7 @@ fn changed_proofs_are_refused() {
         let proven = pair.verify(&near).expect("a proof");
         pair.verify(&NearPoints { distance: proven, ..near }).expect("all that is proven");
         let mut other = near;
-        other.pairs[0].moving = 10_000;
+        other.pairs[0].moving = VertexId(10_000);
         let [w, ..] = near.weights;
         let mut negative = near;
         negative.weights = [1.0 + w, -w, 0.0, 0.0];

@@ -1,4 +1,4 @@
-//! Meshes of bodies that are not convex: turned parts, plates, bumpy balls. Vertices, and polygons
+//! Meshes of bodies that are not convex: turned parts, threads, plates, bumpy balls. Vertices, and polygons
 //! that run counter-clockwise as seen from outside.
 
 use std::collections::HashMap;
@@ -61,6 +61,54 @@ pub fn washer([hole, outside]: [f64; 2], [low, high]: [f64; 2], sides: usize) ->
 pub fn bolt([shaft, head]: [f64; 2], [low, seat, top]: [f64; 3], sides: usize) -> Mesh {
     let profile = [[0.0, low], [shaft, low], [shaft, seat], [head, seat], [head, top], [0.0, top]];
     turned(&profile, sides)
+}
+
+/// A threaded rod about `z`, or a nut with an outer radius: at the angle `a` and the height `z` the thread is at
+/// `radius + depth cos (TAU z / pitch - a)`; so many sides, and rows along the axis.
+pub fn thread(
+    [radius, depth, pitch]: [f64; 3],
+    [low, high]: [f64; 2],
+    [sides, rows]: [usize; 2],
+    outer: Option<f64>,
+) -> Mesh {
+    let mut surface = Mesh::default();
+    let mut ring = |height: f64, of: &dyn Fn(f64) -> f64| {
+        for k in 0..sides {
+            let angle_rad = TAU * k as f64 / sides as f64;
+            let (sine, cosine) = angle_rad.sin_cos();
+            let r = of(angle_rad);
+            surface.vertices.push(DVec3::new(r * cosine, r * sine, height));
+        }
+    };
+    for j in 0..=rows {
+        let z = low + (high - low) * j as f64 / rows as f64;
+        ring(z, &|angle| radius + depth * (TAU * z / pitch - angle).cos());
+    }
+    if let Some(outer) = outer {
+        ring(high, &|_| outer);
+        ring(low, &|_| outer);
+    }
+    let rings = surface.vertices.len() / sides;
+    let at = |ring: usize, k: usize| (ring % rings * sides + k % sides) as u32;
+    // A rod ends with its last row, a nut's rings go all round.
+    for j in 0..if outer.is_some() { rings } else { rows } {
+        for k in 0..sides {
+            let [a, b, c, d] = [at(j, k), at(j, k + 1), at(j + 1, k + 1), at(j + 1, k)];
+            surface.faces.extend([vec![a, b, c], vec![a, c, d]]);
+        }
+    }
+    if outer.is_some() {
+        return surface.reversed();
+    }
+    for (j, z) in [(0, low), (rows, high)] {
+        let middle = surface.vertices.len() as u32;
+        surface.vertices.push(DVec3::Z * z);
+        for k in 0..sides {
+            let [a, b] = if j == 0 { [k + 1, k] } else { [k, k + 1] };
+            surface.faces.push(vec![at(j, a), at(j, b), middle]);
+        }
+    }
+    surface
 }
 
 /// A box whose six sides are grids of squares.

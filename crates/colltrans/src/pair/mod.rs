@@ -1,6 +1,7 @@
 //! Two placed bodies and no direction: how far apart they are, how deep they overlap.
 
 mod convex;
+pub(crate) mod solid;
 mod verify;
 
 use crate::answer::{NearPoints, PlaneGap};

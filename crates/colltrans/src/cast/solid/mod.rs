@@ -19,6 +19,7 @@ use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
 use crate::setting::error::QueryError;
 use crate::solve::solid::contact::{SolidContact, contact, true_place};
+use crate::solve::solid::nearest::{SolidGap, SolidNear};
 use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::search::{Aim, Found, Search, Workspace};
@@ -146,8 +147,8 @@ impl Body for Solid {
     type Free = SolidFree;
     type Overlap = SolidOverlap;
     type Evidence = SolidMeeting;
-    type Near = ();
-    type Gap = ();
+    type Near = SolidNear;
+    type Gap = SolidGap;
 }
 
 impl Solid {

@@ -77,16 +77,22 @@ pub struct StopProof {
 ///
 /// Split is the node with the longer diagonal of its box, the moving one if they are equal, and never
 /// a leaf.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(into = "String", try_from = "String")
+    serde(into = "String", try_from = "String", bound = "R: super::saved::Letters")
 )]
-pub struct Cover(pub(crate) Vec<Option<Reason>>);
+pub struct Cover<R = Reason>(pub(crate) Vec<Option<R>>);
 
-impl From<Vec<Option<Reason>>> for Cover {
-    fn from(entries: Vec<Option<Reason>>) -> Self {
+impl<R> Default for Cover<R> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<R> From<Vec<Option<R>>> for Cover<R> {
+    fn from(entries: Vec<Option<R>>) -> Self {
         Self(entries)
     }
 }
@@ -94,16 +100,16 @@ impl From<Vec<Option<Reason>>> for Cover {
 /// One entry of a cover: what is said of all pairs of some facets.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Claim {
+pub struct Claim<R = Reason> {
     /// Positions in [`Solid::triangles`] of the moving body.
     pub moving: std::ops::Range<usize>,
     /// The same of the fixed body.
     pub fixed: std::ops::Range<usize>,
     /// Why none of the pairs matters.
-    pub reason: Reason,
+    pub reason: R,
 }
 
-impl Cover {
+impl<R: Copy> Cover<R> {
     /// Entries, splits included.
     pub fn len(&self) -> usize {
         self.0.len()
@@ -115,7 +121,7 @@ impl Cover {
     }
 
     /// The entries.
-    pub fn entries(&self) -> &[Option<Reason>] {
+    pub fn entries(&self) -> &[Option<R>] {
         &self.0
     }
 
@@ -127,7 +133,7 @@ impl Cover {
     pub(crate) fn walk(
         &self,
         bodies: [&Solid; 2],
-        mut check: impl FnMut(usize, [u32; 2], Reason) -> bool,
+        mut check: impl FnMut(usize, [u32; 2], R) -> bool,
     ) -> Result<(), usize> {
         let mut stack = vec![[0, 0]];
         for (number, entry) in self.0.iter().enumerate() {
@@ -150,9 +156,8 @@ impl Cover {
         if stack.is_empty() { Ok(()) } else { Err(self.0.len()) }
     }
 
-    /// What the cover says of which facets; `None` if it does not fit the bodies.
-    pub fn claims(&self, cast: &Cast<'_, Solid>) -> Option<Vec<Claim>> {
-        let bodies = [cast.moving(), cast.fixed()];
+    /// What it says of which facets; `None` if it does not fit the bodies.
+    pub(crate) fn claims_of(&self, bodies: [&Solid; 2]) -> Option<Vec<Claim<R>>> {
         let mut claims = Vec::new();
         let walked = self.walk(bodies, |_, nodes, reason| {
             let [moving, fixed] = [0, 1].map(|k| bodies[k].nodes()[nodes[k] as usize].facets());
@@ -163,7 +168,7 @@ impl Cover {
     }
 
     /// In preorder, from the pairs of nodes that were not split.
-    fn new(bodies: [&Solid; 2], cuts: &HashMap<[u32; 2], Reason>) -> Self {
+    pub(crate) fn new(bodies: [&Solid; 2], cuts: &HashMap<[u32; 2], R>) -> Self {
         let mut entries = Vec::new();
         let mut stack = vec![[0_u32, 0]];
         while let Some(nodes) = stack.pop() {
@@ -182,6 +187,13 @@ impl Cover {
             }
         }
         Self(entries)
+    }
+}
+
+impl Cover {
+    /// What the cover says of which facets; `None` if it does not fit the bodies.
+    pub fn claims(&self, cast: &Cast<'_, Solid>) -> Option<Vec<Claim>> {
+        self.claims_of([cast.moving(), cast.fixed()])
     }
 }
 

@@ -4,33 +4,53 @@ use serde::{Deserialize, Serialize};
 
 use super::proof::{Cover, StartProof};
 use crate::solve::solid::bound::Reason;
+use crate::solve::solid::nearest::Apart;
 use crate::solve::solid::overlap::Overlap;
 
-/// A letter for each reason; a split is [`SPLIT`].
-const LETTERS: [(Reason, char); 8] = [
-    (Reason::MovingFacesAway, 'm'),
-    (Reason::FixedFacesAway, 'f'),
-    (Reason::ShadowsApart, 'a'),
-    (Reason::Parting, 'p'),
-    (Reason::NotBefore, 'n'),
-    (Reason::Examined, 'x'),
-    (Reason::Disjoint, 'd'),
-    (Reason::FaceToFace, 'o'),
-];
+/// Reasons of covers. Sealed.
+pub trait Letters: Copy + PartialEq + 'static {
+    /// A letter for each; a split is [`SPLIT`].
+    const LETTERS: &'static [(Self, char)];
+}
+
+impl Letters for Reason {
+    const LETTERS: &'static [(Self, char)] = &[
+        (Self::MovingFacesAway, 'm'),
+        (Self::FixedFacesAway, 'f'),
+        (Self::ShadowsApart, 'a'),
+        (Self::Parting, 'p'),
+        (Self::NotBefore, 'n'),
+        (Self::Examined, 'x'),
+        (Self::Disjoint, 'd'),
+        (Self::FaceToFace, 'o'),
+    ];
+}
+
+impl Letters for Apart {
+    const LETTERS: &'static [(Self, char)] = &[
+        (Self::AxesOfMoving, 'm'),
+        (Self::AxesOfFixed, 'f'),
+        (Self::SlabOfMoving, 'p'),
+        (Self::SlabOfFixed, 'q'),
+        (Self::Way, 'w'),
+        (Self::Examined, 'x'),
+    ];
+}
+
 const SPLIT: char = 's';
 
-impl From<Cover> for String {
-    fn from(cover: Cover) -> Self {
-        let letter = |reason: Reason| LETTERS.iter().find(|l| l.0 == reason).map_or(SPLIT, |l| l.1);
+impl<R: Letters> From<Cover<R>> for String {
+    fn from(cover: Cover<R>) -> Self {
+        let letter = |reason: R| R::LETTERS.iter().find(|l| l.0 == reason).map_or(SPLIT, |l| l.1);
         cover.0.iter().map(|entry| entry.map_or(SPLIT, letter)).collect()
     }
 }
 
-impl TryFrom<String> for Cover {
+impl<R: Letters> TryFrom<String> for Cover<R> {
     type Error = String;
 
     fn try_from(letters: String) -> Result<Self, String> {
-        let entry = |letter: char| match LETTERS.iter().find(|l| l.1 == letter) {
+        let entry = |letter: char| match R::LETTERS.iter().find(|l| l.1 == letter) {
             Some((reason, _)) => Ok(Some(*reason)),
             None if letter == SPLIT => Ok(None),
             None => Err(format!("the letter {letter:?} stands for nothing in a cover")),
@@ -116,5 +136,21 @@ mod file {
                 Err(CaseError::Format { found: format, known: FORMAT })
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_of_either_cover_come_back() {
+        let letters: String = Reason::LETTERS.iter().map(|l| l.1).chain([SPLIT]).collect();
+        let cover = Cover::<Reason>::try_from(letters.clone()).expect("all are known");
+        assert_eq!(String::from(cover), letters);
+        let letters: String = Apart::LETTERS.iter().map(|l| l.1).chain([SPLIT]).collect();
+        let cover = Cover::<Apart>::try_from(letters.clone()).expect("all are known");
+        assert_eq!(String::from(cover), letters);
+        assert!(Cover::<Apart>::try_from("sz".to_owned()).is_err());
     }
 }

@@ -3,13 +3,14 @@
 //! Data flow: [`scene`] (two placed solids and a direction) -> [`overlap`] (do they overlap where
 //! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
 //! [`leaf`] for pairs of facets, [`rim`] for what is on edge in open shells) -> [`contact`], or a plane between
-//! the bodies ([`separate`]) where there is one. [`sign`] decides what rounding cannot. The questions are in
-//! `cast/solid`.
+//! the bodies ([`separate`]) where there is one. [`sign`] decides what rounding cannot. [`nearest`] is of the same
+//! scene without a direction. The questions are in `cast/solid` and `pair/solid`.
 
 pub(crate) mod bound;
 pub(crate) mod contact;
 mod inside;
 pub(crate) mod leaf;
+pub(crate) mod nearest;
 pub(crate) mod overlap;
 pub(crate) mod projected;
 pub(crate) mod rim;
@@ -22,5 +23,6 @@ mod triangle;
 
 pub use bound::Reason;
 pub use contact::SolidContact;
+pub use nearest::{Apart, SolidGap, SolidNear};
 pub use overlap::Overlap;
 pub use search::Workspace;

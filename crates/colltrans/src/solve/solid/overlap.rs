@@ -97,6 +97,21 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
     }
 }
 
+/// Whether solids, as closed sets, have a point in common where it is said: facets that share one, or a shell
+/// that is inside.
+pub(crate) fn is_touch(scene: &Scene, place: Overlap) -> bool {
+    let count = |side: &Side| side.solid.triangles().len() as u32;
+    match place {
+        Overlap::Facets(f, g) => {
+            f < count(&scene.moving) && g < count(&scene.fixed) && {
+                let f = Triangle::new(&scene.moving, f as usize);
+                share_a_point(scene, &f, &Triangle::new(&scene.fixed, g as usize))
+            }
+        }
+        inside => is_overlap(scene, inside),
+    }
+}
+
 /// Whether no two facets of two leaves show an overlap.
 pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
     leaves(scene, a, b, Judge::OVERLAP).is_none()

@@ -10,6 +10,7 @@
 //! campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
 //! campaign --sequences QUERIES [--seed S] [--only FAMILY]
 //! campaign --solids N [--seed S] [--only FAMILY]
+//! campaign --solid-distances N [--seed S] [--only FAMILY]
 //! campaign --bodies N [--seed S] [--only FAMILY]
 //! campaign --distances N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
@@ -37,6 +38,7 @@ struct Arguments {
     settings: u64,
     sequences: Option<u64>,
     solids: Option<u64>,
+    solid_distances: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
     lp: u64,
@@ -63,6 +65,9 @@ fn main() -> ExitCode {
     if let Some(count) = arguments.solids {
         return exit_code(solids::run(count, arguments.seed, arguments.only.as_deref()));
     }
+    if let Some(count) = arguments.solid_distances {
+        return exit_code(solids::distances(count, arguments.seed, arguments.only.as_deref()));
+    }
     let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
     exit_code(if let Some(count) = arguments.bodies {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
@@ -87,6 +92,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         settings: 20_000,
         sequences: None,
         solids: None,
+        solid_distances: None,
         bodies: None,
         distances: None,
         lp: 1_000,
@@ -101,6 +107,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--sequences" => arguments.sequences = Some(number(&value)?),
             "--solids" => arguments.solids = Some(number(&value)?),
             "--distances" => arguments.distances = Some(number(&value)?),
+            "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--bodies" => arguments.bodies = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,

@@ -6,13 +6,30 @@ use std::time::Instant;
 
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
-use colltrans_testkit::oracle::solids::{Seen, as_solids, sheets};
+use colltrans_testkit::oracle::solids::{Seen, as_solids, nearest, sheets};
 use rayon::prelude::*;
 
 use super::SHOWN;
 
 /// One proof in so many is judged in fractions, if the bodies are small.
 const FRACTIONS_EVERY: u64 = 64;
+
+/// What came out, and in which column of the table it is counted.
+trait Kind {
+    fn column(self) -> usize;
+}
+
+impl Kind for Seen {
+    fn column(self) -> usize {
+        self as usize
+    }
+}
+
+impl Kind for nearest::Seen {
+    fn column(self) -> usize {
+        self as usize
+    }
+}
 
 /// Examines so many settings of cubes and a tenth as many convex pairs; `true` if nothing disagrees.
 pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {
@@ -46,7 +63,28 @@ pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {
     clean
 }
 
-fn family(
+/// Examines distances of so many settings, the same number of each family; `true` if nothing disagrees.
+pub(crate) fn distances(count: u64, seed: u64, only: Option<&str>) -> bool {
+    let convex = settings::FAMILIES.iter().map(|f| format!("convex-{}", f.0));
+    let known = FAMILIES.into_iter().chain(sheets::FAMILIES).chain(nearest::MESHES);
+    let all: Vec<String> = known.map(str::to_owned).chain(convex).collect();
+    let wanted: Vec<&String> =
+        all.iter().filter(|name| only.is_none_or(|only| only == name.as_str())).collect();
+    println!(
+        "{:<20} {:>10} {:>12} {:>10} {:>10} {:>10} {:>8} {:>8}",
+        "family", "settings", "touching", "inside", "near", "apart", "skipped", "wrong"
+    );
+    let each = count.div_ceil(wanted.len().max(1) as u64);
+    let mut clean = true;
+    for name in wanted {
+        clean &= family(name, seed << 32, each, |seed| {
+            nearest::Setting::draw(name, seed)?.map(|setting| setting.examine()).transpose()
+        });
+    }
+    clean
+}
+
+fn family<Seen: Kind>(
     name: &str,
     first: u64,
     count: u64,
@@ -60,7 +98,7 @@ fn family(
             let mut counts = [0_u64; 6];
             match examine(seed) {
                 Ok(None) => counts[4] = 1,
-                Ok(Some(seen)) => counts[seen as usize] = 1,
+                Ok(Some(seen)) => counts[seen.column()] = 1,
                 Err(error) => {
                     counts[5] = 1;
                     if let Ok(mut wrong) = wrong.lock() {

@@ -25,15 +25,16 @@ pub fn approve(
     certificate: &SolidCertificate,
     slack: f64,
 ) -> Result<(), String> {
+    let counts = [cast.moving().triangles().len(), cast.fixed().triangles().len()];
     if let StartProof::Apart(cover) = &certificate.start {
         let claims = cover.claims(cast).ok_or("the cover of the start does not fit")?;
-        once(cast, &claims)?;
+        once(counts, &claims)?;
     }
     if matches!(certificate.start, StartProof::Overlapping(_)) {
         return Ok(());
     }
     let claims = certificate.cover.claims(cast).ok_or("the cover does not fit")?;
-    once(cast, &claims)?;
+    once(counts, &claims)?;
     let placed = |solid: &Solid, pose: colltrans::Pose| {
         triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
     };
@@ -63,9 +64,8 @@ pub fn approve(
     }
 }
 
-/// Whether each pair of facets is spoken of once.
-fn once(cast: &Cast<'_, Solid>, claims: &[Claim]) -> Result<(), String> {
-    let (m, n) = (cast.moving().triangles().len(), cast.fixed().triangles().len());
+/// Whether each pair of so many facets is spoken of once.
+pub(super) fn once<R>([m, n]: [usize; 2], claims: &[Claim<R>]) -> Result<(), String> {
     let mut spoken = vec![0_u8; m * n];
     for claim in claims {
         for s in claim.moving.clone() {

@@ -1,0 +1,329 @@
+//! How far two solids are apart, and the proof of it.
+//!
+//! *Surfaces.* The search goes through pairs of facets; its cover is the proof that none is nearer. *Bodies.* They
+//! meet if facets have a point in common or a shell lies inside, which is decided exactly; the first is asked only
+//! where surfaces may be 0 apart, the second only where they are not. The tolerance of a cast plays no part: bodies
+//! are as they are.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use crate::answer::{CertificateError, Distance, SolidSteps, Within};
+use crate::body::solid::{AsSolid, Solid};
+use crate::body::{Features, Placed};
+use crate::cast::solid::{Claim, Cover};
+use crate::number::noise;
+use crate::pair::Pair;
+use crate::setting::Setting;
+use crate::setting::error::QueryError;
+use crate::solve::solid::nearest::search::{AxesOf, Search, Until, proven};
+use crate::solve::solid::nearest::{
+    Apart, SolidGap, SolidNear, Spot, distance_of, meeting, shared_points, triangle,
+};
+use crate::solve::solid::overlap::{is_touch, nested};
+use crate::solve::solid::scene::Scene;
+
+/// A proof of the distance of two solids, checked by [`Pair::verify`] without a search: every pair of facets lies
+/// under one entry of a cover, and every entry is looked at by itself.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct DistanceCertificate {
+    /// No two points of the bodies are nearer, in world units: the least that an entry of the cover proves. 0 where
+    /// nothing is proven.
+    pub lower: f64,
+    /// Why they are not farther apart.
+    pub near: SolidNear,
+    /// Why they are not nearer. That no shell is inside the other body is checked anew.
+    pub cover: Cover<Apart>,
+}
+
+/// A proof to check about two solids where they are.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum SolidPairProof<'a> {
+    /// Of both bounds.
+    Distance(&'a DistanceCertificate),
+    /// That they are not farther from each other than a number.
+    Near(&'a SolidNear),
+}
+
+impl<'a> From<&'a DistanceCertificate> for SolidPairProof<'a> {
+    fn from(certificate: &'a DistanceCertificate) -> Self {
+        Self::Distance(certificate)
+    }
+}
+
+impl<'a> From<&'a SolidNear> for SolidPairProof<'a> {
+    fn from(near: &'a SolidNear) -> Self {
+        Self::Near(near)
+    }
+}
+
+impl Cover<Apart> {
+    /// What the cover says of which facets; `None` if it does not fit the bodies.
+    pub fn claims(&self, pair: &Pair<'_, Solid>) -> Option<Vec<Claim<Apart>>> {
+        self.claims_of([pair.moving(), pair.fixed()])
+    }
+}
+
+/// What a search says.
+struct Said {
+    spot: Option<Spot>,
+    /// No two facets are nearer.
+    lower: f64,
+    /// If it was asked for.
+    cover: Option<Cover<Apart>>,
+}
+
+/// Questions about two solids.
+impl<'a> Pair<'a, Solid> {
+    /// Of bodies of either kind, as solids: a solid and a convex polyhedron, say.
+    ///
+    /// # Errors
+    /// A point or a segment.
+    pub fn between<A: AsSolid, B: AsSolid>(
+        moving: Placed<'a, A>,
+        fixed: Placed<'a, B>,
+    ) -> Result<Self, QueryError> {
+        let (a, b) = (moving.body.as_solid()?, fixed.body.as_solid()?);
+        Self::new(a.at(moving.pose), b.at(fixed.pose))
+    }
+
+    /// How far apart are the bodies, as they are, and where?
+    ///
+    /// The bounds hold exactly, and are at most five noises apart (`160 u S`, see
+    /// [the crate's introduction](crate#accuracy)), however near each other the bodies are. Bodies that meet are
+    /// 0 apart: if their surfaces touch, or one lies inside the other. Of open shells the distance is that of the
+    /// surface.
+    ///
+    /// # Errors
+    /// None at present: every search ends with an answer.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{ConvexPolyhedron, Pair, Pose, Solid};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let post = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 4.0))?;
+    /// let step = Solid::from_pieces([&cube, &post])?;
+    /// let above = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
+    /// let pair = Pair::between(cube.at(above), step.at(Pose::IDENTITY))?;
+    ///
+    /// let (distance, proof) = pair.certified_distance()?;
+    /// assert!(distance.lower <= 5.0 && 5.0 <= distance.upper);
+    /// assert!(distance.upper - distance.lower < 1e-12);
+    /// assert!(pair.verify(&proof)? < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn distance(&self) -> Result<Distance<Solid>, QueryError> {
+        let scene = self.scene()?;
+        let said = self.search(&scene, Until::LEAST, false);
+        Ok(self.answer(&scene, &said))
+    }
+
+    /// The same, and the proof of it. It takes a pass over all that the search left out, and a byte for each pair
+    /// of nodes.
+    ///
+    /// # Errors
+    /// As [`Self::distance`].
+    pub fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
+        let scene = self.scene()?;
+        let said = self.search(&scene, Until::LEAST, true);
+        let distance = self.answer(&scene, &said);
+        let cover = if distance.lower > 0.0 { said.cover } else { None };
+        let (lower, near, cover) = (distance.lower, distance.near, cover.unwrap_or_default());
+        Ok((distance, DistanceCertificate { lower, near, cover }))
+    }
+
+    /// Are the bodies closer than a length, in world units? Ended as soon as that is known.
+    ///
+    /// # Errors
+    /// A length that is negative or not a number; and as [`Self::distance`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Pair, Pose, ConvexPolyhedron, Within};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let there = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
+    /// let pair = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?;
+    /// assert!(matches!(pair.within(5.1)?, Within::Closer(_)));
+    /// assert!(matches!(pair.within(4.9)?, Within::Farther(_)));
+    /// assert!(matches!(pair.within(5.0)?, Within::Undecided(_)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn within(&self, length: f64) -> Result<Within<Solid>, QueryError> {
+        if length.is_nan() || length < 0.0 {
+            return Err(QueryError::Length { length });
+        }
+        let scene = self.scene()?;
+        let until = Until {
+            // What is a little farther is far enough, by more than a bound may be lowered.
+            beyond: length + 0.125 * scene.noise,
+            enough: length - triangle::LENGTH * scene.noise,
+        };
+        let said = self.search(&scene, until, false);
+        if let Some(spot) = &said.spot {
+            let near = spot.near(&scene);
+            if near.distance() <= length {
+                return Ok(Within::Closer(near));
+            }
+        } else if let Some(place) = nested(&scene) {
+            return Ok(Within::Closer(SolidNear::Meeting(place)));
+        }
+        if said.lower > length {
+            return Ok(Within::Farther(SolidGap { gap: said.lower }));
+        }
+        let distance = self.distance()?;
+        Ok(if distance.upper <= length {
+            Within::Closer(distance.near)
+        } else if distance.lower > length {
+            Within::Farther(SolidGap { gap: distance.lower })
+        } else {
+            Within::Undecided(distance)
+        })
+    }
+
+    /// What of each body is nearest to the other one: the vertices, edges or faces that the nearest points are of.
+    /// `None` if the bodies meet, or are less apart than rounding can tell.
+    ///
+    /// # Errors
+    /// As [`Self::distance`].
+    pub fn closest_features(&self) -> Result<Option<Features>, QueryError> {
+        Ok(self.distance()?.features)
+    }
+
+    /// Checks a proof against the two bodies, and returns how far its bounds are apart, or the bound, in world
+    /// units. What a search does to find them plays no part; numbers have to be those that the proof gives, to the
+    /// bit.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify<'p>(
+        &self,
+        proof: impl Into<SolidPairProof<'p>>,
+    ) -> Result<f64, CertificateError> {
+        // A direction that is no part of the proof.
+        let scene = self.scene().map_err(|_| CertificateError::Start)?;
+        match proof.into() {
+            SolidPairProof::Near(near) => verify_near(&scene, near),
+            SolidPairProof::Distance(certificate) => {
+                let upper = verify_near(&scene, &certificate.near)?;
+                let lower = verify_cover(&scene, certificate)?;
+                Ok(upper - lower)
+            }
+        }
+    }
+
+    /// The work that [`Self::distance`] does, done for its count.
+    pub fn distance_steps(&self) -> SolidSteps {
+        let Ok(scene) = self.scene() else { return SolidSteps::default() };
+        let mut search = Search::new(&scene, Until::LEAST, |_, _| ());
+        search.run();
+        search.steps
+    }
+
+    fn scene(&self) -> Result<Scene<'a>, QueryError> {
+        let setting = Setting::of(self.bodies, DVec3::Z)?;
+        Ok(Scene::new(&setting, [0.0; 2]))
+    }
+
+    fn search(&self, scene: &Scene, until: Until, prove: bool) -> Said {
+        let mut cuts = HashMap::new();
+        let mut search = Search::new(scene, until, |nodes, reason| {
+            if prove {
+                cuts.insert(nodes, reason);
+            }
+        });
+        let (found, mut lower) = search.run();
+        let mut cover = None;
+        if prove {
+            let made = Cover::new([self.moving(), self.fixed()], &cuts);
+            lower = least_proven(scene, &made).unwrap_or(0.0);
+            cover = Some(made);
+        }
+        Said { spot: found.map(Spot::from), lower, cover }
+    }
+
+    fn answer(&self, scene: &Scene, said: &Said) -> Distance<Solid> {
+        let origin = self.bodies.translations[0];
+        let place = meeting(scene, said.lower);
+        let spot = said.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
+        let (near, points) = match place {
+            Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
+            None => (spot.near(scene), spot.points(scene)),
+        };
+        let lower = if place.is_some() { 0.0 } else { said.lower };
+        let spot = (lower > 0.0).then_some(spot);
+        let features = spot.map(|spot| spot.features(scene));
+        Distance {
+            lower,
+            upper: near.distance(),
+            on_moving: points[0] + origin,
+            on_fixed: points[1] + origin,
+            normal: spot.map(|spot| spot.nearest.normal),
+            features: features.map(|[moving, fixed]| Features { moving, fixed }),
+            near,
+            gap: (lower > 0.0).then_some(SolidGap { gap: lower }),
+        }
+    }
+}
+
+/// The least that the entries of a cover prove.
+fn least_proven(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
+    let bodies = [scene.moving.solid, scene.fixed.solid];
+    let axes = AxesOf::new(scene);
+    let mut least = f64::INFINITY;
+    let walked = cover.walk(bodies, |_, nodes, reason| {
+        let leaf = |k: usize| bodies[k].nodes()[nodes[k] as usize].is_leaf();
+        if reason == Apart::Examined && !(leaf(0) && leaf(1)) {
+            return false;
+        }
+        least = least.min(proven(scene, &axes, nodes, reason));
+        least > 0.0
+    });
+    walked.map_err(|entry| CertificateError::Cover { entry })?;
+    Ok(least)
+}
+
+/// The distance that is proven not to be exceeded.
+fn verify_near(scene: &Scene, near: &SolidNear) -> Result<f64, CertificateError> {
+    match *near {
+        SolidNear::Meeting(place) if is_touch(scene, place) => Ok(0.0),
+        SolidNear::Meeting(_) => Err(CertificateError::Start),
+        SolidNear::Points { triangles, weights, distance: claimed } => {
+            for weights in weights {
+                let sum: f64 = weights.iter().sum();
+                let bad = weights.iter().any(|w| w.is_nan() || *w < 0.0);
+                if bad || (sum - 1.0).abs() > noise::UNIT_VECTOR {
+                    return Err(CertificateError::Weights { weights });
+                }
+            }
+            let [moving, fixed] = triangles;
+            let proven = distance_of(scene, triangles, weights)
+                .ok_or(CertificateError::Facets { moving, fixed })?;
+            if claimed == proven {
+                Ok(proven)
+            } else {
+                Err(CertificateError::Bound { proven, claimed })
+            }
+        }
+    }
+}
+
+/// The distance that no two points are below.
+fn verify_cover(scene: &Scene, certificate: &DistanceCertificate) -> Result<f64, CertificateError> {
+    let DistanceCertificate { lower: claimed, near, cover } = certificate;
+    if *claimed == 0.0 && cover.is_empty() {
+        return Ok(0.0);
+    }
+    let proven = least_proven(scene, cover)?;
+    let met = matches!(near, SolidNear::Meeting(_));
+    if *claimed != proven || met {
+        return Err(CertificateError::Bound { proven, claimed: *claimed });
+    }
+    if nested(scene).is_some() {
+        return Err(CertificateError::Start);
+    }
+    Ok(proven)
+}

@@ -1,0 +1,348 @@
+//! Distances of solids, exactly: over all pairs of facets in fractions, and whether one body holds the other.
+//!
+//! Two triangles are as far apart as [`distance`] says of their corners, which
+//! tries all faces of simplices. Pairs come in the order of the least that balls around them allow, so that
+//! few are asked. A closed body holds a point if a line from it, along a general direction, leaves the body's
+//! facets more often than it enters them.
+
+use colltrans::solid::{Apart, Claim, SolidNear};
+use colltrans::{Distance, Pair, Pose, Solid, Within};
+use glam::DVec3;
+
+use super::facets::{Triangle, triangles};
+use super::proof::once;
+use super::settings as cubes;
+use super::sheets;
+use crate::oracle::distance::distance;
+use crate::oracle::exact::{Dyadic, Ratio, Vector};
+use crate::oracle::settings as convex;
+use crate::random::Random;
+use crate::shapes::{Mesh, prism};
+use crate::solids::{bumpy_ball, perforated_plate, slab, washer};
+
+/// Bounds are at most so many noises apart.
+const WIDEST: f64 = 5.0;
+/// More pairs of facets than this are not counted one by one.
+const MOST_PAIRS: usize = 4_000;
+
+/// The families of meshes, by name; those of [`cubes`], [`sheets`] and convex bodies come with them.
+pub const MESHES: [&str; 4] = ["balls", "hollow", "thin", "mixed"];
+
+/// What came out, for statistics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Seen {
+    /// Surfaces have a point in common.
+    Touching,
+    /// One body is inside the other.
+    Inside,
+    /// Less than a millionth of the size apart.
+    Near,
+    /// Farther apart.
+    Apart,
+}
+
+/// Two placed solids.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    /// The moving and the fixed body.
+    pub solids: [Solid; 2],
+    /// Where they are.
+    pub poses: [Pose; 2],
+}
+
+impl Setting {
+    /// The setting of a family for a seed; `None` for bodies that are no solids.
+    ///
+    /// # Errors
+    /// An unknown family; a body that the library refuses.
+    pub fn draw(family: &str, seed: u64) -> Result<Option<Self>, String> {
+        let random = &mut Random::stream(seed, &[family.len() as u64, 0xd157]);
+        let Some(drawn) = drawn(family, seed, random)? else { return Ok(None) };
+        drawn.displaced(random).map(Some)
+    }
+
+    /// As drawn, farther off, or moved by very little.
+    fn displaced(mut self, random: &mut Random) -> Result<Self, String> {
+        let size = self.solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
+        let little = [1e-15, 1e-13, 1e-10, 1e-7, 1e-3];
+        let by = match random.int(0, 5) {
+            0 => 0.0,
+            1 => size * random.range(0.2, 2.0),
+            _ => size * random.pick(&little),
+        };
+        let way = if random.one_in(2) { random.pick(&DVec3::AXES) } else { random.direction() };
+        let way = if random.one_in(2) { way } else { -way };
+        self.poses[0] = moved(&self.poses[0], way * by)?;
+        if random.one_in(4) {
+            self.brought_near(size * random.pick(&little))?;
+        }
+        Ok(self)
+    }
+
+    /// The moving body put before the fixed one along the normal of their distance.
+    fn brought_near(&mut self, gap: f64) -> Result<(), String> {
+        let found = self.pair()?.distance().map_err(|e| e.to_string())?;
+        if let Some(normal) = found.normal {
+            self.poses[0] = moved(&self.poses[0], normal * (found.lower - gap))?;
+        }
+        Ok(())
+    }
+
+    /// The question.
+    ///
+    /// # Errors
+    /// What the library refuses.
+    pub fn pair(&self) -> Result<Pair<'_, Solid>, String> {
+        let [a, b] = &self.solids;
+        Pair::new(a.at(self.poses[0]), b.at(self.poses[1])).map_err(|e| e.to_string())
+    }
+
+    /// Asks the library and compares.
+    ///
+    /// # Errors
+    /// What disagrees.
+    pub fn examine(&self) -> Result<Seen, String> {
+        let pair = self.pair()?;
+        let placed = [0, 1].map(|k| {
+            let (solid, pose) = (&self.solids[k], &self.poses[k]);
+            triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
+        });
+        let square = surfaces(&placed);
+        let inside = !square.is_zero() && self.is_inside(&pair, &placed)?;
+        let noise = self.noise();
+        let right = if inside { Ratio::from_f64(0.0) } else { square };
+        let (found, proof) = pair.certified_distance().map_err(|e| e.to_string())?;
+        let plain = pair.distance().map_err(|e| e.to_string())?;
+        let say = |what: &str| format!("{what}: {found:?}, not {}", right.sqrt_to_f64());
+        pair.verify(&proof).map_err(|e| say(&e.to_string()))?;
+        for distance in [&found, &plain] {
+            enclosed(distance, &right, noise).map_err(say)?;
+        }
+        points(&found.near, &placed).map_err(say)?;
+        if found.lower > 0.0 && placed[0].len() * placed[1].len() <= MOST_PAIRS {
+            let claims: Vec<Claim<Apart>> =
+                proof.cover.claims(&pair).ok_or("the cover does not fit")?;
+            once([placed[0].len(), placed[1].len()], &claims)?;
+        }
+        let length = right.sqrt_to_f64();
+        for length in [0.0, 0.5 * length, length, 1.5 * length, length + 8.0 * noise] {
+            within(&pair, length, &right).map_err(say)?;
+        }
+        let size = noise / (16.0 * f64::EPSILON);
+        Ok(match (inside, right.is_zero()) {
+            (true, _) => Seen::Inside,
+            (_, true) => Seen::Touching,
+            _ if length < 1e-6 * size => Seen::Near,
+            _ => Seen::Apart,
+        })
+    }
+
+    /// One noise, `32 u S`.
+    fn noise(&self) -> f64 {
+        let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+        let offset = self.poses[1].translation() - self.poses[0].translation();
+        16.0 * f64::EPSILON * (reach(&self.solids[0]) + reach(&self.solids[1]) + offset.length())
+    }
+
+    /// Whether one body, whose surfaces are apart, holds a part of the other.
+    fn is_inside(&self, pair: &Pair<Solid>, placed: &[Vec<Triangle>; 2]) -> Result<bool, String> {
+        let [a, b] = &self.solids;
+        if !(a.is_closed() && b.is_closed()) {
+            // What of an open body is closed is for the library to say: it is judged elsewhere.
+            let [p, q] = [a.at(pair.moving_pose()), b.at(pair.fixed_pose())];
+            let cast = colltrans::Cast::new(p, q, DVec3::X).map_err(|e| e.to_string())?;
+            return Ok(cast.intersects().map_err(|e| e.to_string())?.meets);
+        }
+        Ok([0, 1]
+            .into_iter()
+            .any(|k| placed[k].iter().any(|corners| holds(&placed[1 - k], &corners[0]))))
+    }
+}
+
+fn moved(pose: &Pose, by: DVec3) -> Result<Pose, String> {
+    // What is too small for a translation is none.
+    let at = (pose.translation() + by).to_array().map(|x| if x.abs() < 1e-60 { 0.0 } else { x });
+    Pose::from_matrix(pose.matrix(), DVec3::from_array(at)).map_err(|e| e.to_string())
+}
+
+fn drawn(family: &str, seed: u64, random: &mut Random) -> Result<Option<Setting>, String> {
+    let made = |(vertices, facets): &(Vec<DVec3>, Vec<Vec<u32>>)| {
+        Solid::from_mesh(vertices, facets).map_err(|e| e.to_string())
+    };
+    if let Some(of) = cubes::Setting::draw(family, seed) {
+        let solids = [made(&of.surfaces[0])?, made(&of.surfaces[1])?];
+        return Ok(Some(Setting { solids, poses: of.poses }));
+    }
+    if sheets::FAMILIES.contains(&family) {
+        let of = sheets::Setting::draw(family, seed)?;
+        return Ok(Some(Setting { solids: of.solids, poses: of.poses }));
+    }
+    if let Some(name) = family.strip_prefix("convex-") {
+        let of = convex::setting(name, seed);
+        let bodies = of.bodies().map_err(|e| e.to_string())?;
+        let solids = [&bodies.moving, &bodies.fixed].map(|body| Solid::from_convex(body).ok());
+        let [Some(a), Some(b)] = solids else { return Ok(None) };
+        return Ok(Some(Setting { solids: [a, b], poses: [of.moving_pose, of.fixed_pose] }));
+    }
+    if !MESHES.contains(&family) {
+        return Err(format!("no such family: {family}"));
+    }
+    let solids = [mesh(family, random), mesh(family, random)]
+        .map(|mesh| Solid::from_open_mesh(&mesh.vertices, &mesh.faces).map_err(|e| e.to_string()));
+    let [a, b] = solids;
+    let mut pose = |near: f64| {
+        // One in the other, now and then.
+        let near = near * random.pick(&[0.1, 1.0]);
+        let rotation = if random.one_in(4) { glam::DQuat::IDENTITY } else { random.rotation() };
+        Pose::new(rotation, random.direction() * near).map_err(|e| e.to_string())
+    };
+    let poses = [pose(1.5)?, pose(0.5)?];
+    Ok(Some(Setting { solids: [a?, b?], poses }))
+}
+
+fn mesh(family: &str, random: &mut Random) -> Mesh {
+    let ball = |random: &mut Random| bumpy_ball(random.pick(&[12, 48, 108]));
+    let thin = |random: &mut Random| {
+        let thin = 10.0_f64.powf(random.range(-13.0, -1.0));
+        match random.int(0, 3) {
+            0 => slab(DVec3::NEG_ONE, DVec3::new(1.0, 1.0, thin - 1.0), [2, 3, 1]),
+            1 => washer([0.5, 0.5 + thin], [0.0, 1.0], 7),
+            2 => perforated_plate([1, 1], thin, 6),
+            _ => prism(5, 1.0).mapped(|v| DVec3::new(v.x, v.y * thin, v.z)),
+        }
+    };
+    match (family, random.int(0, 2)) {
+        ("balls", _) | ("mixed", 0) => ball(random),
+        ("hollow", 0) => {
+            let outer = ball(random).mapped(|v| v * 2.5);
+            outer.joined(&ball(random).mapped(|v| v * 1.5).reversed())
+        }
+        ("hollow", _) => ball(random).mapped(|v| v * 0.3),
+        ("mixed", 1) => {
+            // A shell with a lid off.
+            let mut open = ball(random);
+            open.faces.truncate(open.faces.len() * 3 / 4);
+            open
+        }
+        _ => thin(random),
+    }
+}
+
+/// The square of the distance of two surfaces.
+///
+/// # Panics
+/// If one has no facets.
+pub fn surfaces([moving, fixed]: &[Vec<Triangle>; 2]) -> Ratio {
+    let origin = moving[0][0].clone();
+    let balls = |all: &[Triangle]| -> Vec<(DVec3, f64)> {
+        all.iter()
+            .map(|t| {
+                let [a, b, c] = t.each_ref().map(|v| v.minus(&origin).to_f64());
+                let center = (a + b + c) / 3.0;
+                (center, [a, b, c].map(|v| v.distance(center)).into_iter().fold(0.0, f64::max))
+            })
+            .collect()
+    };
+    let (p, q) = (balls(moving), balls(fixed));
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, (a, r)) in p.iter().enumerate() {
+        for (j, (b, s)) in q.iter().enumerate() {
+            pairs.push((((a.distance(*b) - r - s).max(0.0)) * (1.0 - 1e-9) - 1e-12, i, j));
+        }
+    }
+    pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
+    let mut best: Option<(f64, Ratio)> = None;
+    for (least, i, j) in pairs {
+        if let Some((length, square)) = &best
+            && (least > *length || square.is_zero())
+        {
+            break;
+        }
+        let found = distance(&moving[i], &fixed[j]);
+        if best.as_ref().is_none_or(|(_, square)| found.square < *square) {
+            best = Some((found.to_f64(), found.square));
+        }
+    }
+    best.expect("bodies have facets").1
+}
+
+/// Whether a closed body holds a point that is not on it.
+fn holds(body: &[Triangle], point: &Vector) -> bool {
+    for way in [[3.0, 5.0, 7.0], [-11.0, 2.0, 13.0], [17.0, -19.0, 3.0], [1.0, 23.0, -29.0]] {
+        let way = Vector::new(DVec3::from_array(way));
+        let crossings: Option<i32> = body.iter().map(|t| crossing(t, point, &way)).sum();
+        if let Some(winding) = crossings {
+            return winding > 0;
+        }
+    }
+    // Four directions along edges: as good as none.
+    false
+}
+
+/// 1 where a line leaves through a facet, -1 where it enters, 0 where it passes it; `None` along an edge.
+fn crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32> {
+    let [a, b, c] = triangle.each_ref().map(|v| v.minus(point));
+    let turns = [(&a, &b), (&b, &c), (&c, &a)].map(|(u, v)| u.cross(v).dot(way));
+    if turns.iter().any(Dyadic::is_zero) {
+        return None;
+    }
+    let up = turns[0].is_positive();
+    if turns.iter().any(|turn| turn.is_positive() != up) {
+        return Some(0);
+    }
+    // Ahead if the facet's plane is on the side to which the line leaves or enters it.
+    let ahead = a.cross(&b).dot(&c).is_positive() == up;
+    Some(if !ahead {
+        0
+    } else if up {
+        1
+    } else {
+        -1
+    })
+}
+
+/// Whether bounds hold, and are as near as they should be.
+fn enclosed(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<(), &'static str> {
+    let square = |x: f64| Ratio::from_f64(x).times(&Ratio::from_f64(x));
+    if found.lower < 0.0 || square(found.lower) > *right {
+        return Err("lower");
+    }
+    if *right > square(found.upper) {
+        return Err("upper");
+    }
+    if right.is_zero() != (found.upper == 0.0) {
+        return Err("meeting");
+    }
+    if found.upper - found.lower > WIDEST * noise {
+        return Err("wide");
+    }
+    Ok(())
+}
+
+/// Whether the points are no farther apart than is said.
+fn points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'static str> {
+    let SolidNear::Points { triangles, weights, distance } = near else { return Ok(()) };
+    let mean = |k: usize| {
+        let corners = &placed[k][triangles[k] as usize];
+        let weights = weights[k].map(Dyadic::new);
+        let sum = &(&weights[0] + &weights[1]) + &weights[2];
+        let of = |i: usize| corners[i].times(&weights[i]);
+        (of(0).plus(&of(1)).plus(&of(2)), sum)
+    };
+    let ((p, s), (q, t)) = (mean(0), mean(1));
+    let way = q.times(&s).minus(&p.times(&t));
+    let whole = &s * &t;
+    let square = Ratio::new(way.dot(&way), &whole * &whole);
+    let claimed = Ratio::from_f64(*distance);
+    if square <= claimed.times(&claimed) { Ok(()) } else { Err("points") }
+}
+
+fn within(pair: &Pair<Solid>, length: f64, right: &Ratio) -> Result<(), &'static str> {
+    let square = Ratio::from_f64(length).times(&Ratio::from_f64(length));
+    match pair.within(length).map_err(|_| "within")? {
+        Within::Closer(near) if pair.verify(&near).is_ok() && *right <= square => Ok(()),
+        Within::Farther(gap) if gap.gap > length && *right > square => Ok(()),
+        Within::Undecided(found) if found.lower <= length && length <= found.upper => Ok(()),
+        _ => Err("within"),
+    }
+}

@@ -7,7 +7,7 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::Stopwatch;
 use glam::DVec3;
 use parry3d_f64::math as parry_math;
-use parry3d_f64::query::{ShapeCastOptions, cast_shapes};
+use parry3d_f64::query::{self, ShapeCastOptions, cast_shapes};
 use parry3d_f64::shape::{ConvexPolyhedron as ParryPolyhedron, Shape, TriMesh};
 
 use crate::report::Times;
@@ -43,6 +43,18 @@ impl ParrySetting {
     /// Converts the poses of the moving and of the fixed body and a direction.
     pub fn placed(poses: [&Pose; 2], direction: DVec3) -> Self {
         Self { poses: poses.map(pose), velocity: vector(direction) }
+    }
+
+    /// Asks parry for the distance, 0 if the bodies overlap.
+    pub fn distance(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+        let [a, b] = &self.poses;
+        query::distance(a, moving, b, fixed).ok().map(|found| found.distance)
+    }
+
+    /// Asks parry how deep the bodies overlap.
+    pub fn depth(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+        let [a, b] = &self.poses;
+        query::contact(a, moving, b, fixed, 0.0).ok()?.map(|contact| -contact.dist)
     }
 
     /// Asks parry: the time of impact, if there is one.

@@ -69,6 +69,9 @@
 //! | [`Cast::directional_depth`] | how far must one go back until the overlap ends? | [`DirectionalDepth`] |
 //! | [`Cast::intersects`] | do they meet where they are? | [`Intersection`] |
 //! | [`Cast::verify`] | is this proof one? | the gap proven |
+//! | [`Pair::distance`] | how far apart are they, and where? | [`Distance`] |
+//! | [`Pair::within`] | are they closer than a length? | [`Within`] |
+//! | [`Pair::depth`] | which least translation parts them? | [`Depth`] |
 //!
 //! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
 //! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
@@ -135,8 +138,8 @@
 //!
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
-//! (outcomes and certificates), `solve` (the two solvers, and [`observe`]), `cast` (the queries) and
-//! `tracker`. `written` and `record` say how all of them are written. [`solid`] holds what is of solids alone.
+//! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
+//! `pair` (the queries) and `tracker`. `written` and `record` say how all of them are written. [`solid`] holds what is of solids alone.
 
 mod answer;
 mod body;

@@ -10,11 +10,13 @@
 use glam::DVec3;
 
 use crate::answer::{
-    Clearance, ContactRange, DirectionalDepth, Intersection, Outcome, StartedFrom, Steps,
+    Clearance, ContactRange, DirectionalDepth, Distance, Intersection, Outcome, StartedFrom, Steps,
 };
 use crate::body::ConvexPolyhedron;
 use crate::cast::{Cast, clearance_of, depth_of, intersection_of, range_of};
+use crate::pair::{Pair, distance_from};
 use crate::setting::error::QueryError;
+use crate::solve::nearest::NearestPairs;
 use crate::solve::observe::{Nobody, Observer};
 use crate::solve::options::{Focus, Region};
 use crate::solve::{WarmStart, search};
@@ -61,6 +63,8 @@ pub struct Tracker<'a> {
     direction: DVec3,
     /// What the last casts left: along the direction, against it, and between the centres.
     warm_starts: [WarmStart; 3],
+    /// The pairs of vertices that the last distance ended with.
+    nearest: NearestPairs,
     steps: Steps,
 }
 
@@ -89,6 +93,7 @@ impl<'a> Tracker<'a> {
     /// Forgets the last answer: the next query starts from scratch.
     pub fn reset(&mut self) {
         self.warm_starts = [WarmStart::Nothing; 3];
+        self.nearest = NearestPairs::default();
     }
 
     /// The work of the last query: of all its casts together, and of their starts the one with most
@@ -154,12 +159,33 @@ impl<'a> Tracker<'a> {
         intersection_of(cast, |cast| self.run(cast, BETWEEN_CENTERS, &mut Nobody))
     }
 
-    /// A query begins: the warm starts change places if it looks the other way, and are of no use
-    /// for other bodies.
+    /// [`Pair::distance`], starting from the last answer to the same question: the pairs of vertices that
+    /// the nearest points were made of. [`Self::steps`] says nothing of it.
+    ///
+    /// # Errors
+    /// As [`Pair::distance`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{ConvexPolyhedron, Pair, Pose, Tracker};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let mut tracker = Tracker::new();
+    /// for step in 0..100 {
+    ///     let pose = Pose::from_translation(DVec3::new(2.0, 1e-2 * f64::from(step), 0.5))?;
+    ///     let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(pose))?;
+    ///     let [lower, upper] = tracker.distance(&pair)?.bounds();
+    ///     assert!(lower <= 1.0 && 1.0 <= upper && upper - lower < 1e-13);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn distance(&mut self, pair: &Pair<'a>) -> Result<Distance, QueryError> {
+        self.follow([pair.moving(), pair.fixed()]);
+        distance_from(pair, &mut self.nearest)
+    }
+
+    /// Forgets what was found of other bodies.
     #[inline]
-    fn begin(&mut self, cast: &Cast<'a>) {
-        self.steps = Steps { started_from: StartedFrom::Features, ..Steps::default() };
-        let bodies = [cast.moving(), cast.fixed()];
+    fn follow(&mut self, bodies: [&'a ConvexPolyhedron; 2]) {
         let same = |last: [&ConvexPolyhedron; 2]| {
             std::ptr::eq(last[0], bodies[0]) && std::ptr::eq(last[1], bodies[1])
         };
@@ -167,6 +193,14 @@ impl<'a> Tracker<'a> {
             self.reset();
             self.bodies = Some(bodies);
         }
+    }
+
+    /// A query begins: the warm starts change places if it looks the other way, and are of no use
+    /// for other bodies.
+    #[inline]
+    fn begin(&mut self, cast: &Cast<'a>) {
+        self.steps = Steps { started_from: StartedFrom::Features, ..Steps::default() };
+        self.follow([cast.moving(), cast.fixed()]);
         if cast.direction().dot(self.direction) < 0.0 {
             self.warm_starts.swap(0, 1);
         }

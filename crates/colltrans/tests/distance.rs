@@ -190,3 +190,100 @@ fn changed_proofs_are_refused() {
         }
     }
 }
+
+#[test]
+fn depths_of_boxes_are_known() {
+    let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
+    for (by, depth, direction) in [
+        (DVec3::new(0.75, 0.5, 0.25), 0.25, DVec3::NEG_X),
+        (DVec3::new(0.1, -0.9, 0.25), 0.1, DVec3::Y),
+        (DVec3::new(0.0, 0.0, 0.5), 0.5, DVec3::NEG_Z),
+    ] {
+        let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(pose(DQuat::IDENTITY, by)));
+        let pair = pair.expect("a pair");
+        let found = pair.depth().expect("an answer");
+        assert!(found.lower <= depth && depth <= found.upper && found.upper - found.lower < 1e-13);
+        assert_eq!(found.direction, direction, "{by}");
+        Judge::new(pair).check_depth(&found).expect("a right answer");
+        Judge::new(pair).compare_depth(&found).expect("a right answer");
+    }
+    // Centred: any of six ways.
+    let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(Pose::IDENTITY)).expect("a pair");
+    let [lower, upper] = pair.depth().expect("an answer").bounds();
+    assert!(lower > 1.0 - 1e-13 && upper < 1.0 + 1e-13);
+}
+
+#[test]
+fn depths_of_all_families_are_right() {
+    let mut deep = 0;
+    for (family, _) in FAMILIES {
+        for seed in 0..24 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            // One within the other, more or less.
+            let moving = Pose::from_matrix(
+                setting.moving_pose.matrix(),
+                setting.fixed_pose.translation() + DVec3::new(0.1, 0.05, 0.2),
+            );
+            let [p, q] =
+                [bodies.moving.at(moving.expect("a pose")), bodies.fixed.at(setting.fixed_pose)];
+            let pair = Pair::new(p, q).expect("a pair");
+            let depth = pair.depth().unwrap_or_else(|e| panic!("{setting}: {e}"));
+            let judge = Judge::new(pair);
+            judge.check_depth(&depth).unwrap_or_else(|e| panic!("{setting}: {e}"));
+            if p.body.vertices().len() + q.body.vertices().len() <= 16 {
+                judge.compare_depth(&depth).unwrap_or_else(|e| panic!("{setting}: {e}"));
+            }
+            deep += u32::from(depth.lower > 0.0);
+        }
+    }
+    assert!(deep > 200, "{deep}");
+}
+
+#[test]
+fn changed_depths_are_refused() {
+    let mut random = Random::new(5);
+    for vertices in [12, 30, 60] {
+        let [p, q] = [0, 1].map(|_| body(&random_hull(vertices, &mut random).vertices));
+        let (a, b) =
+            (pose(random.rotation(), DVec3::ZERO), pose(random.rotation(), DVec3::X * 0.2));
+        let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
+        let depth = pair.depth().expect("an answer");
+        assert!(depth.lower > 0.0);
+        let proven = pair.verify(&depth).expect("a proof");
+        let mut all = depth.clone();
+        all.lower = proven;
+        pair.verify(&all).expect("all that is proven");
+        let mut changed = vec![depth.clone(); 8];
+        changed[0].lower = proven.next_up();
+        changed[1].upper = depth.lower * 0.999;
+        changed[2].direction = -depth.direction;
+        changed[3].enclosure.triangles.swap_remove(0);
+        changed[4].enclosure.triangles[0].swap(0, 1);
+        changed[5].enclosure.normals[0] = -depth.enclosure.normals[0];
+        changed[6].enclosure.triangles[0][0] = u32::MAX;
+        changed[7].enclosure.pairs[depth.enclosure.triangles[0][0] as usize].moving = 10_000;
+        for (k, changed) in changed.into_iter().enumerate() {
+            let refused = pair.verify(&changed).is_err();
+            assert!(refused, "{k}");
+        }
+    }
+}
+
+#[test]
+fn tracked_distances_are_as_tight() {
+    let mut random = Random::new(8);
+    for vertices in [4, 12, 60, 300] {
+        let [p, q] = [0, 1].map(|_| body(&random_hull(vertices, &mut random).vertices));
+        let mut tracker = colltrans::Tracker::new();
+        let rotation = random.rotation();
+        for step in 0..60 {
+            let angle = 0.05 * f64::from(step);
+            let a = pose(DQuat::from_rotation_z(angle), DVec3::new(3.0 - angle, 0.1, angle * 0.1));
+            let pair = Pair::new(p.at(a), q.at(pose(rotation, DVec3::ZERO))).expect("a pair");
+            let distance = tracker.distance(&pair).expect("an answer");
+            let noises = Judge::new(pair).check(&distance).expect("a right answer");
+            assert!(noises <= 4.0, "{noises}");
+        }
+    }
+}

@@ -7,7 +7,7 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::Stopwatch;
 use glam::DVec3;
 use parry3d_f64::math as parry_math;
-use parry3d_f64::query::{ShapeCastOptions, cast_shapes, distance};
+use parry3d_f64::query::{self, ShapeCastOptions, cast_shapes};
 use parry3d_f64::shape::{ConvexPolyhedron as ParryPolyhedron, Shape, TriMesh};
 
 use crate::report::Times;
@@ -45,6 +45,18 @@ impl ParrySetting {
         Self { poses: poses.map(pose), velocity: vector(direction) }
     }
 
+    /// Asks parry for the distance, 0 if the bodies overlap.
+    pub fn distance(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+        let [a, b] = &self.poses;
+        query::distance(a, moving, b, fixed).ok().map(|found| found.distance)
+    }
+
+    /// Asks parry how deep the bodies overlap.
+    pub fn depth(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+        let [a, b] = &self.poses;
+        query::contact(a, moving, b, fixed, 0.0).ok()?.map(|contact| -contact.dist)
+    }
+
     /// Asks parry: the time of impact, if there is one.
     pub fn cast(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
         let options = ShapeCastOptions {
@@ -56,12 +68,6 @@ impl ParrySetting {
         cast_shapes(a, self.velocity, moving, b, still, fixed, options)
             .ok()?
             .map(|hit| hit.time_of_impact)
-    }
-
-    /// Asks parry how far apart they are where they stand.
-    pub fn distance(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
-        let [a, b] = &self.poses;
-        distance(a, moving, b, fixed).ok().map(|found| found.distance)
     }
 }
 

@@ -145,11 +145,14 @@ impl Depth {
 }
 
 /// A closed surface of triangles around the origin, between points `q - p`; nothing if no depth is claimed.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Enclosure {
     /// The pairs of vertices whose differences are its corners.
     pub pairs: Vec<VertexPair>,
     /// Its triangles, counter-clockwise as seen from outside, by positions among the pairs.
     pub triangles: Vec<[u32; 3]>,
+    /// For each triangle a unit vector along which all its corners are farther from the origin than the
+    /// depth.
+    pub normals: Vec<DVec3>,
 }

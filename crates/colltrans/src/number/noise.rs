@@ -41,6 +41,9 @@
 //!   their sum of weights by `3 u`, its length by `2 u`: together less than `18 u S`. Whoever computes the
 //!   points nearly without rounding is off by `12 u S` in all. So a distance of two points is raised by one
 //!   noise and a half, of which a check demands a fourth of that.
+//! - *Height.* A point of `M` in the setting frame along a unit normal is off by `9 u S + 3 u S` as
+//!   computed, and by `4 u S` for the normal's length: less than three quarters of a noise. With points that
+//!   are computed nearly without rounding a fourth is enough.
 //! - *Unit vector.* Normalising leaves `4 u`, rotating into the world `3 u sqrt(3)`, normalising
 //!   again `4 u`; an orthogonal one inherits the same from its axes. Tolerated is twice their sum.
 //! - *Gain.* A dot product of a direction with an edge vector, itself rounded, has an error of `4 u`
@@ -93,6 +96,10 @@ const RESIDUAL: f64 = 3.0;
 /// By how many noises the length of a weighted mean of points of `M` is raised to be an upper bound, and what
 /// of that is demanded if the points are computed nearly without rounding.
 const MEAN: [f64; 2] = [1.5, 0.375];
+
+/// By how many noises a height in the setting frame is lowered to be a lower bound, and what of that is
+/// demanded if the points are computed nearly without rounding.
+const HEIGHT: [f64; 2] = [0.75, 0.25];
 
 /// Relative error of a unit vector's length and of its product with one it should be orthogonal to.
 pub(crate) const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
@@ -187,6 +194,16 @@ impl Noise {
     /// The same for points that are computed nearly without rounding.
     pub(crate) fn mean_checked(self) -> f64 {
         MEAN[1] * self.0
+    }
+
+    /// By how much the height of a point of `M` has to be lowered to be a lower bound.
+    pub(crate) fn height_lowered(self) -> f64 {
+        HEIGHT[0] * self.0
+    }
+
+    /// The same for points that are computed nearly without rounding.
+    pub(crate) fn height_checked(self) -> f64 {
+        HEIGHT[1] * self.0
     }
 
     /// By how much an upper bound along `n` has to lie above the weighted mean of the corners, if

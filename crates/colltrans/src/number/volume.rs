@@ -14,6 +14,10 @@ use super::orientation::Terms;
 /// Error of a rounded determinant, in its terms' magnitudes, and in the third power of the size.
 const ERROR: [f64; 2] = [64.0 * f64::EPSILON, f64::from_bits((1023 - 90) << 52)];
 
+/// Error of the determinant of rounded points, in the third power of the size: three times `9 u` for the points,
+/// and `8 u` for itself.
+const ROUNDED: f64 = 32.0 * f64::EPSILON;
+
 /// The sign of `det[a, b, c]`: positive if the three are counter-clockwise as seen from beyond their plane,
 /// from the origin's other side. `size` is that of the configuration.
 pub(crate) fn sign(points: [&Terms; 3], size: f64) -> Ordering {
@@ -24,6 +28,13 @@ pub(crate) fn sign(points: [&Terms; 3], size: f64) -> Ordering {
         return det.total_cmp(&0.0);
     }
     by_integers::<SMALL>(points).or_else(|| by_integers::<LARGE>(points)).unwrap_or(Ordering::Equal)
+}
+
+/// The same of points as [`TwoBodies::difference`](crate::setting::TwoBodies) rounds them, off by less than
+/// `9 u` of the size each: where that and the determinant's own rounding leave it.
+pub(crate) fn rounded_sign([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
+    let det = a.dot(b.cross(c));
+    (det.abs() > ROUNDED * (size * size * size)).then(|| det.total_cmp(&0.0))
 }
 
 /// The sum of the magnitudes of the determinant's terms.

@@ -1,12 +1,12 @@
 //! The questions about two convex bodies.
 
 use super::{PairProof, verify};
-use crate::answer::{CertificateError, Distance, Within};
+use crate::answer::{CertificateError, Depth, Distance, Enclosure, Within};
 use crate::body::{Features, feature};
 use crate::pair::Pair;
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair};
-use crate::solve::nearest::{Difference, Found, Plane, nearest};
+use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nearest};
 
 /// How far apart bounds may be, in noises, besides what the bodies reach beyond support points: more than four
 /// were seen of bodies less than 1000 noises thick only.
@@ -42,8 +42,7 @@ impl Pair<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn distance(&self) -> Result<Distance, QueryError> {
-        let difference = Difference::new(&self.bodies);
-        answer(&difference, &nearest(&difference, [].into_iter(), None))
+        distance_from(self, &mut NearestPairs::default())
     }
 
     /// Are the bodies closer than a length, in world units? Ended as soon as that is known: for bodies
@@ -69,15 +68,52 @@ impl Pair<'_> {
             return Err(QueryError::Length { length });
         }
         let difference = Difference::new(&self.bodies);
-        let found = nearest(&difference, [].into_iter(), Some(length));
+        let found = nearest(&difference, &NearestPairs::default(), Some(length));
         if let Some(decided) = decide(&difference, &found, length) {
             return Ok(decided);
         }
-        let found = nearest(&difference, found.simplex().take(3), None);
+        let found = nearest(&difference, &found.pairs(), None);
         match decide(&difference, &found, length) {
             Some(decided) => Ok(decided),
             None => answer(&difference, &found).map(Within::Undecided),
         }
+    }
+
+    /// How deep do the bodies overlap: by which least translation, in any direction, are they parted?
+    ///
+    /// The bounds hold exactly, and are a few noises apart. Both are 0 if the bodies are apart; of bodies
+    /// that touch, or are flat in one plane, the lower one is.
+    ///
+    /// # Errors
+    /// As [`Self::distance`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{ConvexPolyhedron, Pair, Pose};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let there = Pose::from_translation(DVec3::new(0.75, 0.5, 0.5))?;
+    /// let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(there))?;
+    /// let depth = pair.depth()?;
+    /// assert!(depth.lower <= 0.25 && 0.25 <= depth.upper && depth.upper < 0.25 + 1e-13);
+    /// assert_eq!(depth.direction, DVec3::NEG_X);
+    /// assert!(pair.verify(&depth)? >= depth.lower);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn depth(&self) -> Result<Depth, QueryError> {
+        let difference = Difference::new(&self.bodies);
+        let found = nearest(&difference, &NearestPairs::default(), None);
+        if let Some(plane) = found.plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
+            let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
+            return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure });
+        }
+        let best = deepest(&difference, &found);
+        let (lower, upper) = (best.lower, best.upper);
+        let tolerance = WIDEST * difference.noise.point() + best.beyond;
+        if upper - lower > tolerance {
+            let reason = Stalled::Distance { lower, upper, tolerance };
+            return Err(QueryError::NotConverged { reason });
+        }
+        Ok(Depth { lower, upper, direction: best.outward, enclosure: best.enclosure })
     }
 
     /// The vertex, edge or face of each body that faces the other one: what lies in the planes across the
@@ -101,6 +137,7 @@ impl Pair<'_> {
         match proof.into() {
             PairProof::Gap(plane) => verify::gap(&self.bodies, plane),
             PairProof::Near(points) => verify::near(&self.bodies, points),
+            PairProof::Depth(depth) => verify::depth(&self.bodies, depth),
         }
     }
 }
@@ -115,8 +152,17 @@ fn decide(difference: &Difference, found: &Found, length: f64) -> Option<Within>
     (plane.gap.gap > length).then_some(Within::Farther(plane.gap))
 }
 
+/// The distance, by a search that begins with some pairs, and leaves those that it ends with.
+#[inline]
+pub(crate) fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, QueryError> {
+    let difference = Difference::new(&pair.bodies);
+    let found = nearest(&difference, pairs, None);
+    *pairs = found.pairs();
+    answer(&difference, &found)
+}
+
 /// The distance, by what a search has found.
-pub(crate) fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError> {
+fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError> {
     let bodies = difference.bodies;
     let near = found.near(difference);
     let plane = found.plane(difference);

@@ -4,10 +4,11 @@ mod convex;
 pub(crate) mod solid;
 mod verify;
 
-use crate::answer::{NearPoints, PlaneGap};
+use crate::answer::{Depth, NearPoints, PlaneGap};
 use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
+pub(crate) use convex::distance_from;
 
 /// A moving body and a fixed one, where they are: what is asked of both and no direction. Nothing moves;
 /// the names tell them apart, as in a [`Cast`](crate::Cast).
@@ -26,6 +27,14 @@ pub enum PairProof<'a> {
     Gap(&'a PlaneGap),
     /// That they are not farther from each other than a number.
     Near(&'a NearPoints),
+    /// Both bounds of a depth.
+    Depth(&'a Depth),
+}
+
+impl<'a> From<&'a Depth> for PairProof<'a> {
+    fn from(depth: &'a Depth) -> Self {
+        Self::Depth(depth)
+    }
 }
 
 impl<'a> From<&'a PlaneGap> for PairProof<'a> {

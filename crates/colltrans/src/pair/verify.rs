@@ -1,17 +1,16 @@
 //! Checks of proofs about two placed bodies, from their vertices alone.
 
-use crate::answer::{CertificateError, NearPoints, PlaneGap};
+use glam::DVec3;
+
+use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap};
 use crate::number::{extent, noise, volume};
 use crate::setting::{TwoBodies, VertexPair};
-use glam::DVec3;
+use crate::solve::nearest::surrounds;
 
 /// The gap that a plane proves.
 pub(super) fn gap(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
     let &PlaneGap { normal, gap } = plane;
-    let unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-    if !unit {
-        return Err(CertificateError::Normal { normal });
-    }
+    check_unit(normal)?;
     let [_, square] = extent::dot(normal, normal);
     let proven = (bodies.distance_along(normal) / square.sqrt().next_up()).next_down();
     if gap >= 0.0 && gap <= proven {
@@ -43,6 +42,53 @@ pub(super) fn near(bodies: &TwoBodies, points: &NearPoints) -> Result<f64, Certi
     } else {
         Err(CertificateError::Bound { proven, claimed: *distance })
     }
+}
+
+/// The depth that a surface proves, if the direction proves the upper bound.
+pub(super) fn depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, CertificateError> {
+    check_unit(depth.direction)?;
+    let [square, _] = extent::dot(depth.direction, depth.direction);
+    let reach = -bodies.distance_along(-depth.direction);
+    let upper = (reach / square.sqrt().next_down()).next_up().max(0.0);
+    if depth.upper.is_nan() || depth.upper < upper {
+        return Err(CertificateError::Bound { proven: upper, claimed: depth.upper });
+    }
+    let claims_none = depth.enclosure.triangles.is_empty();
+    let proven = if claims_none { 0.0 } else { enclosed(bodies, &depth.enclosure)? };
+    if depth.lower >= 0.0 && depth.lower <= proven {
+        Ok(proven)
+    } else {
+        Err(CertificateError::Bound { proven, claimed: depth.lower })
+    }
+}
+
+/// How far the origin is from a surface around it, at least.
+fn enclosed(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateError> {
+    let Enclosure { pairs, triangles, normals } = surface;
+    known(bodies, pairs)?;
+    let fits = |corners: &[u32; 3]| corners.iter().all(|k| (*k as usize) < pairs.len());
+    if normals.len() != triangles.len() || !triangles.iter().all(fits) {
+        return Err(CertificateError::Start);
+    }
+    let points: Vec<DVec3> = pairs.iter().map(|pair| bodies.terms(*pair).point()).collect();
+    let mut least = f64::INFINITY;
+    for (corners, normal) in triangles.iter().zip(normals) {
+        check_unit(*normal)?;
+        for corner in corners {
+            least = least.min(normal.dot(points[*corner as usize]));
+        }
+    }
+    let proven = (least - bodies.noise().height_checked()).next_down();
+    if proven > 0.0 && surrounds(bodies, surface) {
+        Ok(proven)
+    } else {
+        Err(CertificateError::Start)
+    }
+}
+
+fn check_unit(normal: DVec3) -> Result<(), CertificateError> {
+    let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
+    if is_unit { Ok(()) } else { Err(CertificateError::Normal { normal }) }
 }
 
 /// Whether pairs name vertices that there are.

@@ -117,6 +117,20 @@ impl TwoBodies<'_> {
         means
     }
 
+    /// The point `q - p` of a pair of vertices, off by less than `9 u S`.
+    #[inline]
+    pub(crate) fn difference(&self, pair: VertexPair) -> DVec3 {
+        let [p, q] = self.vertices(pair);
+        self.fixed_matrix * q - self.moving_matrix * p + self.offset
+    }
+
+    /// The way from one such point to another, off by a few `u` of how far the vertices are apart.
+    #[inline]
+    pub(crate) fn way(&self, from: VertexPair, to: VertexPair) -> DVec3 {
+        let ([p, q], [r, s]) = (self.vertices(from), self.vertices(to));
+        self.fixed_matrix * (s - q) - self.moving_matrix * (r - p)
+    }
+
     /// A normal of the setting frame in the moving body's frame: `n.(R v) = (R^T n).v`.
     #[inline]
     pub(crate) fn moving_normal(&self, normal: DVec3) -> DVec3 {

@@ -6,8 +6,14 @@
 //! - *Plane.* `min_Q n.q - max_P n.p >= gap |n|`, as squares.
 //! - *Points.* The weighted means of the pairs are at most the stated distance apart; of a distance of 0 the
 //!   pairs enclose the origin.
+//! - *Depth.* `M` has a face across one of the products of two differences of vertices, of `P`, of `Q` or
+//!   one of each; so the least of `max_M n.m / |n|` over all of them, both ways, is the depth.
 
-use colltrans::{Distance, NearPoints, Pair, PlaneGap, VertexPair, Within};
+use colltrans::{
+    ConvexPolyhedron, Depth, Distance, NearPoints, Pair, PlaneGap, VertexPair, Within,
+};
+
+use glam::DVec3;
 
 use crate::oracle::check::Objection;
 use crate::oracle::distance::{self, distance};
@@ -40,7 +46,7 @@ impl<'a> Judge<'a> {
         let [p, q] = [pair.moving_pose(), pair.fixed_pose()];
         let moving = place(p.matrix(), p.translation(), pair.moving().vertices());
         let fixed = place(q.matrix(), q.translation(), pair.fixed().vertices());
-        let reach = |body: &colltrans::ConvexPolyhedron| {
+        let reach = |body: &ConvexPolyhedron| {
             body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
         };
         let offset = (q.translation() - p.translation()).length();
@@ -62,16 +68,13 @@ impl<'a> Judge<'a> {
         require!(square(upper) >= self.truth.square, "upper bound {upper:e} of {truth:e}");
         require!(answer.near.distance == upper, "the points are of another bound");
         self.check_points(&answer.near)?;
-        match answer.gap {
-            Some(plane) => {
-                require!(plane.gap == lower && lower > 0.0, "the plane is of another bound");
-                require!(answer.normal == Some(plane.normal), "two different normals");
-                require!(answer.features.is_some(), "there is a plane and no feature");
-                self.check_plane(&plane)?;
-            }
-            None => {
-                require!(lower == 0.0 && answer.normal.is_none(), "a bound without a plane");
-            }
+        if let Some(plane) = answer.gap {
+            require!(plane.gap == lower && lower > 0.0, "the plane is of another bound");
+            require!(answer.normal == Some(plane.normal), "two different normals");
+            require!(answer.features.is_some(), "there is a plane and no feature");
+            self.check_plane(&plane)?;
+        } else {
+            require!(lower == 0.0 && answer.normal.is_none(), "a bound without a plane");
         }
         let apart = (answer.on_fixed - answer.on_moving).length();
         let world = self.pair.moving_pose().translation().length();
@@ -107,6 +110,90 @@ impl<'a> Judge<'a> {
             }
             _ => Err(Objection("an unknown answer".into())),
         }
+    }
+
+    /// Both bounds of a depth, and their proof; how far apart they are, in noises.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    pub fn check_depth(&self, answer: &Depth) -> Result<f64, Objection> {
+        let [lower, upper] = answer.bounds();
+        require!(0.0 <= lower && lower <= upper, "bounds {lower:e} and {upper:e} of a depth");
+        let verified = self.pair.verify(answer).map_err(|e| Objection(format!("depth: {e}")))?;
+        require!(verified >= lower, "verified a depth of {verified:e} of {lower:e}");
+        let n = Vector::new(answer.direction);
+        let reach = -self.along(&Vector::new(-answer.direction));
+        let (claimed, square) = (Dyadic::new(upper), n.dot(&n));
+        require!(
+            !reach.is_positive() || &reach * &reach <= &(&claimed * &claimed) * &square,
+            "a depth of {upper:e} does not part them"
+        );
+        require!(lower == 0.0 || self.truth.intersects(), "they are apart");
+        Ok((upper - lower) / self.noise)
+    }
+
+    /// The same against the truth, for small bodies.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    pub fn compare_depth(&self, answer: &Depth) -> Result<(), Objection> {
+        let truth = if self.truth.intersects() { self.depth() } else { Ratio::from_f64(0.0) };
+        let [lower, upper] = answer.bounds();
+        let rounded = truth.sqrt_to_f64();
+        require!(square(lower) <= truth, "lower bound {lower:e} of a depth of {rounded:e}");
+        require!(square(upper) >= truth, "upper bound {upper:e} of a depth of {rounded:e}");
+        Ok(())
+    }
+
+    /// The square of the depth of bodies that meet.
+    fn depth(&self) -> Ratio {
+        let edges = |points: &[Vector]| -> Vec<Vector> {
+            let from = |i: usize| (0..i).map(move |j| points[i].minus(&points[j]));
+            (0..points.len()).flat_map(from).collect()
+        };
+        let (p, q) = (edges(&self.moving), edges(&self.fixed));
+        let all: Vec<&Vector> = p.iter().chain(&q).collect();
+        let rounded: Vec<DVec3> = all.iter().map(|e| e.to_f64()).collect();
+        let [moving, fixed] = [&self.moving, &self.fixed]
+            .map(|body| body.iter().map(Vector::to_f64).collect::<Vec<_>>());
+        // What rounding leaves far above the least need not be looked at exactly.
+        let reach = |n: DVec3| {
+            let far = fixed.iter().map(|x| n.dot(*x)).fold(f64::NEG_INFINITY, f64::max);
+            let near = moving.iter().map(|x| n.dot(*x)).fold(f64::INFINITY, f64::min);
+            far - near
+        };
+        let mut candidates = Vec::new();
+        for i in 0..all.len() {
+            for j in 0..i {
+                let n = rounded[i].cross(rounded[j]);
+                for sign in [1.0, -1.0] {
+                    candidates.push((reach(n * sign) / n.length(), i, j, sign));
+                }
+            }
+        }
+        let sound = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+        let least = candidates.iter().map(|c| sound(c.0)).fold(f64::INFINITY, f64::min);
+        let margin = 1e5 * self.noise;
+        let mut depth: Option<Ratio> = None;
+        for (value, i, j, sign) in candidates {
+            if value <= least + margin || value.is_nan() {
+                let n = all[i].cross(all[j]).times(&Dyadic::new(sign));
+                depth = self.least(depth, &n);
+            }
+        }
+        depth.unwrap_or_else(|| Ratio::from_f64(0.0))
+    }
+
+    /// The lesser of a depth and that along a normal.
+    fn least(&self, depth: Option<Ratio>, n: &Vector) -> Option<Ratio> {
+        let square = n.dot(n);
+        if square.is_zero() {
+            return depth;
+        }
+        let reach = -self.along(&n.times(&Dyadic::new(-1.0)));
+        let here = if reach.is_positive() { &reach * &reach } else { Dyadic::ZERO };
+        let here = Ratio::new(here, square);
+        Some(depth.map_or(here.clone(), |depth| depth.min(here)))
     }
 
     fn check_plane(&self, plane: &PlaneGap) -> Result<(), Objection> {

@@ -20,15 +20,20 @@
 //! noises and a half, and what the bodies reach beyond support points: half a noise if each vertex is looked
 //! at, nothing where no edge lies in the plane.
 
+mod depth;
 mod gjk;
 mod simplex;
+mod surround;
 
 use glam::DVec3;
 
-use self::gjk::{Goal, descend};
+pub(crate) use self::depth::deepest;
+use self::gjk::{Goal, descend, unit};
 use self::simplex::{Corner, Simplex};
+pub(crate) use self::surround::surrounds;
 use crate::answer::{NearPoints, PlaneGap};
 use crate::number::noise::Noise;
+use crate::number::plane::triangle_normal;
 use crate::number::real::{Real, Twice, Vector};
 use crate::number::volume::encloses;
 use crate::setting::{TwoBodies, VertexPair};
@@ -48,8 +53,7 @@ impl<'a> Difference<'a> {
     /// The point of a pair of vertices.
     #[inline]
     fn point(&self, pair: VertexPair) -> DVec3 {
-        let [p, q] = self.bodies.vertices(pair);
-        self.bodies.fixed_matrix * q - self.bodies.moving_matrix * p + self.bodies.offset
+        self.bodies.difference(pair)
     }
 
     /// The lowest point along a normal, from a pair that may be near.
@@ -78,6 +82,19 @@ impl<'a> Difference<'a> {
         let [p, q] = [bodies.moving.inertia().center, bodies.fixed.inertia().center];
         let toward = bodies.fixed_matrix * q - bodies.moving_matrix * p + bodies.offset;
         toward.try_normalize().unwrap_or(DVec3::X)
+    }
+}
+
+/// Up to three pairs of vertices to begin a descent with: those that the last one ended with.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NearestPairs {
+    pairs: [VertexPair; 3],
+    count: usize,
+}
+
+impl NearestPairs {
+    fn iter(&self) -> impl Iterator<Item = VertexPair> + '_ {
+        self.pairs[..self.count].iter().copied()
     }
 }
 
@@ -150,21 +167,28 @@ impl Found {
         corner
     }
 
+    /// What a later descent may begin with.
+    #[inline]
+    pub(crate) fn pairs(&self) -> NearestPairs {
+        let mut pairs = NearestPairs::default();
+        for pair in self.simplex().take(3) {
+            pairs.pairs[pairs.count] = pair;
+            pairs.count += 1;
+        }
+        pairs
+    }
+
     /// The pairs that the nearest point is made of.
-    pub(crate) fn simplex(&self) -> impl Iterator<Item = VertexPair> + '_ {
+    fn simplex(&self) -> impl Iterator<Item = VertexPair> + '_ {
         let weighted = self.pairs.iter().zip(self.weights);
         weighted.filter(|(_, weight)| *weight > 0.0).map(|(pair, _)| *pair)
     }
 }
 
 /// The nearest points and a plane; with a length, until they are known to be nearer or farther. `start`
-/// are up to three pairs to begin with.
+/// are pairs to begin with.
 #[inline]
-pub(crate) fn nearest(
-    difference: &Difference,
-    start: impl Iterator<Item = VertexPair>,
-    than: Option<f64>,
-) -> Found {
+pub(crate) fn nearest(difference: &Difference, start: &NearestPairs, than: Option<f64>) -> Found {
     let noise = difference.noise.point();
     // What is proven is less than what is computed by this, mostly.
     let than = than.map(|than| [than + 3.0 * noise, than - 1.5 * noise]);
@@ -173,16 +197,41 @@ pub(crate) fn nearest(
     let simplex = begin(difference, start);
     descend::<f64>(difference, simplex, &goal, &mut found);
     if !goal.is_reached(&found) {
+        polish(difference, &mut found);
+    }
+    if !goal.is_reached(&found) {
         descend_with_more_digits(difference, &goal, &mut found);
     }
     found
 }
 
 /// The simplex of some pairs; of a first support point, if there are none.
-fn begin(difference: &Difference, start: impl Iterator<Item = VertexPair>) -> Simplex<f64> {
-    let corners = start.take(3).map(|pair| difference.corner(pair));
+fn begin(difference: &Difference, start: &NearestPairs) -> Simplex<f64> {
+    let corners = start.iter().map(|pair| difference.corner(pair));
     Simplex::of(corners)
         .unwrap_or_else(|| Simplex::new(difference.lowest(difference.guess(), None)))
+}
+
+/// Tries the plane across the simplex by its edges, not by its corners: where both bodies' own are short,
+/// rounding turns it less.
+fn polish(difference: &Difference, found: &mut Found) {
+    let bodies = difference.bodies;
+    let NearestPairs { pairs: [a, b, c], count } = found.pairs();
+    let across = match count {
+        2 => {
+            let edge = bodies.way(a, b);
+            let nearest =
+                difference.point(a) * found.weights[0] + difference.point(b) * found.weights[1];
+            nearest - edge * (nearest.dot(edge) / edge.length_squared())
+        }
+        3 => triangle_normal([DVec3::ZERO, bodies.way(a, b), bodies.way(a, c)]),
+        _ => return,
+    };
+    let Some(normal) = unit(across) else { return };
+    let normal = if normal.dot(found.normal) < 0.0 { -normal } else { normal };
+    let lowest = difference.lowest(normal, found.lowest);
+    found.note_plane(normal, &lowest);
+    found.settle(difference);
 }
 
 /// The rest of the way, where ties are told apart by digits that rounding has lost.

@@ -7,6 +7,9 @@ use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
 use colltrans_testkit::random::Random;
 
+/// Vertices of both bodies up to which depths are compared with the exact one.
+const SMALL: usize = 24;
+
 /// What became of the settings of one family.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Tally {
@@ -22,6 +25,11 @@ pub(crate) struct Tally {
     widest: f64,
     /// More than four noises apart.
     wide: u64,
+    /// Depths proven to be positive, and the most that their bounds are apart, in noises.
+    deep: u64,
+    /// Those of meeting bodies compared with the exact one.
+    compared: u64,
+    widest_depth: f64,
     disagreements: Vec<String>,
 }
 
@@ -30,7 +38,7 @@ impl crate::Tally for Tally {
 
     fn header() -> String {
         format!(
-            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>6}",
+            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>6} {:>8} {:>8} {:>6}",
             "settings",
             "apart",
             "near",
@@ -39,13 +47,16 @@ impl crate::Tally for Tally {
             "undecided",
             "widest",
             "wide",
+            "deep",
+            "compared",
+            "widest",
             "wrong"
         )
     }
 
     fn line(&self) -> String {
         format!(
-            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8.2} {:>8} {:>6}",
+            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8.2} {:>8} {:>6} {:>8} {:>8.2} {:>6}",
             self.settings,
             self.apart,
             self.near,
@@ -54,6 +65,9 @@ impl crate::Tally for Tally {
             self.undecided,
             self.widest,
             self.wide,
+            self.deep,
+            self.compared,
+            self.widest_depth,
             self.disagreements.len()
         )
     }
@@ -67,6 +81,9 @@ impl crate::Tally for Tally {
         self.undecided += other.undecided;
         self.widest = self.widest.max(other.widest);
         self.wide += other.wide;
+        self.deep += other.deep;
+        self.compared += other.compared;
+        self.widest_depth = self.widest_depth.max(other.widest_depth);
         self.disagreements.extend(other.disagreements);
         self
     }
@@ -133,6 +150,14 @@ fn judge(
     } else {
         tally.apart += 1;
         tally.near += u64::from(truth < judge.noise * 1e8);
+    }
+    let depth = pair.depth().map_err(|e| Objection(format!("depth: {e}")))?;
+    tally.widest_depth = tally.widest_depth.max(judge.check_depth(&depth)?);
+    tally.deep += u64::from(depth.lower > 0.0);
+    let vertices = bodies.moving.vertices().len() + bodies.fixed.vertices().len();
+    if judge.truth.intersects() && vertices <= SMALL && random.one_in(8) {
+        judge.compare_depth(&depth)?;
+        tally.compared += 1;
     }
     for length in [truth, truth * random.range(0.0, 2.0), truth + judge.noise * 4.0, 0.0] {
         let within = pair.within(length).map_err(|e| error(&e))?;

@@ -1,0 +1,145 @@
+//! `distance`: distances and depths beside `parry3d-f64`, in the same run on the same settings.
+//!
+//! Bodies at random orientations, brought to a gap or a depth along the normal of their distance. A query
+//! is timed alone; both answer each setting, in turns, and the figures are medians of times and of the
+//! settings' ratios. *Wrong* are answers of parry's that differ from our bounds by more than a share of the
+//! gap.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use colltrans::{ConvexPolyhedron, Pair, Pose, Tracker};
+use colltrans_bench::arguments::Arguments;
+use colltrans_bench::parry::{self, ParrySetting};
+use colltrans_bench::report::{self, Times};
+use colltrans_bench::shapes::Shape;
+use colltrans_testkit::random::Random;
+use colltrans_testkit::timing::Stopwatch;
+use glam::{DQuat, DVec3};
+use serde_json::{Value, json};
+
+/// Measures distances and depths beside parry3d-f64; prints a table
+#[derive(Debug, Parser)]
+struct Command {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+const SIZES: [usize; 5] = [8, 32, 128, 2_000, 20_000];
+
+/// Gaps of the bodies; negative ones are depths.
+const GAPS: [f64; 4] = [0.5, 1e-6, 1e-9, -0.1];
+
+/// An answer of parry's is wrong that is off by more than this share of the gap.
+const SHARE: f64 = 1e-2;
+
+/// How far bodies move, and turn in radians, from one setting of a sequence to the next.
+const STEP: f64 = 0.01;
+
+fn main() -> ExitCode {
+    let Command { arguments } = Command::parse();
+    let count = if arguments.quick { 200 } else { 1_000 };
+    let mut rows = Vec::new();
+    println!(
+        "{:>8} {:>8} {:>9} {:>9} {:>7} {:>7} {:>9} {:>9}",
+        "vertices", "gap", "ours ns", "parry ns", "ratio", "wrong", "noises", "coherent"
+    );
+    for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
+        for gap in GAPS {
+            rows.push(row(n, gap, count, arguments.seed));
+        }
+    }
+    report::write("distance", &arguments, &rows)
+}
+
+/// Two bodies of a size at a gap, so many times.
+fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
+    let mut random = Random::stream(seed, &[n as u64]);
+    let pairs: Vec<[ConvexPolyhedron; 2]> = (0..if n > 1_000 { 2 } else { 8 })
+        .map(|_| [(); 2].map(|()| Shape::Ellipsoid.draw(n, &mut random).expect("a body")))
+        .collect();
+    let theirs: Vec<_> = pairs
+        .iter()
+        .map(|pair| pair.each_ref().map(|one| parry::body(one).expect("a body of parry's")))
+        .collect();
+    let stopwatch = Stopwatch::new();
+    let [mut ours, mut parrys, mut ratios, mut coherent] = [(); 4].map(|()| Times::default());
+    let (mut wrong, mut widest) = (0_u32, 0.0_f64);
+    for index in 0..count {
+        let which = index % pairs.len();
+        let [p, q] = &pairs[which];
+        let Some([a, b]) = at_gap(p, q, gap, &mut random) else { continue };
+        let setting = ParrySetting::placed([&a, &b], DVec3::X);
+        let [x, y] = &theirs[which];
+        let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
+        let parry = || if gap > 0.0 { setting.distance(x, y) } else { setting.depth(x, y) };
+        let us = || {
+            let bounds = |d: colltrans::Distance| d.bounds();
+            if gap > 0.0 { pair.distance().map(bounds) } else { pair.depth().map(|d| d.bounds()) }
+        };
+        let ((mine, spent), (other, theirs)) = if index % 2 == 0 {
+            let first = stopwatch.time(us);
+            (first, stopwatch.time(parry))
+        } else {
+            let first = stopwatch.time(parry);
+            (stopwatch.time(us), first)
+        };
+        let [lower, upper] = mine.expect("an answer");
+        wrong += u32::from(other.is_none_or(|other| (other - lower).abs() > SHARE * gap.abs()));
+        widest = widest.max((upper - lower) / noise(&pair));
+        ours.add(spent);
+        parrys.add(theirs);
+        ratios.add(theirs / spent);
+        if gap > 0.0 {
+            coherent.add(followed(&pair, &stopwatch, &mut random) / spent);
+        }
+    }
+    for times in [&mut ours, &mut parrys, &mut ratios, &mut coherent] {
+        times.sort();
+    }
+    let (mine, other) = (ours.median(), parrys.median());
+    println!(
+        "{n:>8} {gap:>8.0e} {mine:>9.0} {other:>9.0} {:>7.2} {wrong:>7} {widest:>9.2} {:>9.2}",
+        ratios.median(),
+        coherent.median()
+    );
+    json!({
+        "vertices": n, "gap": gap, "ours": ours.to_json(), "parry": parrys.to_json(),
+        "ratio": ratios.median(), "wrong": wrong, "noises": widest, "coherent": coherent.median(),
+    })
+}
+
+/// The time of a tracked distance after a small change.
+fn followed(pair: &Pair, stopwatch: &Stopwatch, random: &mut Random) -> f64 {
+    let mut tracker = Tracker::new();
+    tracker.distance(pair).expect("an answer");
+    let turn = DQuat::from_axis_angle(random.direction(), STEP) * pair.moving_pose().rotation();
+    let at = pair.moving_pose().translation() + random.direction() * STEP;
+    let moved = Pose::new(turn.normalize(), at).expect("a pose");
+    let next = Pair::new(pair.moving().at(moved), pair.fixed().at(pair.fixed_pose()));
+    let next = next.expect("a pair");
+    stopwatch.time(|| tracker.distance(&next)).1
+}
+
+/// Poses at random orientations in which the bodies have a gap.
+fn at_gap(
+    p: &ConvexPolyhedron,
+    q: &ConvexPolyhedron,
+    gap: f64,
+    random: &mut Random,
+) -> Option<[Pose; 2]> {
+    let far = random.direction() * 4.0;
+    let a = Pose::new(random.rotation(), DVec3::ZERO).ok()?;
+    let b = Pose::new(random.rotation(), far).ok()?;
+    let distance = Pair::new(p.at(a), q.at(b)).ok()?.distance().ok()?;
+    let moved = a.translated(distance.normal? * (distance.lower - gap)).ok()?;
+    Some([moved, b])
+}
+
+/// What the library states as its rounding error, `32 u S`.
+fn noise(pair: &Pair) -> f64 {
+    let reach =
+        |body: &ConvexPolyhedron| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let offset = pair.fixed_pose().translation() - pair.moving_pose().translation();
+    16.0 * f64::EPSILON * (reach(pair.moving()) + reach(pair.fixed()) + offset.length())
+}

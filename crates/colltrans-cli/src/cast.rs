@@ -151,7 +151,7 @@ fn answer_one(
     let Some(path) = &arguments.picture else { return Ok(()) };
     let range = match answer {
         Answer::Contact(range) => range,
-        _ => cast.contact_range()?,
+        Answer::Clearance(_) => cast.contact_range()?,
     };
     outputs::write(path, draw(&Scene { cast, answer: &range }).as_bytes())
 }

@@ -109,7 +109,7 @@ fn bodies_of_any_dimension_and_place() {
     }
 }
 
-/// Two boxes of MuJoCo's issue 3383 and the like: apart by a little, faces parallel, and never 0.
+/// Two boxes of `MuJoCo`'s issue 3383 and the like: apart by a little, faces parallel, and never 0.
 #[test]
 fn touching_faces_part_by_one_rounding() {
     let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
@@ -262,7 +262,8 @@ fn changed_depths_are_refused() {
         changed[4].enclosure.triangles[0].swap(0, 1);
         changed[5].enclosure.normals[0] = -depth.enclosure.normals[0];
         changed[6].enclosure.triangles[0][0] = u32::MAX;
-        changed[7].enclosure.pairs[depth.enclosure.triangles[0][0] as usize].moving = 10_000;
+        changed[7].enclosure.pairs[depth.enclosure.triangles[0][0] as usize].moving =
+            VertexId(10_000);
         for (k, changed) in changed.into_iter().enumerate() {
             let refused = pair.verify(&changed).is_err();
             assert!(refused, "{k}");

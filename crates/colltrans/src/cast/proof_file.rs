@@ -257,7 +257,7 @@ impl ProofFile {
     }
 
     /// How many facets of the moving and of the fixed body turn inside out, or pass through others, where
-    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](crate::ShrinkReport::inverted)):
+    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](crate::solid::ShrinkReport::inverted)):
     /// what is said of shrunk bodies says little there.
     pub fn inverted(&self) -> [usize; 2] {
         match (&self.bodies, &self.statement) {

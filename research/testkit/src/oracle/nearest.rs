@@ -68,22 +68,19 @@ impl<'a> Judge<'a> {
         require!(square(upper) >= self.truth.square, "upper bound {upper:e} of {truth:e}");
         require!(answer.near.distance == upper, "the points are of another bound");
         self.check_points(&answer.near)?;
-        match answer.gap {
-            Some(plane) => {
-                require!(plane.gap == lower && lower > 0.0, "the plane is of another bound");
-                require!(answer.normal == Some(plane.normal), "two different normals");
-                require!(answer.features.is_some(), "there is a plane and no feature");
-                self.check_plane(&plane)?;
-            }
-            None => {
-                require!(lower == 0.0 && answer.normal.is_none(), "a bound without a plane");
-            }
+        if let Some(plane) = answer.gap {
+            require!(plane.gap == lower && lower > 0.0, "the plane is of another bound");
+            require!(answer.normal == Some(plane.normal), "two different normals");
+            require!(answer.features.is_some(), "there is a plane and no feature");
+            self.check_plane(&plane)?;
+        } else {
+            require!(lower == 0.0 && answer.normal.is_none(), "a bound without a plane");
         }
         let apart = (answer.on_fixed - answer.on_moving).length();
         let world = self.pair.moving_pose().translation().length();
-        let rounding = 4.0 * self.noise + 32.0 * f64::EPSILON * world;
+        let rounding = 2.0 * self.noise + 32.0 * f64::EPSILON * world;
         require!(
-            (apart - truth).abs() <= rounding,
+            lower - rounding <= apart && apart <= upper + rounding,
             "the points are {apart:e} apart, not {truth:e}"
         );
         Ok((upper - lower) / self.noise)
@@ -156,9 +153,8 @@ impl<'a> Judge<'a> {
         };
         let (p, q) = (edges(&self.moving), edges(&self.fixed));
         let all: Vec<&Vector> = p.iter().chain(&q).collect();
-        let rounded: Vec<DVec3> = all.iter().map(|e| e.to_f64()).collect();
         let [moving, fixed] = [&self.moving, &self.fixed]
-            .map(|body| body.iter().map(Vector::to_f64).collect::<Vec<_>>());
+            .map(|body| body.iter().map(|x| x.minus(&self.moving[0]).to_f64()).collect::<Vec<_>>());
         // What rounding leaves far above the least need not be looked at exactly.
         let reach = |n: DVec3| {
             let far = fixed.iter().map(|x| n.dot(*x)).fold(f64::NEG_INFINITY, f64::max);
@@ -168,7 +164,7 @@ impl<'a> Judge<'a> {
         let mut candidates = Vec::new();
         for i in 0..all.len() {
             for j in 0..i {
-                let n = rounded[i].cross(rounded[j]);
+                let n = all[i].cross(all[j]).to_f64();
                 for sign in [1.0, -1.0] {
                     candidates.push((reach(n * sign) / n.length(), i, j, sign));
                 }

@@ -91,7 +91,7 @@ fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
         parrys.add(theirs);
         ratios.add(theirs / spent);
         if gap > 0.0 {
-            coherent.add(followed(&pair, &stopwatch, &mut random) / spent);
+            coherent.add(followed(&pair, stopwatch, &mut random) / spent);
         }
     }
     for times in [&mut ours, &mut parrys, &mut ratios, &mut coherent] {
@@ -110,7 +110,7 @@ fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
 }
 
 /// The time of a tracked distance after a small change.
-fn followed(pair: &Pair, stopwatch: &Stopwatch, random: &mut Random) -> f64 {
+fn followed(pair: &Pair, stopwatch: Stopwatch, random: &mut Random) -> f64 {
     let mut tracker = Tracker::new();
     tracker.distance(pair).expect("an answer");
     let turn = DQuat::from_axis_angle(random.direction(), STEP) * pair.moving_pose().rotation();

@@ -109,7 +109,7 @@ fn bodies_of_any_dimension_and_place() {
     }
 }
 
-/// Two boxes of `MuJoCo`'s issue 3383 and the like: apart by a little, faces parallel, and never 0.
+/// As two boxes of issue 3383 of `MuJoCo`: faces parallel, apart by a little, and never 0.
 #[test]
 fn touching_faces_part_by_one_rounding() {
     let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));

@@ -8,16 +8,15 @@ use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nearest};
 
-/// How far apart bounds may be, in noises, besides what the bodies reach beyond support points: more than four
-/// were seen of bodies less than 1000 noises thick only.
+/// How far apart bounds may be, in noises, besides what the bodies reach beyond support points.
 const WIDEST: f64 = 64.0;
 
 impl Pair<'_> {
     /// How far apart are the bodies, and where?
     ///
     /// The bounds hold exactly. They are at most four noises apart (`128 u S`, see
-    /// [the crate's introduction](crate#accuracy)), however near the bodies are to each other, unless one is
-    /// thinner than a thousand noises: then 64. Of bodies that overlap the lower bound is 0.
+    /// [the crate's introduction](crate#accuracy)), however near the bodies are to each other; of thin and
+    /// uneven ones, rarely, up to 64, and what uneven faces hide. Of bodies that overlap the lower one is 0.
     ///
     /// # Errors
     /// Only a search that ends without an answer: see [`QueryError::NotConverged`].

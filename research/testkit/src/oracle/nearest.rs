@@ -78,9 +78,9 @@ impl<'a> Judge<'a> {
         }
         let apart = (answer.on_fixed - answer.on_moving).length();
         let world = self.pair.moving_pose().translation().length();
-        let rounding = 4.0 * self.noise + 32.0 * f64::EPSILON * world;
+        let rounding = 2.0 * self.noise + 32.0 * f64::EPSILON * world;
         require!(
-            (apart - truth).abs() <= rounding,
+            lower - rounding <= apart && apart <= upper + rounding,
             "the points are {apart:e} apart, not {truth:e}"
         );
         Ok((upper - lower) / self.noise)
@@ -153,9 +153,8 @@ impl<'a> Judge<'a> {
         };
         let (p, q) = (edges(&self.moving), edges(&self.fixed));
         let all: Vec<&Vector> = p.iter().chain(&q).collect();
-        let rounded: Vec<DVec3> = all.iter().map(|e| e.to_f64()).collect();
         let [moving, fixed] = [&self.moving, &self.fixed]
-            .map(|body| body.iter().map(Vector::to_f64).collect::<Vec<_>>());
+            .map(|body| body.iter().map(|x| x.minus(&self.moving[0]).to_f64()).collect::<Vec<_>>());
         // What rounding leaves far above the least need not be looked at exactly.
         let reach = |n: DVec3| {
             let far = fixed.iter().map(|x| n.dot(*x)).fold(f64::NEG_INFINITY, f64::max);
@@ -165,7 +164,7 @@ impl<'a> Judge<'a> {
         let mut candidates = Vec::new();
         for i in 0..all.len() {
             for j in 0..i {
-                let n = rounded[i].cross(rounded[j]);
+                let n = all[i].cross(all[j]).to_f64();
                 for sign in [1.0, -1.0] {
                     candidates.push((reach(n * sign) / n.length(), i, j, sign));
                 }

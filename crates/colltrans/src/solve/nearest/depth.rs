@@ -20,7 +20,7 @@
 use glam::DVec3;
 
 use super::gjk::unit;
-use super::surround::surrounds;
+use super::surround::winds;
 use super::{Difference, Found};
 use crate::answer::Enclosure;
 use crate::number::plane::triangle_normal;
@@ -28,6 +28,12 @@ use crate::setting::VertexPair;
 
 /// More steps than were ever seen.
 const MOST: usize = 2_000;
+
+/// How far apart bounds may be, in noises, before another polytope is tried.
+const OPEN: f64 = 8.0;
+
+/// Points that most polytopes have room for.
+const ROOM: usize = 32;
 
 /// The best plane, and the polytope.
 pub(crate) struct Deepest {
@@ -59,6 +65,9 @@ struct Polytope<'a> {
     points: Vec<DVec3>,
     pairs: Vec<VertexPair>,
     triangles: Vec<Triangle>,
+    /// Kept for its memory.
+    seen: Vec<bool>,
+    rim: Vec<[u32; 2]>,
 }
 
 /// How deep the bodies overlap, from what was found of their distance.
@@ -73,11 +82,22 @@ pub(crate) fn deepest(difference: &Difference, found: &Found) -> Deepest {
     if let Some(plane) = found.plane(difference) {
         best.note(-plane.gap.normal, -plane.gap.gap, plane.beyond);
     }
-    if let Some(mut polytope) = Polytope::begin(difference, found, &mut best) {
-        polytope.grow(&mut best);
-        polytope.prove(&mut best);
+    let pairs: Vec<VertexPair> = found.simplex().collect();
+    grow_from(difference, &pairs, &mut best);
+    if best.upper - best.lower > OPEN * difference.noise.point() {
+        // Slivers may leave no way to grow; from elsewhere there are others.
+        let first = difference.lowest(-best.outward, None).pair;
+        grow_from(difference, &[first], &mut best);
     }
     best
+}
+
+/// Grows a polytope that begins with some pairs, and notes what it proves.
+fn grow_from(difference: &Difference, pairs: &[VertexPair], best: &mut Deepest) {
+    if let Some(mut polytope) = Polytope::begin(difference, pairs, best) {
+        polytope.grow(best);
+        polytope.prove(best);
+    }
 }
 
 impl Deepest {
@@ -93,11 +113,17 @@ impl Deepest {
 
 impl<'a> Polytope<'a> {
     /// A tetrahedron of points of `M`; `None` if that is flat to rounding, as is noted then.
-    fn begin(difference: &'a Difference, found: &Found, best: &mut Deepest) -> Option<Self> {
-        let mut new =
-            Self { difference, points: Vec::new(), pairs: Vec::new(), triangles: Vec::new() };
-        for pair in found.simplex().take(4) {
-            new.add(pair);
+    fn begin(difference: &'a Difference, pairs: &[VertexPair], best: &mut Deepest) -> Option<Self> {
+        let mut new = Self {
+            difference,
+            points: Vec::with_capacity(ROOM),
+            pairs: Vec::with_capacity(ROOM),
+            triangles: Vec::with_capacity(2 * ROOM),
+            seen: Vec::with_capacity(2 * ROOM),
+            rim: Vec::with_capacity(ROOM),
+        };
+        for pair in pairs {
+            new.add(*pair);
         }
         if new.points.len() < 4 || new.thickness() <= 8.0 * difference.noise.point() {
             new.points.truncate(1);
@@ -147,7 +173,7 @@ impl<'a> Polytope<'a> {
             };
             let (mut farthest, mut most) = (None, 8.0 * self.difference.noise.point());
             for outward in axes.into_iter().flat_map(|axis| [axis, -axis]) {
-                let pair = self.support(outward, best);
+                let pair = self.support(outward, self.pairs[0], best);
                 let away = outward.dot(self.difference.point(pair) - first);
                 if away > most {
                     (farthest, most) = (Some(pair), away);
@@ -158,10 +184,10 @@ impl<'a> Polytope<'a> {
         Some(())
     }
 
-    /// The point farthest along a unit vector; how far that is, is noted.
-    fn support(&self, outward: DVec3, best: &mut Deepest) -> VertexPair {
+    /// The point farthest along a unit vector, from a pair that may be near; how far that is, is noted.
+    fn support(&self, outward: DVec3, near: VertexPair, best: &mut Deepest) -> VertexPair {
         let bodies = self.difference.bodies;
-        let climbed = self.difference.lowest(-outward, None);
+        let climbed = self.difference.lowest(-outward, Some(near));
         let normals = [bodies.moving_normal(-outward), bodies.fixed_normal(-outward)];
         let (pair, beyond) = bodies.settled(&normals, climbed.pair);
         let reach = outward.dot(self.difference.point(pair));
@@ -189,7 +215,7 @@ impl<'a> Polytope<'a> {
                 self.triangles[*a].height.total_cmp(&self.triangles[*b].height)
             };
             let Some(nearest) = (0..self.triangles.len()).min_by(least) else { return };
-            let Triangle { normal, height, done, .. } = self.triangles[nearest];
+            let Triangle { corners, normal, height, done } = self.triangles[nearest];
             if best.upper - height <= 2.5 * noise || best.upper == 0.0 {
                 return;
             }
@@ -199,7 +225,7 @@ impl<'a> Polytope<'a> {
                 }
                 continue;
             }
-            let pair = self.support(normal, best);
+            let pair = self.support(normal, self.pairs[corners[0] as usize], best);
             let beyond = normal.dot(self.difference.point(pair)) - height;
             if beyond <= noise || self.pairs.contains(&pair) || !self.insert(nearest, pair) {
                 self.triangles[nearest].done = true;
@@ -232,42 +258,46 @@ impl<'a> Polytope<'a> {
     fn insert(&mut self, nearest: usize, pair: VertexPair) -> bool {
         let at = self.difference.point(pair);
         let noise = self.difference.noise.point();
-        let mut seen: Vec<bool> = self
-            .triangles
-            .iter()
-            .map(|t| t.normal.dot(at - self.points[t.corners[0] as usize]) > noise)
-            .collect();
+        let (mut seen, mut rim) = (std::mem::take(&mut self.seen), std::mem::take(&mut self.rim));
+        let sees = |t: &Triangle| t.normal.dot(at - self.points[t.corners[0] as usize]) > noise;
+        seen.clear();
+        seen.extend(self.triangles.iter().map(sees));
         seen[nearest] = true;
-        let rim = loop {
-            let rim = self.rim(&seen);
-            // Where the fan would be without area the triangle beyond goes as well.
+        let is_surface = self.widen_rim(at, &mut seen, &mut rim);
+        if is_surface {
+            let mut keep = seen.iter().map(|seen| !seen);
+            self.triangles.retain(|_| keep.next().unwrap_or(true));
+            let new = self.points.len() as u32;
+            self.add(pair);
+            for &[x, y] in &rim {
+                self.push([x, y, new]);
+            }
+        }
+        (self.seen, self.rim) = (seen, rim);
+        is_surface
+    }
+
+    /// The rim of the triangles seen, and more of them where the fan would be without area: the triangle
+    /// beyond goes as well. `false` if the rim is not one polygon.
+    fn widen_rim(&self, at: DVec3, seen: &mut [bool], rim: &mut Vec<[u32; 2]>) -> bool {
+        loop {
+            self.find_rim(seen, rim);
             let flat = rim.iter().find(|[x, y]| self.is_flat(*x, *y, at));
-            let Some(&[x, y]) = flat else { break rim };
+            let Some(&[x, y]) = flat else { break };
             let beyond =
                 |t: &Triangle| (0..3).any(|k| [t.corners[k], t.corners[(k + 1) % 3]] == [y, x]);
             match self.triangles.iter().position(beyond) {
                 Some(other) if !seen[other] => seen[other] = true,
                 _ => return false,
             }
-        };
-        let mut starts: Vec<u32> = rim.iter().map(|edge| edge[0]).collect();
-        starts.sort_unstable();
-        if rim.len() < 3 || starts.windows(2).any(|pair| pair[0] == pair[1]) {
-            return false;
         }
-        let mut keep = seen.iter().map(|seen| !seen);
-        self.triangles.retain(|_| keep.next().unwrap_or(true));
-        let new = self.points.len() as u32;
-        self.add(pair);
-        for [x, y] in rim {
-            self.push([x, y, new]);
-        }
-        true
+        let starts_before = |k: usize| rim[..k].iter().any(|edge| edge[0] == rim[k][0]);
+        rim.len() >= 3 && !(0..rim.len()).any(starts_before)
     }
 
     /// Directed edges of the triangles seen whose opposite is of none of them.
-    fn rim(&self, seen: &[bool]) -> Vec<[u32; 2]> {
-        let mut rim: Vec<[u32; 2]> = Vec::new();
+    fn find_rim(&self, seen: &[bool], rim: &mut Vec<[u32; 2]>) {
+        rim.clear();
         for (triangle, _) in self.triangles.iter().zip(seen).filter(|(_, seen)| **seen) {
             let [a, b, c] = triangle.corners;
             for [x, y] in [[a, b], [b, c], [c, a]] {
@@ -277,7 +307,6 @@ impl<'a> Polytope<'a> {
                 }
             }
         }
-        rim
     }
 
     /// Whether a point is on the line through two, to rounding.
@@ -293,7 +322,7 @@ impl<'a> Polytope<'a> {
         let noise = self.difference.noise;
         let least = self.triangles.iter().map(|t| t.height).fold(f64::MAX, f64::min);
         let lower = (least - noise.height_lowered()).next_down();
-        if lower <= 0.0 {
+        if lower <= best.lower {
             return;
         }
         let enclosure = Enclosure {
@@ -301,7 +330,8 @@ impl<'a> Polytope<'a> {
             triangles: self.triangles.iter().map(|t| t.corners).collect(),
             normals: self.triangles.iter().map(|t| t.normal).collect(),
         };
-        if surrounds(self.difference.bodies, &enclosure) {
+        // Closed it is: a fan takes the place of what has the same rim.
+        if winds(self.difference.bodies, &enclosure) {
             best.lower = lower;
             best.enclosure = enclosure;
         }

@@ -13,6 +13,11 @@ use crate::setting::TwoBodies;
 
 /// Whether it does, if no triangle contains the origin.
 pub(crate) fn surrounds(bodies: &TwoBodies, surface: &Enclosure) -> bool {
+    is_closed(&surface.triangles) && winds(bodies, surface)
+}
+
+/// The same of a surface that is closed.
+pub(super) fn winds(bodies: &TwoBodies, surface: &Enclosure) -> bool {
     let size = bodies.scale();
     let points: Vec<_> = surface.pairs.iter().map(|pair| bodies.difference(*pair)).collect();
     let mut some = false;
@@ -28,7 +33,7 @@ pub(crate) fn surrounds(bodies: &TwoBodies, surface: &Enclosure) -> bool {
             Ordering::Greater => some = true,
         }
     }
-    some && is_closed(&surface.triangles)
+    some
 }
 
 fn is_closed(triangles: &[[u32; 3]]) -> bool {

@@ -1,7 +1,7 @@
 //! Distances: of settings as they are drawn, brought near contact along their direction, to touch, and to
 //! overlap.
 
-use colltrans::{Outcome, Pair, Pose};
+use colltrans::{Outcome, Pair, Pose, QueryError, Within};
 use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
@@ -21,6 +21,8 @@ pub(crate) struct Tally {
     /// Meeting ones that are proven to.
     proven: u64,
     undecided: u64,
+    /// Without an answer: nothing is claimed of them.
+    open: u64,
     /// The most that bounds are apart, in noises.
     widest: f64,
     /// More than four noises apart.
@@ -38,7 +40,7 @@ impl crate::Tally for Tally {
 
     fn header() -> String {
         format!(
-            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>6} {:>8} {:>8} {:>6}",
+            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>6} {:>8} {:>8} {:>6} {:>6}",
             "settings",
             "apart",
             "near",
@@ -50,13 +52,14 @@ impl crate::Tally for Tally {
             "deep",
             "compared",
             "widest",
+            "open",
             "wrong"
         )
     }
 
     fn line(&self) -> String {
         format!(
-            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8.2} {:>8} {:>6} {:>8} {:>8.2} {:>6}",
+            "{:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8.2} {:>8} {:>6} {:>8} {:>8.2} {:>6} {:>6}",
             self.settings,
             self.apart,
             self.near,
@@ -68,6 +71,7 @@ impl crate::Tally for Tally {
             self.deep,
             self.compared,
             self.widest_depth,
+            self.open,
             self.disagreements.len()
         )
     }
@@ -79,6 +83,7 @@ impl crate::Tally for Tally {
         self.meeting += other.meeting;
         self.proven += other.proven;
         self.undecided += other.undecided;
+        self.open += other.open;
         self.widest = self.widest.max(other.widest);
         self.wide += other.wide;
         self.deep += other.deep;
@@ -139,7 +144,14 @@ fn judge(
     let pair = Pair::new(bodies.moving.at(moving), bodies.fixed.at(setting.fixed_pose))
         .map_err(|e| error(&e))?;
     let judge = Judge::new(pair);
-    let answer = pair.distance().map_err(|e| error(&e))?;
+    let (answer, depth) = match (pair.distance(), pair.depth()) {
+        (Ok(answer), Ok(depth)) => (answer, depth),
+        (Err(QueryError::NotConverged { .. }), _) | (_, Err(QueryError::NotConverged { .. })) => {
+            tally.open += 1;
+            return Ok(());
+        }
+        (Err(e), _) | (_, Err(e)) => return Err(error(&e)),
+    };
     let apart = judge.check(&answer)?;
     tally.widest = tally.widest.max(apart);
     tally.wide += u64::from(apart > 4.0);
@@ -151,7 +163,6 @@ fn judge(
         tally.apart += 1;
         tally.near += u64::from(truth < judge.noise * 1e8);
     }
-    let depth = pair.depth().map_err(|e| Objection(format!("depth: {e}")))?;
     tally.widest_depth = tally.widest_depth.max(judge.check_depth(&depth)?);
     tally.deep += u64::from(depth.lower > 0.0);
     let vertices = bodies.moving.vertices().len() + bodies.fixed.vertices().len();
@@ -161,7 +172,7 @@ fn judge(
     }
     for length in [truth, truth * random.range(0.0, 2.0), truth + judge.noise * 4.0, 0.0] {
         let within = pair.within(length).map_err(|e| error(&e))?;
-        tally.undecided += u64::from(matches!(within, colltrans::Within::Undecided(_)));
+        tally.undecided += u64::from(matches!(within, Within::Undecided(_)));
         judge.check_within(length, &within)?;
     }
     Ok(())

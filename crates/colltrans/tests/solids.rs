@@ -7,7 +7,7 @@ use colltrans::{
 };
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 use self::common::{cuboid, solid};
 
@@ -551,4 +551,31 @@ fn a_tolerance_that_leaves_nothing_of_a_body_is_an_error() {
     let refused = cast.clearance().map(|_| ()).expect_err("thinner than rounding");
     assert!(matches!(refused, QueryError::NothingLeft { which: "moving", .. }), "{refused}");
     assert_eq!(cast.certified_clearance().map(|_| ()), Err(refused));
+}
+
+/// A matrix that is off a rotation by less than `1e-6` places a body that is stretched by as much: what bounds its
+/// facets along their own axes is stretched, too.
+#[test]
+fn a_pose_that_stretches_presses_blocks_into_each_other() {
+    let turn = DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize();
+    let (top, bottom) = (1.125, 1.125 * (1.0 + 2e-7));
+    let block = slab(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(1.0, 1.0, top), [8, 8, 4]);
+    let above = slab(DVec3::new(-0.5, -0.5, bottom), DVec3::new(0.5, 0.5, 2.0), [8, 8, 4]);
+    // Upside down in its own frame: what the search for shells begins with is far from the block.
+    let over = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
+    let (block, above) = (solid(&block.mapped(|v| turn * v)), solid(&above.mapped(|v| over * v)));
+    let pose = |matrix| Pose::from_matrix(matrix, DVec3::ZERO).expect("nearly a rotation");
+    let there = pose(DMat3::from_quat(turn) * over);
+    for (stretch, pressed) in [(0.0, false), (4e-7, true)] {
+        let here = pose(DMat3::IDENTITY * (1.0 + stretch));
+        for direction in [turn * DVec3::Z, turn * DVec3::NEG_Z] {
+            let cast = Cast::new(block.at(here), above.at(there), direction).expect("a direction");
+            let cast = with_tolerance(cast, 0.0);
+            assert_eq!(cast.overlaps(), pressed, "{stretch} {direction}");
+            assert_eq!(cast.intersects().expect("an answer").meets, pressed);
+            let apart = cast.certified_clearance().expect("an answer");
+            assert_eq!(matches!(apart.0, Clearance::Overlapping(_)), pressed);
+            assert!(cast.verify(&apart.1).is_ok());
+        }
+    }
 }

@@ -117,9 +117,7 @@ impl<'a> Pair<'a, Solid> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn distance(&self) -> Result<Distance<Solid>, QueryError> {
-        let scene = self.scene()?;
-        let said = self.search(&scene, Until::LEAST, false);
-        Ok(self.answer(&scene, &said))
+        Ok(self.ask(false)?.0)
     }
 
     /// The same, and the proof of it. It takes a pass over all that the search left out, and a byte for each pair
@@ -128,12 +126,22 @@ impl<'a> Pair<'a, Solid> {
     /// # Errors
     /// As [`Self::distance`].
     pub fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
+        let (distance, proof) = self.ask(true)?;
+        let (lower, near, cover) = (0.0, distance.near, Cover::default());
+        Ok((distance, proof.unwrap_or(DistanceCertificate { lower, near, cover })))
+    }
+
+    /// The distance, and the proof where that is asked for and the bodies are apart.
+    fn ask(
+        &self,
+        prove: bool,
+    ) -> Result<(Distance<Solid>, Option<DistanceCertificate>), QueryError> {
         let scene = self.scene()?;
-        let said = self.search(&scene, Until::LEAST, true);
+        let said = self.search(&scene, Until::LEAST, prove);
         let distance = self.answer(&scene, &said);
-        let cover = if distance.lower > 0.0 { said.cover } else { None };
-        let (lower, near, cover) = (distance.lower, distance.near, cover.unwrap_or_default());
-        Ok((distance, DistanceCertificate { lower, near, cover }))
+        let (lower, near) = (distance.lower, distance.near);
+        let cover = said.cover.filter(|_| lower > 0.0);
+        Ok((distance, cover.map(|cover| DistanceCertificate { lower, near, cover })))
     }
 
     /// Are the bodies closer than a length, in world units? Ended as soon as that is known.
@@ -153,6 +161,26 @@ impl<'a> Pair<'a, Solid> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn within(&self, length: f64) -> Result<Within<Solid>, QueryError> {
+        Ok(self.decide(length, false)?.0)
+    }
+
+    /// The same, and the proof of it if they are not closer, or hardly so: of how far apart they are at least. That
+    /// they are closer is proven by what the answer holds.
+    ///
+    /// # Errors
+    /// As [`Self::within`].
+    pub fn certified_within(
+        &self,
+        length: f64,
+    ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
+        self.decide(length, true)
+    }
+
+    fn decide(
+        &self,
+        length: f64,
+        prove: bool,
+    ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
         if length.is_nan() || length < 0.0 {
             return Err(QueryError::Length { length });
         }
@@ -162,25 +190,28 @@ impl<'a> Pair<'a, Solid> {
             beyond: length + 0.125 * scene.noise,
             enough: length - triangle::LENGTH * scene.noise,
         };
-        let said = self.search(&scene, until, false);
+        let said = self.search(&scene, until, prove && until.beyond.is_finite());
         if let Some(spot) = &said.spot {
             let near = spot.near(&scene);
             if near.distance() <= length {
-                return Ok(Within::Closer(near));
+                return Ok((Within::Closer(near), None));
             }
         } else if let Some(place) = nested(&scene) {
-            return Ok(Within::Closer(SolidNear::Meeting(place)));
+            return Ok((Within::Closer(SolidNear::Meeting(place)), None));
         }
         if said.lower > length {
-            return Ok(Within::Farther(SolidGap { gap: said.lower }));
+            let near = said.spot.unwrap_or_else(|| Spot::of(&scene, [0, 0])).near(&scene);
+            let lower = said.lower;
+            let proof = said.cover.map(|cover| DistanceCertificate { lower, near, cover });
+            return Ok((Within::Farther(SolidGap { gap: lower }), proof));
         }
-        let distance = self.distance()?;
+        let (distance, proof) = self.ask(prove)?;
         Ok(if distance.upper <= length {
-            Within::Closer(distance.near)
+            (Within::Closer(distance.near), None)
         } else if distance.lower > length {
-            Within::Farther(SolidGap { gap: distance.lower })
+            (Within::Farther(SolidGap { gap: distance.lower }), proof)
         } else {
-            Within::Undecided(distance)
+            (Within::Undecided(distance), proof)
         })
     }
 
@@ -237,7 +268,8 @@ impl<'a> Pair<'a, Solid> {
         });
         let (found, mut lower) = search.run();
         let mut cover = None;
-        if prove {
+        // An early end leaves pairs that nothing was said of, and no bound.
+        if prove && lower > 0.0 {
             let made = Cover::new([self.moving(), self.fixed()], &cuts);
             lower = least_proven(scene, &made).unwrap_or(0.0);
             cover = Some(made);

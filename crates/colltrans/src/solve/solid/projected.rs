@@ -39,12 +39,13 @@ impl Projected {
         let node = &side.solid.nodes()[at];
         let axis = side.view * node.axis;
         let shift = axis.dot(side.view_offset);
+        let noise = scene.noise + side.skew();
         let mut projected = Self {
             node: at as u32,
             bounds: node.bounds,
             local: node.bounds,
             axis,
-            slab: [node.slab[0] + shift - scene.noise, node.slab[1] + shift + scene.noise],
+            slab: [node.slab[0] + shift - noise, node.slab[1] + shift + noise],
             along: node.axis.dot(side.along),
             spread: f64::from(node.spread),
         };
@@ -52,8 +53,8 @@ impl Projected {
             projected.shrink(shrinking, side.amount, at);
         }
         let terms = (node.axis * side.along).abs().element_sum();
-        projected.spread +=
-            if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
+        projected.spread += side.defect
+            + if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
         projected.bounds = boxed(scene, side, projected.local);
         if node.is_open() {
             // What is on edge has a shadow without a width, but counts.
@@ -91,8 +92,8 @@ impl Projected {
 
     /// The range of the box along an axis of the body, in the query frame.
     pub(crate) fn local_range(&self, side: &Side, k: usize) -> [f64; 2] {
-        let shift = side.view.col(k).dot(side.view_offset);
-        [self.local.low[k] + shift, self.local.high[k] + shift]
+        let (shift, skew) = (side.view.col(k).dot(side.view_offset), side.skew());
+        [self.local.low[k] + shift - skew, self.local.high[k] + shift + skew]
     }
 
     /// The range of `m.x` over the node, `m` a unit vector.

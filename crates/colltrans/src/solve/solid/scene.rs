@@ -10,6 +10,9 @@
 //! the offset, and what the shadow axes lack of being orthogonal to the direction, `4 u` of both. Where
 //! the matrices only permute axes and change signs there is no rounding but that of the offset,
 //! which is looked at: such coordinates are *exact*.
+//!
+//! A pose's matrix `R` may be off a rotation by `1e-6`. Then what lies along an axis `n` of the body frame does not lie
+//! along `R n` as far: [`Side::skew`] says by how much, and a facet's normal is turned by [`Side::defect`] at most.
 
 use glam::{DMat3, DVec3};
 
@@ -18,6 +21,9 @@ use crate::number::error_free::sum_error;
 use crate::number::integer::Integer;
 use crate::number::noise::Noise;
 use crate::setting::Setting;
+
+/// A rounded rotation is off one by less.
+const ROTATION: f64 = 16.0 * f64::EPSILON;
 
 /// One of the two bodies.
 #[derive(Clone, Copy)]
@@ -36,6 +42,8 @@ pub(crate) struct Side<'a> {
     pub(crate) view_offset: DVec3,
     /// Whether `matrix` permutes axes and changes signs.
     pub(crate) permutes: bool,
+    /// How far `matrix^T matrix` is off the identity, in the Frobenius norm; 0 where that is rounding.
+    pub(crate) defect: f64,
     /// For each axis of the query frame, whether it is an axis of the body.
     pub(crate) aligned: [bool; 3],
     /// The direction in the body frame, at length 1.
@@ -114,9 +122,16 @@ impl<'a> Side<'a> {
             view,
             view_offset: frame * offset[0],
             permutes: permuting,
+            defect: defect(matrix),
             aligned: [unit(rows.x_axis), unit(rows.y_axis), unit(rows.z_axis)],
             along: rows.z_axis,
         }
+    }
+
+    /// By how much a place along an axis of the body frame may be off once both are in the setting frame, since
+    /// `R v . R n` is not `v . n`.
+    pub(crate) fn skew(&self) -> f64 {
+        self.defect * self.reach()
     }
 
     /// The largest distance of a point of the body from its origin.
@@ -240,6 +255,13 @@ fn frame_along(unit: DVec3) -> DMat3 {
 fn is_axis(v: DVec3) -> bool {
     let a = v.abs().to_array();
     a.iter().filter(|&&c| c == 1.0).count() == 1 && a.iter().filter(|&&c| c == 0.0).count() == 2
+}
+
+/// How far a matrix is off a rotation, if by more than the noise of coordinates covers.
+fn defect(m: DMat3) -> f64 {
+    let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();
+    let defect = off.into_iter().map(|x| x * x).sum::<f64>().sqrt();
+    if defect > ROTATION { 1.01 * defect } else { 0.0 }
 }
 
 fn permutes(m: DMat3) -> bool {

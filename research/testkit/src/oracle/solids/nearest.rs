@@ -339,9 +339,11 @@ fn points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'static 
 
 fn within(pair: &Pair<Solid>, length: f64, right: &Ratio) -> Result<(), &'static str> {
     let square = Ratio::from_f64(length).times(&Ratio::from_f64(length));
-    match pair.within(length).map_err(|_| "within")? {
+    let (said, proof) = pair.certified_within(length).map_err(|_| "within")?;
+    let holds = |gap: f64| proof.is_some_and(|p| p.lower == gap && pair.verify(&p).is_ok());
+    match said {
         Within::Closer(near) if pair.verify(&near).is_ok() && *right <= square => Ok(()),
-        Within::Farther(gap) if gap.gap > length && *right > square => Ok(()),
+        Within::Farther(gap) if gap.gap > length && *right > square && holds(gap.gap) => Ok(()),
         Within::Undecided(found) if found.lower <= length && length <= found.upper => Ok(()),
         _ => Err("within"),
     }

@@ -1,8 +1,8 @@
 //! Judges answers about distance and depth, in exact arithmetic.
 //!
-//! Notation as in [`distance`]. Every number of an answer and of a proof is taken as exact.
+//! Notation as in [`mod@distance`]. Every number of an answer and of a proof is taken as exact.
 //!
-//! - *Bounds.* `lower^2 <= |v|^2 <= upper^2`, with `v` from [`distance`].
+//! - *Bounds.* `lower^2 <= |v|^2 <= upper^2`, with `v` from [`distance()`].
 //! - *Plane.* `min_Q n.q - max_P n.p >= gap |n|`, as squares.
 //! - *Points.* The weighted means of the pairs are at most the stated distance apart; of a distance of 0 the
 //!   pairs enclose the origin.

@@ -5,12 +5,12 @@
 //! thread, where the clearance is the same all around. Each query is timed alone, both libraries on the same
 //! settings, in blocks.
 
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::{Pair, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
+use colltrans_bench::meshes::{MeshArguments, solid};
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
 use colltrans_bench::report::{self, Times};
 use colltrans_testkit::random::Random;
@@ -25,12 +25,8 @@ use serde_json::{Value, json};
 struct Command {
     #[command(flatten)]
     arguments: Arguments,
-    /// A folder with `trimesh/teapot.stl` and the like
-    #[arg(long, value_name = "DIR", default_value = "../shared/data")]
-    data: PathBuf,
-    /// Only the rows whose names contain this
-    #[arg(long, value_name = "NAME")]
-    only: Option<String>,
+    #[command(flatten)]
+    meshes: MeshArguments,
 }
 
 /// Gaps as shares of the sum of the radii; the first stands for bodies that are apart.
@@ -56,7 +52,7 @@ fn main() -> ExitCode {
     }
     for sides in [24, 48] {
         let name = format!("thread of {sides}, inside");
-        if command.only.as_ref().is_none_or(|only| name.contains(only.as_str())) {
+        if command.meshes.wants(&name) {
             let rod = thread([1.0, 0.1, 0.5], [0.0, 2.0], [sides, 2 * sides], None);
             let nut = thread([1.04, 0.1, 0.5], [0.6, 1.4], [sides, sides], Some(1.5));
             rows.push(measure(&name, [&rod, &nut], |_, _| in_thread(if quick { 10 } else { 60 })));
@@ -67,55 +63,17 @@ fn main() -> ExitCode {
 
 /// Two meshes by name.
 fn pairs(command: &Command) -> Vec<(String, [Mesh; 2])> {
-    let mut pairs = Vec::new();
-    let mut push = |name: &str, a: Mesh, b: Mesh| {
-        if command.only.as_ref().is_none_or(|only| name.contains(only.as_str())) {
-            pairs.push((name.to_owned(), [a, b].map(centered)));
-        }
-    };
-    let ball = bumpy_ball(16_000);
-    push("bumpy balls", ball.clone(), ball);
-    let plate = perforated_plate([6, 4], 0.4, 32);
-    push("perforated plates", plate.clone(), plate);
-    for (a, b) in [
-        ("teapot.stl", "teapot.stl"),
-        ("fandisk.obj", "fandisk.obj"),
-        ("bunny.ply", "bunny.ply"),
-        ("featuretype.STL", "plate_holes.STL"),
-        ("angle_block.STL", "plate_holes.STL"),
-    ] {
-        let read = |name: &str| load(&command.data.join("trimesh").join(name));
-        if let (Some(x), Some(y)) = (read(a), read(b)) {
-            push(&format!("{a} x {b}"), x, y);
-        }
-    }
-    pairs
-}
-
-fn load(path: &Path) -> Option<Mesh> {
-    if !path.exists() {
-        return None;
-    }
-    match colltrans_mesh::read(path) {
-        Ok(mesh) => Some(Mesh { vertices: mesh.vertices, faces: mesh.faces }),
-        Err(error) => {
-            eprintln!("{error}");
-            None
-        }
-    }
-}
-
-fn centered(mesh: Mesh) -> Mesh {
-    let fold = |f: fn(DVec3, DVec3) -> DVec3, from| mesh.vertices.iter().copied().fold(from, f);
-    let (low, high) = (fold(DVec3::min, DVec3::INFINITY), fold(DVec3::max, DVec3::NEG_INFINITY));
-    mesh.translated((low + high) * -0.5)
-}
-
-fn solid(mesh: &Mesh) -> Option<Solid> {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces)
-        .or_else(|_| Solid::from_open_mesh(&mesh.vertices, &mesh.faces))
-        .map_err(|error| eprintln!("{error}"))
-        .ok()
+    let ball = || bumpy_ball(16_000);
+    let plate = || perforated_plate([6, 4], 0.4, 32);
+    let made = vec![("bumpy balls", [ball(), ball()]), ("perforated plates", [plate(), plate()])];
+    let files = [
+        ["teapot.stl", "teapot.stl"],
+        ["fandisk.obj", "fandisk.obj"],
+        ["bunny.ply", "bunny.ply"],
+        ["featuretype.STL", "plate_holes.STL"],
+        ["angle_block.STL", "plate_holes.STL"],
+    ];
+    command.meshes.pairs(made, &files)
 }
 
 /// So many poses of both bodies, apart or at a gap.

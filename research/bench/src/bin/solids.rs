@@ -12,13 +12,13 @@
 //! that meet, started as far, the moving mesh put aside along a random axis until it misses the fixed one
 //! by at most [`MISS`] times the sum, found by halving between none and twice the sum.
 
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::solid::Workspace;
-use colltrans::{Aabb, Cast, Clearance, Pose, Solid};
+use colltrans::{Cast, Clearance, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
+use colltrans_bench::meshes::{MeshArguments, solid};
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
 use colltrans_bench::report::{self, Times};
 use colltrans_testkit::random::Random;
@@ -33,12 +33,8 @@ use serde_json::{Value, json};
 struct Command {
     #[command(flatten)]
     arguments: Arguments,
-    /// A folder with `trimesh/teapot.stl` and the like
-    #[arg(long, value_name = "DIR", default_value = "../shared/data")]
-    data: PathBuf,
-    /// Only the rows whose names contain this
-    #[arg(long, value_name = "NAME")]
-    only: Option<String>,
+    #[command(flatten)]
+    meshes: MeshArguments,
 }
 
 /// Two answers agree when they differ by less than this share of the bodies' size.
@@ -64,10 +60,10 @@ fn main() -> ExitCode {
             rows.push(row);
         }
     }
-    if command.only.as_ref().is_none_or(|only| "growth".contains(only.as_str())) {
+    if command.meshes.wants("growth") {
         rows.extend(growth(&command.arguments));
     }
-    if command.only.as_ref().is_none_or(|only| "flat".contains(only.as_str())) {
+    if command.meshes.wants("flat") {
         rows.extend(flat(&command.arguments));
     }
     report::write("solids", &command.arguments, &rows)
@@ -95,62 +91,27 @@ struct Pair {
 }
 
 fn pairs(command: &Command) -> Vec<Pair> {
-    let mut pairs = Vec::new();
-    let mut push = |name: &str, a: Mesh, b: Mesh| {
-        let wanted = command.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
-        if wanted {
-            pairs.push(Pair { name: name.into(), bodies: [centered(a), centered(b)] });
-        }
-    };
-    let ball = bumpy_ball(16_000);
-    push("bumpy balls", ball.clone(), ball);
-    let plate = perforated_plate([6, 4], 0.4, 32);
-    push("perforated plates", plate.clone(), plate.clone());
-    push("bolt x perforated plate", bolt([0.3, 0.6], [0.0, 2.0, 2.5], 48), plate);
-    for (a, b) in [
-        ("teapot.stl", "teapot.stl"),
-        ("fandisk.obj", "fandisk.obj"),
-        ("bunny.ply", "bunny.ply"),
-        ("featuretype.STL", "plate_holes.STL"),
-        ("featuretype.STL", "featuretype.STL"),
-        ("angle_block.STL", "plate_holes.STL"),
-    ] {
-        let read = |name: &str| load(&command.data.join("trimesh").join(name));
-        if let (Some(x), Some(y)) = (read(a), read(b)) {
-            push(&format!("{a} x {b}"), x, y);
-        }
-    }
-    pairs
-}
-
-fn load(path: &Path) -> Option<Mesh> {
-    if !path.exists() {
-        return None;
-    }
-    match colltrans_mesh::read(path) {
-        Ok(mesh) => Some(Mesh { vertices: mesh.vertices, faces: mesh.faces }),
-        Err(error) => {
-            eprintln!("{error}");
-            None
-        }
-    }
-}
-
-fn centered(mesh: Mesh) -> Mesh {
-    let middle = Aabb::of_points(mesh.vertices.iter().copied()).center();
-    mesh.translated(-middle)
+    let ball = || bumpy_ball(16_000);
+    let plate = || perforated_plate([6, 4], 0.4, 32);
+    let made = vec![
+        ("bumpy balls", [ball(), ball()]),
+        ("perforated plates", [plate(), plate()]),
+        ("bolt x perforated plate", [bolt([0.3, 0.6], [0.0, 2.0, 2.5], 48), plate()]),
+    ];
+    let files = [
+        ["teapot.stl", "teapot.stl"],
+        ["fandisk.obj", "fandisk.obj"],
+        ["bunny.ply", "bunny.ply"],
+        ["featuretype.STL", "plate_holes.STL"],
+        ["featuretype.STL", "featuretype.STL"],
+        ["angle_block.STL", "plate_holes.STL"],
+    ];
+    let pairs = command.meshes.pairs(made, &files).into_iter();
+    pairs.map(|(name, bodies)| Pair { name, bodies }).collect()
 }
 
 fn radius(mesh: &Mesh) -> f64 {
     mesh.vertices.iter().map(|v| v.length()).fold(0.0, f64::max)
-}
-
-/// A closed solid, or an open surface where the mesh is not closed.
-fn solid(mesh: &Mesh) -> Option<Solid> {
-    Solid::from_mesh(&mesh.vertices, &mesh.faces)
-        .or_else(|_| Solid::from_open_mesh(&mesh.vertices, &mesh.faces))
-        .map_err(|error| eprintln!("{error}"))
-        .ok()
 }
 
 /// How a pair starts: see the module's head.

@@ -1,0 +1,70 @@
+//! Pairs of meshes that are not convex, made or read, for the programs that measure solids.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use colltrans::{Aabb, Solid};
+use colltrans_testkit::shapes::Mesh;
+
+/// Where meshes are, and which pairs are wanted.
+#[derive(Debug, Args)]
+pub struct MeshArguments {
+    /// A folder with `trimesh/teapot.stl` and the like
+    #[arg(long, value_name = "DIR", default_value = "../shared/data")]
+    data: PathBuf,
+    /// Only the rows whose names contain this
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
+}
+
+impl MeshArguments {
+    /// Whether a row of this name is.
+    pub fn wants(&self, name: &str) -> bool {
+        self.only.as_ref().is_none_or(|only| name.contains(only.as_str()))
+    }
+
+    /// Those that are wanted, about their boxes' middles: made ones by name, then pairs of files, those
+    /// that are there.
+    pub fn pairs(
+        &self,
+        made: Vec<(&str, [Mesh; 2])>,
+        files: &[[&str; 2]],
+    ) -> Vec<(String, [Mesh; 2])> {
+        let folder = self.data.join("trimesh");
+        let read = |[a, b]: &[&str; 2]| {
+            let name = format!("{a} x {b}");
+            self.wants(&name).then(|| {
+                Some((name, [load(&folder.join(a))?, load(&folder.join(b))?].map(centered)))
+            })?
+        };
+        let made = made.into_iter().filter(|(name, _)| self.wants(name));
+        let made = made.map(|(name, meshes)| (name.to_owned(), meshes.map(centered)));
+        made.chain(files.iter().filter_map(read)).collect()
+    }
+}
+
+fn load(path: &Path) -> Option<Mesh> {
+    if !path.exists() {
+        return None;
+    }
+    match colltrans_mesh::read(path) {
+        Ok(mesh) => Some(Mesh { vertices: mesh.vertices, faces: mesh.faces }),
+        Err(error) => {
+            eprintln!("{error}");
+            None
+        }
+    }
+}
+
+fn centered(mesh: Mesh) -> Mesh {
+    let middle = Aabb::of_points(mesh.vertices.iter().copied()).center();
+    mesh.translated(-middle)
+}
+
+/// A closed solid, or an open surface where the mesh is not closed.
+pub fn solid(mesh: &Mesh) -> Option<Solid> {
+    Solid::from_mesh(&mesh.vertices, &mesh.faces)
+        .or_else(|_| Solid::from_open_mesh(&mesh.vertices, &mesh.faces))
+        .map_err(|error| eprintln!("{error}"))
+        .ok()
+}

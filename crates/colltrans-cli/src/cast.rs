@@ -144,9 +144,7 @@ fn answer_one(
     let in_words = || report::answer(&answer, &told, cast.direction());
     print(&if arguments.json { told.json() } else { in_words() })?;
     if let Some(path) = &arguments.save_proof {
-        let proof = answer.proof(cast);
-        let none = || Failure::new(Code::Usage, "such an answer has no proof to save");
-        proof::save(path, &proof.ok_or_else(none)?)?;
+        proof::save(path, &answer.proof(cast))?;
     }
     let Some(path) = &arguments.picture else { return Ok(()) };
     let range = match answer {

@@ -233,13 +233,13 @@ impl Answer {
         }
     }
 
-    /// Its proof as a file, if such an answer has one; `cast` is the one that was asked.
+    /// Its proof as a file; `cast` is the one that was asked.
     #[cfg(feature = "json")]
-    pub fn proof(&self, cast: &Cast<'_>) -> Option<crate::ProofFile> {
-        Some(match self {
+    pub fn proof(&self, cast: &Cast<'_>) -> crate::ProofFile {
+        match self {
             Self::Contact(range) => crate::ProofFile::of_range(cast, range),
             Self::Clearance(clearance) => crate::ProofFile::of_clearance(cast, clearance),
-        })
+        }
     }
 }
 

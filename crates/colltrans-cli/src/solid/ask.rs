@@ -3,7 +3,7 @@
 use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeatureRecord, FeaturesRecord, Record, StartOverlapRecord};
 use colltrans::solid::{SolidOverlap, StartOverlap};
-use colltrans::{Cast, Clearance, Feature, Pose, ProofFile, QueryError, Solid};
+use colltrans::{Cast, Pose, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between;
 
 use super::{Body, Piece};
@@ -51,11 +51,9 @@ impl PartsQuery<'_> {
         let tolerance = cast.tolerance();
         let clearance = cast.clearance()?;
         let mut record = Record::of_solids(&clearance, cast.exit(), &cast);
-        if let Clearance::Blocked { contact, .. } = clearance {
-            let (moving_file, moving) = self.moving.touch(contact.moving_feature);
-            let (fixed_file, fixed) = self.fixed.touch(contact.fixed_feature);
-            (record.moving, record.fixed) = (Some(moving_file), Some(fixed_file));
-            record.features = Some(FeaturesRecord { moving, fixed });
+        if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
+            record.moving = Some(self.moving.renumber(moving));
+            record.fixed = Some(self.fixed.renumber(fixed));
         }
         if self.ignore_start_overlaps || record.outcome == Ending::Overlapping {
             record.start_overlaps = self.overlaps(tolerance, done)?;
@@ -142,10 +140,9 @@ impl PartsQuery<'_> {
 }
 
 impl Body {
-    /// The file of a feature, and the feature in its numbers.
-    fn touch(&self, feature: Feature) -> (String, FeatureRecord) {
-        let mut vertices = feature.vertices(self.solid());
-        let (mut first, mut base) = (vertices.first().map_or(0, |v| v.0), 0);
+    /// Numbers a feature as its file does, and returns the file.
+    fn renumber(&self, feature: &mut FeatureRecord) -> String {
+        let (mut first, mut base) = (feature.vertices.first().map_or(0, |v| v.0), 0);
         let mut owner = &self.pieces[0];
         // The inputs of the pieces are numbered through.
         for piece in &self.pieces {
@@ -156,10 +153,10 @@ impl Body {
             }
             (first, base) = (first - count, base + count);
         }
-        for vertex in &mut vertices {
+        for vertex in &mut feature.vertices {
             vertex.0 -= base;
         }
-        (owner.name(), FeatureRecord { kind: feature.kind(), vertices })
+        owner.name()
     }
 }
 

@@ -254,6 +254,12 @@ pub(crate) fn gap_rounding(setting: &Setting, normal: DVec3, noise: Noise, widen
     noise.gap(across, widening) / normal.dot(setting.direction)
 }
 
+/// Whether these are weights of a mean: none negative, together 1 to within rounding.
+pub(crate) fn are_weights(weights: &[f64]) -> bool {
+    let sum: f64 = weights.iter().sum();
+    weights.iter().all(|w| *w >= 0.0) && (sum - 1.0).abs() <= noise::UNIT_VECTOR
+}
+
 impl Certificate {
     /// `upper - lower`: how far apart the proven bounds are, in multiples of the direction.
     pub fn gap(&self) -> f64 {
@@ -290,11 +296,10 @@ impl Certificate {
     /// The estimate of the upper bound that the witness pairs prove.
     fn proven_upper(&self, setting: &Setting) -> Result<f64, CertificateError> {
         let weights = self.weights;
-        let sum: f64 = weights.iter().sum();
-        if weights.iter().any(|w| w.is_nan() || *w < 0.0) || (sum - 1.0).abs() > noise::UNIT_VECTOR
-        {
+        if !are_weights(&weights) {
             return Err(CertificateError::Weights { weights });
         }
+        let sum: f64 = weights.iter().sum();
         let mut mean = DVec3::ZERO;
         for (pair, (&vertices, weight)) in self.pairs.iter().zip(weights).enumerate() {
             let VertexPair { moving, fixed } = vertices;

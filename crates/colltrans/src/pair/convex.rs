@@ -5,7 +5,7 @@ use crate::answer::{CertificateError, Depth, Distance, Enclosure, Within};
 use crate::body::{Features, feature};
 use crate::pair::Pair;
 use crate::setting::error::{QueryError, Stalled};
-use crate::setting::{TwoBodies, VertexPair};
+use crate::setting::{TwoBodies, VertexPair, check_length};
 use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nearest};
 
 /// How far apart bounds may be, in noises, besides what the bodies reach beyond support points.
@@ -63,9 +63,7 @@ impl Pair<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn within(&self, length: f64) -> Result<Within, QueryError> {
-        if length.is_nan() || length < 0.0 {
-            return Err(QueryError::Length { length });
-        }
+        check_length(length)?;
         let difference = Difference::new(&self.bodies);
         let found = nearest(&difference, &NearestPairs::default(), Some(length));
         if let Some(decided) = decide(&difference, &found, length) {

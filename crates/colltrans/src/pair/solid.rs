@@ -9,14 +9,13 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::answer::{CertificateError, Distance, SolidSteps, Within};
+use crate::answer::{CertificateError, Distance, SolidSteps, Within, are_weights};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Features, Placed};
 use crate::cast::solid::{Claim, Cover};
-use crate::number::noise;
 use crate::pair::Pair;
-use crate::setting::Setting;
 use crate::setting::error::QueryError;
+use crate::setting::{Setting, check_length};
 use crate::solve::solid::nearest::search::{AxesOf, Search, Until, proven};
 use crate::solve::solid::nearest::{
     Apart, SolidGap, SolidNear, Spot, distance_of, meeting, shared_points, triangle,
@@ -181,9 +180,7 @@ impl<'a> Pair<'a, Solid> {
         length: f64,
         prove: bool,
     ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
-        if length.is_nan() || length < 0.0 {
-            return Err(QueryError::Length { length });
-        }
+        check_length(length)?;
         let scene = self.scene()?;
         let until = Until {
             // What is a little farther is far enough, by more than a bound may be lowered.
@@ -324,12 +321,8 @@ fn verify_near(scene: &Scene, near: &SolidNear) -> Result<f64, CertificateError>
         SolidNear::Meeting(place) if is_touch(scene, place) => Ok(0.0),
         SolidNear::Meeting(_) => Err(CertificateError::Start),
         SolidNear::Points { triangles, weights, distance: claimed } => {
-            for weights in weights {
-                let sum: f64 = weights.iter().sum();
-                let bad = weights.iter().any(|w| w.is_nan() || *w < 0.0);
-                if bad || (sum - 1.0).abs() > noise::UNIT_VECTOR {
-                    return Err(CertificateError::Weights { weights });
-                }
+            if let Some(&weights) = weights.iter().find(|weights| !are_weights(&weights[..])) {
+                return Err(CertificateError::Weights { weights });
             }
             let [moving, fixed] = triangles;
             let proven = distance_of(scene, triangles, weights)

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap};
+use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap, are_weights};
 use crate::number::{extent, noise, volume};
 use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::surrounds;
@@ -29,12 +29,10 @@ pub(super) fn near(bodies: &TwoBodies, points: &NearPoints) -> Result<f64, Certi
         let met = volume::encloses(&terms, bodies.scale());
         return if met { Ok(0.0) } else { Err(CertificateError::Start) };
     }
-    let sum: f64 = weights.iter().sum();
-    let whole = (sum - 1.0).abs() <= noise::UNIT_VECTOR;
-    if !whole || weights.iter().any(|w| w.is_nan() || *w < 0.0) {
-        let [a, b, c, d] = *weights;
-        return Err(CertificateError::PointWeights { weights: [a, b, c, d] });
+    if !are_weights(weights) {
+        return Err(CertificateError::PointWeights { weights: *weights });
     }
+    let sum: f64 = weights.iter().sum();
     let mean: DVec3 = terms.iter().zip(weights).map(|(m, w)| m.point() * (w / sum)).sum();
     let proven = (mean.length() + bodies.noise().mean_checked()).next_up();
     if *distance >= proven {

@@ -47,6 +47,15 @@ pub(crate) fn check_direction(direction: DVec3) -> Result<(), QueryError> {
     Ok(())
 }
 
+/// # Errors
+/// A length that is negative or not a number.
+pub(crate) fn check_length(length: f64) -> Result<(), QueryError> {
+    if length.is_nan() || length < 0.0 {
+        return Err(QueryError::Length { length });
+    }
+    Ok(())
+}
+
 /// Two placed bodies and a direction.
 #[derive(Debug)]
 pub(crate) struct Setting<'a, B = ConvexPolyhedron> {

@@ -177,33 +177,36 @@ impl Seen {
     }
 }
 
+/// A pair in the queue of a search: the least bound comes first, the newest first among equals.
 #[derive(Debug, Clone, Copy)]
-struct Entry {
-    bound: f64,
-    number: u32,
+pub(crate) struct Entry<R = ()> {
+    pub(crate) bound: f64,
+    pub(crate) number: u32,
+    /// Why that is the bound, if it is to be told.
+    pub(crate) reason: R,
     /// Positions among what has been seen.
-    views: [u32; 2],
+    pub(crate) views: [u32; 2],
 }
 
-impl Ord for Entry {
+impl<R> Ord for Entry<R> {
     fn cmp(&self, other: &Self) -> Ordering {
         other.bound.total_cmp(&self.bound).then(self.number.cmp(&other.number))
     }
 }
 
-impl PartialOrd for Entry {
+impl<R> PartialOrd for Entry<R> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Entry {
+impl<R> PartialEq for Entry<R> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Entry {}
+impl<R> Eq for Entry<R> {}
 
 /// Whether the moving node of a pair is the one to be split: the larger one, unless it is a leaf.
 pub(crate) fn splits_moving(a: &Node, b: &Node) -> bool {
@@ -324,7 +327,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
         self.steps.nodes += 1;
         match self.bound(seen, views) {
-            Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, views }),
+            Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, reason: (), views }),
             Err(reason) => {
                 (self.cut)(nodes(seen, views), reason);
                 None

@@ -5,14 +5,13 @@
 //! bounds of nodes that are exactly as far apart as the nearest facets are lowered by their rounding. Every pair
 //! that is not split is a *cut*, with its reason: together they are the proof that nothing is nearer.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::bound::{Apart, Axes, Couple, View};
 use super::triangle::{self, Corners, GAP, Nearest};
 use crate::answer::SolidSteps;
 use crate::solve::solid::scene::{Scene, Side};
-use crate::solve::solid::search::children;
+use crate::solve::solid::search::{self, children};
 
 /// How far, in noises, the limit is below the least length found.
 const SLACK: f64 = 3.0;
@@ -98,33 +97,7 @@ pub(crate) fn corners(side: &Side, triangle: usize) -> Corners {
     side.solid.triangles()[triangle].map(|v| side.matrix * vertices[v as usize] + side.offset[0])
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Entry {
-    bound: f64,
-    number: u32,
-    reason: Apart,
-    views: [u32; 2],
-}
-
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound).then(self.number.cmp(&other.number))
-    }
-}
-
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Entry {}
+type Entry = search::Entry<Apart>;
 
 /// One search under way.
 pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Apart)> {

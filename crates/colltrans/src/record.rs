@@ -220,7 +220,8 @@ pub enum PairQuestion {
 }
 
 /// The answer of a [`PairQuestion`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", bound = "")]
 pub enum PairAnswer<B: Body = ConvexPolyhedron> {
     /// How far they are apart.
     Distance(Distance<B>),

@@ -19,11 +19,11 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
 - *Separation.* ``n' = n (d.d) - d (n.d)`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p``
   proves that the bodies never meet. The margin is checked along ``n``.
 - *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a gap; the weighted means of the
-  pairs, one of each body, a distance that is not exceeded. Of a distance of 0 the differences of the
-  pairs enclose the origin.
-- *Depth.* Along the direction the bodies are parted by ``max_P d.p - min_Q d.q`` turned round. A
-  closed surface of triangles between differences ``q - p`` winds around the origin, seen along a line
-  that meets none of its edges, and each of its triangles is as far away as is claimed.
+  pairs, one of each body, a distance that is not exceeded. Of a distance of 0 the differences of
+  the pairs enclose the origin.
+- *Depth.* A translation of ``max_Q d.q - min_P d.p`` along the direction ``d`` parts the bodies. A
+  closed surface of triangles between differences ``q - p`` winds around the origin, seen along a
+  ray that meets none of its edges, and none of its triangles is nearer than is claimed.
 - *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
   said of all other facets (the covers) is not checked here: ``colltrans verify`` does that. Of a
 distance of solids the two points are checked, not that no others are nearer.
@@ -486,7 +486,8 @@ def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
             raise RefusedError("the pairs do not enclose the origin")
         report.holds.append("the bodies have a point in common")
         return
-    apart(*(mean([end[k] for end in ends], near["weights"]) for k in (0, 1)), upper, report)
+    p, q = (mean([end[k] for end in ends], near["weights"]) for k in (0, 1))
+    apart(p, q, upper, report)
 
 
 def apart(p: Vector, q: Vector, upper: Fraction, report: Report) -> None:

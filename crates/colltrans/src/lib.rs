@@ -189,6 +189,11 @@ pub use written::UnknownName;
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
 
+/// The examples of `docs/distance.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/distance.md")]
+pub struct Distances;
+
 /// The examples of `docs/solids.md`, compiled and run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/solids.md")]

@@ -21,9 +21,9 @@ fn asked(p: &ConvexPolyhedron, a: Pose, q: &ConvexPolyhedron, b: Pose) -> (Dista
 }
 
 /// A rotation by its rows.
-fn turned(rows: [[f64; 3]; 3], at: [f64; 3]) -> Pose {
+fn turned(rows: [[f64; 3]; 3], at: DVec3) -> Pose {
     let matrix = DMat3::from_cols_array_2d(&rows).transpose();
-    Pose::from_matrix(matrix, DVec3::from_array(at)).expect("a pose")
+    Pose::from_matrix(matrix, at).expect("a pose")
 }
 
 /// FCL issues 493 and 495: faces that touch to within rounding, where its two searches disagree and it ends
@@ -40,29 +40,33 @@ fn boxes_whose_faces_kiss() {
         [-0.191_341_716_182_545, 0.969_364_942_512_839_1, 0.154_012_799_157_373_6],
         [-0.195_090_322_016_128_2, -0.191_341_716_182_545, 0.961_939_766_255_643_5],
     ];
-    for (rows, size, from, to) in [
+    let ends = [
         (
-            one,
-            0.25,
             [0.073_242_100_093_223_82, 0.231_653_808_989_621_23, 1.308_924_592_103_249_7],
             [0.0, 0.0, 1.25],
         ),
         (
-            two,
-            0.5,
             [2.077_006_399_578_687, 0.484_682_474_756_419_5, 1.154_329_141_908_727_6],
             [2.0, 0.0, 1.25],
         ),
+    ];
+    // The second two were reported as they were printed, and are apart.
+    for (rows, size, [from, to], gap) in [
+        (one, 0.25, <[_; 2]>::from(ends[0]), 0.0),
+        (two, 0.5, <[_; 2]>::from(ends[1]), 3.392_777e-9),
     ] {
         let cube = body(&cuboid(DVec3::splat(0.5 * size)).vertices);
-        for away in [0.0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-9, -1e-15, -1e-12] {
-            let fixed = turned(rows, to);
-            let normal = (DVec3::from_array(from) - DVec3::from_array(to)).normalize();
-            let moving = turned(rows, (DVec3::from_array(from) + normal * away).to_array());
-            let (distance, depth) = asked(&cube, moving, &cube, fixed);
-            assert!(distance.upper < away.max(0.0) + 1e-13 && depth.upper < 1e-11, "{away:e}");
-            assert!(away < 1e-13 || distance.lower > 0.9 * away, "{away:e}: {distance:?}");
-            assert!(away > -1e-13 || depth.lower > -0.9 * away, "{away:e}: {depth:?}");
+        let [from, to] = [from, to].map(DVec3::from_array);
+        for away in [0.0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-9, -1e-15, -1e-12, -1e-8] {
+            let moving = turned(rows, from + (from - to).normalize() * away);
+            let (distance, depth) = asked(&cube, moving, &cube, turned(rows, to));
+            let apart: f64 = gap + away;
+            let is_near = |x: f64, y: f64| (x - y.max(0.0)).abs() < 1e-13;
+            assert!(is_near(distance.upper, apart), "{away:e}: {distance:?}");
+            assert!(is_near(depth.upper, -apart), "{away:e}: {:?}", depth.bounds());
+            // Between the two rounding of the numbers themselves decides.
+            assert!(distance.lower > 0.0 || apart < 1e-13, "{away:e}: {distance:?}");
+            assert!(distance.lower == 0.0 || apart > -1e-13, "{away:e}: {distance:?}");
         }
     }
 }
@@ -74,7 +78,7 @@ fn boxes_three_apart() {
     for axis in DVec3::AXES {
         for far in [1.5, 1.99, 2.01, 4.0, 400.0] {
             let (distance, depth) = asked(&cube, at(axis * far), &cube, Pose::IDENTITY);
-            assert!((distance.upper - (far - 1.0)).abs() < 1e-14 * far, "{axis} {far}");
+            assert!((distance.upper - (far - 1.0)).abs() < 2e-14 * (2.0 + far), "{axis} {far}");
             assert_eq!(depth.bounds(), [0.0; 2]);
         }
     }
@@ -126,7 +130,7 @@ fn a_point_before_a_flat_hull() {
         DVec3::new(48.0415, 40.4456, 18.1963),
     ]);
     let (distance, _) = asked(&point, Pose::IDENTITY, &hull, Pose::IDENTITY);
-    assert!(distance.upper - distance.lower < 1e-12 && distance.lower > 1.0, "{distance:?}");
+    assert!(distance.upper - distance.lower < 1e-11 && distance.lower > 1.8, "{distance:?}");
 }
 
 /// `MuJoCo` Warp issue 1527: a small positive distance for two meshes that overlap.

@@ -10,6 +10,7 @@ mod derive;
 mod proof_file;
 #[cfg(feature = "json")]
 mod replay;
+mod sideways;
 pub(crate) mod solid;
 
 use std::fmt;
@@ -32,6 +33,7 @@ pub(crate) use derive::{clearance_of, common_end, depth_of, intersection_of, ran
 pub use proof_file::{Contacts, ProofFile, Slide, SolidStatement, Statement, Stop};
 #[cfg(feature = "json")]
 pub use replay::{Case, CaseError};
+pub(crate) use sideways::verified_overlap;
 
 /// A moving body, a fixed one, and the direction in which the first is translated: what all queries
 /// are asked of.

@@ -10,6 +10,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::replay::BodyRecord;
+use super::sideways::{proven_overlap, verified_overlap};
 use super::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use super::{CaseError, Cast};
 use crate::answer::{
@@ -19,7 +20,6 @@ use crate::answer::{
 use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
 use crate::body::{ConvexPolyhedron, InputFacet, Pose};
-use crate::number::{extent, noise};
 use crate::setting::error::QueryError;
 
 /// What a file of this version calls itself.
@@ -136,23 +136,9 @@ impl Slide {
 
     fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
         let Self { normal, overlap: claimed } = *self;
-        let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-        if !is_unit || normal.dot(cast.setting.unit).abs() > noise::UNIT_VECTOR {
-            return Err(CertificateError::Normal { normal });
-        }
-        let proven = proven_overlap(normal, cast);
+        let proven = verified_overlap(normal, cast)?;
         if claimed >= proven { Ok(()) } else { Err(CertificateError::Bound { proven, claimed }) }
     }
-}
-
-/// At least how far two bodies overlap along a normal. One that is not quite orthogonal to the direction
-/// lets them overlap more, as far away as the bodies reach.
-fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
-    let setting = &cast.setting;
-    let fixed = (setting.fixed.vertices(), &setting.fixed_matrix);
-    let moving = (setting.moving.vertices(), &setting.moving_matrix);
-    let gap = extent::distance(normal, fixed, moving, setting.exact_offset());
-    (normal.dot(setting.unit).abs() * setting.scale() - gap).next_up()
 }
 
 impl Contacts {

@@ -2,14 +2,12 @@
 //!
 //! Built from the top ([`split`](mod@crate::body::split)), each child with a quarter of the items at least.
 //! One that comes goes down to where boxes grow least; one that goes leaves its place to its neighbour; one
-//! that moves within its parent's box stays where it is, and else goes and comes. Every node counts such
-//! changes below it since it was built, and is built anew once they are more than half of its items (and
-//! more than [`FEW_CHANGES`]).
+//! that moves within its parent's box stays where it is, and else goes and comes, two changes. Every node is
+//! built anew after as many changes below it as it had items (and [`FEW_CHANGES`] at least).
 //!
-//! So no node has ever become more than twice what it was, its children were within a quarter and three
-//! quarters, and the height stays below `4 log2 n` plus a few, whatever comes, moves and goes; a change costs
-//! `O(log^2 n)` on average. How well boxes enclose what is below them is what a tree built anew would have, but
-//! for that half.
+//! So no node becomes more than twice what it was; a child had three quarters of its items at most, and has
+//! seven eighths at most whatever comes: the height stays below `log n / log (8 / 7)`, that is `5.2 log2 n`, plus
+//! a few. A change costs `O(log^2 n)` on average.
 //!
 //! Invariant. A node's box holds the boxes of all items below it; inner boxes are the joins of their children's.
 
@@ -17,8 +15,10 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use crate::body::Aabb;
-use crate::body::split::{Boxed, split};
+use crate::body::split::{Boxed, Rule, halve, split};
 
+/// Items that are halved.
+const FEW: usize = 4;
 /// Changes that no node is built anew for.
 const FEW_CHANGES: u32 = 8;
 const NONE: u32 = u32::MAX;
@@ -34,8 +34,8 @@ struct Node {
     first: u32,
     /// How many items; 1 is a leaf.
     count: u32,
-    /// Changes since it was built.
-    changes: u32,
+    /// Changes until it is built anew.
+    left: u32,
 }
 
 /// Items, numbered from 0 without gaps, and their boxes.
@@ -120,14 +120,19 @@ impl Tree {
             self.put(at, Node::leaf(item.bounds, parent, item.number));
             return;
         }
-        let middle = split(items, items.len() / 4);
+        let middle = if items.len() <= FEW {
+            let centers = Aabb::of_points(items.iter().map(Boxed::center));
+            halve(items, &centers)
+        } else {
+            split(items, Rule { least: items.len() / 4, longest: true })
+        };
         let (left, right) = items.split_at_mut(middle);
         let first = self.pair(at);
         self.grow(first, left);
         self.grow(first + 1, right);
         let bounds = self.joined(first);
         let count = (left.len() + right.len()) as u32;
-        self.nodes[at as usize] = Node { bounds, parent, first, count, changes: 0 };
+        self.nodes[at as usize] = Node { bounds, parent, first, count, left: life(count) };
     }
 
     /// Two places for children of a node.
@@ -179,7 +184,7 @@ impl Tree {
         let first = self.pair(at);
         self.put(first, Node { parent: at, ..there });
         self.put(first + 1, Node::leaf(bounds, at, item));
-        self.nodes[at as usize] = Node { first, count: 1, changes: 0, ..there };
+        self.nodes[at as usize] = Node { first, count: 1, left: life(2), ..there };
         self.change(at, 1);
     }
 
@@ -264,8 +269,8 @@ impl Tree {
             let node = &mut self.nodes[at as usize];
             node.bounds = bounds;
             node.count = node.count.wrapping_add_signed(more);
-            node.changes += 1;
-            if node.changes > FEW_CHANGES.max(node.count / 2) {
+            node.left -= 1;
+            if node.left == 0 {
                 worn = Some(at);
             }
             at = node.parent;
@@ -346,9 +351,14 @@ impl Tree {
     }
 }
 
+/// After how many changes a node of so many items is built anew.
+fn life(count: u32) -> u32 {
+    count.max(FEW_CHANGES)
+}
+
 impl Node {
     fn leaf(bounds: Aabb, parent: u32, item: u32) -> Self {
-        Self { bounds, parent, first: item, count: 1, changes: 0 }
+        Self { bounds, parent, first: item, count: 1, left: 0 }
     }
 
     fn is_leaf(&self) -> bool {
@@ -393,7 +403,7 @@ mod tests {
             stack.extend(children);
         }
         assert_eq!(inner, boxes.len().saturating_sub(1));
-        let most = 4.0 * (boxes.len().max(1) as f64).log2() + 8.0;
+        let most = 5.2 * (boxes.len().max(1) as f64).log2() + 8.0;
         assert!(tree.height() as f64 <= most, "{} of {}", tree.height(), boxes.len());
     }
 

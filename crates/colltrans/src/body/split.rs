@@ -23,16 +23,31 @@ pub(crate) trait Boxed {
     }
 }
 
-/// Puts the items of the first child in front; how many they are. Both children get so many items at least.
-pub(crate) fn split<T: Boxed>(items: &mut [T], least: usize) -> usize {
+/// What is tried.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rule {
+    /// Both children get so many items.
+    pub(crate) least: usize,
+    /// Only across the longest way between centres: a third of the work.
+    pub(crate) longest: bool,
+}
+
+/// Puts the items of the first child in front; how many they are.
+pub(crate) fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
+    let least = rule.least;
     let centers = Aabb::of_points(items.iter().map(Boxed::center));
-    if let Some((axis, bin)) = cheapest(items, &centers, least) {
+    if let Some((axis, bin)) = cheapest(items, &centers, rule) {
         let key = Binning::new(&centers, axis, items.len());
         let middle = partition(items, |item| key.bin(item) <= bin);
         if middle >= least && middle + least <= items.len() {
             return middle;
         }
     }
+    halve(items, &centers)
+}
+
+/// The same by count, across the longest way between centres.
+pub(crate) fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
     let axis = centers.size().max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
@@ -97,13 +112,14 @@ impl Bin {
 
 /// The axis and the last bin of the first child for which the surface-area heuristic is least; of many
 /// items a share is looked at.
-fn cheapest<T: Boxed>(items: &[T], centers: &Aabb, least: usize) -> Option<(usize, usize)> {
+fn cheapest<T: Boxed>(items: &[T], centers: &Aabb, rule: Rule) -> Option<(usize, usize)> {
     let step = items.len().div_ceil(SAMPLE);
     let counted = items.len().div_ceil(step);
-    let least = (least * counted).div_ceil(items.len());
+    let least = (rule.least * counted).div_ceil(items.len());
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in 0..3 {
-        if centers.high[axis] <= centers.low[axis] {
+        let is_asked = !rule.longest || axis == centers.size().max_position();
+        if !is_asked || centers.high[axis] <= centers.low[axis] {
             continue;
         }
         let binning = Binning::new(centers, axis, items.len());

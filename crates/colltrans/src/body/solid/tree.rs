@@ -17,7 +17,7 @@ use glam::{DVec3, Vec3Swizzles};
 
 use super::cuts::{CUTS, Reach};
 use crate::body::Aabb;
-use crate::body::split::{Boxed, split};
+use crate::body::split::{Boxed, Rule, split};
 
 /// Facets of a leaf, at most.
 pub(crate) const LEAF: usize = 4;
@@ -199,7 +199,7 @@ impl Builder<'_> {
         threads: usize,
         nodes: &mut Vec<Node>,
     ) -> Reach {
-        let middle = split(items, 1);
+        let middle = split(items, Rule { least: 1, longest: false });
         let (left, right) = items.split_at_mut(middle);
         let second = first + middle as u32;
         let child = nodes.len();

@@ -198,3 +198,8 @@ pub struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/solids.md")]
 pub struct Solids;
+
+/// The examples of `docs/among.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/among.md")]
+pub struct AmongMany;

@@ -1,6 +1,6 @@
 """The types of the extension."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -29,6 +29,9 @@ __all__ = [
     "Features",
     "Grazing",
     "Intersection",
+    "NearestObstacle",
+    "ObstacleClearance",
+    "Obstacles",
     "OffsetReport",
     "Overlapping",
     "Pose",
@@ -585,6 +588,92 @@ class SolidCertificate:
     @staticmethod
     def from_json(text: str) -> SolidCertificate: ...
     def __reduce__(self) -> tuple[Any, Any]: ...
+
+@final
+class Obstacles:
+    def __new__(cls) -> Obstacles: ...
+    def add(self, body: ConvexPolyhedron | Solid, pose: _Pose = None) -> int: ...
+    def add_many(
+        self,
+        body: ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid],
+        poses: ArrayLike | Sequence[Pose],
+    ) -> list[int]: ...
+    def set_pose(self, obstacle: int, pose: _Pose) -> None: ...
+    def set_poses(self, obstacles: Sequence[int], poses: ArrayLike | Sequence[Pose]) -> None: ...
+    def remove(self, obstacle: int) -> None: ...
+    def pose(self, obstacle: int) -> Pose: ...
+    def __len__(self) -> int: ...
+    def __contains__(self, obstacle: int, /) -> bool: ...
+    def nearest(
+        self,
+        body: ConvexPolyhedron | Solid,
+        pose: _Pose = None,
+        *,
+        ignore: Iterable[int] = (),
+    ) -> NearestObstacle | None: ...
+    def within(
+        self,
+        body: ConvexPolyhedron | Solid,
+        length: float,
+        pose: _Pose = None,
+        *,
+        ignore: Iterable[int] = (),
+    ) -> tuple[list[int], list[int]]: ...
+    def clearance(
+        self,
+        body: ConvexPolyhedron | Solid,
+        direction: ArrayLike,
+        pose: _Pose = None,
+        *,
+        before: float = ...,
+        ignore: Iterable[int] = (),
+    ) -> ObstacleClearance: ...
+    def nearest_many(
+        self,
+        body: ConvexPolyhedron | Solid,
+        poses: ArrayLike | Sequence[Pose],
+        *,
+        ignore: Iterable[int] = (),
+        threads: int | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
+    def clearance_many(
+        self,
+        body: ConvexPolyhedron | Solid,
+        directions: ArrayLike,
+        poses: ArrayLike | Sequence[Pose],
+        *,
+        before: float = ...,
+        ignore: Iterable[int] = (),
+        threads: int | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
+
+@final
+class NearestObstacle:
+    @property
+    def obstacle(self) -> int: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def on_moving(self) -> _Floats: ...
+    @property
+    def on_fixed(self) -> _Floats: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+
+@final
+class ObstacleClearance:
+    @property
+    def outcome(self) -> Literal["blocked", "free", "overlapping"]: ...
+    @property
+    def obstacle(self) -> int | None: ...
+    @property
+    def distance(self) -> float | None: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def normal(self) -> _Floats | None: ...
 
 @final
 class Tracker:

@@ -19,10 +19,9 @@ pub struct UnknownObstacle {
 /// Many placed bodies, convex ones and solids: what [`Among`](crate::Among) asks about.
 ///
 /// Bodies are shared, so thousands of placements of one mesh take the space of one. A tree of boxes over
-/// them is kept: all at once ([`Self::insert_all`]) it is built in `O(n log n)`, about 5 ms for 10,000 boxes;
-/// one that comes, moves or goes costs `O(log^2 n)` on average. Its height stays below `4 log2 n` plus a
-/// few, and every part of it is as if built anew but for half of what is in it, whatever happens: nobody
-/// has to build it again.
+/// them is kept: all at once ([`Self::insert_all`]) it is built in `O(n log n)`; one that comes, moves or goes
+/// costs `O(log^2 n)` on average. Parts of the tree are built anew after as many changes as they had obstacles,
+/// so its height stays below `5.2 log2 n` plus a few, whatever happens: nobody has to build it again.
 ///
 /// ```
 /// use std::sync::Arc;

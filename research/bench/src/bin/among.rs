@@ -3,7 +3,7 @@
 //! Boxes of random sizes and orientations, evenly in a cube with a share of it filled; the same boxes are a
 //! `Compound` of parry's, which has a tree of its own (`Bvh`). A box is asked about at random places, along
 //! random directions. Both answer each query, in turns; figures are medians of times and of the queries' ratios,
-//! of building the fastest of nine.
+//! of building the thread's own time on a processor, the mean of nine.
 //! Then boxes move, a little and anywhere, and queries are asked again.
 
 use std::process::ExitCode;
@@ -31,6 +31,9 @@ const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
 /// How many different boxes there are.
 const SHAPES: usize = 16;
+
+/// How often a scene is built.
+const BUILDS: u32 = 9;
 
 /// The share of space that boxes fill.
 const FILLED: f64 = 0.02;
@@ -116,19 +119,12 @@ fn row(n: usize, count: usize, seed: u64) -> Value {
     let random = &mut Random::stream(seed, &[n as u64]);
     let stopwatch = Stopwatch::new();
     let scene = Scene::draw(n, random);
-    let (mut builds, mut theirs) = (Times::default(), Times::default());
-    let (mut obstacles, ids) = scene.ours();
-    let mut compound = parry::compound(&scene.poses, |k| scene.halves[k % SHAPES]);
-    for _ in 0..9 {
-        let (made, spent) = stopwatch.time(|| scene.ours());
-        obstacles = made.0;
-        builds.add(spent * 1e-6);
-        let made = stopwatch.time(|| parry::compound(&scene.poses, |k| scene.halves[k % SHAPES]));
-        (compound, _) = made;
-        theirs.add(made.1 * 1e-6);
-    }
-    builds.sort();
-    theirs.sort();
+    let (obstacles, ids) = scene.ours();
+    let compound = parry::compound(&scene.poses, |k| scene.halves[k % SHAPES]);
+    let ours = spent(stopwatch, || drop(scene.ours())) / 1e6;
+    let parrys = || drop(parry::compound(&scene.poses, |k| scene.halves[k % SHAPES]));
+    let theirs = spent(stopwatch, parrys) / 1e6;
+    let mut obstacles = obstacles;
     let mut asked = Asked { scene: &scene, stopwatch, random, wrong: 0 };
     let [mut nearest, mut cast] = asked.beside(&obstacles, &compound, count);
     let within = asked.within(&obstacles, count);
@@ -138,20 +134,27 @@ fn row(n: usize, count: usize, seed: u64) -> Value {
     let (nearest, cast) = (nearest.medians(), cast.medians());
     println!(
         "{n:>9}{:>9.2}{:>9.2}{:>9.0}{:>9.0}{:>9.2}{:>9.0}{:>9.0}{:>9.2}{within:>9.0}{moves:>9.0}{after:>9.0}{wrong:>9}",
-        builds.quantile(0.0),
-        theirs.quantile(0.0),
-        nearest[0],
-        nearest[1],
-        nearest[2],
-        cast[0],
-        cast[1],
-        cast[2],
+        ours, theirs, nearest[0], nearest[1], nearest[2], cast[0], cast[1], cast[2],
     );
     json!({
-        "boxes": n, "build_ms": builds.quantile(0.0), "parry_build_ms": theirs.quantile(0.0),
+        "boxes": n, "build_ms": ours, "parry_build_ms": theirs,
         "nearest": nearest, "cast": cast, "within": within, "move": moves, "nearest_after": after,
         "wrong": wrong,
     })
+}
+
+/// What a thread does in nanoseconds on a processor, the mean of nine times: others are on the machine as well.
+fn spent(stopwatch: Stopwatch, work: impl Fn()) -> f64 {
+    let all = || (0..BUILDS).for_each(|_| work());
+    let (before, ((), wall)) = (on_processor(), stopwatch.time(all));
+    let own = before.zip(on_processor()).map(|(before, after)| after - before);
+    own.unwrap_or(wall) / f64::from(BUILDS)
+}
+
+/// For how long this thread has been on a processor, where the system tells.
+fn on_processor() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    stat.split(' ').next()?.parse().ok()
 }
 
 /// Who asks.
@@ -227,8 +230,9 @@ impl Asked<'_> {
             })
             .collect();
         let set = || moves.iter().try_for_each(|(id, pose)| obstacles.set_pose(*id, *pose));
-        let (moved, spent) = self.stopwatch.time(set);
+        let (before, (moved, wall)) = (on_processor(), self.stopwatch.time(set));
         moved.expect("they are there");
-        spent / moves.len() as f64
+        let own = before.zip(on_processor()).map(|(before, after)| after - before);
+        own.unwrap_or(wall) / moves.len() as f64
     }
 }

@@ -7,6 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
@@ -149,28 +150,30 @@ fn rows<T: Send>(
             }
         }
     };
-    let raised = std::thread::scope(|scope| {
+    std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let mut raised = Ok(());
-        let mut naps = Duration::from_micros(20);
-        while raised.is_ok() && !workers.iter().all(|worker| worker.is_finished()) {
-            std::thread::sleep(naps);
-            if naps < PATIENCE {
-                naps = (naps * 2).min(PATIENCE);
-            } else {
-                raised = Python::attach(|py| py.check_signals());
-            }
-        }
-        stopped.store(raised.is_err(), Ordering::Relaxed);
-        raised
-    });
-    raised?;
+        wait(&workers).inspect_err(|_| stopped.store(true, Ordering::Relaxed))
+    })?;
     if let Some((k, what)) = lock(&failed).take() {
         return Err(error("QueryError", format_args!("row {k}: {what}")));
     }
     let mut parts = parts.into_inner().unwrap_or_else(PoisonError::into_inner);
     parts.sort_unstable_by_key(|(first, _)| *first);
     Ok(parts.into_iter().flat_map(|(_, answers)| answers).collect())
+}
+
+/// Until all have ended, or a signal raises something.
+fn wait(workers: &[ScopedJoinHandle<'_, ()>]) -> PyResult<()> {
+    let mut nap = Duration::from_micros(20);
+    while !workers.iter().all(|worker| worker.is_finished()) {
+        std::thread::sleep(nap);
+        if nap < PATIENCE {
+            nap = (nap * 2).min(PATIENCE);
+        } else {
+            Python::attach(|py| py.check_signals())?;
+        }
+    }
+    Ok(())
 }
 
 fn lock<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {

@@ -188,31 +188,8 @@ impl Setting {
         seen.asked = answer.steps.bodies as usize;
         seen.overlapped = distance.lower() == 0.0;
         asked.verify(proof).map_err(|e| text(&e))?;
-        let changes: [&dyn Fn(&mut colltrans::NearestProof); 4] = [
-            &|proof| proof.lower = proof.lower * 1.001 + 0.001,
-            &|proof| proof.lower = f64::NAN,
-            &|proof| proof.obstacle = ObstacleId(u64::MAX),
-            &|proof| proof.apart.retain(|(one, _)| one == id),
-        ];
-        for (k, change) in changes.into_iter().enumerate() {
-            let mut changed = proof.clone();
-            change(&mut changed);
-            // Boxes may tell of all of those that the last one leaves out.
-            if changed == *proof || (k == 3 && changed.lower == 0.0) {
-                continue;
-            }
-            let refused = asked.verify(&changed).is_err();
-            require!(refused || k == 3 && self.boxes_tell(asked, proof), "change {k} passes");
-            seen.refused += usize::from(refused);
-        }
+        seen.refused += refused(asked, proof)?;
         Ok(())
-    }
-
-    /// Whether boxes tell of all obstacles that a proof names: then it would do without.
-    fn boxes_tell(&self, asked: &Among, proof: &colltrans::NearestProof) -> bool {
-        let mut bare = proof.clone();
-        bare.apart.clear();
-        asked.verify(&bare).is_ok()
     }
 
     fn judge_within(
@@ -283,25 +260,32 @@ impl Setting {
         require!(proof.lower <= answer.lower, "a proof of more");
         seen.stopped = answer.stop.is_some();
         asked.verify(&proof).map_err(|e| text(&e))?;
-        let mut changed = proof.clone();
-        changed.lower = proof.lower * 1.001 + 0.001;
         if proof.lower < f64::INFINITY {
-            require!(asked.verify(&changed).is_err(), "a higher bound passes");
-            changed = proof.clone();
-            changed.passed.retain(|(id, _)| Some(*id) != proof.stop);
-            require!(asked.verify(&changed).is_err(), "no reason for the stop passes");
+            let [mut higher, mut without] = [proof.clone(), proof.clone()];
+            higher.lower = proof.lower * 1.001 + 0.001;
+            without.passed.retain(|(id, _)| Some(*id) != proof.stop);
+            let refused = [higher, without].map(|changed| asked.verify(&changed).is_err());
+            require!(refused == [true; 2], "a changed proof passes: {refused:?}");
             seen.refused += 2;
         }
         if self.seed.is_multiple_of(PROGRAMME_EVERY) && answer.distance().is_some() {
-            for (id, one) in all {
-                let (ByKind::Convex(p), ByKind::Convex(q)) = (self.moving.at(self.pose), *one)
-                else {
-                    continue;
-                };
-                self.not_met_before(p, q, answer.lower).map_err(|e| format!("{id}: {e}"))?;
-            }
+            self.judge_translations(all, answer.lower)?;
         }
         self.judge_end(asked, &answer)
+    }
+
+    /// By the linear programme.
+    fn judge_translations(
+        &self,
+        all: &[(ObstacleId, AnyPlaced)],
+        lower: f64,
+    ) -> Result<(), String> {
+        for (id, one) in all {
+            if let (ByKind::Convex(p), ByKind::Convex(q)) = (self.moving.at(self.pose), *one) {
+                self.not_met_before(p, q, lower).map_err(|e| format!("{id}: {e}"))?;
+            }
+        }
+        Ok(())
     }
 
     /// With an end nothing else is said of what is before it.
@@ -352,6 +336,35 @@ impl Setting {
         require!(a.map(of) == b.map(of), "made anew, another clearance");
         Ok(())
     }
+}
+
+/// Changes a proof, and counts how many changed ones are refused: all that do not hold.
+fn refused(asked: &Among, proof: &NearestProof) -> Result<usize, String> {
+    let changes: [&dyn Fn(&mut NearestProof); 4] = [
+        &|proof| proof.lower = proof.lower * 1.001 + 0.001,
+        &|proof| proof.lower = f64::NAN,
+        &|proof| proof.obstacle = ObstacleId(u64::MAX),
+        &|proof| proof.apart.retain(|(one, _)| *one == proof.obstacle),
+    ];
+    let mut count = 0;
+    for (k, change) in changes.into_iter().enumerate() {
+        let mut changed = proof.clone();
+        change(&mut changed);
+        if changed == *proof || (k == 3 && changed.lower == 0.0) {
+            continue;
+        }
+        let refused = asked.verify(&changed).is_err();
+        require!(refused || k == 3 && boxes_tell(asked, proof), "change {k} passes");
+        count += usize::from(refused);
+    }
+    Ok(count)
+}
+
+/// Whether boxes tell of all obstacles that a proof names: then it would do without.
+fn boxes_tell(asked: &Among, proof: &NearestProof) -> bool {
+    let mut bare = proof.clone();
+    bare.apart.clear();
+    asked.verify(&bare).is_ok()
 }
 
 /// Bodies that the obstacles of a scene are.

@@ -48,10 +48,9 @@ fn main() -> ExitCode {
     let names =
         ["boxes", "build ms", "parry", "nearest", "parry", "ratio", "cast", "parry", "ratio"];
     let more = ["within", "move", "nearest", "wrong"];
-    println!(
-        "{}",
-        names.into_iter().chain(more).map(|name| format!("{name:>9}")).collect::<String>()
-    );
+    let heads: Vec<String> =
+        names.into_iter().chain(more).map(|name| format!("{name:>9}")).collect();
+    println!("{}", heads.concat());
     for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
         rows.push(row(n, count, arguments.seed));
     }

@@ -14,7 +14,8 @@ use std::sync::Arc;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{
     Among, AnyBody, AnyClearance, AnyDistance, AnyPlaced, ByKind, Cast, Clearance,
-    ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose, QueryError, Solid, WhyFree, Within,
+    ConvexPolyhedron, NearestProof, ObstacleId, Obstacles, Pair, Pose, QueryError, Solid, WhyFree,
+    Within,
 };
 
 use super::distance::distance;

@@ -20,8 +20,8 @@ impl crate::Tally for Tally {
 
     fn header() -> String {
         let names = ["scenes", "obstacles", "asked", "overlapped", "tied", "stopped", "refused"];
-        let names: String = names.iter().map(|name| format!("{name:>11}")).collect();
-        format!("{names} {:>8}", "wrong")
+        let heads: Vec<String> = names.iter().map(|name| format!("{name:>11}")).collect();
+        format!("{} {:>8}", heads.concat(), "wrong")
     }
 
     fn line(&self) -> String {

@@ -10,7 +10,7 @@
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
 //!    `solid_answer`, `distance`;
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
-//!    bulk), `assembly` (many parts).
+//!    bulk), `obstacles` (one body among many), `assembly` (many parts).
 //!
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
@@ -25,6 +25,7 @@ mod errors;
 mod features;
 mod frozen;
 mod many;
+mod obstacles;
 mod offset;
 mod outcome;
 mod pair;
@@ -53,6 +54,8 @@ mod _colltrans {
     use crate::features::{Feature, Features, Steps};
     #[pymodule_export]
     use crate::many::{ask_many, ask_pairs};
+    #[pymodule_export]
+    use crate::obstacles::{NearestObstacle, ObstacleClearance, Obstacles};
     #[pymodule_export]
     use crate::offset::{OffsetReport, ShrinkReport};
     #[pymodule_export]

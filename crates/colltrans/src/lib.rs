@@ -72,6 +72,9 @@
 //! | [`Pair::distance`] | how far apart are they, and where? | [`Distance`] |
 //! | [`Pair::within`] | are they closer than a length? | [`Within`] |
 //! | [`Pair::depth`] | which least translation parts them? | [`Depth`] |
+//! | [`Among::nearest`] | which of many is nearest? | [`Nearest`] |
+//! | [`Among::within`] | which of many are closer than a length? | [`Nearby`] |
+//! | [`Among::clearance`] | which of many is hit first, and how far is it? | [`ClearanceAmong`] |
 //!
 //! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
 //! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
@@ -139,8 +142,10 @@
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `proof_file` and `tracker`. `written` and `record` say how all of them are written. [`solid`] holds what is of solids alone.
+//! `pair` (the queries), `among` (many fixed bodies), `proof_file` and `tracker`. `written` and `record` say how
+//! all of them are written. [`solid`] holds what is of solids alone.
 
+mod among;
 mod answer;
 mod body;
 mod cast;
@@ -157,6 +162,11 @@ mod tracker;
 mod work;
 mod written;
 
+pub use among::{
+    Among, AmongProof, AmongSteps, AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced,
+    ApartProof, ByKind, ClearanceAmong, ClearanceProof, Nearby, NearbyProof, Nearest, NearestProof,
+    Obstacles, PassedProof, UnknownObstacle,
+};
 pub use answer::{
     Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth,
     DirectionalDepth, Distance, Enclosure, Grazing, Intersection, NearPoints, Outcome,
@@ -167,7 +177,7 @@ pub use body::error::{BuildError, PoseError, TopologyError};
 pub use body::solid::Solid;
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
-    InputVertex, OffsetReport, Placed, Pose, VertexId, convexity_defect,
+    InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
@@ -198,3 +208,8 @@ pub struct Distances;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/solids.md")]
 pub struct Solids;
+
+/// The examples of `docs/among.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/among.md")]
+pub struct AmongMany;

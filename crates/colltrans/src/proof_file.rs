@@ -17,9 +17,10 @@ use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
 use crate::body::{ConvexPolyhedron, InputFacet, Placed, Pose};
 use crate::cast::replay::BodyRecord;
+use crate::cast::sideways::{proven_overlap, verified_overlap};
 use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use crate::cast::{CaseError, Cast};
-use crate::number::{extent, noise};
+
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
@@ -176,23 +177,9 @@ impl Slide {
 
     fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
         let Self { normal, overlap: claimed } = *self;
-        let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-        if !is_unit || normal.dot(cast.setting.unit).abs() > noise::UNIT_VECTOR {
-            return Err(CertificateError::Normal { normal });
-        }
-        let proven = proven_overlap(normal, cast);
+        let proven = verified_overlap(normal, cast)?;
         if claimed >= proven { Ok(()) } else { Err(CertificateError::Bound { proven, claimed }) }
     }
-}
-
-/// At least how far two bodies overlap along a normal. One that is not quite orthogonal to the direction
-/// lets them overlap more, as far away as the bodies reach.
-fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
-    let setting = &cast.setting;
-    let fixed = (setting.fixed.vertices(), &setting.fixed_matrix);
-    let moving = (setting.moving.vertices(), &setting.moving_matrix);
-    let gap = extent::distance(normal, fixed, moving, setting.exact_offset());
-    (normal.dot(setting.unit).abs() * setting.scale() - gap).next_up()
 }
 
 impl Contacts {

@@ -1,6 +1,6 @@
 """The types of the extension."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -31,6 +31,9 @@ __all__ = [
     "Features",
     "Grazing",
     "Intersection",
+    "NearestObstacle",
+    "ObstacleClearance",
+    "Obstacles",
     "OffsetReport",
     "OverlapDepth",
     "Overlapping",
@@ -676,6 +679,92 @@ class Within(_PairAnswer):
     @property
     def points(self) -> tuple[_Floats, _Floats] | None: ...
     def verify(self) -> None: ...
+
+@final
+class Obstacles:
+    def __new__(cls) -> Obstacles: ...
+    def add(self, body: ConvexPolyhedron | Solid, pose: _Pose = None) -> int: ...
+    def add_many(
+        self,
+        body: ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid],
+        poses: ArrayLike | Sequence[Pose],
+    ) -> list[int]: ...
+    def set_pose(self, obstacle: int, pose: _Pose) -> None: ...
+    def set_poses(self, obstacles: Sequence[int], poses: ArrayLike | Sequence[Pose]) -> None: ...
+    def remove(self, obstacle: int) -> None: ...
+    def pose(self, obstacle: int) -> Pose: ...
+    def __len__(self) -> int: ...
+    def __contains__(self, obstacle: int, /) -> bool: ...
+    def nearest(
+        self,
+        body: ConvexPolyhedron | Solid,
+        pose: _Pose = None,
+        *,
+        ignore: Iterable[int] = (),
+    ) -> NearestObstacle | None: ...
+    def within(
+        self,
+        body: ConvexPolyhedron | Solid,
+        length: float,
+        pose: _Pose = None,
+        *,
+        ignore: Iterable[int] = (),
+    ) -> tuple[list[int], list[int]]: ...
+    def clearance(
+        self,
+        body: ConvexPolyhedron | Solid,
+        direction: ArrayLike,
+        pose: _Pose = None,
+        *,
+        before: float = ...,
+        ignore: Iterable[int] = (),
+    ) -> ObstacleClearance: ...
+    def nearest_many(
+        self,
+        body: ConvexPolyhedron | Solid,
+        poses: ArrayLike | Sequence[Pose],
+        *,
+        ignore: Iterable[int] = (),
+        threads: int | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
+    def clearance_many(
+        self,
+        body: ConvexPolyhedron | Solid,
+        directions: ArrayLike,
+        poses: ArrayLike | Sequence[Pose],
+        *,
+        before: float = ...,
+        ignore: Iterable[int] = (),
+        threads: int | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
+
+@final
+class NearestObstacle:
+    @property
+    def obstacle(self) -> int: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def on_moving(self) -> _Floats: ...
+    @property
+    def on_fixed(self) -> _Floats: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+
+@final
+class ObstacleClearance:
+    @property
+    def outcome(self) -> Literal["blocked", "free", "overlapping"]: ...
+    @property
+    def obstacle(self) -> int | None: ...
+    @property
+    def distance(self) -> float | None: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def normal(self) -> _Floats | None: ...
 
 @final
 class Tracker:

@@ -8,6 +8,7 @@ mod contact;
 mod derive;
 #[cfg(feature = "json")]
 pub(crate) mod replay;
+pub(crate) mod sideways;
 pub(crate) mod solid;
 
 use derive_where::derive_where;
@@ -29,6 +30,7 @@ pub use contact::WitnessPoints;
 pub(crate) use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
 pub use replay::{Case, CaseError};
+pub(crate) use sideways::verified_overlap;
 
 /// A moving body, a fixed one, and the direction in which the first is translated: what all queries
 /// are asked of.

@@ -5,8 +5,10 @@
 //! they were made of -> [`check`], which reads the answer against the
 //! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
-//! judged by [`distance`], answers of the library about distance and depth by [`nearest`].
+//! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
+//! body among many by [`among`].
 
+pub mod among;
 pub mod check;
 pub mod distance;
 pub mod exact;

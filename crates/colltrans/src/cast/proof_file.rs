@@ -21,6 +21,7 @@ use crate::body::solid::{Solid, SolidError};
 use crate::body::{ConvexPolyhedron, InputFacet, Pose};
 use crate::number::{extent, noise};
 use crate::setting::error::QueryError;
+use crate::setting::{check_direction, check_keep};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";
@@ -47,6 +48,8 @@ pub struct ProofFile {
     bodies: Bodies,
     poses: [Pose; 2],
     direction: DVec3,
+    /// The gap that the bodies are to keep.
+    keep: f64,
     statement: Statement,
 }
 
@@ -91,7 +94,7 @@ pub struct Slide {
     /// [`Grazing::separating_direction`].
     pub normal: DVec3,
     /// At least `max_P n.p - min_Q n.q`, a length, wherever on its way the moving body is near the
-    /// fixed one; negative if they miss each other.
+    /// fixed one, and the gap that they are to keep; negative if they miss each other.
     pub overlap: f64,
 }
 
@@ -152,7 +155,8 @@ fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
     let fixed = (setting.fixed.vertices(), &setting.fixed_matrix);
     let moving = (setting.moving.vertices(), &setting.moving_matrix);
     let gap = extent::distance(normal, fixed, moving, setting.exact_offset());
-    (normal.dot(setting.unit).abs() * setting.scale() - gap).next_up()
+    let keep = cast.options().keep;
+    ((normal.dot(setting.unit).abs() * (setting.scale() + keep) - gap).next_up() + keep).next_up()
 }
 
 impl Contacts {
@@ -222,6 +226,7 @@ impl ProofFile {
             bodies: Bodies::Convex(Box::new([cast.moving().clone(), cast.fixed().clone()])),
             poses: [cast.moving_pose(), cast.fixed_pose()],
             direction: cast.direction(),
+            keep: cast.options().keep,
             statement,
         }
     }
@@ -244,11 +249,13 @@ impl ProofFile {
             }
         }
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
-        let options = options(cast.options().start_overlap, cast.tolerance());
+        let keep = cast.options().keep;
+        let options = options(cast.options().start_overlap, cast.tolerance(), keep);
         let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
         let statement = SolidStatement::of(&again.with_options(options)?)?;
         let bodies = Bodies::Solids { made, of };
-        Ok(Self { bodies, poses, direction, statement: Statement::Clearance(statement) })
+        let statement = Statement::Clearance(statement);
+        Ok(Self { bodies, poses, direction, keep, statement })
     }
 
     /// What it says; true if [`Self::check`] does not object.
@@ -280,13 +287,14 @@ impl ProofFile {
         match (&self.bodies, &self.statement) {
             (Bodies::Convex(bodies), statement) => {
                 let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction)?;
+                let cast = Cast::new(placed[0], placed[1], self.direction)?.keeping(self.keep)?;
                 statement.check(&cast)
             }
             (Bodies::Solids { made, .. }, Statement::Clearance(statement)) => {
                 let placed = [made[0].at(moving), made[1].at(fixed)];
                 let cast = Cast::new(placed[0], placed[1], self.direction)?;
-                let options = options(statement.start_overlap, statement.certificate.tolerance);
+                let tolerance = statement.certificate.tolerance;
+                let options = options(statement.start_overlap, tolerance, self.keep);
                 statement.check(&cast.with_options(options)?)
             }
             (Bodies::Solids { .. }, _) => Err(CertificateError::Start),
@@ -312,6 +320,7 @@ impl ProofFile {
             fixed,
             fixed_pose,
             direction: self.direction.to_array(),
+            keep: self.keep,
             statement: self.statement.clone(),
         };
         serde_json::to_string(&file).expect("numbers and names")
@@ -349,13 +358,20 @@ impl ProofFile {
         let statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
         let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
         let direction = DVec3::from_array(file.direction);
-        crate::setting::check_direction(direction)?;
-        Ok(Self { bodies, poses, direction, statement })
+        check_direction(direction)?;
+        check_keep(file.keep)?;
+        Ok(Self { bodies, poses, direction, keep: file.keep, statement })
+    }
+
+    /// The gap that the bodies are to keep, in world units; 0 if they may touch.
+    pub const fn keep(&self) -> f64 {
+        self.keep
     }
 }
 
-fn options(start_overlap: StartOverlap, tolerance: f64) -> SolidOptions {
-    SolidOptions::default().with_start_overlap(start_overlap).with_tolerance(tolerance)
+fn options(start_overlap: StartOverlap, tolerance: f64, keep: f64) -> SolidOptions {
+    let options = SolidOptions::default().with_start_overlap(start_overlap);
+    options.with_tolerance(tolerance).with_keep(keep)
 }
 
 impl Statement {
@@ -439,6 +455,8 @@ struct File<S> {
     fixed: BodyFile,
     fixed_pose: PoseRecord,
     direction: [f64; 3],
+    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    keep: f64,
     statement: S,
 }
 
@@ -537,6 +555,9 @@ impl fmt::Display for ProofFile {
     /// Its statement, and what shrinking has done to the bodies, in words, in one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [moving, fixed] = self.inverted();
+        if self.keep > 0.0 {
+            write!(f, "counted as meeting where they are {:?} apart or nearer, ", self.keep)?;
+        }
         self.statement.fmt(f)?;
         if [moving, fixed] == [0; 2] {
             return Ok(());

@@ -5,13 +5,15 @@
 //! they were made of -> [`check`], which reads the answer against the
 //! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
-//! judged by [`distance`], answers of the library about distance and depth by [`nearest`].
+//! judged by [`distance`], answers of the library about distance and depth by [`nearest`], casts that keep a gap by
+//! [`keep`].
 
 pub mod check;
 pub mod distance;
 pub mod exact;
 pub mod fuzz;
 pub mod input;
+pub mod keep;
 pub mod nearest;
 pub mod scene;
 pub mod sequences;

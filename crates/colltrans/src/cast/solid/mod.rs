@@ -17,6 +17,7 @@ use crate::answer::{
 };
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
+use crate::setting::check_keep;
 use crate::setting::error::QueryError;
 use crate::solve::solid::contact::{SolidContact, contact, true_place};
 use crate::solve::solid::nearest::{SolidGap, SolidNear};
@@ -67,6 +68,10 @@ pub struct SolidOptions {
     /// bodies, poses and tolerance. Whoever asks one pair along many directions asks once. `None`:
     /// it is looked at, as is an overlap that is the answer, to be named.
     pub overlapping: Option<bool>,
+    /// How near to each other the bodies may come (world units): see
+    /// [`Cast::keeping`](crate::Cast#method.keeping-1). `0`, the default: until they touch.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::written::is_zero"))]
+    pub keep: f64,
 }
 
 impl SolidOptions {
@@ -86,6 +91,12 @@ impl SolidOptions {
     #[must_use]
     pub fn with_before(self, before: impl Into<Option<f64>>) -> Self {
         Self { before: before.into(), ..self }
+    }
+
+    /// With a gap to be kept, a length. It is checked where it is used.
+    #[must_use]
+    pub const fn with_keep(self, keep: f64) -> Self {
+        Self { keep, ..self }
     }
 
     /// With what is known of an overlap at the start.
@@ -193,6 +204,7 @@ impl<'a> Cast<'a, Solid> {
     /// A tolerance that is negative or not finite, or so large that nothing is left of a closed body
     /// ([`QueryError::NothingLeft`]).
     pub fn with_options(self, options: SolidOptions) -> Result<Self, QueryError> {
+        check_keep(options.keep)?;
         if let Some(tolerance) = options.tolerance {
             if !(tolerance.is_finite() && tolerance >= 0.0) {
                 return Err(QueryError::Tolerance { tolerance });

@@ -86,7 +86,7 @@ impl<'a> Difference<'a> {
 }
 
 /// Up to three pairs of vertices to begin a descent with: those that the last one ended with.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct NearestPairs {
     pairs: [VertexPair; 3],
     count: usize,
@@ -265,6 +265,16 @@ impl Found {
         let (normal, beyond) = (self.normal, settled.beyond?);
         let gap = (settled.lower - difference.noise.lowered() - beyond).next_down();
         Some(Plane { gap: PlaneGap { normal, gap }, lowest, beyond })
+    }
+
+    /// The point, by up to three pairs and their weights.
+    pub(crate) fn points(&self) -> ([VertexPair; 3], [f64; 3]) {
+        let mut points = ([self.pairs[0]; 3], [0.0; 3]);
+        let weighted = self.pairs.iter().zip(self.weights).filter(|(_, weight)| *weight > 0.0);
+        for (k, (pair, weight)) in weighted.take(3).enumerate() {
+            (points.0[k], points.1[k]) = (*pair, weight);
+        }
+        points
     }
 
     /// The points, with what they prove.

@@ -2,7 +2,7 @@
 //! re-verified in exact arithmetic, and a sample compared with the rational linear programme. Or
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
-//! Or distances of settings as they are, near contact and overlapping.
+//! Or distances of settings as they are, near contact and overlapping. Or casts that keep a gap.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -13,6 +13,7 @@
 //! campaign --solid-distances N [--seed S] [--only FAMILY]
 //! campaign --bodies N [--seed S] [--only FAMILY]
 //! campaign --distances N [--seed S] [--only FAMILY]
+//! campaign --keeping N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 //! ```
 //! Exit code 1 if anything disagrees.
@@ -20,6 +21,7 @@
 mod bodies;
 mod casts;
 mod distances;
+mod keeping;
 mod sequences;
 mod solids;
 
@@ -41,6 +43,7 @@ struct Arguments {
     solid_distances: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
+    keeping: Option<u64>,
     lp: u64,
     seed: u64,
     only: Option<String>,
@@ -73,6 +76,8 @@ fn main() -> ExitCode {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
     } else if let Some(count) = arguments.distances {
         run(&arguments, &families, count, distances::examine)
+    } else if let Some(count) = arguments.keeping {
+        run(&arguments, &families, count, keeping::examine)
     } else if let Some(queries) = arguments.sequences {
         run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
     } else {
@@ -95,6 +100,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         solid_distances: None,
         bodies: None,
         distances: None,
+        keeping: None,
         lp: 1_000,
         seed: 1,
         only: None,
@@ -107,6 +113,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--sequences" => arguments.sequences = Some(number(&value)?),
             "--solids" => arguments.solids = Some(number(&value)?),
             "--distances" => arguments.distances = Some(number(&value)?),
+            "--keeping" => arguments.keeping = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--bodies" => arguments.bodies = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,

@@ -76,6 +76,9 @@ pub struct Record {
     /// Of solids: the one that was used, a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
+    /// The gap that is kept, a length: the bodies count as meeting where they are as near as that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keep: Option<f64>,
     /// Of solids: what overlaps now.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub start_overlaps: Vec<StartOverlapRecord>,

@@ -201,7 +201,7 @@ impl<'a> Cast<'a, Solid> {
     /// The same with other choices.
     ///
     /// # Errors
-    /// A tolerance that is negative or not finite, or so large that nothing is left of a closed body
+    /// A tolerance, or a gap to be kept, that is negative or not finite, or a tolerance so large that nothing is left of a closed body
     /// ([`QueryError::NothingLeft`]).
     pub fn with_options(self, options: SolidOptions) -> Result<Self, QueryError> {
         check_keep(options.keep)?;
@@ -241,6 +241,37 @@ impl<'a> Cast<'a, Solid> {
         self.with_options(self.options.with_tolerance(tolerance))
     }
 
+    /// The same with a gap to be kept, in world units, as [`Cast::keeping`](crate::Cast#method.keeping) of convex bodies:
+    /// all questions are then about how far the bodies, shrunk by half the tolerance where that counts, are *as near as
+    /// the gap*, and bodies that start nearer are [`Clearance::Overlapping`], around two facets that are.
+    ///
+    /// Up to `lower` no two facets come nearer than the gap, but for those that pass each other, or start, at
+    /// the gap to within eight noises of the size with the gap (`256 u S`), which do not block; at `upper` two are as
+    /// near. [`Self::least_tolerance`] is that with which the bodies are not nearer. A gap of no more than
+    /// eight noises is none. Proofs are as without a gap.
+    ///
+    /// # Errors
+    /// A gap that is negative, not finite or more than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE); as
+    /// [`Self::with_options`].
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+    /// let cast = Cast::between(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+    /// let (clearance, proof) = cast.keeping(0.25)?.certified_clearance()?;
+    /// let distance = clearance.distance().expect("they are apart");
+    /// assert!(distance <= 1.75 && distance > 1.75 - 1e-12);
+    /// assert!(cast.keeping(0.25)?.verify(&proof)? < 1e-12);
+    /// assert!(matches!(cast.keeping(2.5)?.clearance()?, Clearance::Overlapping(_)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
+        self.with_options(self.options.with_keep(gap))
+    }
+
     /// The same with another meaning of an overlap at the start.
     #[must_use]
     pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
@@ -257,7 +288,7 @@ impl<'a> Cast<'a, Solid> {
     }
 
     pub(crate) fn scene(&self, tolerance: f64) -> Scene<'a> {
-        Scene::new(&self.setting, [tolerance / 2.0; 2])
+        Scene::new(&self.setting, [tolerance / 2.0; 2], self.options.keep)
     }
 
     pub(crate) fn asked(&self) -> Scene<'a> {

@@ -24,6 +24,9 @@ use crate::solve::options::{Focus, Options};
 /// How far apart, in noises over `n.d`, the bounds of an answer may be.
 const WIDEST: f64 = 15.0;
 
+/// Nearest points and a plane that are so many noises apart are looked for once more.
+const STUCK: f64 = 2.0;
+
 /// By how many noises a margin has to be larger than the gap to be proven without being looked at as a check does.
 const CLEARLY: f64 = 2.0;
 
@@ -64,7 +67,11 @@ impl Target for Bodies<'_, '_> {
     fn look(&mut self, from: DVec3) -> Look<VertexPair, Spot> {
         let moved = self.setting.bodies.moved_by(from);
         let difference = Difference::new(&moved);
-        let found = nearest(&difference, &self.pairs, None);
+        let mut found = nearest(&difference, &self.pairs, None);
+        if found.gap() > STUCK * self.noise.point() {
+            // From pairs on a sliver a descent may get nowhere.
+            found = nearest(&difference, &NearestPairs::default(), None);
+        }
         self.pairs = found.pairs();
         let plane = found.plane(&difference);
         let plane = plane.map(|plane| self.plane(plane.gap.normal, plane.lowest, plane.beyond));
@@ -98,7 +105,7 @@ pub(crate) fn search(
         steps: Steps::default(),
     };
     let start = kept.start(last);
-    let found = travel(&mut kept.bodies, &line, start);
+    let found = travel(&mut kept.bodies, &line, start, f64::INFINITY);
     kept.steps.pivots = found.looks;
     *next = WarmStart::Kept { normal: found.plane.normal, pairs: kept.bodies.pairs };
     kept.outcome(&found)

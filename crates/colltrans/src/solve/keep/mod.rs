@@ -192,21 +192,25 @@ impl Line {
 }
 
 /// Looks along the line until the bounds are as near to each other as rounding lets them, beginning with a plane
-/// that is not along it.
+/// that is not along it; no farther than to a limit.
 pub(crate) fn travel<T: Target>(
     target: &mut T,
     line: &Line,
     start: Plane<T::Support>,
+    limit: f64,
 ) -> Travel<T> {
     let lower = line.lower(&start).unwrap_or(f64::NEG_INFINITY);
     let mut best = Travel { plane: start, lower, near: None, looks: 0, passes: false };
-    let mut course = Course { s: lower, looked: lower, of_bound: true, ahead: AHEAD };
+    let mut course = Course::from(lower);
     for _ in 0..MOST_LOOKS {
+        if best.lower >= limit {
+            break;
+        }
         course.s = course.s.clamp(-line.reach, line.reach);
         let look = target.look(line.unit * course.s);
         best.looks += 1;
         best.note_point(line, &look);
-        best.note_plane(line, &look, course.s);
+        best.note_plane(line, &look, &mut course);
         if best.passes || best.is_enough(line) || !course.goes_on(line, &best, &look) {
             break;
         }
@@ -222,9 +226,15 @@ struct Course {
     of_bound: bool,
     /// How far ahead of it, in noises over `n.d`, the next look may be.
     ahead: f64,
+    /// Beyond this all is farther away than the gap, or nothing was looked at.
+    end: f64,
 }
 
 impl Course {
+    fn from(lower: f64) -> Self {
+        Self { s: lower, looked: lower, of_bound: true, ahead: AHEAD, end: f64::INFINITY }
+    }
+
     /// Goes on, if there is somewhere to look: every other look is Newton's own.
     fn goes_on<T: Target>(
         &mut self,
@@ -232,7 +242,7 @@ impl Course {
         best: &Travel<T>,
         look: &Look<T::Support, T::Spot>,
     ) -> bool {
-        let upper = best.near.map_or(line.reach, |near| near.upper);
+        let upper = best.near.map_or(self.end.min(line.reach), |near| near.upper);
         let feature = line.ahead_to_feature(look, self.s).map(|by| self.s + by);
         let is_new = |next: &f64| *next > best.lower && *next <= upper && *next != self.s;
         if let (true, Some(next)) = (self.of_bound, feature.filter(is_new)) {
@@ -259,7 +269,7 @@ impl<T: Target> Travel<T> {
         }
     }
 
-    fn note_plane(&mut self, line: &Line, look: &Look<T::Support, T::Spot>, s: f64) {
+    fn note_plane(&mut self, line: &Line, look: &Look<T::Support, T::Spot>, course: &mut Course) {
         let Some(plane) = look.plane else { return };
         if let Some(lower) = line.lower(&plane) {
             if lower > self.lower {
@@ -268,8 +278,12 @@ impl<T: Target> Travel<T> {
             }
         } else {
             // All that is ahead is farther away than the gap.
-            let gap = plane.height - s * line.slope(plane.normal);
-            self.passes |= self.near.is_none() && gap > line.keep;
+            let gap = plane.height - course.s * line.slope(plane.normal);
+            if self.near.is_none() && gap > line.keep {
+                // From a bound, before which all is farther away as well, none is left; from a guess there may be.
+                self.passes |= course.of_bound;
+                course.end = course.s;
+            }
         }
     }
 

@@ -267,6 +267,11 @@ impl Found {
         Some(Plane { gap: PlaneGap { normal, gap }, lowest, beyond })
     }
 
+    /// How far the point and the plane are apart, as computed.
+    pub(crate) fn gap(&self) -> f64 {
+        self.upper - self.lower.max(0.0)
+    }
+
     /// The point, by up to three pairs and their weights.
     pub(crate) fn points(&self) -> ([VertexPair; 3], [f64; 3]) {
         let mut points = ([self.pairs[0]; 3], [0.0; 3]);

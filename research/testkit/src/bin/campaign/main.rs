@@ -14,6 +14,7 @@
 //! campaign --bodies N [--seed S] [--only FAMILY]
 //! campaign --distances N [--seed S] [--only FAMILY]
 //! campaign --keeping N [--seed S] [--only FAMILY]
+//! campaign --solid-keeping N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 //! ```
 //! Exit code 1 if anything disagrees.
@@ -41,6 +42,7 @@ struct Arguments {
     sequences: Option<u64>,
     solids: Option<u64>,
     solid_distances: Option<u64>,
+    solid_keeping: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
     keeping: Option<u64>,
@@ -71,6 +73,9 @@ fn main() -> ExitCode {
     if let Some(count) = arguments.solid_distances {
         return exit_code(solids::distances(count, arguments.seed, arguments.only.as_deref()));
     }
+    if let Some(count) = arguments.solid_keeping {
+        return exit_code(solids::keeping(count, arguments.seed, arguments.only.as_deref()));
+    }
     let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
     exit_code(if let Some(count) = arguments.bodies {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
@@ -98,6 +103,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         sequences: None,
         solids: None,
         solid_distances: None,
+        solid_keeping: None,
         bodies: None,
         distances: None,
         keeping: None,
@@ -114,6 +120,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--solids" => arguments.solids = Some(number(&value)?),
             "--distances" => arguments.distances = Some(number(&value)?),
             "--keeping" => arguments.keeping = Some(number(&value)?),
+            "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--bodies" => arguments.bodies = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,

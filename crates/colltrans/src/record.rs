@@ -254,16 +254,17 @@ impl Record {
 
     /// Of [`Cast::first_contact`].
     pub fn of_outcome(outcome: &Outcome, cast: &Cast) -> Self {
-        match outcome {
+        let record = match outcome {
             Outcome::Contact(first) => Self::contact(Ending::Contact, first, cast),
             Outcome::Grazing(grazing) => Self::grazing(Ending::Grazing, grazing, cast),
             Outcome::Separated(separated) => Self::separated(separated),
-        }
+        };
+        record.keeping(cast.options().keep)
     }
 
     /// Of [`Cast::contact_range`].
     pub fn of_contact_range(range: &ContactRange, cast: &Cast) -> Self {
-        match range {
+        let record = match range {
             ContactRange::Contact { first, last } => {
                 Self::contact(Ending::Contact, first, cast).with_exit(last.exit())
             }
@@ -271,12 +272,13 @@ impl Record {
                 Self::grazing(Ending::Grazing, first, cast).with_exit(last.contact.exit())
             }
             ContactRange::Separated(separated) => Self::separated(separated),
-        }
+        };
+        record.keeping(cast.options().keep)
     }
 
     /// Of [`Cast::clearance`] between convex bodies.
     pub fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
-        match clearance {
+        let record = match clearance {
             Clearance::Blocked { distance, contact } => {
                 let record = Self::contact(Ending::Blocked, contact, cast);
                 Self { distance: Some(*distance), ..record }
@@ -296,7 +298,8 @@ impl Record {
                 let [back, on] = [first, last].map(|contact| Some(-contact.certificate.lower));
                 Self { back, on, ..record }.with_exit(last.exit())
             }
-        }
+        };
+        record.keeping(cast.options().keep)
     }
 
     /// Of [`Cast::clearance`] between solids; `exit` as [`Cast::exit`] says.
@@ -331,7 +334,13 @@ impl Record {
         let open = sides.filter(|(_, body)| !body.is_closed());
         let surfaces = open.map(|(name, _)| name).collect();
         let record = Self { tolerance: Some(cast.tolerance()), surfaces, ..record };
+        let record = record.keeping(cast.options().keep);
         exit.into_iter().fold(record, Self::with_exit)
+    }
+
+    /// With the gap that is kept, if there is one.
+    fn keeping(self, gap: f64) -> Self {
+        Self { keep: (gap > 0.0).then_some(gap), ..self }
     }
 
     fn separated(separated: &Separated) -> Self {

@@ -203,7 +203,8 @@ impl<B> Query<'_, B> {
         }
         let options = Options::default()
             .with_solver(self.solver.unwrap_or_default())
-            .with_graze_tolerance(self.graze_tolerance.unwrap_or_default());
+            .with_graze_tolerance(self.graze_tolerance.unwrap_or_default())
+            .with_keep(self.keep.unwrap_or_default());
         let (moving_at, fixed_at) = (moving.body.at(poses[0]), fixed.body.at(poses[1]));
         let direction = DVec3::from_array(self.direction);
         let cast = Cast::new(moving_at, fixed_at, direction)
@@ -238,6 +239,7 @@ impl<B> Query<'_, B> {
             direction: DVec3::from_array(self.direction),
             tolerance: self.tolerance,
             ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
+            keep: self.keep.unwrap_or_default(),
         };
         let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
         let bodies = [question.moving, question.fixed];

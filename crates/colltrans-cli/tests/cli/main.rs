@@ -5,6 +5,7 @@ mod batch;
 mod cast;
 mod clearance;
 mod example_parts;
+mod keep;
 mod newcomers;
 mod picture;
 mod proof;

@@ -145,7 +145,7 @@ pub struct StartOverlapRecord {
     pub fixed: Option<String>,
     /// The least tolerance with which they would not overlap, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub depth: Option<f64>,
+    pub least_tolerance: Option<f64>,
 }
 
 /// The features of both bodies in the contact plane.
@@ -311,8 +311,9 @@ impl Record {
         let record = match clearance {
             Clearance::Free(_) => Self { outcome: Ending::Free, ..Self::default() },
             Clearance::Overlapping(overlap) => {
-                let depth = overlap.least_tolerance;
-                let start_overlaps = vec![StartOverlapRecord { depth, ..Default::default() }];
+                let least_tolerance = overlap.least_tolerance;
+                let overlap = StartOverlapRecord { least_tolerance, ..Default::default() };
+                let start_overlaps = vec![overlap];
                 Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() }
             }
             Clearance::Blocked { distance, contact } => Self {

@@ -229,7 +229,7 @@ impl Input {
     #[expect(clippy::option_option, reason = "the input may end, and a line may be too long")]
     fn next_line(&mut self, text: &mut Vec<u8>) -> io::Result<Option<Option<Range<usize>>>> {
         let start = text.len();
-        let read = (&mut self.queries).take(LINE_LIMIT).read_until(b'\n', text)?;
+        let read = read_line(&mut self.queries, text)?;
         if read == 0 {
             return Ok(None);
         }
@@ -242,6 +242,27 @@ impl Input {
         text.truncate(start);
         self.bytes += self.queries.skip_until(b'\n')? as u64;
         Ok(Some(None))
+    }
+}
+
+/// Appends what is read up to the end of a line, or [`LINE_LIMIT`] bytes; how many there were. Searched in
+/// lanes, which [`BufRead::read_until`] does not.
+fn read_line(queries: &mut Queries, text: &mut Vec<u8>) -> io::Result<usize> {
+    let mut queries = queries.take(LINE_LIMIT);
+    let mut read = 0;
+    loop {
+        let ahead = match queries.fill_buf() {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            ahead => ahead?,
+        };
+        let end = memchr::memchr(b'\n', ahead).map(|end| end + 1);
+        let taken = end.unwrap_or(ahead.len());
+        text.extend_from_slice(&ahead[..taken]);
+        queries.consume(taken);
+        read += taken;
+        if end.is_some() || taken == 0 {
+            return Ok(read);
+        }
     }
 }
 

@@ -107,18 +107,19 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
 
 fn overlaps(text: &mut String, record: &Record) {
     let ignored = record.outcome != Ending::Overlapping;
-    for StartOverlapRecord { moving, fixed, depth } in &record.start_overlaps {
+    for StartOverlapRecord { moving, fixed, least_tolerance } in &record.start_overlaps {
         let [moving, fixed] =
             [moving, fixed].map(|name| shown(name.as_deref().unwrap_or_default()));
-        let depth = match depth {
-            Some(depth) => format!("a tolerance of {} would part them", above(*depth)),
+        let remedy = match least_tolerance {
+            Some(least) => format!("a tolerance of {} would part them", above(*least)),
             None => "no tolerance would part them".into(),
         };
         let name = if ignored { "ignored" } else { "overlap" };
-        line(text, name, &format!("{moving} in {fixed}: {depth}"));
+        line(text, name, &format!("{moving} in {fixed}: {remedy}"));
     }
     if !ignored {
-        let hint = if record.start_overlaps.iter().all(|overlap| overlap.depth.is_some()) {
+        let hint = if record.start_overlaps.iter().all(|overlap| overlap.least_tolerance.is_some())
+        {
             "--tolerance allows for it, --ignore-start-overlaps lets it pass"
         } else {
             "--ignore-start-overlaps lets it pass"

@@ -129,7 +129,7 @@ fn other_files_are_no_proofs() {
         3,
         &["half.json: not a saved proof", "ends too early"],
     );
-    refused(folder, &["verify", "cube.off"], 3, &["cube.off: not a saved proof", "it is no JSON"]);
+    refused(folder, &["verify", "cube.off"], 3, &["cube.off: not a saved proof", "it is not JSON"]);
     refused(folder, &["verify", "none.json"], 3, &["none.json: cannot be read"]);
     refused(folder, &["verify"], 2, &["PROOF.json"]);
     refused(folder, &["verify", "half.json", "--search"], 2, &["--search"]);

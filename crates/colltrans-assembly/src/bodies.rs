@@ -1,7 +1,8 @@
 //! Two parts and a direction: everything that is asked of `colltrans`.
 //!
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
-//! to keep `M` apart every body is grown by `M / 2`: then two parts that pass keep at least `M` apart.
+//! to keep `M` apart bodies stay as they are, and every question is about where two of them are as near as that
+//! ([`Cast::keeping`]); boxes are those of the bodies with half of it around.
 
 use std::collections::BTreeMap;
 
@@ -26,8 +27,8 @@ pub enum Fit {
     /// Both bodies of a pair are shrunk by half of this length: up to so much of an overlap, of
     /// rounding, chord errors or a press fit, does not block.
     Tolerance(f64),
-    /// Both bodies are grown by half of this length: that far apart they must stay. Pairs that touch
-    /// on purpose have to be listed as ignored.
+    /// That far apart two bodies must stay, in all directions: what is nearer overlaps, and what comes
+    /// as near is stopped. Pairs that touch on purpose have to be listed as ignored.
     Apart(f64),
 }
 
@@ -39,6 +40,14 @@ impl Fit {
     /// rounding of a coordinate in single precision.
     pub fn default_for(assembly: &Assembly) -> Self {
         Self::Tolerance(assembly.size() * SINGLE_DIGITS)
+    }
+
+    /// The length to be kept, or 0.
+    const fn keep(self) -> f64 {
+        match self {
+            Self::Tolerance(_) => 0.0,
+            Self::Apart(length) => length,
+        }
     }
 
     /// The tolerance; a length to keep is a negative one.
@@ -56,7 +65,7 @@ pub struct Stop {
     /// Where the facets that stop the shrunk bodies meet in their true place, before they were shrunk,
     /// with bounds: [`SolidContact::translation`]. With a length to keep, the same as `displaced`.
     pub translation: Bounded,
-    /// How far the bodies, shrunk or grown, can move; never negative.
+    /// How far the bodies, shrunk, can move, or until they are as near as the length to keep; never negative.
     pub displaced: Bounded,
     /// Unit contact normal in the world, from the moving part to the other one.
     pub normal: DVec3,
@@ -67,8 +76,8 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// How far it is safe to move: up to here the bodies, shrunk or grown, do not overlap, and what stops
-    /// them has not met in its true place. Both are proven. Never negative, and less than 7 by rounding
+    /// How far it is safe to move: up to here the bodies, shrunk, do not overlap, or are no nearer than the
+    /// length to keep, and what stops them has not met in its true place. Both are proven. Never negative, and less than 7 by rounding
     /// alone for a head that stops at 7.
     pub const fn distance(&self) -> f64 {
         self.translation.lower.max(0.0)
@@ -90,11 +99,11 @@ pub enum Room {
 pub struct Bodies<'a> {
     assembly: &'a Assembly,
     fit: Fit,
-    /// The bodies, shrunk or grown.
+    /// The bodies, shrunk; to be kept apart, as they are.
     solids: Vec<Solid>,
     /// For each triangle of these the one of the part as given.
     given: Vec<Vec<u32>>,
-    /// What shrinking or growing could not do as it should.
+    /// What shrinking could not do as it should.
     displaced: Vec<ShrinkReport>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
@@ -131,18 +140,18 @@ impl<'a> Bodies<'a> {
                 part: part.name().into(),
                 source: source.into(),
             };
-            let solid = match fit {
-                Fit::Tolerance(length) => part.solid().shrunk(length / 2.0),
-                Fit::Apart(length) => part.solid().grown(length / 2.0),
-            };
-            solid.map_err(refused)
+            match fit {
+                Fit::Tolerance(length) => part.solid().shrunk(length / 2.0).map_err(refused),
+                Fit::Apart(_) => Ok((part.solid().clone(), ShrinkReport::default())),
+            }
         };
         let both: Result<Vec<(Solid, ShrinkReport)>, AssemblyError> =
             assembly.parts().par_iter().map(displaced).collect();
         let (solids, displaced): (Vec<Solid>, Vec<ShrinkReport>) = both?.into_iter().unzip();
         let both = assembly.parts().par_iter().zip(&solids);
         let given = both.map(|(part, solid)| same_triangles(solid, part.solid())).collect();
-        let boxes: Vec<Aabb> = solids.iter().map(Solid::bounds).collect();
+        let around = fit.keep() / 2.0;
+        let boxes: Vec<Aabb> = solids.iter().map(|solid| solid.bounds().grown(around)).collect();
         let tree = BoxTree::new(boxes.iter().copied());
         let noise = 4.0 * Fit::default_for(assembly).tolerance();
         let (overlapping, passing) = (Vec::new(), BTreeMap::new());
@@ -174,7 +183,8 @@ impl<'a> Bodies<'a> {
     /// there is none that leaves both parts as they are but smaller.
     fn passes_with(&self, pair: [usize; 2]) -> Option<f64> {
         let [a, b] = pair.map(|k| self.solids[k].at(Pose::IDENTITY));
-        let tolerance = Cast::new(a, b, DVec3::Z).ok()?.least_tolerance()? * DEEPER;
+        let cast = Cast::new(a, b, DVec3::Z).ok()?.keeping(self.fit.keep()).ok()?;
+        let tolerance = cast.least_tolerance()? * DEEPER;
         let whole = |k: usize| {
             let solid = &self.solids[k];
             let fits = tolerance < solid.bounds().size().min_element();
@@ -205,17 +215,14 @@ impl<'a> Bodies<'a> {
         self.boxes.is_empty()
     }
 
-    /// What could not be shrunk, or grown, as the fit asks for; in words, `None` if nothing.
+    /// What could not be shrunk as the fit asks for; in words, `None` if nothing.
     ///
     /// Facets turn inside out, or pass through others, where a part is thinner than the tolerance: what
     /// is said about them is not what the part does. Vertices that stay are those of saddles: around
     /// them no displacement is inwards for all facets.
     pub fn remark(&self, part: usize) -> Option<String> {
         let ShrinkReport { stuck, inverted, .. } = &self.displaced[part];
-        let mut said = match self.fit {
-            Fit::Tolerance(_) => vec!["shrunk by half the tolerance".to_owned()],
-            Fit::Apart(_) => vec!["grown by half the length to keep".to_owned()],
-        };
+        let mut said = vec!["shrunk by half the tolerance".to_owned()];
         let given = self.assembly.parts()[part].solid();
         if self.solids[part].is_closed() && volume(given) > 0.0 && volume(&self.solids[part]) <= 0.0
         {
@@ -308,6 +315,7 @@ impl<'a> Bodies<'a> {
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
+            .with_keep(self.fit.keep())
             .with_before(before.unwrap_or(f64::INFINITY))
             .with_overlapping(overlapping);
         let solids = [&self.solids[a], &self.solids[b]];
@@ -334,6 +342,7 @@ impl<'a> Bodies<'a> {
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
+            .with_keep(self.fit.keep())
             .with_before(f64::INFINITY)
             .with_overlapping(start == StartOverlap::Ignore && self.overlaps(a, b));
         let cast = placed([&self.solids[a], &self.solids[b]], d, options)?;
@@ -372,7 +381,7 @@ impl<'a> Bodies<'a> {
         cast.true_place(triangles, contact.translation, contact.normal, shift)
     }
 
-    /// How far a point of a triangle was displaced when the part was shrunk or grown: its corners
+    /// How far a point of a triangle was displaced when the part was shrunk: its corners
     /// keep their numbers.
     fn displacement(&self, part: usize, triangle: usize, point: DVec3) -> DVec3 {
         let solid = &self.solids[part];
@@ -438,13 +447,14 @@ impl<'a> Bodies<'a> {
         Bounded { value, lower, upper }
     }
 
-    /// Whether part `a`, displaced by `by`, and part `b` overlap, by more than rounding.
+    /// Whether part `a`, displaced by `by`, and part `b` overlap, or are nearer than the length to keep, by more
+    /// than rounding.
     pub fn overlaps_displaced(&self, a: usize, by: DVec3, b: usize) -> bool {
         #[cfg(test)]
         self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let Ok(pose) = Pose::from_translation(by) else { return false };
         let moving = self.solids[a].at(pose);
-        let options = SolidOptions::default().with_tolerance(0.0);
+        let options = SolidOptions::default().with_tolerance(0.0).with_keep(self.fit.keep());
         let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }

@@ -148,6 +148,12 @@ pub(crate) struct PairArguments {
     /// In the unit of the meshes. 0 stands for the rounding error of the configuration.
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, default_value = "0")]
     pub(crate) graze_tolerance: f64,
+    /// A gap to be kept: ask where the meshes are first as near as that, not where they touch
+    ///
+    /// In the unit of the meshes. Meshes that are nearer at the start overlap; who slides along at the
+    /// gap is free.
+    #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0")]
+    pub(crate) keep: f64,
     /// Print the answer as one JSON object, as `batch` does (see `batch --help` for its fields)
     #[arg(long)]
     pub(crate) json: bool,

@@ -61,7 +61,8 @@ impl<'a> Request<'a> {
         let Self { arguments, poses, directions } = self;
         let options = Options::default()
             .with_solver(arguments.solver)
-            .with_graze_tolerance(arguments.graze_tolerance);
+            .with_graze_tolerance(arguments.graze_tolerance)
+            .with_keep(arguments.keep);
         let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
         let cast = |direction| Cast::new(moving, fixed, direction)?.with_options(options);
         match directions {

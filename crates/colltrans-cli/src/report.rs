@@ -43,6 +43,7 @@ pub(crate) fn cast(answer: &ContactRange, told: &Line, direction: DVec3) -> Stri
             separated(&mut text, answer);
         }
     }
+    kept(&mut text, record);
     hulls(&mut text, told);
     text
 }
@@ -88,6 +89,7 @@ fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> String {
             }
         }
     }
+    kept(&mut text, record);
     hulls(&mut text, told);
     text
 }
@@ -226,6 +228,14 @@ fn separated(text: &mut String, separated: &Separated) {
     let normal = unit_vector(separated.certificate.normal);
     line(text, "normal", &format!("{normal} of the separating plane"));
     line(text, "solver", &work(separated.solver, separated.steps));
+}
+
+/// The gap that is kept, if there is one.
+pub(crate) fn kept(text: &mut String, record: &Record) {
+    if let Some(gap) = record.keep {
+        let what = "a gap: they count as meeting where they are as near";
+        line(text, "kept", &format!("{}, {what}", number(gap)));
+    }
 }
 
 /// By how much hulls exceed their parts, and what the answer then means.

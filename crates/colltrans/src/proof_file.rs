@@ -24,9 +24,17 @@ use crate::cast::{CaseError, Cast};
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
+use crate::setting::{check_direction, check_keep};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";
+
+/// What a cast asks, besides bodies: the direction, and the gap that is kept.
+#[derive(Debug, Clone, Copy)]
+struct Along {
+    direction: DVec3,
+    keep: f64,
+}
 
 /// A proof that owns its bodies: whoever has the file can check what it says, without a search.
 ///
@@ -49,8 +57,7 @@ const FORMAT: &str = "colltrans proof 1";
 pub struct ProofFile {
     bodies: Bodies,
     poses: [Pose; 2],
-    /// Of a cast.
-    direction: Option<DVec3>,
+    along: Option<Along>,
     statement: Statement,
 }
 
@@ -132,7 +139,7 @@ pub struct Slide {
     /// [`Grazing::separating_direction`].
     pub normal: DVec3,
     /// At least `max_P n.p - min_Q n.q`, a length, wherever on its way the moving body is near the
-    /// fixed one; negative if they miss each other.
+    /// fixed one, and the gap that they are to keep; negative if they miss each other.
     pub overlap: f64,
 }
 
@@ -248,7 +255,7 @@ impl ProofFile {
         Self {
             bodies: Bodies::Convex(Box::new([cast.moving().clone(), cast.fixed().clone()])),
             poses: [cast.moving_pose(), cast.fixed_pose()],
-            direction: Some(cast.direction()),
+            along: Some(Along { direction: cast.direction(), keep: cast.options().keep }),
             statement,
         }
     }
@@ -266,7 +273,7 @@ impl ProofFile {
     fn of_pair(pair: &Pair<'_>, statement: Statement) -> Self {
         let bodies = Bodies::Convex(Box::new([pair.moving().clone(), pair.fixed().clone()]));
         let poses = [pair.moving_pose(), pair.fixed_pose()];
-        Self { bodies, poses, direction: None, statement }
+        Self { bodies, poses, along: None, statement }
     }
 
     /// Of [`Cast::clearance`] between solids, asked once more with its proof. `pieces` are those that
@@ -278,11 +285,12 @@ impl ProofFile {
     pub fn of_solids(cast: &Cast<'_, Solid>, pieces: [&[&Solid]; 2]) -> Result<Self, CaseError> {
         let (made, of) = again(pieces, [cast.moving(), cast.fixed()])?;
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
-        let options = options(cast.options().start_overlap, cast.tolerance());
+        let keep = cast.options().keep;
+        let options = options(cast.options().start_overlap, cast.tolerance(), keep);
         let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
         let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
         let bodies = Bodies::Solids { made, of };
-        Ok(Self { bodies, poses, direction: Some(direction), statement })
+        Ok(Self { bodies, poses, along: Some(Along { direction, keep }), statement })
     }
 
     /// Of the distance of solids, asked once more with its proof: of [`Pair::distance`], or of
@@ -307,7 +315,7 @@ impl ProofFile {
             },
         };
         let (bodies, statement) = (Bodies::Solids { made, of }, Statement::SolidDistance(proof));
-        Ok(Self { bodies, poses, direction: None, statement })
+        Ok(Self { bodies, poses, along: None, statement })
     }
 
     /// What it says; true if [`Self::check`] does not object.
@@ -336,17 +344,20 @@ impl ProofFile {
     /// The first thing that is not proven.
     pub fn check(&self) -> Result<(), CertificateError> {
         let [moving, fixed] = self.poses;
-        match (&self.bodies, self.direction) {
-            (Bodies::Convex(bodies), direction) => {
+        match (&self.bodies, self.along) {
+            (Bodies::Convex(bodies), along) => {
                 let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
-                match direction {
-                    Some(d) => self.statement.check(&Cast::new(placed[0], placed[1], d)?),
+                match along {
+                    Some(Along { direction, keep }) => {
+                        let cast = Cast::new(placed[0], placed[1], direction)?.keeping(keep)?;
+                        self.statement.check(&cast)
+                    }
                     None => self.statement.check_pair(&Pair::new(placed[0], placed[1])?),
                 }
             }
-            (Bodies::Solids { made, .. }, direction) => {
+            (Bodies::Solids { made, .. }, along) => {
                 let placed = [made[0].at(moving), made[1].at(fixed)];
-                self.statement.check_solids(placed, direction)
+                self.statement.check_solids(placed, along)
             }
         }
     }
@@ -369,7 +380,8 @@ impl ProofFile {
             moving_pose,
             fixed,
             fixed_pose,
-            direction: self.direction.map(|direction| direction.to_array()),
+            direction: self.along.map(|along| along.direction.to_array()),
+            keep: self.along.map_or(0.0, |along| along.keep),
             statement: self.statement.clone(),
         };
         serde_json::to_string(&file).expect("numbers and names")
@@ -410,13 +422,24 @@ impl ProofFile {
         }
         let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
         let direction = file.direction.map(DVec3::from_array);
-        direction.map_or(Ok(()), crate::setting::check_direction)?;
-        Ok(Self { bodies, poses, direction, statement })
+        direction.map_or(Ok(()), check_direction)?;
+        check_keep(file.keep)?;
+        if direction.is_none() && file.keep != 0.0 {
+            return Err(CaseError::Statement);
+        }
+        let along = direction.map(|direction| Along { direction, keep: file.keep });
+        Ok(Self { bodies, poses, along, statement })
+    }
+
+    /// The gap that the bodies are to keep, in world units; 0 if they may touch.
+    pub fn keep(&self) -> f64 {
+        self.along.map_or(0.0, |along| along.keep)
     }
 }
 
-fn options(start_overlap: StartOverlap, tolerance: f64) -> SolidOptions {
-    SolidOptions::default().with_start_overlap(start_overlap).with_tolerance(tolerance)
+fn options(start_overlap: StartOverlap, tolerance: f64, keep: f64) -> SolidOptions {
+    let options = SolidOptions::default().with_start_overlap(start_overlap);
+    options.with_tolerance(tolerance).with_keep(keep)
 }
 
 impl Statement {
@@ -450,11 +473,11 @@ impl Statement {
     fn check_solids(
         &self,
         [moving, fixed]: [Placed<'_, Solid>; 2],
-        direction: Option<DVec3>,
+        along: Option<Along>,
     ) -> Result<(), CertificateError> {
-        match (self, direction) {
-            (Self::Clearance(of), Some(direction)) => {
-                let options = options(of.start_overlap, of.certificate.tolerance);
+        match (self, along) {
+            (Self::Clearance(of), Some(Along { direction, keep })) => {
+                let options = options(of.start_overlap, of.certificate.tolerance, keep);
                 of.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)
             }
             (Self::SolidDistance(of), None) => Pair::new(moving, fixed)?.verify(of).map(|_| ()),
@@ -532,6 +555,8 @@ struct File<S> {
     fixed_pose: PoseRecord,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     direction: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    keep: f64,
     statement: S,
 }
 
@@ -653,6 +678,9 @@ impl fmt::Display for ProofFile {
     /// Its statement, and what shrinking has done to the bodies, in words, in one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [moving, fixed] = self.inverted();
+        if self.keep() > 0.0 {
+            write!(f, "counted as meeting where they are {:?} apart or nearer, ", self.keep())?;
+        }
         self.statement.fmt(f)?;
         if [moving, fixed] == [0; 2] {
             return Ok(());

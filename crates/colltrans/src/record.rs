@@ -89,6 +89,9 @@ pub struct Record {
     /// Of solids: the one that was used, a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
+    /// The gap that is kept, a length: the bodies count as meeting where they are as near as that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keep: Option<f64>,
     /// Of solids: what overlaps now.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub start_overlaps: Vec<StartOverlapRecord>,
@@ -372,16 +375,17 @@ impl Record {
 
     /// Of [`Cast::first_contact`].
     pub fn of_outcome(outcome: &Outcome, cast: &Cast) -> Self {
-        match outcome {
+        let record = match outcome {
             Outcome::Contact(first) => Self::contact(Ending::Contact, first, cast),
             Outcome::Grazing(grazing) => Self::grazing(Ending::Grazing, grazing, cast),
             Outcome::Separated(separated) => Self::separated(separated),
-        }
+        };
+        record.keeping(cast.options().keep)
     }
 
     /// Of [`Cast::contact_range`].
     pub fn of_contact_range(range: &ContactRange, cast: &Cast) -> Self {
-        match range {
+        let record = match range {
             ContactRange::Contact { first, last } => {
                 Self::contact(Ending::Contact, first, cast).with_exit(last.exit())
             }
@@ -389,12 +393,13 @@ impl Record {
                 Self::grazing(Ending::Grazing, first, cast).with_exit(last.contact.exit())
             }
             ContactRange::Separated(separated) => Self::separated(separated),
-        }
+        };
+        record.keeping(cast.options().keep)
     }
 
     /// Of [`Cast::clearance`] between convex bodies.
     pub fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
-        match clearance {
+        let record = match clearance {
             Clearance::Blocked { distance, contact } => {
                 let record = Self::contact(Ending::Blocked, contact, cast);
                 Self { distance: Some(*distance), ..record }
@@ -414,7 +419,8 @@ impl Record {
                 let [back, on] = [first, last].map(|contact| Some(-contact.certificate.lower));
                 Self { back, on, ..record }.with_exit(last.exit())
             }
-        }
+        };
+        record.keeping(cast.options().keep)
     }
 
     /// Of [`Cast::clearance`] between solids; `exit` as [`Cast::exit`] says.
@@ -448,6 +454,7 @@ impl Record {
         };
         let surfaces = open_ones(cast.moving(), cast.fixed());
         let record = Self { tolerance: Some(cast.tolerance()), surfaces, ..record };
+        let record = record.keeping(cast.options().keep);
         exit.into_iter().fold(record, Self::with_exit)
     }
 
@@ -537,6 +544,11 @@ impl Record {
 
     fn farther(lower: f64) -> Self {
         Self { outcome: Ending::Farther, lower: Some(lower), ..Self::default() }
+    }
+
+    /// With the gap that is kept, if there is one.
+    fn keeping(self, gap: f64) -> Self {
+        Self { keep: (gap > 0.0).then_some(gap), ..self }
     }
 
     fn separated(separated: &Separated) -> Self {

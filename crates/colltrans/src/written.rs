@@ -73,6 +73,13 @@ pub(crate) mod or_infinite {
     }
 }
 
+/// Whether a number is 0, so that it need not be written.
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+pub(crate) fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// The same of a lower bound.
 #[cfg(feature = "serde")]
 pub(crate) mod or_minus_infinite {

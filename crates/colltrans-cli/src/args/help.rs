@@ -195,7 +195,7 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
    "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within",
    "length": L (of "within"),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
-   "tolerance": L, "ignore_start_overlaps": true|false (of solids)}
+   "tolerance": L, "ignore_start_overlaps": true|false (of solids), "keep": GAP}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
        or {"mesh": "path", "hull": true|false, "scale": FACTOR}
        or {"solid": "path", "scale": FACTOR, "open": BOOL} (need not be convex; open: nor closed)
@@ -232,6 +232,7 @@ Each result is one JSON object with those of these fields that apply:
                the two faces pass each other as they are, of the shrunk ones
   rounding     of convex bodies: what rounding alone can make of the bounds' difference
   tolerance    of solids: the one that was used, both are shrunk by half of it
+  keep         the gap that is kept: the bodies count as meeting where they are as near
   start_overlaps  of solids that overlap now: [{"least_tolerance"}], the one with which they
                would not; missing of surfaces
   surfaces     of solids: which bodies are open, at least in part: ["moving", "fixed"]

@@ -34,6 +34,7 @@ pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
         solver: found.solver,
         tolerance: None,
         ignore_start_overlaps: None,
+        keep: found.keep,
     })
 }
 
@@ -49,6 +50,7 @@ struct Found<'a> {
     question: Option<Asked>,
     length: Option<f64>,
     graze_tolerance: Option<f64>,
+    keep: Option<f64>,
     solver: Option<Solver>,
 }
 
@@ -62,6 +64,7 @@ impl<'a> Found<'a> {
             "fixed_pose" => once(&mut self.fixed_pose, reader.pose()?),
             "direction" => once(&mut self.direction, reader.numbers()?),
             "graze_tolerance" => once(&mut self.graze_tolerance, reader.number()?),
+            "keep" => once(&mut self.keep, reader.number()?),
             "query" => once(&mut self.question, reader.word()?),
             "length" => once(&mut self.length, reader.number()?),
             "solver" => once(&mut self.solver, reader.word()?),
@@ -234,18 +237,19 @@ mod tests {
         r#"{"id": "q0", "moving": {"mesh": "a.off"}, "fixed": {"mesh": "b.off"}, "moving_pose": {"translation": [0.25942905256569254, -1.5e-3, 6], "rotation": [0.5, 0.5, -0.5, 0.5]}, "direction": [0.034274851448885826, -0, -1]}"#,
         r#"{"direction":[1E5,0.10,1e+2],"query":"clearance","solver":"cta","graze_tolerance":0.5,"fixed_pose":{"rotation":[0,0,0,1]},"fixed":{"points":[[0,0,0],[1,1,1]]},"moving":{"solid":"\u00fc}"},"id":17}"#,
         r#" { "id" : null , "moving" : { "mesh" : "}{é" , "scale" : 2 } , "fixed" : { } , "direction" : [ 1 , 2 , 123456789012345678901234567890 ] } "#,
-        r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"direction":[0.1,2.2250738585072011e-308,5e-324],"solver":"portal","query":"contact"}"#,
+        r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"direction":[0.1,2.2250738585072011e-308,5e-324],"solver":"portal","keep":2.5e-1,"query":"contact"}"#,
         r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"query":"within","length":0.125}"#,
     ];
 
     fn bits(query: &Query<'_, impl Sized>) -> String {
-        let Query { moving_pose, fixed_pose, direction, graze_tolerance, length, .. } = query;
+        let Query { moving_pose, fixed_pose, direction, graze_tolerance, length, keep, .. } = query;
         let numbers = [moving_pose, fixed_pose]
             .into_iter()
             .flat_map(|pose| pose.translation.into_iter().chain(pose.rotation))
             .chain(direction.iter().flatten().copied())
             .chain(*graze_tolerance)
-            .chain(*length);
+            .chain(*length)
+            .chain(*keep);
         let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
         let id = query.id.map_or("null", RawValue::get);
         format!("{id} {bits:?} {:?} {:?}", query.question, query.solver)

@@ -231,6 +231,7 @@ impl<B> Query<'_, B> {
             ("direction", self.direction.is_some()),
             ("graze_tolerance", self.graze_tolerance.is_some()),
             ("solver", self.solver.is_some()),
+            ("keep", self.keep.is_some()),
             ("tolerance", self.tolerance.is_some()),
             ("ignore_start_overlaps", self.ignore_start_overlaps.is_some()),
             ("length", self.length.is_some() && self.question != Some(Asked::Within)),
@@ -253,7 +254,8 @@ impl<B> Query<'_, B> {
         }
         let options = Options::default()
             .with_solver(self.solver.unwrap_or_default())
-            .with_graze_tolerance(self.graze_tolerance.unwrap_or_default());
+            .with_graze_tolerance(self.graze_tolerance.unwrap_or_default())
+            .with_keep(self.keep.unwrap_or_default());
         let (moving_at, fixed_at) = (moving.body.at(poses[0]), fixed.body.at(poses[1]));
         let cast = Cast::new(moving_at, fixed_at, direction)
             .and_then(|cast| cast.with_options(options))
@@ -292,6 +294,7 @@ impl<B> Query<'_, B> {
             direction,
             tolerance: self.tolerance,
             ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
+            keep: self.keep.unwrap_or_default(),
         };
         let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
         let bodies = [question.moving, question.fixed];

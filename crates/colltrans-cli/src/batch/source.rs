@@ -27,6 +27,7 @@ pub(super) struct Query<'a, Body> {
     pub(super) solver: Option<Solver>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
+    pub(super) keep: Option<f64>,
 }
 
 /// What is asked, by its name.

@@ -51,6 +51,7 @@ fn parts(
         direction,
         tolerance: arguments.tolerance,
         ignore_start_overlaps: arguments.ignore_start_overlaps,
+        keep: arguments.pair.keep,
     };
     match request.directions {
         Directions::One(direction) => answer_one(&arguments.pair, &question(direction)),

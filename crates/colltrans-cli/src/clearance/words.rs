@@ -4,7 +4,7 @@ use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeaturesRecord, Record, StartOverlapRecord};
 
 use crate::numbers::{decade, known_vector, number, unit_vector};
-use crate::report::{feature, line, safely, times};
+use crate::report::{feature, kept, line, safely, times};
 use crate::solid::Answer;
 use crate::terminal::shown;
 
@@ -55,6 +55,7 @@ pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> Str
         (false, false) => "as asked: both bodies are shrunk by half of it",
     };
     line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
+    kept(&mut text, record);
     text
 }
 

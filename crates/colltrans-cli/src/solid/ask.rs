@@ -24,6 +24,8 @@ pub(crate) struct PartsQuery<'a> {
     /// `None` for what the files' precision asks for.
     pub(crate) tolerance: Option<f64>,
     pub(crate) ignore_start_overlaps: bool,
+    /// The gap to be kept, or 0.
+    pub(crate) keep: f64,
 }
 
 /// What can be said.
@@ -89,7 +91,7 @@ impl PartsQuery<'_> {
         let start =
             if self.ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
         let (moving, fixed) = (moving.at(self.moving_pose), fixed.at(self.fixed_pose));
-        between(moving, fixed, self.direction, precisions, tolerance, start)
+        between(moving, fixed, self.direction, precisions, tolerance, start)?.keeping(self.keep)
     }
 
     /// All pairs of files, because bodies overlap exactly where pieces of them do.

@@ -63,6 +63,7 @@ impl<'a> PartsPair<'a> {
             direction: DVec3::Z,
             tolerance: Some(0.0),
             ignore_start_overlaps: false,
+            keep: 0.0,
         }
     }
 }

@@ -6,6 +6,7 @@ mod cast;
 mod clearance;
 mod distance;
 mod example_parts;
+mod keep;
 mod newcomers;
 mod picture;
 mod proof;

@@ -291,8 +291,9 @@ impl Certificate {
         self.upper - self.lower
     }
 
-    /// The checks of [`Cast::verify`](crate::Cast::verify), and the gap proven.
-    pub(crate) fn verify(&self, setting: &Setting) -> Result<f64, CertificateError> {
+    /// The checks of [`Cast::verify`](crate::Cast::verify) of bodies that are to keep a gap, or none, and how far the
+    /// bounds are apart that are proven.
+    pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
         let normal = self.normal;
         let steepness = normal.dot(setting.direction);
         let unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
@@ -302,10 +303,18 @@ impl Certificate {
         if self.lower > self.upper {
             return Err(CertificateError::Order { lower: self.lower, upper: self.upper });
         }
-        let noise = setting.noise();
-        let upper = self.proven_upper(setting)? + noise.above_mean() / steepness;
-        let lower = proven_lower(setting, normal)?;
-        let derived = derived_rounding(setting, normal);
+        let noise = Noise::of(setting.scale() + keep);
+        let claims_none = self.upper == f64::INFINITY;
+        let is_kept = keep > 0.0 && (claims_none || !noise.is_slight(keep));
+        let upper = if is_kept {
+            self.near_enough(setting, keep, noise)?
+        } else {
+            self.proven_upper(setting)? + noise.above_mean() / steepness
+        };
+        let lower = proven_lower(setting, normal, keep)?;
+        // Of a slight gap the bounds are those of the bodies as they are, apart by the gap more.
+        let slight = if noise.is_slight(keep) { 2.0 * keep / steepness } else { 0.0 };
+        let derived = derived_rounding(setting, normal, noise) + slight;
         if self.lower.is_nan() || self.lower > lower {
             return Err(CertificateError::Bound { proven: lower, claimed: self.lower });
         }
@@ -318,8 +327,41 @@ impl Certificate {
         Ok(upper - lower)
     }
 
+    /// The upper bound, if the witness points are as near there as a gap; infinite, it claims nothing.
+    fn near_enough(
+        &self,
+        setting: &Setting,
+        keep: f64,
+        noise: Noise,
+    ) -> Result<f64, CertificateError> {
+        let mean = self.mean(setting)?;
+        let residual = (mean - setting.direction * self.upper).length() + noise.mean_kept();
+        // An infinite one is no distance.
+        if self.upper == f64::INFINITY || residual <= keep {
+            Ok(self.upper)
+        } else {
+            Err(CertificateError::Residual { residual, tolerance: keep })
+        }
+    }
+
     /// The estimate of the upper bound that the witness pairs prove.
     fn proven_upper(&self, setting: &Setting) -> Result<f64, CertificateError> {
+        let mean = self.mean(setting)?;
+        let upper = mean.dot(setting.unit) / setting.length;
+        let residual = (mean - setting.direction * upper).length();
+        let noise = setting.noise();
+        // Bodies that were widened sideways may miss by that, and claim no upper bound.
+        let tolerance =
+            if self.upper == f64::INFINITY { noise.residual_widened() } else { noise.residual() };
+        if residual <= tolerance {
+            Ok(upper)
+        } else {
+            Err(CertificateError::Residual { residual, tolerance })
+        }
+    }
+
+    /// The point of `M` that the weights make of the pairs.
+    fn mean(&self, setting: &Setting) -> Result<DVec3, CertificateError> {
         let weights = self.weights;
         if !are_weights(&weights) {
             return Err(CertificateError::Weights { weights });
@@ -335,35 +377,33 @@ impl Certificate {
             }
             mean += setting.terms(vertices).point() * (weight / sum);
         }
-        let upper = mean.dot(setting.unit) / setting.length;
-        let residual = (mean - setting.direction * upper).length();
-        let noise = setting.noise();
-        // Bodies that were widened sideways may miss by that, and claim no upper bound.
-        let tolerance =
-            if self.upper == f64::INFINITY { noise.residual_widened() } else { noise.residual() };
-        if residual <= tolerance {
-            Ok(upper)
-        } else {
-            Err(CertificateError::Residual { residual, tolerance })
-        }
+        Ok(mean)
     }
 }
 
-/// The lower bound of the translation that the plane with this normal proves.
-fn proven_lower(setting: &Setting, normal: DVec3) -> Result<f64, CertificateError> {
+/// The lower bound of the translation that the plane with this normal proves, of bodies that keep a gap.
+fn proven_lower(setting: &Setting, normal: DVec3, keep: f64) -> Result<f64, CertificateError> {
     let [least, most] = extent::dot(normal, setting.direction);
     if least <= 0.0 {
         return Err(CertificateError::Normal { normal });
     }
-    let distance = setting.distance_along(normal);
+    let distance = left_of(setting.distance_along(normal), normal, keep);
     // Rounded down, whichever sign.
     Ok((distance / if distance < 0.0 { least } else { most }).next_down())
 }
 
+/// At most what a height along a normal is more than a gap at right angles.
+fn left_of(height: f64, normal: DVec3, keep: f64) -> f64 {
+    if keep == 0.0 {
+        return height;
+    }
+    let [_, square] = extent::dot(normal, normal);
+    (height - (keep * square.sqrt().next_up()).next_up()).next_down()
+}
+
 /// The largest rounding that a certificate may state: what it says of it proves nothing, so it is
 /// derived anew, from other support points, which may let the bodies reach twice as far beyond.
-fn derived_rounding(setting: &Setting, normal: DVec3) -> f64 {
-    let noise = setting.noise();
+fn derived_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
     let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
     let found = VertexPair {
         moving: setting.moving.support(normals[0]),
@@ -376,17 +416,19 @@ fn derived_rounding(setting: &Setting, normal: DVec3) -> f64 {
 }
 
 impl Separation {
-    /// The checks of [`Cast::verify`](crate::Cast::verify), and the margin proven.
-    pub(crate) fn verify(&self, setting: &Setting) -> Result<f64, CertificateError> {
+    /// The checks of [`Cast::verify`](crate::Cast::verify) of bodies that are to keep a gap, or none, and the margin
+    /// proven.
+    pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
         let normal = self.normal;
         let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
         if !is_unit || normal.dot(setting.unit).abs() > noise::UNIT_VECTOR {
             return Err(CertificateError::Normal { normal });
         }
         // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
-        let closing = normal.dot(setting.unit).abs() * setting.scale();
+        let closing = normal.dot(setting.unit).abs() * (setting.scale() + keep);
         let (proven, claimed) = (setting.distance_along(normal), self.margin);
-        if claimed > 0.0 && claimed <= proven && proven > closing {
+        let is_beyond = |margin| left_of(margin, normal, keep) > 0.0;
+        if is_beyond(claimed) && claimed <= proven && left_of(proven, normal, keep) > closing {
             Ok(proven)
         } else {
             Err(CertificateError::Bound { proven, claimed })

@@ -6,6 +6,7 @@ use super::Cast;
 use crate::answer::Contact;
 use crate::body::error::PoseError;
 use crate::body::{Features, Pose, feature};
+use crate::number::noise::Noise;
 
 /// A contact point on each body, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +45,7 @@ impl Contact {
     /// If `cast` is about other bodies, which lack the vertices of the certificate.
     pub fn features(&self, cast: &Cast) -> Features {
         let setting = &cast.setting;
-        let noise = setting.noise().point();
+        let noise = Noise::of(setting.scale() + cast.options.keep).point();
         let outward = [setting.moving_normal(self.normal), -setting.fixed_normal(self.normal)];
         let [p, q] = self.support.numbers();
         Features {

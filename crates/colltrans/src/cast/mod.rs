@@ -174,6 +174,44 @@ impl Cast<'_> {
         self.with_options(self.options.with_graze_tolerance(tolerance))
     }
 
+    /// With a gap to be kept, in world units: all questions are about how far the bodies are then *as near as the
+    /// gap*, not about when they touch (a shape cast with a target distance, or a skin).
+    ///
+    /// [`Self::first_contact`] is the first translation at which the distance of the bodies is the gap,
+    /// [`Self::clearance`] how far one may move before it is, [`Self::intersects`] whether it is no more than the gap now,
+    /// and bodies that are nearer at the start are [`Clearance::Overlapping`]. Answers are certified as ever: a
+    /// contact's plane stays the gap away from the fixed body up to `lower`, its points are as near as the gap at `upper`;
+    /// of [`Separated`](crate::Separated) bodies the margin is more than the gap; bodies whose shadows come as
+    /// near as the gap to within the graze tolerance are [`Outcome::Grazing`]. Witness points are those that are
+    /// the gap apart. A gap of 0 is none. Observers hear nothing of such a search, and the solver makes no difference.
+    ///
+    /// # Errors
+    /// A gap that is negative, not finite or more than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, WhyFree};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+    /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?.keeping(0.25)?;
+    /// let Outcome::Contact(contact) = cast.first_contact()? else {
+    ///     unreachable!("half of the cube is in the way")
+    /// };
+    /// assert!((contact.translation - 1.75).abs() < 1e-15);
+    /// let proof = contact.certificate;
+    /// assert!(proof.lower <= 1.75 && 1.75 <= proof.upper && cast.verify(&proof)? < 1e-13);
+    /// // Half a unit aside is near enough for a gap of 0.6, not for one of 0.4.
+    /// let aside = Pose::from_translation(DVec3::new(-3.0, 1.5, 0.0))?;
+    /// let aside = Cast::new(cube.at(aside), cube.at(Pose::IDENTITY), DVec3::X)?;
+    /// let near = aside.keeping(0.6)?.clearance()?.distance().expect("they are apart");
+    /// assert!((near - (2.0 - 0.11_f64.sqrt())).abs() < 1e-13);
+    /// assert!(matches!(aside.keeping(0.4)?.clearance()?, Clearance::Free(WhyFree::Separated(_))));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
+        self.with_options(self.options.with_keep(gap))
+    }
+
     /// With a solver. The answer, its certificate and its accuracy are the same.
     #[must_use]
     pub fn with_solver(self, solver: Solver) -> Self {
@@ -353,8 +391,8 @@ impl Cast<'_> {
     /// ```
     pub fn verify<'p>(&self, proof: impl Into<Proof<'p>>) -> Result<f64, CertificateError> {
         match proof.into() {
-            Proof::Contact(certificate) => certificate.verify(&self.setting),
-            Proof::Separation(separation) => separation.verify(&self.setting),
+            Proof::Contact(certificate) => certificate.verify(&self.setting, self.options.keep),
+            Proof::Separation(separation) => separation.verify(&self.setting, self.options.keep),
         }
     }
 }

@@ -11,7 +11,9 @@ use crate::number::noise;
 pub(crate) fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
     let setting = &cast.setting;
     let gap = setting.distance_along(normal);
-    (normal.dot(setting.unit).abs() * setting.scale() - gap).next_up()
+    let keep = cast.options().keep;
+    let overlap = (normal.dot(setting.unit).abs() * (setting.scale() + keep) - gap).next_up();
+    if keep > 0.0 { (overlap + keep).next_up() } else { overlap }
 }
 
 /// The same along a normal that is claimed to be a unit vector, orthogonal to the direction.

@@ -97,6 +97,12 @@ const RESIDUAL: f64 = 3.0;
 /// of that is demanded if the points are computed nearly without rounding.
 const MEAN: [f64; 2] = [1.5, 0.375];
 
+/// What of a gap to be kept is not claimed where points are computed nearly without rounding, in noises.
+const KEPT: f64 = 0.5;
+
+/// A gap to be kept of no more noises leaves rounding no room.
+const SLIGHT: f64 = 8.0;
+
 /// By how many noises a height in the setting frame is lowered to be a lower bound, and what of that is
 /// demanded if the points are computed nearly without rounding.
 const HEIGHT: [f64; 2] = [0.75, 0.25];
@@ -194,6 +200,17 @@ impl Noise {
     /// The same for points that are computed nearly without rounding.
     pub(crate) fn mean_checked(self) -> f64 {
         MEAN[1] * self.0
+    }
+
+    /// Whether a gap to be kept, that the size has been made larger by, leaves no room for points that are so near for
+    /// certain.
+    pub(crate) fn is_slight(self, keep: f64) -> bool {
+        keep <= SLIGHT * self.0
+    }
+
+    /// The same for points that are as near as a gap, after a translation.
+    pub(crate) fn mean_kept(self) -> f64 {
+        KEPT * self.0
     }
 
     /// By how much the height of a point of `M` has to be lowered to be a lower bound.

@@ -313,7 +313,7 @@ impl<'a> Pair<'a, Solid> {
 
     fn scene(&self) -> Result<Scene<'a>, QueryError> {
         let setting = Setting::of(self.bodies, DVec3::Z)?;
-        Ok(Scene::new(&setting, [0.0; 2]))
+        Ok(Scene::new(&setting, [0.0; 2], 0.0))
     }
 
     fn search(&self, scene: &Scene, until: Until, prove: bool) -> Said {

@@ -25,6 +25,12 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
+    /// The gap that is to be kept is negative, not finite or larger than a coordinate may be.
+    #[error("the gap {gap} to be kept is negative, not finite or larger than 2^200")]
+    Keep {
+        /// The gap as given.
+        gap: f64,
+    },
     /// The length that a distance is compared with is negative or not a number.
     #[error("the length {length} is negative or not a number")]
     Length {

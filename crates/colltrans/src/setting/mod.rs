@@ -11,7 +11,7 @@ use std::ops::Deref;
 use glam::DVec3;
 
 use crate::body::{ConvexPolyhedron, Placed, VertexId};
-use crate::number::range::in_exact_range;
+use crate::number::range::{MAX_MAGNITUDE, in_exact_range};
 use crate::setting::error::QueryError;
 pub(crate) use two_bodies::TwoBodies;
 
@@ -55,6 +55,13 @@ pub(crate) fn check_length(length: f64) -> Result<(), QueryError> {
         return Err(QueryError::Length { length });
     }
     Ok(())
+}
+
+/// # Errors
+/// A gap that is negative, not finite or beyond the range of coordinates.
+#[inline]
+pub(crate) fn check_keep(gap: f64) -> Result<(), QueryError> {
+    if (0.0..=MAX_MAGNITUDE).contains(&gap) { Ok(()) } else { Err(QueryError::Keep { gap }) }
 }
 
 /// Two placed bodies and a direction.

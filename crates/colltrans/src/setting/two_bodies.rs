@@ -8,10 +8,11 @@ use derive_where::derive_where;
 use glam::{DMat3, DVec3};
 
 use crate::body::{ConvexPolyhedron, Placed, Pose};
-use crate::number::error_free::difference_error;
+use crate::number::error_free::{difference_error, sum_error};
 use crate::number::extent;
 use crate::number::noise::Noise;
 use crate::number::orientation::Terms;
+use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::VertexPair;
 
 /// Two placed bodies.
@@ -65,6 +66,20 @@ impl<'a, B> TwoBodies<'a, B> {
     pub(crate) fn fixed_placed(&self) -> Placed<'a, B> {
         let pose = Pose::checked(self.fixed_matrix, self.translations[1]);
         Placed { body: self.fixed, pose }
+    }
+
+    /// The same with the moving body moved by so much: to hardly more than the last digit of the error.
+    pub(crate) fn moved_by(&self, by: DVec3) -> Self {
+        let [mut offset, mut error] = [self.offset, self.offset_error];
+        for k in 0..3 {
+            let low = error[k] + difference_error(offset[k], by[k]);
+            let high = offset[k] - by[k];
+            offset[k] = high + low;
+            let lost = sum_error(high, low, offset[k]);
+            // What is beyond the exact range is nothing beside the rounding of `by`.
+            error[k] = if lost.abs() < MIN_MAGNITUDE { 0.0 } else { lost };
+        }
+        Self { offset, offset_error: error, ..*self }
     }
 
     /// `t_Q - t_P`, and what rounding took from it.

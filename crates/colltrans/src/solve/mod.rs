@@ -11,6 +11,7 @@
 //! ([`Plane::at`], which is also the proof), and a support point is searched only if it does not.
 
 pub(crate) mod cta;
+pub(crate) mod keep;
 pub(crate) mod nearest;
 pub mod observe;
 pub(crate) mod options;
@@ -22,6 +23,7 @@ mod warm_start;
 use glam::DVec2;
 
 use crate::answer::{Grazing, Outcome, Separated, Separation, Solver, StartedFrom};
+use crate::number::noise::Noise;
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
@@ -51,6 +53,9 @@ pub(crate) fn search<O: Observer>(
         solver => solver,
     };
     *next = WarmStart::Nothing;
+    if options.keep != 0.0 {
+        return kept(setting, options, focus, last, next, observer);
+    }
     let mut first = Run {
         context: Context {
             difference: MinkowskiDifference::new(setting),
@@ -71,6 +76,27 @@ pub(crate) fn search<O: Observer>(
         answer = again(&mut first, turns, next);
     }
     answer
+}
+
+/// The same of bodies that are to keep a gap.
+#[cold]
+fn kept<O: Observer>(
+    setting: &Setting,
+    options: &Options,
+    focus: &Focus,
+    last: &WarmStart,
+    next: &mut WarmStart,
+    observer: &mut O,
+) -> Result<Outcome, QueryError> {
+    if Noise::of(setting.scale() + options.keep).is_slight(options.keep) {
+        let touching = Options { keep: 0.0, ..*options };
+        let outcome = search(setting, &touching, focus, last, next, observer)?;
+        if let Some(outcome) = keep::convex::slightly_apart(setting, options.keep, outcome) {
+            return Ok(outcome);
+        }
+    }
+    let last = if focus.features { *last } else { WarmStart::Nothing };
+    keep::convex::search(setting, options, &last, next)
 }
 
 /// Tries turns of the lateral axes from scratch until there is an answer.
@@ -212,7 +238,7 @@ impl<O: Observer> Run<'_, '_, O> {
     /// Feature focus: a portal, or a separating direction, from those of the last answer.
     fn follow(&mut self, last: &WarmStart) -> Option<Enclosure> {
         match last {
-            WarmStart::Nothing => None,
+            WarmStart::Nothing | WarmStart::Kept { .. } => None,
             WarmStart::Contact(portal) => match portal::follow(&mut self.context, portal) {
                 Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
                 Followed::Rim { outward, near } => self.beside(-outward, near),
@@ -342,7 +368,7 @@ impl<O: Observer> Run<'_, '_, O> {
     fn region(&self, region: Region, last: &WarmStart) -> Option<RegionFocus> {
         let setting = self.context.difference.setting;
         let (touching, normals, pair) = match last {
-            WarmStart::Nothing => return None,
+            WarmStart::Nothing | WarmStart::Kept { .. } => return None,
             WarmStart::Contact(portal) => {
                 let touching = setting.weighted(&portal.pairs, &portal.weights);
                 (touching, portal.normals, portal.pairs[0])
@@ -495,7 +521,7 @@ impl<O: Observer> Run<'_, '_, O> {
     #[inline]
     fn others_agree(&self, certificate: &Separation) -> bool {
         certificate.margin > 2.0 * self.context.difference.noise.touching()
-            || certificate.verify(self.context.difference.setting).is_ok()
+            || certificate.verify(self.context.difference.setting, 0.0).is_ok()
     }
 }
 

@@ -4,6 +4,7 @@ use crate::answer::{
     CentralCast, Contact, Grazing, NearPoints, OverlapAhead, PlaneGap, Separated, Solver, WhyFree,
 };
 use crate::body::{Body, ConvexPolyhedron};
+use crate::setting::check_keep;
 use crate::setting::error::QueryError;
 
 /// Choices of a query; the default is right for most. More may be added: begin with it.
@@ -30,6 +31,9 @@ pub struct Options {
     pub graze_tolerance: f64,
     /// How [`Solver::Cta`] narrows the search; of no effect on the others.
     pub narrowing: Narrowing,
+    /// How near to each other the bodies may come (world units): see
+    /// [`Cast::keeping`](crate::Cast::keeping). `0`, the default: until they touch.
+    pub keep: f64,
 }
 
 impl Body for ConvexPolyhedron {
@@ -63,6 +67,12 @@ impl Options {
         Self { narrowing, ..self }
     }
 
+    /// With a gap to be kept, a length. It is checked where it is used.
+    #[must_use]
+    pub const fn with_keep(self, keep: f64) -> Self {
+        Self { keep, ..self }
+    }
+
     #[inline]
     pub(crate) fn check(&self) -> Result<(), QueryError> {
         let tolerance = self.graze_tolerance;
@@ -73,7 +83,7 @@ impl Options {
         if gap.is_nan() || gap < 0.0 {
             return Err(QueryError::NarrowingGap { gap });
         }
-        Ok(())
+        check_keep(self.keep)
     }
 }
 
@@ -202,13 +212,15 @@ pub(crate) struct OptionsRecord {
     narrowing_gap: f64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     keeps_to_cell: bool,
+    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    keep: f64,
 }
 
 #[cfg(feature = "serde")]
 impl From<Options> for OptionsRecord {
-    fn from(Options { solver, graze_tolerance, narrowing }: Options) -> Self {
+    fn from(Options { solver, graze_tolerance, narrowing, keep }: Options) -> Self {
         let Narrowing { start: narrow_from, gap: narrowing_gap, keeps_to_cell } = narrowing;
-        Self { solver, graze_tolerance, narrow_from, narrowing_gap, keeps_to_cell }
+        Self { solver, graze_tolerance, narrow_from, narrowing_gap, keeps_to_cell, keep }
     }
 }
 
@@ -217,10 +229,10 @@ impl TryFrom<OptionsRecord> for Options {
     type Error = QueryError;
 
     fn try_from(record: OptionsRecord) -> Result<Self, QueryError> {
-        let OptionsRecord { solver, graze_tolerance, narrow_from, narrowing_gap, keeps_to_cell } =
-            record;
+        let OptionsRecord { solver, graze_tolerance, keep, .. } = record;
+        let OptionsRecord { narrow_from, narrowing_gap, keeps_to_cell, .. } = record;
         let narrowing = Narrowing { start: narrow_from, gap: narrowing_gap, keeps_to_cell };
-        let options = Self { solver, graze_tolerance, narrowing };
+        let options = Self { solver, graze_tolerance, narrowing, keep };
         options.check()?;
         Ok(options)
     }

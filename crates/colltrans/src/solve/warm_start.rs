@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::setting::VertexPair;
+use crate::solve::nearest::NearestPairs;
 use crate::solve::portal::ContactPortal;
 
 /// Where the next cast may start.
@@ -19,5 +20,12 @@ pub(crate) enum WarmStart {
         normals: [DVec3; 2],
         /// A pair of vertices extreme along it.
         pair: VertexPair,
+    },
+    /// They were to keep a gap.
+    Kept {
+        /// Of the plane that bounded the way.
+        normal: DVec3,
+        /// Where they were nearest.
+        pairs: NearestPairs,
     },
 }

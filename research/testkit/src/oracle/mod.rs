@@ -6,7 +6,7 @@
 //! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
-//! body among many by [`among`].
+//! body among many by [`among`], casts that keep a gap by [`keep`].
 
 pub mod among;
 pub mod check;
@@ -14,6 +14,7 @@ pub mod distance;
 pub mod exact;
 pub mod fuzz;
 pub mod input;
+pub mod keep;
 pub mod nearest;
 pub mod scene;
 pub mod sequences;

@@ -17,6 +17,7 @@ use crate::answer::{
 };
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Body, Placed, Pose};
+use crate::setting::check_keep;
 use crate::setting::error::QueryError;
 use crate::solve::solid::contact::{SolidContact, contact, true_place};
 use crate::solve::solid::nearest::{SolidGap, SolidNear};
@@ -67,6 +68,10 @@ pub struct SolidOptions {
     /// bodies, poses and tolerance. Whoever asks one pair along many directions asks once. `None`:
     /// it is looked at, as is an overlap that is the answer, to be named.
     pub overlapping: Option<bool>,
+    /// How near to each other the bodies may come (world units): see
+    /// [`Cast::keeping`](crate::Cast#method.keeping-1). `0`, the default: until they touch.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::written::is_zero"))]
+    pub keep: f64,
 }
 
 impl SolidOptions {
@@ -86,6 +91,12 @@ impl SolidOptions {
     #[must_use]
     pub fn with_before(self, before: impl Into<Option<f64>>) -> Self {
         Self { before: before.into(), ..self }
+    }
+
+    /// With a gap to be kept, a length. It is checked where it is used.
+    #[must_use]
+    pub const fn with_keep(self, keep: f64) -> Self {
+        Self { keep, ..self }
     }
 
     /// With what is known of an overlap at the start.
@@ -190,9 +201,10 @@ impl<'a> Cast<'a, Solid> {
     /// The same with other choices.
     ///
     /// # Errors
-    /// A tolerance that is negative or not finite, or so large that nothing is left of a closed body
+    /// A tolerance, or a gap to be kept, that is negative or not finite, or a tolerance so large that nothing is left of a closed body
     /// ([`QueryError::NothingLeft`]).
     pub fn with_options(self, options: SolidOptions) -> Result<Self, QueryError> {
+        check_keep(options.keep)?;
         if let Some(tolerance) = options.tolerance {
             if !(tolerance.is_finite() && tolerance >= 0.0) {
                 return Err(QueryError::Tolerance { tolerance });
@@ -229,6 +241,37 @@ impl<'a> Cast<'a, Solid> {
         self.with_options(self.options.with_tolerance(tolerance))
     }
 
+    /// The same with a gap to be kept, in world units, as [`Cast::keeping`](crate::Cast#method.keeping) of convex bodies:
+    /// all questions are then about how far the bodies, shrunk by half the tolerance where that counts, are *as near as
+    /// the gap*, and bodies that start nearer are [`Clearance::Overlapping`], around two facets that are.
+    ///
+    /// Up to `lower` no two facets come nearer than the gap, but for those that pass each other, or start, at
+    /// the gap to within eight noises of the size with the gap (`256 u S`), which do not block; at `upper` two are as
+    /// near. [`Self::least_tolerance`] is that with which the bodies are not nearer. A gap of no more than
+    /// eight noises is none. Proofs are as without a gap.
+    ///
+    /// # Errors
+    /// A gap that is negative, not finite or more than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE); as
+    /// [`Self::with_options`].
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+    /// let cast = Cast::between(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+    /// let (clearance, proof) = cast.keeping(0.25)?.certified_clearance()?;
+    /// let distance = clearance.distance().expect("they are apart");
+    /// assert!(distance <= 1.75 && distance > 1.75 - 1e-12);
+    /// assert!(cast.keeping(0.25)?.verify(&proof)? < 1e-12);
+    /// assert!(matches!(cast.keeping(2.5)?.clearance()?, Clearance::Overlapping(_)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
+        self.with_options(self.options.with_keep(gap))
+    }
+
     /// The same with another meaning of an overlap at the start.
     #[must_use]
     pub fn with_start_overlap(self, start_overlap: StartOverlap) -> Self {
@@ -245,7 +288,7 @@ impl<'a> Cast<'a, Solid> {
     }
 
     pub(crate) fn scene(&self, tolerance: f64) -> Scene<'a> {
-        Scene::new(&self.setting, [tolerance / 2.0; 2])
+        Scene::new(&self.setting, [tolerance / 2.0; 2], self.options.keep)
     }
 
     pub(crate) fn asked(&self) -> Scene<'a> {

@@ -17,7 +17,7 @@ use crate::body::solid::Solid;
 use crate::cast::Cast;
 use crate::setting::error::QueryError;
 use crate::solve::solid::bound::{Profile, Reason, holds};
-use crate::solve::solid::leaf::{self, Facet, Gap};
+use crate::solve::solid::leaf::{self, Facet, Gap, Meeting};
 use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::projected::Projected;
 use crate::solve::solid::rim::{self, Upright};
@@ -318,7 +318,7 @@ pub(crate) fn least_of_leaves(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f
             let end = limit + leaf::SHARP * scene.noise;
             let gap = leaf::gap(scene, f, g, end, aim.wanted());
             let sharp = |gap: Gap| {
-                let blunt = gap.error > leaf::FINE * scene.noise;
+                let blunt = gap.error > leaf::FINE * scene.noise && gap.at != Meeting::Near;
                 if blunt { leaf::sharpened(scene, f, g) } else { gap }
             };
             let value = gap.map(sharp);

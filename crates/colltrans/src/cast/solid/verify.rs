@@ -75,9 +75,10 @@ impl Cast<'_, Solid> {
             let unproven = CertificateError::Bound { proven, claimed };
             return if reached { Ok(0.0) } else { Err(unproven) };
         };
-        verify_stop(&scene, aim, stop)?;
+        let error = verify_stop(&scene, aim, stop)?;
         let gap = stop.shrunk_distance - *lower;
-        let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.noise / scene.setting.length;
+        let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.noise + 2.0 * error;
+        let tolerance = tolerance / scene.setting.length;
         if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
             Ok(gap.max(0.0))
         } else {
@@ -107,7 +108,8 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
         Reason::Disjoint if nodes == [0, 0] && whole => true,
         Reason::Disjoint => apart(scene, &projected(true, nodes[0]), &projected(false, nodes[1])),
         Reason::FaceToFace => {
-            projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
+            scene.keep == 0.0
+                && projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
         }
         Reason::Examined => {
             let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
@@ -146,8 +148,9 @@ fn verify_cover(
     walked.map_err(|entry| CertificateError::Cover { entry })
 }
 
-/// Checks that two facets stop the body where it is said.
-fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), CertificateError> {
+/// Checks that two facets stop the body where it is said; how far off their gap may be, as a length, where they are
+/// to keep one.
+fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<f64, CertificateError> {
     let [s, t] = stop.triangles;
     let refused = CertificateError::triangles(stop.triangles);
     let within = |side: bool, k: u32| (k as usize) < scene.side(side).solid.triangles().len();
@@ -158,7 +161,7 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<(), Certific
     let proven = aim.clamp(least) / scene.setting.length;
     let tolerance = (error + leaf::FINE * scene.noise) / scene.setting.length;
     if (stop.shrunk_distance - proven).abs() <= tolerance {
-        Ok(())
+        Ok(if scene.keep > 0.0 { error } else { 0.0 })
     } else {
         Err(CertificateError::Bound { proven, claimed: stop.shrunk_distance })
     }

@@ -89,7 +89,7 @@ impl<'a> Difference<'a> {
 }
 
 /// Up to three pairs of vertices to begin a descent with: those that the last one ended with.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct NearestPairs {
     pairs: [VertexPair; 3],
     count: usize,
@@ -297,6 +297,21 @@ impl Found {
         let gap = planes.max_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|plane| plane.gap > 0.0)?;
         let lowest = difference.lowest(gap.normal, self.lowest).pair;
         Some(Plane { gap, lowest, beyond: 0.0 })
+    }
+
+    /// How far the point and the plane are apart, as computed.
+    pub(crate) fn gap(&self) -> f64 {
+        self.upper - self.lower.max(0.0)
+    }
+
+    /// The point, by up to three pairs and their weights.
+    pub(crate) fn points(&self) -> ([VertexPair; 3], [f64; 3]) {
+        let mut points = ([self.pairs[0]; 3], [0.0; 3]);
+        let weighted = self.pairs.iter().zip(self.weights).filter(|(_, weight)| *weight > 0.0);
+        for (k, (pair, weight)) in weighted.take(3).enumerate() {
+            (points.0[k], points.1[k]) = (*pair, weight);
+        }
+        points
     }
 
     /// The points, with what they prove.

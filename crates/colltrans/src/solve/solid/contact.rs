@@ -31,9 +31,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::keep::nearest_after;
 use super::leaf::{self, Gap, Meeting, listed};
 use super::rim;
-use super::scene::{Scene, Side};
+use super::scene::{Corner, Scene, Side};
 use super::search::{Aim, Found, exact_gap};
 use crate::answer::{Bounded, SolidSteps};
 use crate::body::Feature;
@@ -170,6 +171,11 @@ pub(crate) fn contact(
             let side = [p[k as usize], p[(k as usize + 1) % 3]];
             (along(k as usize, share(side, q[j as usize])), corner(j), upright(side))
         }
+        Meeting::Near => {
+            let corners = [&of_f, &of_g].map(|of| of.corners);
+            let (weights, normal) = nearest_after(scene, &corners[0], &corners[1], found.gap);
+            (weights[0], weights[1], scene.frame * normal)
+        }
     };
     let on_f = Foot { vertices: of_f.vertices, weights: on_f };
     let on_g = Foot { vertices: of_g.vertices, weights: on_g };
@@ -212,6 +218,9 @@ pub(crate) fn true_place(
         let place = bounded(bare, gap, gap.0);
         Bounded { lower: place.lower.min(shrunk.lower), ..place }
     };
+    if bare.keep > 0.0 {
+        return leaf::gap_of(bare, pair).map_or(shrunk, known);
+    }
     let exact = leaf::gap_of(bare, pair).or_else(|| rim::least_gap_of(bare, &Gap::counts, pair));
     if let Some(gap) = exact {
         return known(gap);
@@ -244,6 +253,7 @@ fn plane([a, b, c]: [DVec3; 3]) -> DVec3 {
 struct Listed {
     triangle: u32,
     vertices: [u32; 3],
+    corners: [Corner; 3],
     places: [DVec3; 3],
     /// Which way its shadow runs as the body has it.
     turn: Ordering,
@@ -256,7 +266,7 @@ impl Listed {
         if turn == Ordering::Less {
             vertices.swap(1, 2);
         }
-        Self { triangle, vertices, places: corners.map(|c| c.at), turn }
+        Self { triangle, vertices, corners, places: corners.map(|c| c.at), turn }
     }
 
     /// Whether corner `k` lies within the face, and the face is not on edge.

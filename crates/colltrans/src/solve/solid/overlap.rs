@@ -20,11 +20,15 @@
 //! What lies flat on something (2) does not overlap it.
 //!
 //! Nodes whose boxes or slabs are apart are cut; what touches is looked at in exact arithmetic.
+//!
+//! Of bodies that are to keep a gap all this is asked of how near to each other two facets are: nearer than the gap for
+//! certain, as computed with its error.
 
 use std::cmp::Ordering;
 
 use super::bound::{Reason, apart, beyond};
 use super::inside;
+use super::keep::Facets;
 use super::projected::Projected;
 use super::scene::{Corner, Scene, Side};
 use super::search::{children, splits_moving};
@@ -63,7 +67,7 @@ pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> 
         cut(Some(Reason::Disjoint));
         return None;
     }
-    let facets = descend(scene, [0, 0], &a, &b, Judge::OVERLAP, cut);
+    let facets = descend(scene, [0, 0], &a, &b, Judge::overlap(scene), cut);
     facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested(scene))
 }
 
@@ -89,7 +93,8 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
         Overlap::Facets(f, g) => {
             f < count(&scene.moving) && g < count(&scene.fixed) && {
                 let f = Triangle::new(&scene.moving, f as usize);
-                meet(scene, &f, &Triangle::new(&scene.fixed, g as usize))
+                let g = Triangle::new(&scene.fixed, g as usize);
+                (Judge::overlap(scene).holds)(scene, &f, &g)
             }
         }
         Overlap::MovingInside(t) => t < count(&scene.moving) && inside::is_inside(scene, true, t),
@@ -114,7 +119,7 @@ pub(crate) fn is_touch(scene: &Scene, place: Overlap) -> bool {
 
 /// Whether no two facets of two leaves show an overlap.
 pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
-    leaves(scene, a, b, Judge::OVERLAP).is_none()
+    leaves(scene, a, b, Judge::overlap(scene)).is_none()
 }
 
 /// Where the solids, as closed sets, have a point in common.
@@ -125,7 +130,7 @@ pub(crate) fn touch(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
         count(Some(Reason::Disjoint));
         return None;
     }
-    let facets = descend(scene, [0, 0], &a, &b, Judge::TOUCH, &mut count);
+    let facets = descend(scene, [0, 0], &a, &b, Judge::touch(scene), &mut count);
     facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested(scene))
 }
 
@@ -147,6 +152,18 @@ struct Judge {
 impl Judge {
     const OVERLAP: Self = Self { holds: meet, faces: false };
     const TOUCH: Self = Self { holds: share_a_point, faces: true };
+    const NEARER: Self = Self { holds: are_nearer, faces: true };
+    const AS_NEAR: Self = Self { holds: are_as_near, faces: true };
+
+    /// Whether the bodies overlap, or are nearer than the gap that they are to keep.
+    fn overlap(scene: &Scene) -> Self {
+        if scene.keep > 0.0 { Self::NEARER } else { Self::OVERLAP }
+    }
+
+    /// The same with bodies that touch, or are as near as the gap.
+    fn touch(scene: &Scene) -> Self {
+        if scene.keep > 0.0 { Self::AS_NEAR } else { Self::TOUCH }
+    }
 
     /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show
     /// no overlap: at their edges one half-space of material touches another, or else the wedge's
@@ -239,6 +256,16 @@ fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     }
     (0..3).any(|k| edge_meets(scene, f, k, of_f, g, of_g))
         || (0..3).any(|k| edge_meets(scene, g, k, of_g, f, of_f))
+}
+
+/// Whether two triangles are nearer than the gap to be kept, for certain.
+fn are_nearer(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
+    Facets::new(scene, &f.corners, &g.corners).are_within(scene.keep, false)
+}
+
+/// Whether two triangles are as near, for certain.
+fn are_as_near(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
+    Facets::new(scene, &f.corners, &g.corners).are_within(scene.keep, true)
 }
 
 /// Whether two triangles, as closed sets, have a point in common: if so, an edge of one meets the

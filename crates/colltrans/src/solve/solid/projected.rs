@@ -56,6 +56,14 @@ impl Projected {
         projected.spread += side.defect
             + if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
         projected.bounds = boxed(scene, side, projected.local);
+        if scene.keep > 0.0 {
+            // What is on edge looks neither way.
+            projected.spread += f64::MIN_POSITIVE;
+        }
+        if side.swell > 0.0 {
+            projected.slab = [projected.slab[0] - side.swell, projected.slab[1] + side.swell];
+            projected.bounds = projected.bounds.grown(side.swell + scene.noise);
+        }
         if node.is_open() {
             // What is on edge has a shadow without a width, but counts.
             projected.bounds = projected.bounds.grown(scene.noise);
@@ -92,7 +100,8 @@ impl Projected {
 
     /// The range of the box along an axis of the body, in the query frame.
     pub(crate) fn local_range(&self, side: &Side, k: usize) -> [f64; 2] {
-        let (shift, skew) = (side.view.col(k).dot(side.view_offset), side.skew());
+        let shift = side.view.col(k).dot(side.view_offset);
+        let skew = side.skew() + side.swell;
         [self.local.low[k] + shift - skew, self.local.high[k] + shift + skew]
     }
 
@@ -108,14 +117,16 @@ impl Projected {
         let (mut rest, mut slab) = (m, 0.0);
         if along.abs() > PARALLEL && self.slab[1] < f64::INFINITY {
             rest -= self.axis * along;
-            slab = self.slab[usize::from(along < 0.0)] * along;
+            // As it is: what its body is taken for besides reaches no farther along `m`.
+            let own = self.slab[usize::from(along < 0.0)] + side.swell.copysign(along);
+            slab = own * along;
         }
         let (local, bounds) = (side.view.transpose() * rest, self.local);
         let middle = local.dot(bounds.center()) + rest.dot(side.view_offset);
         let spread = local.abs().dot(bounds.size() * 0.5) + noise;
         let node = &side.solid.nodes()[self.node as usize];
         let gain = Parts::new(-local).gain_of(&node.cuts, node.bounds.size(), side.moved());
-        slab + middle - spread + gain
+        slab + middle - spread + gain - side.swell
     }
 
     /// Whether its slab bounds heights.

@@ -44,10 +44,12 @@ pub(crate) struct Upright {
 
 /// Whether two nodes have facets without a side.
 pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
-    [true, false]
-        .into_iter()
-        .zip(nodes)
-        .any(|(moving, node)| scene.side(moving).solid.nodes()[node as usize].is_open())
+    // To be near, facets on edge are like any others.
+    scene.keep == 0.0
+        && [true, false]
+            .into_iter()
+            .zip(nodes)
+            .any(|(moving, node)| scene.side(moving).solid.nodes()[node as usize].is_open())
 }
 
 /// The least gap of two triangles of which one is an upright facet, the moving body's first, where they
@@ -68,6 +70,9 @@ pub(crate) fn least_gap_of(
 
 /// The gaps of two triangles of which one is an upright facet.
 pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
+    if scene.keep > 0.0 {
+        return;
+    }
     let upright = |moving, t: u32| {
         let open = scene.side(moving).solid.is_open(t as usize);
         open.then(|| Upright::new(scene, moving, t as usize)).flatten()

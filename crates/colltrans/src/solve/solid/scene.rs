@@ -33,6 +33,8 @@ pub(crate) struct Side<'a> {
     pub(crate) moving: bool,
     /// How much it is shrunk.
     pub(crate) amount: f64,
+    /// How much more than itself its nodes are taken for: of the moving body the gap that is to be kept.
+    pub(crate) swell: f64,
     pub(crate) shrinking: Option<&'a Shrinking>,
     /// From the body frame to the setting frame, without the offset.
     pub(crate) matrix: DMat3,
@@ -58,21 +60,34 @@ pub(crate) struct Scene<'a> {
     pub(crate) fixed: Side<'a>,
     /// From the setting frame to the query frame.
     pub(crate) frame: DMat3,
+    /// The gap that the bodies are to keep; 0 where that is one that rounding leaves no room in.
+    pub(crate) keep: f64,
     /// Bound of the rounding error of a coordinate in the query frame.
     pub(crate) noise: f64,
 }
 
 impl<'a> Scene<'a> {
-    /// The moving and the fixed body shrunk by so much.
-    pub(crate) fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2]) -> Self {
+    /// The moving and the fixed body shrunk by so much, which are to keep a gap.
+    pub(crate) fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], keep: f64) -> Self {
         let frame = frame_along(setting.direction / setting.length);
         let at_origin = [DVec3::ZERO; 2];
-        let moving =
+        let mut moving =
             Side::new((setting.moving, moving, true), setting.moving_matrix, at_origin, frame);
         let offset = setting.exact_offset();
         let fixed = Side::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
         let size = moving.reach() + fixed.reach() + setting.offset.length();
-        Self { setting: *setting, moving, fixed, frame, noise: Noise::of(size).point() }
+        let keep = if Noise::of(size + keep).is_slight(keep) { 0.0 } else { keep };
+        // Along axes that a pose stretches, and rounded.
+        let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
+        moving.swell = keep * stretch;
+        let noise = Noise::of(size + keep).point();
+        Self { setting: *setting, moving, fixed, frame, keep, noise }
+    }
+
+    /// A corner in the setting frame.
+    pub(crate) fn place(&self, corner: &Corner) -> DVec3 {
+        let side = self.side(corner.moving);
+        side.matrix * corner.local + side.offset[0]
     }
 
     /// The same with other amounts to shrink by.
@@ -94,7 +109,7 @@ impl<'a> Scene<'a> {
         if moving { &self.moving } else { &self.fixed }
     }
 
-    /// Size `S` of the configuration.
+    /// Size `S` of the configuration, with the gap that is to be kept.
     pub(crate) fn size(&self) -> f64 {
         self.noise / (16.0 * f64::EPSILON)
     }
@@ -117,6 +132,7 @@ impl<'a> Side<'a> {
             solid,
             moving,
             amount,
+            swell: 0.0,
             shrinking: (amount != 0.0).then(|| solid.shrinking()),
             matrix,
             offset,

@@ -75,7 +75,7 @@ pub(crate) struct Found {
 impl Found {
     /// The same with the gap taken exactly, if it is not sharp.
     pub(crate) fn sharpened(self, scene: &Scene, aim: Aim) -> Self {
-        if self.error <= leaf::FINE * scene.noise {
+        if self.at == Meeting::Near || self.error <= leaf::FINE * scene.noise {
             return self;
         }
         let f = Facet::facing(scene, true, self.moving as usize, Ordering::Greater);
@@ -412,7 +412,8 @@ pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64,
     };
     let gap = leaf::gap(scene, &f, &g, f64::INFINITY, aim.wanted())?;
     aim.value(&gap)?;
-    let gap = leaf::sharpened(scene, &f, &g);
+    let is_sharp = gap.at == Meeting::Near;
+    let gap = if is_sharp { gap } else { leaf::sharpened(scene, &f, &g) };
     Some((gap.least, gap.error))
 }
 

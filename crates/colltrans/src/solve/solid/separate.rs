@@ -32,7 +32,7 @@ pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
         let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
         let sides = facing_sides(scene, normal);
         let margin = margin_along(scene, normal, &sides);
-        if margin > 0.0 {
+        if margin > scene.keep {
             return Some(Separation { normal, margin });
         }
         let [p, q] = &sides;
@@ -60,7 +60,7 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
     }
     let proven = margin_along(scene, normal, &facing_sides(scene, normal));
     let claimed = separation.margin;
-    if claimed > 0.0 && claimed <= proven {
+    if claimed > scene.keep && claimed <= proven {
         Ok(proven)
     } else {
         Err(CertificateError::Bound { proven, claimed })

@@ -67,7 +67,7 @@ impl View {
         Self {
             local: [0, 1, 2].map(|axis| local.map(|n| n[axis])),
             offset: all.map(|n| turn * n.dot(side.view_offset)),
-            slack: all.map(|n| 2.0 * noise * n.abs().element_sum()),
+            slack: all.map(|n| 2.0 * noise * n.abs().element_sum() + side.swell * n.length()),
             parts: std::array::from_fn(parts),
             others: AXES[other],
             lines: [LINES[own], LINES[other]],

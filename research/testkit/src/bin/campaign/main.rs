@@ -2,7 +2,8 @@
 //! re-verified in exact arithmetic, and a sample compared with the rational linear programme. Or
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
-//! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many.
+//! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
+//! that keep a gap.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -14,6 +15,8 @@
 //! campaign --bodies N [--seed S] [--only FAMILY]
 //! campaign --distances N [--seed S] [--only FAMILY]
 //! campaign --scenes N [--seed S] [--only FAMILY]
+//! campaign --keeping N [--seed S] [--only FAMILY]
+//! campaign --solid-keeping N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 //! ```
 //! Exit code 1 if anything disagrees.
@@ -21,6 +24,7 @@
 mod bodies;
 mod casts;
 mod distances;
+mod keeping;
 mod scenes;
 mod sequences;
 mod solids;
@@ -42,9 +46,11 @@ struct Arguments {
     sequences: Option<u64>,
     solids: Option<u64>,
     solid_distances: Option<u64>,
+    solid_keeping: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
     scenes: Option<u64>,
+    keeping: Option<u64>,
     lp: u64,
     seed: u64,
     only: Option<String>,
@@ -72,6 +78,9 @@ fn main() -> ExitCode {
     if let Some(count) = arguments.solid_distances {
         return exit_code(solids::distances(count, arguments.seed, arguments.only.as_deref()));
     }
+    if let Some(count) = arguments.solid_keeping {
+        return exit_code(solids::keeping(count, arguments.seed, arguments.only.as_deref()));
+    }
     let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
     exit_code(if let Some(count) = arguments.bodies {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
@@ -79,6 +88,8 @@ fn main() -> ExitCode {
         run(&arguments, &families, count, distances::examine)
     } else if let Some(count) = arguments.scenes {
         run(&arguments, &among::FAMILIES, count, scenes::examine)
+    } else if let Some(count) = arguments.keeping {
+        run(&arguments, &families, count, keeping::examine)
     } else if let Some(queries) = arguments.sequences {
         run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
     } else {
@@ -99,9 +110,11 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         sequences: None,
         solids: None,
         solid_distances: None,
+        solid_keeping: None,
         bodies: None,
         distances: None,
         scenes: None,
+        keeping: None,
         lp: 1_000,
         seed: 1,
         only: None,
@@ -114,6 +127,8 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--sequences" => arguments.sequences = Some(number(&value)?),
             "--solids" => arguments.solids = Some(number(&value)?),
             "--distances" => arguments.distances = Some(number(&value)?),
+            "--keeping" => arguments.keeping = Some(number(&value)?),
+            "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--scenes" => arguments.scenes = Some(number(&value)?),
             "--bodies" => arguments.bodies = Some(number(&value)?),

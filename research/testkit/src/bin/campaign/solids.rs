@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
-use colltrans_testkit::oracle::solids::{Seen, as_solids, nearest, sheets};
+use colltrans_testkit::oracle::solids::{Seen, as_solids, keep, nearest, sheets};
 use rayon::prelude::*;
 
 use super::SHOWN;
@@ -26,6 +26,12 @@ impl Kind for Seen {
 }
 
 impl Kind for nearest::Seen {
+    fn column(self) -> usize {
+        self as usize
+    }
+}
+
+impl Kind for keep::Seen {
     fn column(self) -> usize {
         self as usize
     }
@@ -65,21 +71,36 @@ pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {
 
 /// Examines distances of so many settings, the same number of each family; `true` if nothing disagrees.
 pub(crate) fn distances(count: u64, seed: u64, only: Option<&str>) -> bool {
+    of_meshes(["touching", "inside", "near", "apart"], count, seed, only, |name, seed| {
+        nearest::Setting::draw(name, seed)?.map(|setting| setting.examine()).transpose()
+    })
+}
+
+/// The same of casts that keep a gap.
+pub(crate) fn keeping(count: u64, seed: u64, only: Option<&str>) -> bool {
+    of_meshes(["nearer", "free", "blocked", ""], count, seed, only, keep::examine)
+}
+
+fn of_meshes<Seen: Kind>(
+    [a, b, c, d]: [&str; 4],
+    count: u64,
+    seed: u64,
+    only: Option<&str>,
+    examine: impl Fn(&str, u64) -> Result<Option<Seen>, String> + Sync,
+) -> bool {
     let convex = settings::FAMILIES.iter().map(|f| format!("convex-{}", f.0));
     let known = FAMILIES.into_iter().chain(sheets::FAMILIES).chain(nearest::MESHES);
     let all: Vec<String> = known.map(str::to_owned).chain(convex).collect();
     let wanted: Vec<&String> =
         all.iter().filter(|name| only.is_none_or(|only| only == name.as_str())).collect();
     println!(
-        "{:<20} {:>10} {:>12} {:>10} {:>10} {:>10} {:>8} {:>8}",
-        "family", "settings", "touching", "inside", "near", "apart", "skipped", "wrong"
+        "{:<20} {:>10} {a:>12} {b:>10} {c:>10} {d:>10} {:>8} {:>8}",
+        "family", "settings", "skipped", "wrong"
     );
     let each = count.div_ceil(wanted.len().max(1) as u64);
     let mut clean = true;
     for name in wanted {
-        clean &= family(name, seed << 32, each, |seed| {
-            nearest::Setting::draw(name, seed)?.map(|setting| setting.examine()).transpose()
-        });
+        clean &= family(name, seed << 32, each, |seed| examine(name, seed));
     }
     clean
 }

@@ -137,6 +137,11 @@ impl Setting {
         })
     }
 
+    /// How far the bodies reach together, and are apart.
+    pub(super) fn reach(&self) -> f64 {
+        self.noise() / (16.0 * f64::EPSILON)
+    }
+
     /// One noise, `32 u S`.
     fn noise(&self) -> f64 {
         let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);

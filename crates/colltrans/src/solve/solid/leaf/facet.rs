@@ -10,6 +10,11 @@ use glam::DVec3;
 use super::super::scene::{Corner, Scene, Side};
 use super::super::sign::rough_turn;
 use crate::body::Aabb;
+use crate::body::solid::Solid;
+use crate::body::solid::edges::NONE;
+
+/// Cosine of the angle from which on a facet is folded back onto the next one.
+const FOLDED: f64 = -0.999;
 
 /// A facet, its shadow running counter-clockwise.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +37,12 @@ impl Facet {
     ) -> Option<Self> {
         let side = scene.side(moving);
         let (corners, turn) = listed(scene, side, triangle);
-        if turn != wanted && (turn == Ordering::Equal || !side.solid.is_open(triangle)) {
+        let counts = match turn {
+            // What is on edge has no gap; it can be near, as the rim of what has no thickness is.
+            Ordering::Equal => scene.keep > 0.0 && is_thin(side.solid, triangle),
+            turn => turn == wanted || side.solid.is_open(triangle),
+        };
+        if !counts {
             return None;
         }
         let places = corners.map(|c| c.at);
@@ -60,6 +70,17 @@ impl Facet {
     pub(crate) fn side(&self, k: usize) -> [&Corner; 2] {
         [&self.corners[k], &self.corners[(k + 1) % 3]]
     }
+}
+
+/// Whether a triangle is of an open shell, or one next to it is folded back onto it, to within a little.
+fn is_thin(solid: &Solid, triangle: usize) -> bool {
+    let normal = |t: usize| {
+        let [a, b, c] = solid.triangles()[t].map(|v| solid.vertices()[v as usize]);
+        (b - a).cross(c - a).normalize_or_zero()
+    };
+    let own = normal(triangle);
+    let folded = |n: &u32| *n != NONE && normal(*n as usize).dot(own) < FOLDED;
+    solid.is_open(triangle) || solid.neighbours()[triangle].iter().any(folded)
 }
 
 /// The corners of a triangle, listed so that its shadow runs counter-clockwise if it has an area, and

@@ -24,6 +24,7 @@ use std::cmp::Ordering;
 pub(crate) use exact::{Above, NO_GAP, over_facet, over_side};
 pub(crate) use facet::{Facet, listed};
 
+use super::keep;
 use super::scene::Scene;
 use exact::exact;
 use facet::{Turns, may_cross, separates};
@@ -47,6 +48,8 @@ pub(crate) enum Meeting {
     OnSide(u8, u8),
     /// A side of the moving facet and a corner of the fixed one.
     UnderSide(u8, u8),
+    /// They are as near as the gap that is to be kept, wherever that is.
+    Near,
 }
 
 /// The range of the gap over the common shadow.
@@ -83,6 +86,9 @@ pub(crate) enum Wanted {
 /// The gap where the interiors of the shadows overlap and the pair is of interest; `limit` is what it
 /// has to stay below.
 pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
+    if scene.keep > 0.0 {
+        return keep::gap(scene, f, g, limit, wanted);
+    }
     let noise = 4.0 * scene.noise;
     let apart = |axis: usize| f.bounds.is_apart(&g.bounds, axis, noise);
     if apart(0) || apart(1) || g.bounds.low.z - f.bounds.high.z - noise >= limit {
@@ -146,6 +152,10 @@ pub(crate) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
 pub(crate) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
     let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
     let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
+    if scene.keep > 0.0 {
+        let gap = keep::gap(scene, &f, &g, f64::INFINITY, Wanted::All)?;
+        return Some((gap.least, gap.error));
+    }
     let mut of_f = Turns::unless_apart(scene, &f, &g)?;
     let mut of_g = Turns::unless_apart(scene, &g, &f)?;
     if scene.is_aligned() {

@@ -1,0 +1,218 @@
+//! Casts of solids that keep a gap: where they say that they are, and over all pairs of facets.
+//!
+//! The distance of the surfaces is taken in fractions at both bounds, at the start and on the way. That nothing
+//! comes nearer before is asked of each pair of facets by itself, as two flat convex bodies, whose casts are
+//! judged by [`keep`](crate::oracle::keep).
+
+use colltrans::solid::SolidCertificate;
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Solid};
+use glam::DVec3;
+
+use super::facets::{Triangle, triangles};
+use super::nearest::{Setting, surfaces};
+use crate::oracle::exact::{Dyadic, Ratio, Vector};
+use crate::random::Random;
+
+/// How many noises facets may pass each other below the gap, and a little for what is computed here.
+const GRAZE: f64 = 9.0;
+/// Facets are told apart that come nearer than the gap by more noises than that.
+const CLEARLY: f64 = 64.0;
+/// More pairs of facets than this are not cast one by one.
+const MOST_PAIRS: usize = 1_500;
+/// Places on the way that are looked at.
+const SAMPLES: u32 = 3;
+
+/// What came out, for statistics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Seen {
+    /// Nearer than the gap at the start.
+    Nearer,
+    /// Nothing comes as near.
+    Free,
+    /// Something does.
+    Blocked,
+}
+
+/// Casts the solids of a setting for a seed, with a gap, and judges the answers; `None` for bodies that are no solids.
+///
+/// # Errors
+/// What disagrees.
+pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
+    let Some(setting) = Setting::draw(family, seed)? else { return Ok(None) };
+    let random = &mut Random::stream(seed, &[family.len() as u64, 0x6a9]);
+    let size = setting.solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
+    let gap = match random.index(6) {
+        0 => size * 1e-9,
+        1 => size * random.range(1.0, 10.0),
+        2 => random.pick(&[0.25, 0.5, 1.0, 2.0]),
+        3 => size * 10.0_f64.powf(random.range(-6.0, 0.0)),
+        4 => setting.pair()?.distance().map_err(|e| e.to_string())?.upper,
+        _ => size * random.range(0.0, 0.3),
+    };
+    // A few noises are no gap.
+    let gap = if gap < 1e-12 * (size + setting.reach()) { 1e-3 * size } else { gap };
+    let toward = setting.poses[1].translation() - setting.poses[0].translation();
+    let way = match random.index(3) {
+        0 => random.pick(&DVec3::AXES),
+        1 => random.direction(),
+        _ => toward.normalize_or(DVec3::X) + random.direction() * 0.3,
+    };
+    let [a, b] = &setting.solids;
+    let cast = Cast::new(a.at(setting.poses[0]), b.at(setting.poses[1]), way * 2.0)
+        .and_then(|cast| cast.with_tolerance(0.0))
+        .and_then(|cast| cast.keeping(gap))
+        .map_err(|e| e.to_string())?;
+    Judge::new(&cast).examine().map(Some).map_err(|e| format!("gap {gap:e}: {e}"))
+}
+
+struct Judge<'a> {
+    cast: Cast<'a, Solid>,
+    gap: f64,
+    noise: f64,
+    placed: [Vec<Triangle>; 2],
+}
+
+impl<'a> Judge<'a> {
+    fn new(cast: &Cast<'a, Solid>) -> Self {
+        let bodies = [(cast.moving(), cast.moving_pose()), (cast.fixed(), cast.fixed_pose())];
+        let placed = bodies.map(|(solid, pose)| {
+            triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
+        });
+        let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+        let offset = cast.fixed_pose().translation() - cast.moving_pose().translation();
+        let gap = cast.options().keep;
+        let size = reach(cast.moving()) + reach(cast.fixed()) + offset.length() + gap;
+        Self { cast: *cast, gap, noise: 16.0 * f64::EPSILON * size, placed }
+    }
+
+    /// The square of the distance of the surfaces after a translation.
+    fn at(&self, t: f64) -> Ratio {
+        let by = Vector::new(self.cast.direction()).times(&Dyadic::new(t));
+        let moved = |t: &Triangle| t.each_ref().map(|corner| corner.plus(&by));
+        surfaces(&[self.placed[0].iter().map(moved).collect(), self.placed[1].clone()])
+    }
+
+    /// That nothing is nearer than the gap after a translation, but for what grazes.
+    fn kept(&self, t: f64) -> Result<(), String> {
+        let least = (self.gap - GRAZE * self.noise).max(0.0);
+        let found = self.at(t);
+        let is_kept = found >= square(least);
+        is_kept.then_some(()).ok_or_else(|| format!("{:e} apart after {t:e}", found.sqrt_to_f64()))
+    }
+
+    fn examine(&self) -> Result<Seen, String> {
+        let cast = &self.cast;
+        let plain = cast.clearance().map_err(|e| e.to_string())?;
+        let (clearance, proof) = cast.certified_clearance().map_err(|e| e.to_string())?;
+        if plain.distance() != clearance.distance() {
+            return Err(format!("{plain:?}, and certified {clearance:?}"));
+        }
+        cast.verify(&proof).map_err(|e| format!("{clearance:?}: {e}"))?;
+        let seen = match &clearance {
+            Clearance::Overlapping(_) => {
+                let nested = cast.keeping(0.0).is_ok_and(|plain| plain.overlaps());
+                let nearer = self.at(0.0) < square(self.gap) || nested;
+                return nearer.then_some(Seen::Nearer).ok_or_else(|| "not nearer".into());
+            }
+            Clearance::Free(free) => {
+                if let Some(plane) = &free.separation {
+                    cast.verify(plane).map_err(|e| e.to_string())?;
+                }
+                self.on_the_way(
+                    4.0 * (self.noise / (16.0 * f64::EPSILON)) / cast.direction().length(),
+                )?;
+                Seen::Free
+            }
+            Clearance::Blocked { distance, contact } => {
+                self.on_the_way(*distance)?;
+                let upper = contact.translation.upper;
+                if self.at(upper) > square(self.gap) && upper > 0.0 {
+                    return Err(format!("not as near after {upper:e}: {contact:?}"));
+                }
+                let apart = (contact.point_on_fixed
+                    - contact.point_on_moving
+                    - cast.direction() * contact.translation.value)
+                    .length();
+                let off = 1e4 * self.noise + 1e-6 * self.gap;
+                if upper > 0.0 && (apart - self.gap).abs() > off {
+                    return Err(format!("points {apart:e} apart: {contact:?}"));
+                }
+                self.changed(&proof)?;
+                Seen::Blocked
+            }
+        };
+        self.pairs(clearance.distance().unwrap_or(0.0))?;
+        Ok(seen)
+    }
+
+    /// At the start, at the end and between.
+    fn on_the_way(&self, end: f64) -> Result<(), String> {
+        (0..=SAMPLES + 1).try_for_each(|k| self.kept(end * f64::from(k) / f64::from(SAMPLES + 1)))
+    }
+
+    /// That a proof is of no more than it says.
+    fn changed(&self, proof: &SolidCertificate) -> Result<(), String> {
+        let much = 1e8 * self.noise;
+        let lower = proof.lower + 2.0 * much / self.cast.direction().length();
+        let more = SolidCertificate { lower, ..proof.clone() };
+        let other = self.cast.keeping(self.gap + much).map_err(|e| e.to_string())?;
+        if self.cast.verify(&more).is_ok() {
+            return Err("a larger bound is accepted".into());
+        }
+        if proof.lower > 0.0 && other.verify(proof).is_ok() {
+            return Err("a larger gap is accepted".into());
+        }
+        Ok(())
+    }
+
+    /// That no pair of facets comes nearer before, nor the first one much later.
+    fn pairs(&self, distance: f64) -> Result<(), String> {
+        let [p, q] = &self.placed;
+        if p.len() * q.len() > MOST_PAIRS {
+            return Ok(());
+        }
+        let bodies = |cast: &Cast<Solid>, moving: bool| -> Vec<Option<ConvexPolyhedron>> {
+            let solid = if moving { cast.moving() } else { cast.fixed() };
+            let facet = |t: &[u32; 3]| {
+                let corners = t.map(|v| solid.vertices()[v as usize]);
+                ConvexPolyhedron::from_points(&corners).ok()
+            };
+            solid.triangles().iter().map(facet).collect()
+        };
+        let cast = &self.cast;
+        let (moving, fixed) = (bodies(cast, true), bodies(cast, false));
+        let mut first = f64::INFINITY;
+        for f in moving.iter().flatten() {
+            for g in fixed.iter().flatten() {
+                first = first.min(self.pair(f, g)?);
+            }
+        }
+        // As a share, as the last digits of a graze are far along.
+        let slack = 1e-5 * (first + self.gap / cast.direction().length());
+        if distance > first + slack || distance.is_infinite() && first.is_finite() {
+            return Err(format!("{distance:e}, and facets are as near after {first:e}"));
+        }
+        Ok(())
+    }
+
+    /// When two facets are first clearly nearer than the gap, from here on; infinite if they are not.
+    fn pair(&self, f: &ConvexPolyhedron, g: &ConvexPolyhedron) -> Result<f64, String> {
+        let cast = Cast::new(
+            f.at(self.cast.moving_pose()),
+            g.at(self.cast.fixed_pose()),
+            self.cast.direction(),
+        );
+        let gap = (self.gap - CLEARLY * self.noise).max(0.0);
+        let cast = cast.and_then(|cast| cast.keeping(gap)).map_err(|e| e.to_string())?;
+        let outcome = cast.first_contact().map_err(|e| e.to_string())?;
+        let Outcome::Contact(contact) = outcome else { return Ok(f64::INFINITY) };
+        let last = cast.reversed().first_contact().map_err(|e| e.to_string())?;
+        let Outcome::Contact(last) = last else { return Ok(f64::INFINITY) };
+        let ahead = last.exit().upper > CLEARLY * self.noise / self.cast.direction().length();
+        Ok(if ahead { contact.certificate.upper.max(0.0) } else { f64::INFINITY })
+    }
+}
+
+fn square(x: f64) -> Ratio {
+    Ratio::from_f64(x).times(&Ratio::from_f64(x))
+}

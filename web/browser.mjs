@@ -91,11 +91,13 @@ export async function site() {
     async ask(page, hash = "#example=bracket", ready = ["#headline"]) {
       await page.evaluate(async (hash) => {
         const changed = new Promise((resolve) => addEventListener("hashchange", resolve, { once: true }));
+        window.before = window.colltrans.probe().answer;
         // What nobody reads in it makes it another one, even where the same is asked again.
         location.hash = `${hash}&turn=${(window.turn = (window.turn ?? 0) + 1)}`;
         await changed;
       }, hash);
-      await page.waitForFunction(() => window.colltrans.probe().answer);
+      // The last answer stays until there is another one.
+      await page.waitForFunction(() => ![undefined, window.before].includes(window.colltrans.probe().answer));
       await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
       for (const selector of ready) await page.waitForSelector(selector);
       return page;

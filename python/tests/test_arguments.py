@@ -163,7 +163,7 @@ def test_what_is_no_pose_is_refused(pose: Any) -> None:
 def test_poses_that_are_none_are_refused_in_the_librarys_words() -> None:
     with pytest.raises(PoseError, match="has length 2, not 1"):
         Pose([0, 0, 0, 0, 0, 0, 2])
-    with pytest.raises(PoseError, match="is no rotation"):
+    with pytest.raises(PoseError, match="is not a rotation"):
         Pose(-np.eye(4) + np.diag([0, 0, 0, 2]))
     with pytest.raises(InputError, match="last row"):
         Pose(np.ones((4, 4)))

@@ -105,12 +105,12 @@ def test_other_questions(bolt: Solid, plate: Solid) -> None:
     query = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 7])
     lower, upper = query.exit_bounds() or (0, 0)
     assert lower <= 12 <= upper < 12 + 1e-11
-    assert query.exit() == 12 and query.depth() == 0 and not query.intersects()
+    assert query.exit() == 12 and query.least_tolerance() == 0 and not query.intersects()
     assert isinstance(query.reversed().clearance(), SolidFree)
     inside = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[3, 0, 0])
     match inside.clearance():
-        case SolidOverlapping(depth=depth):
-            assert depth == inside.depth() and depth is not None and depth > 0
+        case SolidOverlapping(least_tolerance=least):
+            assert least == inside.least_tolerance() and least is not None and least > 0
         case other:
             raise AssertionError(other)
     assert inside.intersects()
@@ -126,7 +126,7 @@ def test_ignored_overlaps_are_told() -> None:
     assert isinstance(pressed.clearance(), SolidFree)
     ignored = pressed.start_overlap()
     assert ignored is not None and ignored.query is pressed
-    assert ignored.depth == pytest.approx(0.125, abs=1e-9)
+    assert ignored.least_tolerance == pytest.approx(0.125, abs=1e-9)
     moving, fixed = ignored.place
     assert moving is not None and fixed is not None
     assert moving < len(plate.faces) and table.face_normal(fixed).tolist() == [0, 0, 1]

@@ -20,7 +20,7 @@ const LIGHT: Palette = {
   moving: "#6f97d6",
   fixed: "#d9cbb0",
   edge: "#1d2733",
-  movingMark: "#0b3fb0",
+  movingMark: "#0b57d0",
   fixedMark: "#c2600f",
   normal: "#b01657",
   plane: "#0a8a68",

@@ -119,7 +119,7 @@ function solid(answer: PageSolid, state: State): Said {
     };
   }
   if (!first) {
-    const depth = record.start_overlaps?.[0].depth ?? null;
+    const depth = record.start_overlaps?.[0].least_tolerance ?? null;
     return {
       kind: "care",
       headline: "They overlap where they are",

@@ -83,7 +83,7 @@ fn faults_of_manifests_are_named_with_their_place() {
         ("[[part]]\nfile = 'c.off'\nturned = 3\n", "line 3"),
         ("[[part]]\nfile = 'c.off'\nscale = 0\n", "part 1 (c): scale"),
         ("[[part]]\nfile = 'c.off'\nrotation = [0, 0, 0, 2]\n", "has length 2, not 1"),
-        ("[[part]]\nfile = 'c.off'\nrotation = [[2,0,0],[0,1,0],[0,0,1]]\n", "is no rotation"),
+        ("[[part]]\nfile = 'c.off'\nrotation = [[2,0,0],[0,1,0],[0,0,1]]\n", "is not a rotation"),
         ("[[part]]\nfile = 'gone.off'\n", "gone.off"),
         ("ignore = [['c', 'd']]\n[[part]]\nfile = 'c.off'\n", "no part is named d"),
         ("[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n", "two parts are named c"),

@@ -352,9 +352,12 @@ fn what_is_no_part_of_a_3mf_model_is_left_out_and_said() {
 fn a_3mf_file_that_is_none_or_needs_more_is_refused_by_name() {
     let refused = |files: &[(&str, String)]| refusal("a.3mf", &[("a.3mf", package(files))]);
     let of = |text: String| refused(&[("3D/3dmodel.model", text)]);
-    says(&refusal("a.3mf", &[("a.3mf", b"no zip".to_vec())]), &["it is no 3MF file"]);
+    says(&refusal("a.3mf", &[("a.3mf", b"no zip".to_vec())]), &["it is not a 3MF file"]);
     says(&refused(&[("word/document.xml", "<x/>".into())]), &["none of the 1 files", "is a model"]);
-    says(&of("<html><body/></html>".into()), &["line 1: it is no model", "first element is html"]);
+    says(
+        &of("<html><body/></html>".into()),
+        &["line 1: it is not a model", "first element is html"],
+    );
     says(&of("no xml".into()), &["3D/3dmodel.model", "no XML element"]);
     let lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\" requiredextensions=\"b\"";
     let item = "<item objectid=\"1\"/>";
@@ -388,7 +391,10 @@ fn a_3mf_file_that_is_none_or_needs_more_is_refused_by_name() {
 #[test]
 fn urdf_files_that_are_none_are_refused() {
     let refused = |text: String| refusal("a.urdf", &[("a.urdf", text.into_bytes())]);
-    says(&refused("<html><body/></html>".into()), &["line 1: it is no robot", "html, not robot"]);
+    says(
+        &refused("<html><body/></html>".into()),
+        &["line 1: it is not a robot", "html, not robot"],
+    );
     says(&refused("<sdf version='1.6'><model/></sdf>".into()), &["sdf, not robot"]);
     says(&refused("{}".into()), &["no XML element"]);
     says(&refused("<robot name='r'/>".into()), &["holds no parts", "none of its 0 links"]);

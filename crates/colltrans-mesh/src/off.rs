@@ -115,7 +115,7 @@ fn parse_face(line: &Line<'_>, vertex_count: usize) -> Result<Vec<u32>, Fault> {
                 "there is no vertex {index}; the last of {vertex_count} is {}",
                 vertex_count.saturating_sub(1)
             ))),
-            Err(_) => Err(line.fault(format!("{} is no vertex index", quoted(word)))),
+            Err(_) => Err(line.fault(format!("{} is not a vertex index", quoted(word)))),
         })
         .collect::<Result<Vec<u32>, Fault>>()?;
     if face.len() < corners {

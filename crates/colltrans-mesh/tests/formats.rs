@@ -213,7 +213,7 @@ fn broken_ply_files_are_told_in_plain_words() {
         (
             "element face",
             "elephant face",
-            "line 7: `elephant` is no word that a header's line begins \
+            "line 7: `elephant` is not a word that a header's line begins \
             with: format, comment, obj_info, element, property, end_header",
         ),
         ("float y", "flot y", &format!("line 5: the type `flot` is none of {types}")),
@@ -250,9 +250,9 @@ fn broken_ply_files_are_told_in_plain_words() {
         (
             "3 0 1 2",
             "3 0 one 2",
-            "line 13: `one` is no whole number from -2147483648 to 2147483647",
+            "line 13: `one` is not a whole number from -2147483648 to 2147483647",
         ),
-        ("3 0 1 2", "-3 0 1 2", "line 13: `-3` is no whole number from 0 to 255"),
+        ("3 0 1 2", "-3 0 1 2", "line 13: `-3` is not a whole number from 0 to 255"),
         (
             "3 0 1 2",
             "30 0 1 2",

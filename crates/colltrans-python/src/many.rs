@@ -214,7 +214,7 @@ impl Row {
         let name = record.outcome.name();
         let outcome = question.outcomes().iter().position(|known| *known == name);
         let mut row = Self { outcome: outcome.unwrap_or_default() as u8, ..Self::NONE };
-        let overlap = record.start_overlaps.first().and_then(|overlap| overlap.depth);
+        let overlap = record.start_overlaps.first().and_then(|overlap| overlap.least_tolerance);
         let numbers =
             [(AT_LEAST, record.lower), (AT_MOST, record.upper), (LEAST_TOLERANCE, overlap)];
         for (which, number) in numbers {

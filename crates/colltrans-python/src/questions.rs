@@ -141,11 +141,12 @@ impl SolidCast {
 
     /// The least tolerance with which the bodies do not overlap: 0 if they do not, None if there is
     /// none up to their size.
-    fn depth(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
+    fn least_tolerance(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
         Self::ask(slf, |cast| cast.least_tolerance())
     }
 
-    /// Where the bodies, shrunk by half the tolerance, overlap, and how deep; None if they do not: what
+    /// Where the bodies, shrunk by half the tolerance, overlap, and with which tolerance they
+    /// would not; None if they do not: what
     /// an answer with ``ignore_start_overlaps`` has ignored.
     ///
     /// Returns
@@ -161,7 +162,7 @@ impl SolidCast {
     /// ...                   ignore_start_overlaps=True)
     /// >>> aside.clearance()
     /// SolidFree()
-    /// >>> round(aside.start_overlap().depth, 9)
+    /// >>> round(aside.start_overlap().least_tolerance, 9)
     /// 0.125
     fn start_overlap(slf: &Bound<'_, Self>) -> PyResult<Option<SolidOverlapping>> {
         let found = Self::ask(slf, |cast| cast.start_overlap())?;
@@ -241,10 +242,9 @@ macro_rules! question_of_any {
                 let asked = Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
                 return answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask());
             }
-            if graze_tolerance.is_some() {
+            if graze_tolerance.is_some() || solver_called(solver)? != Solver::Auto {
                 return Err(error("QueryError", FOR_CONVEX));
             }
-            solver_called(solver)?;
             let query = SolidCast::new(
                 py,
                 moving,
@@ -262,7 +262,7 @@ macro_rules! question_of_any {
 
 const FOR_SOLIDS: &str =
     "tolerance and ignore_start_overlaps are for solids; convex bodies have graze_tolerance";
-const FOR_CONVEX: &str = "graze_tolerance is for convex bodies; solids have tolerance";
+const FOR_CONVEX: &str = "graze_tolerance and solver are for convex bodies; solids have tolerance";
 
 question! {
     /// At which translation along a direction do two bodies first meet?

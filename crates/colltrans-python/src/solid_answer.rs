@@ -183,7 +183,7 @@ pub(crate) struct SolidOverlapping {
     pub(crate) query: Py<SolidCast>,
 }
 
-answer!(SolidOverlapping("depth") of SolidClearance, SolidCast, |it| SolidClearance::Overlapping(it.overlap));
+answer!(SolidOverlapping("least_tolerance") of SolidClearance, SolidCast, |it| SolidClearance::Overlapping(it.overlap));
 
 #[pymethods]
 impl SolidOverlapping {
@@ -196,7 +196,7 @@ impl SolidOverlapping {
     /// float or None: The least tolerance with which they would not overlap, a length; None if there is
     /// none, as for open surfaces.
     #[getter]
-    fn depth(&self) -> Option<f64> {
+    fn least_tolerance(&self) -> Option<f64> {
         self.overlap.least_tolerance
     }
 
@@ -226,7 +226,7 @@ impl SolidOverlapping {
 
     fn __repr__(&self) -> String {
         format!(
-            "SolidOverlapping(depth={})",
+            "SolidOverlapping(least_tolerance={})",
             self.overlap.least_tolerance.map_or("None".into(), |d| format!("{d:?}"))
         )
     }
@@ -274,7 +274,7 @@ impl Answer for SolidClearance {
                 record.start_overlaps = cast
                     .start_overlap()
                     .map(|of| StartOverlapRecord {
-                        depth: of.least_tolerance,
+                        least_tolerance: of.least_tolerance,
                         ..Default::default()
                     })
                     .into_iter()

@@ -15,8 +15,8 @@ use serde_json::json;
 
 use crate::answer::{Answer, Refusal};
 
-/// Edges of a solid whose faces make a smaller angle are not drawn: its cosine.
-const SMOOTH: f64 = 0.94;
+/// Edges of a solid whose faces make a smaller angle are not drawn: its cosine, that of drawings.
+const SMOOTH: f64 = 0.906;
 
 /// A body in use.
 #[derive(Debug)]

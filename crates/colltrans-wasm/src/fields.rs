@@ -7,7 +7,7 @@ pub(crate) struct Fields<'a>(&'a Map<String, Value>);
 
 impl<'a> Fields<'a> {
     pub(crate) fn of(value: &'a Value) -> Result<Self, String> {
-        value.as_object().map(Self).ok_or_else(|| "it is no object".into())
+        value.as_object().map(Self).ok_or_else(|| "it is not an object".into())
     }
 
     /// `None` for what is missing or null.
@@ -20,12 +20,12 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn object(&self, key: &str) -> Result<Self, String> {
-        let map = self.need(key)?.as_object().ok_or_else(|| format!("{key} is no object"))?;
+        let map = self.need(key)?.as_object().ok_or_else(|| format!("{key} is not an object"))?;
         Ok(Self(map))
     }
 
     pub(crate) fn text(&self, key: &str) -> Result<&'a str, String> {
-        self.need(key)?.as_str().ok_or_else(|| format!("{key} is no text"))
+        self.need(key)?.as_str().ok_or_else(|| format!("{key} is not text"))
     }
 
     pub(crate) fn flag(&self, key: &str) -> bool {
@@ -38,7 +38,7 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn list(&self, key: &str) -> Result<Vec<f64>, String> {
-        numbers(self.need(key)?).ok_or_else(|| format!("{key} is no list of numbers"))
+        numbers(self.need(key)?).ok_or_else(|| format!("{key} is not a list of numbers"))
     }
 
     pub(crate) fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], String> {

@@ -167,7 +167,7 @@ pub struct StartOverlapRecord {
     pub fixed: Option<String>,
     /// The least tolerance with which they would not overlap, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub depth: Option<f64>,
+    pub least_tolerance: Option<f64>,
 }
 
 /// The features of both bodies in the contact plane.
@@ -426,8 +426,9 @@ impl Record {
         let record = match clearance {
             Clearance::Free(_) => Self { outcome: Ending::Free, ..Self::default() },
             Clearance::Overlapping(overlap) => {
-                let depth = overlap.least_tolerance;
-                let start_overlaps = vec![StartOverlapRecord { depth, ..Default::default() }];
+                let least_tolerance = overlap.least_tolerance;
+                let overlap = StartOverlapRecord { least_tolerance, ..Default::default() };
+                let start_overlaps = vec![overlap];
                 Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() }
             }
             Clearance::Blocked { distance, contact } => Self {
@@ -486,12 +487,13 @@ impl Record {
 
     /// Of [`Pair::overlap_depth`].
     pub fn of_overlap_depth(depth: OverlapDepth) -> Self {
-        let OverlapDepth { meets, least_tolerance: depth } = depth;
-        let outcome = match (depth, meets) {
+        let OverlapDepth { meets, least_tolerance } = depth;
+        let outcome = match (least_tolerance, meets) {
             (Some(0.0), false) => Ending::Apart,
             (Some(0.0), true) => Ending::Touching,
             _ => {
-                let start_overlaps = vec![StartOverlapRecord { depth, ..Default::default() }];
+                let overlap = StartOverlapRecord { least_tolerance, ..Default::default() };
+                let start_overlaps = vec![overlap];
                 return Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() };
             }
         };

@@ -393,7 +393,7 @@ fn other_files_are_refused_in_words() {
     let text = file.to_string();
     let said = |text: &str| ProofFile::from_json(text).expect_err("no proof").to_string();
     assert!(said(&text[..text.len() / 2]).contains("it ends too early"));
-    assert!(said("solid cube").contains("it is no JSON"));
+    assert!(said("solid cube").contains("it is not JSON"));
     assert!(said("{}").contains("a saved proof"));
     assert!(said(&text.replace("proof 1", "proof 9")).contains("\"colltrans proof 9\""));
     let mut mixed = file.clone();

@@ -26,10 +26,10 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   ray that meets none of its edges, and none of its triangles is nearer than is claimed.
 - *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
   said of all other facets (the covers) is not checked here: ``colltrans verify`` does that. Of a
-distance of solids the two points are checked, not that no others are nearer.
+  distance of solids the two points are checked, not that no others are nearer.
 
-Exit codes: 0 what was checked holds, 6 something does not, 3 the file is no proof, 1 there is
-nothing in it that can be checked here, 2 usage.
+Exit codes: 0 the proof holds, 7 what was checked of it holds (of solids, never all), 6 something
+does not, 3 the file is no proof, 1 there is nothing in it that can be checked here, 2 usage.
 """
 
 from __future__ import annotations
@@ -79,12 +79,14 @@ class Report:
 
     holds: list[str] = field(default_factory=list)
     unchecked: list[str] = field(default_factory=list)
+    #: Whether a part of what is claimed was not looked at.
+    partly: bool = False
 
 
 def number(value: Any) -> Fraction:
     """The fraction that a number of the file is."""
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise NoProofError(f"{value!r} is no number")
+        raise NoProofError(f"{value!r} is not a number")
     if not math.isfinite(value):
         raise NoProofError(f"{value!r} is not finite")
     return Fraction(float(value))
@@ -93,7 +95,7 @@ def number(value: Any) -> Fraction:
 def whole(value: Any, end: int) -> int:
     """An index below ``end``."""
     if isinstance(value, bool) or not isinstance(value, int):
-        raise NoProofError(f"{value!r} is no index")
+        raise NoProofError(f"{value!r} is not an index")
     if not 0 <= value < end:
         raise RefusedError(f"there is no number {value} of {end}")
     return value
@@ -163,7 +165,7 @@ class Body:
         for i, j in product(range(3), repeat=2):
             entry = sum((row[i] * row[j] for row in rows), Fraction())
             if abs(entry - (i == j)) > _TURN:
-                raise NoProofError("a pose is no rotation")
+                raise NoProofError("a pose is not a rotation")
         if dot(rows[0], cross(rows[1], rows[2])) < 0:
             raise NoProofError("a pose is a reflection")
         return cls(points, rows, vector(pose["translation"]), facets)
@@ -196,8 +198,9 @@ class Body:
 def described(points: list[Vector], content: Any) -> None:
     """Whether what a file says of a convex body beside its vertices fits them."""
     inputs = [whole(k, 2**32) for k in content["input_indices"]]
-    if len(inputs) != len(points) or len(set(inputs)) != len(inputs):
-        raise RefusedError("the input indices are not one for each vertex, all different")
+    # Of a body made larger or smaller, several vertices may come from one.
+    if len(inputs) != len(points):
+        raise RefusedError("the input indices are not one for each vertex")
     error = number(content["hull_error"])
     if error < 0:
         raise RefusedError(f"a hull error of {float(error)!r} is negative")
@@ -269,7 +272,7 @@ def entry(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | No
 
 def unit(normal: Vector) -> None:
     if not (1 - _UNIT_VECTOR) ** 2 <= dot(normal, normal) <= (1 + _UNIT_VECTOR) ** 2:
-        raise RefusedError("the normal is no unit vector")
+        raise RefusedError("the normal is not a unit vector")
 
 
 def contact(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, which: str) -> None:
@@ -390,6 +393,7 @@ def clearance(moving: Body, fixed: Body, d: Vector, claim: Any, report: Report) 
         report.unchecked.append(
             f"what shrinking by {float(tolerance / 2)!r} makes of the bodies, which may be thinner"
         )
+    report.partly = True
     report.unchecked.append("whether the bodies overlap where they are")
     report.unchecked.append(
         "that nothing stops the moving body before" if stop else "that no two facets meet"
@@ -510,8 +514,10 @@ def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> Non
         p, q = (mean(c, w) for c, w in zip(corners, near["weights"], strict=True))
         apart(p, q, number(near["distance"]), report)
     else:
+        report.partly = True
         report.unchecked.append("that the bodies have a point in common")
     if number(claim["lower"]) > 0:
+        report.partly = True
         report.unchecked.append(f"that they are at least {claim['lower']!r} apart")
 
 
@@ -580,7 +586,7 @@ def check(text: str) -> Report:
         Something that it claims does not hold.
     """
     try:
-        file = json.loads(text.removeprefix("\ufeff"))
+        file = json.loads(text.removeprefix("\ufeff"), object_pairs_hook=_once)
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
         moving = Body.read(file["moving"], file["moving_pose"])
@@ -609,6 +615,14 @@ def check(text: str) -> Report:
             raise
         raise NoProofError(f"{type(error).__name__}: {error}") from error
     return report
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object none of whose names comes twice."""
+    fields = dict(pairs)
+    if len(fields) < len(pairs):
+        raise NoProofError("a name comes twice in an object")
+    return fields
 
 
 #: What is claimed of bodies where they are.
@@ -656,7 +670,9 @@ def main(words: Sequence[str] | None = None) -> int:
         print(f"holds: {line}")
     for line in report.unchecked:
         print(f"not checked: {line}")
-    return 0 if report.holds else 1
+    if not report.holds:
+        return 1
+    return 7 if report.partly else 0
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ class ColltransError(Exception):
 
 
 class InputError(ColltransError, ValueError):
-    """An argument that is no array of numbers, or has another shape than is asked for."""
+    """An argument that is not an array of numbers, or has another shape than is asked for."""
 
 
 class BuildError(ColltransError, ValueError):

@@ -26,7 +26,7 @@ _NUMBERS = (
     "shrunk_distance",
     "shrunk_distance_lower",
     "shrunk_distance_upper",
-    "depth",
+    "least_tolerance",
 )
 #: Between two looks at signals, in seconds.
 PATIENCE = 0.1
@@ -67,7 +67,7 @@ class SolidColumns(Table[SolidBlocked | SolidFree | SolidOverlapping]):
         How far the bodies go that were shrunk by half the tolerance each.
     shrunk_distance_lower, shrunk_distance_upper : ndarray of shape (N,)
         The proven bounds of that.
-    depth : ndarray of shape (N,)
+    least_tolerance : ndarray of shape (N,)
         The least tolerance with which bodies that overlap would not, a length.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
@@ -82,7 +82,7 @@ class SolidColumns(Table[SolidBlocked | SolidFree | SolidOverlapping]):
     shrunk_distance: Floats
     shrunk_distance_lower: Floats
     shrunk_distance_upper: Floats
-    depth: Floats
+    least_tolerance: Floats
     normal: Floats
     point: Floats
 
@@ -107,9 +107,9 @@ def _values(answer: Any) -> tuple[Any, ...]:
         case SolidFree(normal=normal):
             normal = nothing if normal is None else normal
             return 1, np.inf, *none, np.nan, normal, nothing
-        case SolidOverlapping(depth=depth):
-            depth = np.nan if depth is None else depth
-            return 2, np.nan, *none, depth, nothing, nothing
+        case SolidOverlapping(least_tolerance=least):
+            least = np.nan if least is None else least
+            return 2, np.nan, *none, least, nothing, nothing
     raise TypeError(type(answer).__name__)
 
 

@@ -4,6 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
+use colltrans_picture::escaped;
 use glam::{DVec2, DVec3};
 
 use super::RemovalMap;
@@ -157,7 +158,7 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
     let _ = writeln!(
         text,
         "<text x=\"360\" y=\"16\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n</svg>",
-        crate::report::escaped(title)
+        escaped(title)
     );
     text
 }

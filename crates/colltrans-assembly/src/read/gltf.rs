@@ -593,6 +593,6 @@ fn triangles(mode: u32, indices: &[u32]) -> Result<Vec<[u32; 3]>, String> {
             [center, rim @ ..] => rim.windows(2).map(|e| [*center, e[0], e[1]]).collect(),
             [] => Vec::new(),
         },
-        _ => return Err(format!("{mode} is no mode of a primitive")),
+        _ => return Err(format!("{mode} is not a mode of a primitive")),
     })
 }

@@ -215,7 +215,7 @@ fn matrix(rows: &[[f64; 3]; 3]) -> Result<DMat3, String> {
     let off = matrix * matrix.transpose() - DMat3::IDENTITY;
     let worst = off.to_cols_array().iter().fold(0.0_f64, |w, x| w.max(x.abs()));
     if !(worst <= ROUNDED && matrix.determinant() > 0.0) {
-        return Err(format!("matrix {rows:?} is no rotation; lengths belong into scale"));
+        return Err(format!("matrix {rows:?} is not a rotation; lengths belong into scale"));
     }
     Ok(matrix)
 }

@@ -147,13 +147,13 @@ pub fn plain(error: &serde_json::Error) -> String {
 
 /// A parser's message in words of the file, not of the parser.
 fn plain_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 18] = [
-        ("expected ident", "it is no JSON"),
-        ("expected value", "it is no JSON"),
+    const WORDS: [(&str, &str); 19] = [
+        ("expected ident", "it is not JSON"),
+        ("expected value", "it is not JSON"),
         ("floating point", "number"),
         ("invalid type: ", "found "),
         ("invalid value: ", "found "),
-        ("invalid length ", "found a length of "),
+        ("invalid length ", "found a list of "),
         ("expected f64", "expected a number"),
         ("expected f32", "expected a number"),
         ("expected usize", "expected a whole number"),
@@ -165,6 +165,7 @@ fn plain_words(message: &str) -> String {
         ("recursion limit exceeded", "it is nested too deep"),
         ("unknown variant ", "unknown word "),
         ("expected an array of length ", "expected a list of "),
+        ("trailing characters", "there is more than there should be"),
         (", expected literal string", ""),
     ];
     WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))

@@ -131,7 +131,7 @@ impl<'a> Package<'a> {
         let left = LARGEST.min((bytes.len() as u64).saturating_mul(LARGEST_RATIO).max(SMALL));
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
             let reason =
-                "it is no 3MF file: those are zip archives, and this is none, or is cut short";
+                "it is not a 3MF file: those are zip archives, and this is none, or is cut short";
             contents(source.path, "package", reason)
         })?;
         Ok(Self { source, archive, left })
@@ -174,7 +174,7 @@ impl<'a> Package<'a> {
         models.sort_by_key(|n| (n.matches('/').count(), n.clone()));
         models.into_iter().next().ok_or_else(|| {
             let reason = format!(
-                "it is no 3MF file: none of the {} files in this archive is a model (3D/3dmodel.model)",
+                "it is not a 3MF file: none of the {} files in this archive is a model (3D/3dmodel.model)",
                 self.archive.len()
             );
             contents(self.source.path, "package", reason)
@@ -475,7 +475,7 @@ impl Parser {
 }
 
 fn not_a_model(tag: &BytesStart) -> String {
-    format!("it is no model of a 3MF file: its first element is {}", tag.name().as_ref())
+    format!("it is not a model of a 3MF file: its first element is {}", tag.name().as_ref())
 }
 
 /// The attributes of an element that are of the core, and the path of the production extension.

@@ -18,7 +18,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let refused = |(place, reason)| contents(source.path, format!("URDF: {place}"), reason);
     let robot = Element::parse(&text).map_err(refused)?;
     if robot.name != "robot" {
-        let reason = format!("it is no robot: its first element is {}, not robot", robot.name);
+        let reason = format!("it is not a robot: its first element is {}, not robot", robot.name);
         return Err(contents(source.path, format!("URDF: line {}", robot.line), reason));
     }
     let macros = |e: &&Element| e.name.starts_with("xacro:");

@@ -4,7 +4,7 @@
 //! hide ([`colltrans_picture`]). So a picture's size grows with its pixels and lines, not with the
 //! facets.
 
-use colltrans_picture::{Frame, Page, Raster, Stroke, View, edges};
+use colltrans_picture::{Frame, Page, Raster, SMOOTH, Stroke, View, edges};
 use glam::{DVec2, DVec3};
 
 use super::tint;
@@ -33,8 +33,6 @@ pub struct Arrow {
 /// The picture's size in pixels.
 const SIZE: DVec2 = DVec2::new(400.0, 300.0);
 const MARGIN: f64 = 14.0;
-/// Edges at which facets meet at a larger angle are drawn: its cosine.
-const SHARP: f64 = 0.82;
 const SHADES: usize = 6;
 /// Depths, in pixels, may be off by this much.
 const SLACK: f64 = 1.5;
@@ -143,7 +141,7 @@ fn features(part: &Part, toward: DVec3) -> Vec<[DVec3; 2]> {
             [f, g] => {
                 let (m, n) = (normal(f), normal(g));
                 let [x, y] = [m, n].map(|n| n.dot(toward) > 0.0);
-                (x || y) && (n.dot(m) < SHARP || x != y)
+                (x || y) && (n.dot(m) < SMOOTH || x != y)
             }
             _ => true,
         })

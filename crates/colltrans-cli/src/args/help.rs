@@ -137,10 +137,10 @@ Answers for parts:
   blocked      it can go so far, perhaps 0: `distance` is safe to move by. The faces that stop it meet
                in their true place within `translation_bounds`; the bodies shrunk by half the tolerance
                go as far as `shrunk_distance`
-  overlapping  the bodies overlap now, by more than the tolerance; `depth` is the least tolerance
+  overlapping  the bodies overlap now, by more than the tolerance; `least_tolerance` is the one
                with which they would not
 `exit` is where they meet last: beyond the upper one of `exit_bounds` they never do. Distances are in
-multiples of the direction; tolerance, depth and point are in the unit of the meshes. Vertices are
+multiples of the direction; tolerances and point are in the unit of the meshes. Vertices are
 numbered from 0 as in their files; a face is the whole polygon, an edge runs from corner to corner.
 
 With --json one object, in the fields of `batch --help`; of parts, `moving` and `fixed` are the files
@@ -232,7 +232,7 @@ Each result is one JSON object with those of these fields that apply:
                the two faces pass each other as they are, of the shrunk ones
   rounding     of convex bodies: what rounding alone can make of the bounds' difference
   tolerance    of solids: the one that was used, both are shrunk by half of it
-  start_overlaps  of solids that overlap now: [{"depth"}], the least tolerance with which they
+  start_overlaps  of solids that overlap now: [{"least_tolerance"}], the one with which they
                would not; missing of surfaces
   surfaces     of solids: which bodies are open, at least in part: ["moving", "fixed"]
   normal       unit normal from moving to fixed: of the contact plane, of the separating plane, or

@@ -195,7 +195,7 @@ pub(crate) fn bytes(text: &str) -> Result<usize, String> {
         "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
         _ => {
             return Err(format!(
-                "`{}` is no unit of bytes (kB, MB, GB, KiB, MiB, GiB)",
+                "`{}` is not a unit of bytes (kB, MB, GB, KiB, MiB, GiB)",
                 unit.trim()
             ));
         }

@@ -8,7 +8,7 @@ use colltrans::glam::{DQuat, DVec3};
 use colltrans::record::{PairQuestion, Question, Record};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose};
 use colltrans_assembly::read::plain;
-use colltrans_mesh::body::BodyOptions;
+use colltrans_mesh::body::{BodyOptions, LoadError, Take};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -154,10 +154,21 @@ impl Batch {
         self.cache.get(key, |_| {
             self.watched.note(&path);
             let options = BodyOptions { hull, ..self.body.options(scale) };
-            let part = body::load(&path, &options).map_err(|error| body::refusal(&error))?;
+            let part = body::load(&path, &options).map_err(|error| refusal(&error))?;
             Ok(Arc::new(Shape::Convex(part)))
         })
     }
+}
+
+/// Why no body was made of a file, and which fields would help.
+fn refusal(error: &LoadError) -> String {
+    let LoadError::Body { source, .. } = error else { return error.to_string() };
+    let fields = source.instead().iter().map(|take| match take {
+        Take::Solid => r#"; "solid" in the place of "mesh" takes it as it is"#,
+        Take::Open => r#"; "solid" with "open": true takes it as a surface without an inside"#,
+        _ => r#"; "mesh" with "hull": true takes its convex hull"#,
+    });
+    format!("{error}{}", fields.collect::<String>())
 }
 
 fn positive(scale: Option<f64>) -> Result<f64, String> {

@@ -37,7 +37,8 @@ pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> Str
     let name = if ignored { "ignored" } else { "overlap" };
     overlaps(&mut text, record, name);
     if !ignored {
-        let hint = if record.start_overlaps.iter().all(|overlap| overlap.depth.is_some()) {
+        let hint = if record.start_overlaps.iter().all(|overlap| overlap.least_tolerance.is_some())
+        {
             "--tolerance allows for it, --ignore-start-overlaps lets it pass"
         } else {
             "--ignore-start-overlaps lets it pass"
@@ -116,14 +117,14 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
 
 /// What overlaps what, a line each.
 pub(crate) fn overlaps(text: &mut String, record: &Record, name: &str) {
-    for StartOverlapRecord { moving, fixed, depth } in &record.start_overlaps {
+    for StartOverlapRecord { moving, fixed, least_tolerance } in &record.start_overlaps {
         let [moving, fixed] =
             [moving, fixed].map(|name| shown(name.as_deref().unwrap_or_default()));
-        let depth = match depth {
-            Some(depth) => format!("a tolerance of {} would part them", above(*depth)),
+        let remedy = match least_tolerance {
+            Some(least) => format!("a tolerance of {} would part them", above(*least)),
             None => "no tolerance would part them".into(),
         };
-        line(text, name, &format!("{moving} in {fixed}: {depth}"));
+        line(text, name, &format!("{moving} in {fixed}: {remedy}"));
     }
 }
 

@@ -15,7 +15,7 @@
 //! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths, as
 //! [`pair`] does two bodies of any kind where they are.
 //!
-//! The data's way: [`story`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
+//! Order: [`story`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
 //! (how large, by [`size`]) -> [`solid`] and [`notes`] (the drawing) -> [`Page`].
 
 mod layout;

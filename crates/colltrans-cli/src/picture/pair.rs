@@ -117,7 +117,7 @@ fn details(record: &Record) -> Vec<String> {
         details.push(format!("proven lower and upper bound agree to {within:.0e}"));
     }
     if let Some(overlap) = record.start_overlaps.first() {
-        let depth = overlap.depth.map_or("none".into(), short);
+        let depth = overlap.least_tolerance.map_or("none".into(), short);
         details.push(format!("tolerance that would part them: {depth}"));
     }
     details

@@ -64,8 +64,8 @@ fn story(question: &PartsQuery<'_>, answer: &Answer) -> Story {
         }
         (Ending::Overlapping, _) => {
             details.extend(record.start_overlaps.first().map(|overlap| {
-                let depth = overlap.depth.map_or("none".into(), short);
-                format!("tolerance that would part them: {depth}")
+                let least = overlap.least_tolerance.map_or("none".into(), short);
+                format!("tolerance that would part them: {least}")
             }));
             "Overlapping: the parts overlap now".to_owned()
         }

@@ -107,14 +107,14 @@ impl PartsQuery<'_> {
                     Err(QueryError::NothingLeft { .. }) => of_files(0.0)?,
                     cast => cast?,
                 };
-                if let Some(SolidOverlap { least_tolerance: depth, .. }) = cast.start_overlap() {
+                if let Some(SolidOverlap { least_tolerance, .. }) = cast.start_overlap() {
                     let [moving, fixed] = [moving.name(), fixed.name()].map(Some);
-                    found.push(StartOverlapRecord { moving, fixed, depth });
+                    found.push(StartOverlapRecord { moving, fixed, least_tolerance });
                 }
                 done();
             }
         }
-        let depth = |overlap: &StartOverlapRecord| overlap.depth.unwrap_or(f64::INFINITY);
+        let depth = |overlap: &StartOverlapRecord| overlap.least_tolerance.unwrap_or(f64::INFINITY);
         found.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
         Ok(found)
     }

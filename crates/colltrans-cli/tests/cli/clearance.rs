@@ -228,7 +228,7 @@ fn overlaps_are_told_file_by_file() {
     assert!(pairs.contains(&(&"block.off".into(), &"plate.off".into())), "{answer}");
     assert_eq!(answer["moving"], "block.off");
     let table = overlaps.iter().find(|o| o["fixed"] == "table.off").unwrap();
-    assert!((number(table, "depth") - 0.25).abs() < 1e-9, "{answer}");
+    assert!((number(table, "least_tolerance") - 0.25).abs() < 1e-9, "{answer}");
     assert!(answer.get("distance").is_none() && answer.get("point").is_none(), "{answer}");
     let alone = "block.off --from table.off --direction z --moving-pose 0,0,-0.25";
     // That tolerance parts them; then the block rests.
@@ -461,7 +461,7 @@ fn batches_take_solids() {
     let output = colltrans(folder.path()).args(["batch", "queries.jsonl"]).output().unwrap();
     let result = json(&stdout(&output));
     assert_eq!(result["outcome"], "overlapping");
-    assert_eq!(fields(&result["start_overlaps"][0]), ["depth"], "{result}");
+    assert_eq!(fields(&result["start_overlaps"][0]), ["least_tolerance"], "{result}");
 }
 
 #[test]

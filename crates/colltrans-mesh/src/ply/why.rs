@@ -93,7 +93,7 @@ fn no_keyword(line: &str) -> String {
         return "a row of numbers within the header: `end_header` is missing before it".into();
     }
     let known = "format, comment, obj_info, element, property, end_header";
-    format!("{} is no word that a header's line begins with: {known}", quoted(first))
+    format!("{} is not a word that a header's line begins with: {known}", quoted(first))
 }
 
 /// What is wrong with a row of an element; `None` if nothing that is known here.
@@ -144,6 +144,6 @@ fn is_number(word: &str, kind: &ScalarType) -> bool {
 fn no_number(word: &str, kind: &ScalarType) -> String {
     match range(kind) {
         None => format!("{} is not a number", quoted(word)),
-        Some([low, high]) => format!("{} is no whole number from {low} to {high}", quoted(word)),
+        Some([low, high]) => format!("{} is not a whole number from {low} to {high}", quoted(word)),
     }
 }

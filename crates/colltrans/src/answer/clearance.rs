@@ -2,6 +2,7 @@
 
 use super::outcome::{Contact, Grazing, Separated};
 use crate::body::{Body, ConvexPolyhedron};
+use derive_where::derive_where;
 
 /// The answer of [`Cast::clearance`](crate::Cast::clearance): how far the moving body can move *from
 /// where it is* along the direction. One definition for all bodies; what is known of each case, its
@@ -12,7 +13,8 @@ use crate::body::{Body, ConvexPolyhedron};
 /// | `Blocked` | [`Contact`] | [`SolidContact`](crate::solid::SolidContact) |
 /// | `Free` | [`WhyFree`] | [`SolidFree`](crate::solid::SolidFree): a separating plane, where one was found |
 /// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::solid::SolidOverlap) |
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -95,21 +97,5 @@ impl<B: Body> Clearance<B> {
     /// Whether nothing stops the moving body.
     pub const fn is_free(&self) -> bool {
         matches!(self, Self::Free(_))
-    }
-}
-
-// A derived one would ask the same of the body, as would the next.
-impl<B: Body> Copy for Clearance<B> {}
-
-impl<B: Body> PartialEq for Clearance<B> {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Blocked { distance, contact }, Self::Blocked { distance: d, contact: c }) => {
-                distance == d && contact == c
-            }
-            (Self::Free(a), Self::Free(b)) => a == b,
-            (Self::Overlapping(a), Self::Overlapping(b)) => a == b,
-            _ => false,
-        }
     }
 }

@@ -10,6 +10,7 @@
 //!   `M` contains each of them and, being convex, all that they enclose.
 //! - Depth from above: moved by `-min_M n.m` against a unit normal `n`, the bodies are parted.
 
+use derive_where::derive_where;
 use glam::DVec3;
 
 use crate::body::{Body, ConvexPolyhedron, Features};
@@ -18,7 +19,8 @@ use crate::setting::VertexPair;
 /// The answer of [`Pair::distance`](crate::Pair::distance): how far apart the bodies are, and where.
 ///
 /// `lower <= true distance <= upper`, exactly, for the bodies as given.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[non_exhaustive]
 pub struct Distance<B: Body = ConvexPolyhedron> {
@@ -49,18 +51,9 @@ impl<B: Body> Distance<B> {
     }
 }
 
-// Derived ones would ask the same of the body, as would the next.
-impl<B: Body> Copy for Distance<B> {}
-
-impl<B: Body> PartialEq for Distance<B> {
-    fn eq(&self, other: &Self) -> bool {
-        let numbers = |d: &Self| (d.lower, d.upper, d.on_moving, d.on_fixed, d.normal, d.features);
-        numbers(self) == numbers(other) && self.near == other.near && self.gap == other.gap
-    }
-}
-
 /// The answer of [`Pair::within`](crate::Pair::within): are the bodies closer than a length?
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -75,20 +68,6 @@ pub enum Within<B: Body = ConvexPolyhedron> {
     /// The length lies between the bounds that rounding leaves, at most a few noises apart: those of
     /// [`Pair::distance`](crate::Pair::distance).
     Undecided(Distance<B>),
-}
-
-// Derived ones would ask the same of the body, as would the next.
-impl<B: Body> Copy for Within<B> {}
-
-impl<B: Body> PartialEq for Within<B> {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Closer(a), Self::Closer(b)) => a == b,
-            (Self::Farther(a), Self::Farther(b)) => a == b,
-            (Self::Undecided(a), Self::Undecided(b)) => a == b,
-            _ => false,
-        }
-    }
 }
 
 /// The proof that two convex bodies are not nearer to each other than a number: a plane between them.

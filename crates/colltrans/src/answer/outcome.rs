@@ -1,5 +1,6 @@
 //! What a query answers: every case has a name and carries its proof.
 
+use derive_where::derive_where;
 use glam::DVec3;
 
 use super::bounded::Bounded;
@@ -13,7 +14,8 @@ use crate::setting::VertexPair;
 /// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
 /// the graze tolerance, by no more than it, or not at all. Between [`Solid`](crate::Solid)s there is no
 /// grazing: shadows overlap, or do not.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -27,20 +29,6 @@ pub enum Outcome<B: Body = ConvexPolyhedron> {
     Grazing(B::Grazing),
     /// The bodies never meet along the direction, however far one moves, forwards or backwards.
     Separated(B::Separated),
-}
-
-// Derived ones would ask the same of the body.
-impl<B: Body> Copy for Outcome<B> {}
-
-impl<B: Body> PartialEq for Outcome<B> {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Contact(a), Self::Contact(b)) => a == b,
-            (Self::Grazing(a), Self::Grazing(b)) => a == b,
-            (Self::Separated(a), Self::Separated(b)) => a == b,
-            _ => false,
-        }
-    }
 }
 
 impl Outcome {

@@ -1,5 +1,6 @@
 //! Answers that take more than one cast: contact ranges, depths and intersections.
 
+use derive_where::derive_where;
 use glam::DVec3;
 
 use super::bounded::Bounded;
@@ -11,7 +12,8 @@ use crate::body::{Body, ConvexPolyhedron};
 /// The answer of [`Cast::contact_range`](crate::Cast::contact_range): the translations at which the
 /// bodies meet first and last, with the contact at either end. Convex bodies meet at all between them;
 /// [`Solid`](crate::Solid)s may part and meet again.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -36,24 +38,6 @@ pub enum ContactRange<B: Body = ConvexPolyhedron> {
     },
     /// The bodies never meet.
     Separated(B::Separated),
-}
-
-// Derived ones would ask the same of the body.
-impl<B: Body> Copy for ContactRange<B> {}
-
-impl<B: Body> PartialEq for ContactRange<B> {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Contact { first, last }, Self::Contact { first: f, last: l }) => {
-                first == f && last == l
-            }
-            (Self::Grazing { first, last }, Self::Grazing { first: f, last: l }) => {
-                first == f && last == l
-            }
-            (Self::Separated(a), Self::Separated(b)) => a == b,
-            _ => false,
-        }
-    }
 }
 
 impl ContactRange {
@@ -116,7 +100,8 @@ pub struct DirectionalDepth {
 }
 
 /// The answer of [`Cast::intersects`](crate::Cast::intersects).
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 #[non_exhaustive]
 pub struct Intersection<B: Body = ConvexPolyhedron> {
@@ -126,15 +111,6 @@ pub struct Intersection<B: Body = ConvexPolyhedron> {
     /// What shows it: a [`CentralCast`] of convex bodies, a [`SolidMeeting`](crate::solid::SolidMeeting).
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub evidence: B::Evidence,
-}
-
-// Derived ones would ask the same of the body.
-impl<B: Body> Copy for Intersection<B> {}
-
-impl<B: Body> PartialEq for Intersection<B> {
-    fn eq(&self, other: &Self) -> bool {
-        self.meets == other.meets && self.evidence == other.evidence
-    }
 }
 
 /// A cast of convex bodies along the line through their centres.

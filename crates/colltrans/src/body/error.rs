@@ -216,7 +216,7 @@ pub enum PoseError {
     },
     /// The matrix is not finite or not a rotation.
     #[error(
-        "the matrix with the columns {columns:?} is no rotation: it is off one by {defect:e} \
+        "the matrix with the columns {columns:?} is not a rotation: it is off one by {defect:e} \
          (tolerated: {tolerance:e})"
     )]
     NotARotationMatrix {

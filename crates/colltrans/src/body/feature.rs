@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::placed::{Body, sealed};
-use super::{ConvexPolyhedron, FaceId, InputVertex, VertexId};
+use super::{ConvexPolyhedron, FaceId, InputVertex};
 
 /// A vertex, an edge or a face of a body, as an answer names it: **by the numbers of the input**, that
 /// is, of the points or mesh vertices that the body was made from, for bodies of either kind.
@@ -36,31 +35,6 @@ impl Feature {
             Self::Edge(_) => "edge",
             Self::Face(_) => "face",
         }
-    }
-
-    /// The vertices of the feature, by their numbers in the input; those of a face are its corners, one
-    /// loop after the other, the outer one first.
-    ///
-    /// # Panics
-    /// If the feature is not one of `body`.
-    pub fn vertices<B: Body>(self, body: &B) -> Vec<InputVertex> {
-        match self {
-            Self::Vertex(v) => vec![v],
-            Self::Edge(ends) => ends.to_vec(),
-            Self::Face(_) => {
-                let own = self.own_vertices(body);
-                own.into_iter().map(|v| body.inputs()[v.index()]).collect()
-            }
-        }
-    }
-
-    /// The same vertices, as positions among the vertices that the body has kept:
-    /// [`ConvexPolyhedron::vertices`] or [`Solid::vertices`](crate::Solid::vertices).
-    ///
-    /// # Panics
-    /// If the feature is not one of `body`.
-    pub fn own_vertices<B: Body>(self, body: &B) -> Vec<VertexId> {
-        sealed::vertices_of(body, self)
     }
 }
 

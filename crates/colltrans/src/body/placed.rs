@@ -1,8 +1,9 @@
 //! A body and where it stands.
 
+use derive_where::derive_where;
 use std::fmt::Debug;
 
-use super::{ConvexPolyhedron, InputVertex, Pose};
+use super::{ConvexPolyhedron, Feature, InputVertex, Pose, VertexId};
 
 /// What queries can be asked about: a [`ConvexPolyhedron`] or a
 /// [`Solid`](crate::Solid). Sealed.
@@ -25,6 +26,33 @@ pub trait Body: sealed::Sealed + Clone + Debug {
     type Near: sealed::Told;
     /// What proves that they are not nearer to each other.
     type Gap: sealed::Told;
+}
+
+impl Feature {
+    /// The vertices of the feature, by their numbers in the input; those of a face are its corners, one
+    /// loop after the other, the outer one first.
+    ///
+    /// # Panics
+    /// If the feature is not one of `body`.
+    pub fn vertices<B: Body>(self, body: &B) -> Vec<InputVertex> {
+        match self {
+            Self::Vertex(v) => vec![v],
+            Self::Edge(ends) => ends.to_vec(),
+            Self::Face(_) => {
+                let own = self.own_vertices(body);
+                own.into_iter().map(|v| body.inputs()[v.index()]).collect()
+            }
+        }
+    }
+
+    /// The same vertices, as positions among the vertices that the body has kept:
+    /// [`ConvexPolyhedron::vertices`] or [`Solid::vertices`](crate::Solid::vertices).
+    ///
+    /// # Panics
+    /// If the feature is not one of `body`.
+    pub fn own_vertices<B: Body>(self, body: &B) -> Vec<VertexId> {
+        sealed::vertices_of(body, self)
+    }
 }
 
 pub(crate) mod sealed {
@@ -84,21 +112,13 @@ impl sealed::Sealed for ConvexPolyhedron {
 
 /// A body placed in the world, from [`ConvexPolyhedron::at`].
 #[derive(Debug)]
+#[derive_where(Clone, Copy)]
 pub struct Placed<'a, B = ConvexPolyhedron> {
     /// The body.
     pub body: &'a B,
     /// Where it is.
     pub pose: Pose,
 }
-
-// Derived ones would ask the same of the body.
-impl<B> Clone for Placed<'_, B> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<B> Copy for Placed<'_, B> {}
 
 impl ConvexPolyhedron {
     /// This body in a pose, for a [`Cast`](crate::Cast).

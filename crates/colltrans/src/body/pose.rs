@@ -28,7 +28,7 @@ const TOLERANCE: f64 = 1e-6;
 /// assert!(moved.distance(DVec3::new(0.0, 1.0, 2.0)) < 1e-15);
 /// assert!(pose.inverse()?.transform_point(moved).distance(DVec3::X) < 1e-15);
 ///
-/// // A quaternion that is no rotation is refused.
+/// // A quaternion that is not a rotation is refused.
 /// assert!(Pose::new(DQuat::from_xyzw(0.0, 0.0, 1.0, 1.0), DVec3::ZERO).is_err());
 /// # Ok::<(), colltrans::PoseError>(())
 /// ```
@@ -50,7 +50,7 @@ impl Pose {
     /// Rotation (a quaternion of length 1 to within 1e-6, normalised here), then translation.
     ///
     /// # Errors
-    /// A quaternion that is no rotation, a translation that is not finite or out of range.
+    /// A quaternion that is not a rotation, a translation that is not finite or out of range.
     pub fn new(rotation: DQuat, translation: DVec3) -> Result<Self, PoseError> {
         let length = rotation.length();
         if length.is_nan() || (length - 1.0).abs() > TOLERANCE {
@@ -80,8 +80,8 @@ impl Pose {
     /// # Ok::<(), colltrans::PoseError>(())
     /// ```
     pub fn from_matrix(matrix: DMat3, translation: DVec3) -> Result<Self, PoseError> {
-        let off = (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array();
-        let defect = off.into_iter().map(f64::abs).fold(0.0, f64::max);
+        let off = off_rotation(matrix).into_iter();
+        let defect = off.map(f64::abs).fold(0.0, f64::max);
         let defect = if !matrix.is_finite() {
             f64::INFINITY
         } else if matrix.determinant() < 0.0 {
@@ -220,6 +220,17 @@ fn matrix_of(rotation: DQuat) -> DMat3 {
         DVec3::new(off(x * y, -w * z), diagonal(x, z), off(y * z, w * x)),
         DVec3::new(off(x * z, w * y), off(y * z, -w * x), diagonal(x, y)),
     )
+}
+
+/// The nine entries of `R^T R - 1`, which are 0 for a rotation.
+fn off_rotation(matrix: DMat3) -> [f64; 9] {
+    (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array()
+}
+
+/// How far lengths may be stretched by a matrix: the square root of the sum of the squares of what it is off
+/// a rotation.
+pub(crate) fn rotation_defect(matrix: DMat3) -> f64 {
+    off_rotation(matrix).into_iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn check_translation(translation: DVec3) -> Result<(), PoseError> {

@@ -10,6 +10,7 @@ mod derive;
 pub(crate) mod replay;
 pub(crate) mod solid;
 
+use derive_where::derive_where;
 use std::fmt;
 
 use glam::DVec3;
@@ -61,14 +62,12 @@ pub use replay::{Case, CaseError};
 /// assert!(!cast.intersects()?.meets);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy)]
 pub struct Cast<'a, B: Body = ConvexPolyhedron> {
     pub(crate) setting: Setting<'a, B>,
     pub(crate) options: B::Options,
 }
-
-// A derived one would ask the same of the body.
-impl<B: Body> Copy for Cast<'_, B> {}
 
 impl<'a, B: Body> Cast<'a, B> {
     /// With the default choices.

@@ -21,7 +21,7 @@ use crate::solve::options::{Options, OptionsRecord};
 #[non_exhaustive]
 pub enum CaseError {
     /// It is not JSON, or lacks something.
-    #[error("not a saved query: {}", what_is_wrong(.0, "a saved query"))]
+    #[error("not a saved query: {}", what_is_wrong(.0))]
     Syntax(#[from] serde_json::Error),
     /// It was written by another version.
     #[error("the format is {found:?}, not {known:?}")]
@@ -46,7 +46,7 @@ pub enum CaseError {
     #[error(transparent)]
     Query(#[from] QueryError),
     /// It is no proof: no JSON, or it lacks something.
-    #[error("not a saved proof: {}", what_is_wrong(.0, "a saved proof"))]
+    #[error("not a saved proof: {}", what_is_wrong(.0))]
     Proof(serde_json::Error),
     /// A body is no solid.
     #[error("{which} body: {error}")]
@@ -75,7 +75,7 @@ pub enum CaseError {
 }
 
 /// In words of the file, not of its parser.
-fn what_is_wrong(error: &serde_json::Error, file: &str) -> String {
+fn what_is_wrong(error: &serde_json::Error) -> String {
     use serde_json::error::Category;
     let what = match error.classify() {
         Category::Io => return error.to_string(),
@@ -83,9 +83,13 @@ fn what_is_wrong(error: &serde_json::Error, file: &str) -> String {
         Category::Syntax if error.to_string().starts_with("number out of range") => {
             "a number is larger than any double".into()
         }
-        Category::Syntax => "it is no JSON".into(),
+        Category::Syntax => "it is not JSON".into(),
         Category::Eof => "it ends too early".into(),
-        Category::Data => format!("something is missing, or is not what {file} has there"),
+        Category::Data => {
+            let what = error.to_string();
+            let place = format!(" at line {} column {}", error.line(), error.column());
+            what.strip_suffix(&place).unwrap_or(&what).to_owned()
+        }
     };
     format!("line {}, column {}: {what}", error.line(), error.column())
 }

@@ -11,12 +11,14 @@ use crate::setting::error::QueryError;
 pub(crate) use convex::distance_from;
 #[cfg(feature = "serde")]
 pub(crate) use convex::points;
+use derive_where::derive_where;
 
 /// A moving body and a fixed one, where they are: what is asked of both and no direction. Nothing moves;
 /// the names tell them apart, as in a [`Cast`](crate::Cast).
 ///
 /// Made once, asked as often as one likes: nothing is searched before a question is asked.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone, Copy)]
 pub struct Pair<'a, B: Body = ConvexPolyhedron> {
     pub(crate) bodies: TwoBodies<'a, B>,
 }
@@ -50,9 +52,6 @@ impl<'a> From<&'a NearPoints> for PairProof<'a> {
         Self::Near(points)
     }
 }
-
-// A derived one would ask the same of the body.
-impl<B: Body> Copy for Pair<'_, B> {}
 
 impl<'a, B: Body> Pair<'a, B> {
     /// Of two placed bodies.

@@ -53,7 +53,7 @@ pub enum QueryError {
         extent: f64,
     },
     /// A convex body that is no solid.
-    #[error("a convex body is no solid: {0}")]
+    #[error("a convex body is not a solid: {0}")]
     NoSolid(#[from] SolidError),
     /// The gap at which narrowing ends is negative or not a number.
     #[error("the gap {gap} at which narrowing ends is negative or not a number")]

@@ -5,6 +5,7 @@ pub(crate) mod error;
 pub(crate) mod minkowski;
 mod two_bodies;
 
+use derive_where::derive_where;
 use std::ops::Deref;
 
 use glam::DVec3;
@@ -58,6 +59,7 @@ pub(crate) fn check_length(length: f64) -> Result<(), QueryError> {
 
 /// Two placed bodies and a direction.
 #[derive(Debug)]
+#[derive_where(Clone, Copy)]
 pub(crate) struct Setting<'a, B = ConvexPolyhedron> {
     /// The bodies.
     pub(crate) bodies: TwoBodies<'a, B>,
@@ -79,16 +81,6 @@ impl<'a, B> Deref for Setting<'a, B> {
         &self.bodies
     }
 }
-
-// Derived ones would ask the same of the body.
-impl<B> Clone for Setting<'_, B> {
-    #[inline]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<B> Copy for Setting<'_, B> {}
 
 impl<'a, B> Setting<'a, B> {
     #[inline(always)]

@@ -4,6 +4,7 @@
 //! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both
 //! bodies, however large, costs no accuracy.
 
+use derive_where::derive_where;
 use glam::{DMat3, DVec3};
 
 use crate::body::{ConvexPolyhedron, Placed, Pose};
@@ -15,6 +16,7 @@ use crate::setting::VertexPair;
 
 /// Two placed bodies.
 #[derive(Debug)]
+#[derive_where(Clone, Copy)]
 pub(crate) struct TwoBodies<'a, B = ConvexPolyhedron> {
     /// The moving body P.
     pub(crate) moving: &'a B,
@@ -31,16 +33,6 @@ pub(crate) struct TwoBodies<'a, B = ConvexPolyhedron> {
     /// What rounding took from `offset`, exactly.
     offset_error: DVec3,
 }
-
-// Derived ones would ask the same of the body.
-impl<B> Clone for TwoBodies<'_, B> {
-    #[inline]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<B> Copy for TwoBodies<'_, B> {}
 
 impl<'a, B> TwoBodies<'a, B> {
     #[inline(always)]

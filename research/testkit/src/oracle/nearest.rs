@@ -197,7 +197,7 @@ impl<'a> Judge<'a> {
 
     fn check_plane(&self, plane: &PlaneGap) -> Result<(), Objection> {
         let PlaneGap { normal, gap } = *plane;
-        require!((normal.length() - 1.0).abs() < 1e-14, "the normal {normal} is no unit vector");
+        require!((normal.length() - 1.0).abs() < 1e-14, "the normal {normal} is not a unit vector");
         let n = Vector::new(normal);
         let along = self.along(&n);
         let claimed = &Dyadic::new(gap) * &Dyadic::new(gap);

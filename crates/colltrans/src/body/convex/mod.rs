@@ -4,6 +4,7 @@
 //! [`topology`](crate::body::topology) (half-edges, no coordinates) -> the indices built on both
 //! ([`support`] points at once, [`sections`] when the paper's algorithm first asks for them).
 
+mod as_solid;
 mod build;
 mod excess;
 pub(crate) mod sections;

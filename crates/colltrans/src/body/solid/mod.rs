@@ -25,7 +25,7 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3Swizzles};
 
 use crate::body::placed::sealed;
-use crate::body::{Aabb, ConvexPolyhedron, InputFacet, InputVertex};
+use crate::body::{Aabb, InputFacet, InputVertex};
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
@@ -110,13 +110,6 @@ pub trait AsSolid: sealed::Sealed {
 impl AsSolid for Solid {
     fn as_solid(&self) -> Result<&Solid, SolidError> {
         Ok(self)
-    }
-}
-
-impl AsSolid for ConvexPolyhedron {
-    fn as_solid(&self) -> Result<&Solid, SolidError> {
-        let made = self.solid.get_or_init(|| Box::new(Solid::from_convex(self)));
-        made.as_ref().as_ref().map_err(Clone::clone)
     }
 }
 
@@ -211,22 +204,13 @@ impl Solid {
         Ok(Self::from_surface(all, report))
     }
 
-    /// A convex polyhedron, its faces cut into triangles. Vertices keep the numbers of its input, and
-    /// faces their numbers. A flat polygon becomes a sheet with two sides and no volume; it overlaps
-    /// what it is inside of.
-    ///
-    /// # Errors
-    /// A point or a segment.
-    pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
-        let facets: Vec<Vec<u32>> =
-            (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
-        let mut solid = Self::from_mesh(body.vertices(), &facets)?;
-        let inputs = body.input_indices();
-        for v in &mut solid.vertex_index {
+    /// The same, made of a body's vertices, which have numbers in that body's input.
+    pub(crate) fn renumbered(mut self, inputs: &[InputVertex]) -> Self {
+        for v in &mut self.vertex_index {
             *v = inputs[v.index()];
         }
-        solid.input_counts[0] = inputs.iter().max().map_or(0, |last| last.0 + 1);
-        Ok(solid)
+        self.input_counts[0] = inputs.iter().max().map_or(0, |last| last.0 + 1);
+        self
     }
 
     fn assemble(mut surface: Surface, mut report: SolidReport) -> Self {

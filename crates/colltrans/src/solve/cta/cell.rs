@@ -172,7 +172,7 @@ struct OnEdge<'a> {
 struct Corner {
     along: f64,
     rise: f64,
-    blur: [f64; 2],
+    slack: [f64; 2],
 }
 
 impl OnEdge<'_> {
@@ -182,7 +182,7 @@ impl OnEdge<'_> {
         Corner {
             along: h + g - self.position,
             rise: level - self.level,
-            blur: [
+            slack: [
                 noise::SECTION * (h.abs() + g.abs() + self.position.abs()),
                 noise::SECTION * (level.abs() + self.level.abs()),
             ],
@@ -194,10 +194,10 @@ impl OnEdge<'_> {
     fn side(&self, [from, to]: [&Corner; 2], sense: f64) -> Option<Affine> {
         let (along, rise) = (to.along - from.along, to.rise - from.rise);
         let value = sense * (from.along * to.rise - to.along * from.rise);
-        let error = along.abs() * from.blur[1] + rise.abs() * from.blur[0];
+        let error = along.abs() * from.slack[1] + rise.abs() * from.slack[0];
         let gradient = (unit(self.body) * along - self.motion * rise) * sense;
         let directed =
-            along.abs() > from.blur[0] + to.blur[0] || rise.abs() > from.blur[1] + to.blur[1];
+            along.abs() > from.slack[0] + to.slack[0] || rise.abs() > from.slack[1] + to.slack[1];
         (value >= -error && directed).then_some(Affine { value, gradient })
     }
 }

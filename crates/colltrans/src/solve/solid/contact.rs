@@ -194,7 +194,7 @@ pub(crate) fn contact(
     }
 }
 
-/// Blurs by which a lower bound of the true place may be less than the place without being taken again.
+/// Roundings by which a lower bound of the true place may be less than the place without being taken again.
 const ENOUGH: f64 = 64.0;
 /// Slope, of a contact plane against the direction, up to which it is not moved back.
 const STEEPEST: f64 = 1e-3;

@@ -16,6 +16,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::body::pose::rotation_defect;
 use crate::body::solid::{Shrinking, Solid, displace};
 use crate::number::error_free::sum_error;
 use crate::number::integer::Integer;
@@ -259,8 +260,7 @@ fn is_axis(v: DVec3) -> bool {
 
 /// How far a matrix is off a rotation, if by more than the noise of coordinates covers.
 fn defect(m: DMat3) -> f64 {
-    let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();
-    let defect = off.into_iter().map(|x| x * x).sum::<f64>().sqrt();
+    let defect = rotation_defect(m);
     if defect > ROTATION { 1.01 * defect } else { 0.0 }
 }
 

@@ -67,7 +67,7 @@ impl Judge<'_> {
         roundings: f64,
     ) -> Result<Proof, Objection> {
         let Certificate { normal, lower, upper, rounding: tolerance, .. } = *certificate;
-        require!(is_unit(normal), "the normal {normal} is no unit vector");
+        require!(is_unit(normal), "the normal {normal} is not a unit vector");
         let normal = Vector::new(normal);
         let along = normal.dot(&self.scene.direction);
         require!(along.is_positive(), "the normal does not point along the direction");
@@ -255,7 +255,7 @@ impl Judge<'_> {
     /// A unit vector orthogonal to `d`, made exactly orthogonal: `(min_Q n'.q - max_P n'.p) /
     /// |n'|`, whose sign is exact.
     fn margin(&self, normal: DVec3) -> Result<f64, Objection> {
-        require!(is_unit(normal), "the normal {normal} is no unit vector");
+        require!(is_unit(normal), "the normal {normal} is not a unit vector");
         let (n, d) = (Vector::new(normal), &self.scene.direction);
         let skew = n.dot(d).to_f64() / d.to_f64().length();
         require!(

@@ -57,10 +57,11 @@ pub(super) fn from_mesh<F: AsRef<[u32]>>(
     faces: &[F],
     tolerance: f64,
 ) -> Result<ConvexPolyhedron, BuildError> {
+    let surface = Surface::new(vertices, faces)?;
+    // After the vertices, whose extent it may be a share of.
     if tolerance.is_nan() || tolerance < 0.0 {
         return Err(BuildError::Tolerance { tolerance });
     }
-    let surface = Surface::new(vertices, faces)?;
     let hull = surface.hull();
     let ConvexityDefect { face, depth } = surface.defect(&hull);
     let tolerance = hull::tolerance(&surface.points).max(tolerance);

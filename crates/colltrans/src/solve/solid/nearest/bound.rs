@@ -17,6 +17,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::body::pose::rotation_defect;
 use crate::body::solid::cuts::{Depths, Parts, depths};
 use crate::body::solid::tree::Node;
 use crate::solve::solid::scene::{Scene, Side};
@@ -98,11 +99,7 @@ impl Axes {
         let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis];
         let all = [columns(frames[0]), columns(frames[1])];
         let seen = sides.map(|side| std::array::from_fn(|k| Axis::new(side, all[k / 3][k % 3])));
-        let shares = frames.map(|m| {
-            let off = (m.transpose() * m - DMat3::IDENTITY).to_cols_array();
-            let defect = off.into_iter().map(|x| x * x).sum::<f64>().sqrt();
-            1.0 / (1.0 + 0.5 * defect + 16.0 * f64::EPSILON)
-        });
+        let shares = frames.map(|m| 1.0 / (1.0 + 0.5 * rotation_defect(m) + 16.0 * f64::EPSILON));
         let duals = sides.map(|side| side.matrix.inverse().transpose());
         let shared = frames[0] == frames[1];
         Self { seen, shares, frames, duals, shared, rounding: ROUNDING * scene.noise }

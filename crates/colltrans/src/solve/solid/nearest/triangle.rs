@@ -167,7 +167,7 @@ fn by_features(f: &Corners, g: &Corners, end: f64) -> Quick {
             let (p, q) = (f[i] + e[i] * s, g[j] + h[j] * t);
             let way = q - p;
             let square = way.length_squared();
-            // Nothing is nearer than what is no number: an edge without a length.
+            // Nothing is nearer than what is not a number: an edge without a length.
             if square.is_nan() || square >= best.0 {
                 continue;
             }

@@ -62,7 +62,7 @@ function say({ distance, depth }: PageDistance): Pick<Nearness, "sentence" | "ro
       rows: [["depth now", short(upper, 12)], ["proven", proven(depth)], ["way out", shown(direction as Vec)]],
     };
   }
-  const tolerance = start_overlaps?.[0]?.depth;
+  const tolerance = start_overlaps?.[0]?.least_tolerance;
   return {
     sentence: start_overlaps ? `Where they are, they overlap${tolerance ? `: with a tolerance of ${short(tolerance)} they would not` : ""}.` : "Where they are, they touch.",
     rows: tolerance ? [["depth now", short(tolerance, 9)]] : [],

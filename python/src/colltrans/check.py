@@ -26,7 +26,7 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   ray that meets none of its edges, and none of its triangles is nearer than is claimed.
 - *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
   said of all other facets (the covers) is not checked here: ``colltrans verify`` does that. Of a
-distance of solids the two points are checked, not that no others are nearer.
+  distance of solids the two points are checked, not that no others are nearer.
 
 Exit codes: 0 the proof holds, 7 what was checked of it holds (of solids, never all), 6 something
 does not, 3 the file is no proof, 1 there is nothing in it that can be checked here, 2 usage.

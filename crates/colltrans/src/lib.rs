@@ -142,7 +142,7 @@
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `among` (many fixed bodies) and `tracker`. `written` and `record` say how all of them are written. [`solid`] holds what is of solids alone.
+//! `pair` (the queries), `among` (many fixed bodies), `proof_file` and `tracker`. `written` and `record` say how all of them are written. [`solid`] holds what is of solids alone.
 
 mod among;
 mod answer;
@@ -150,6 +150,8 @@ mod body;
 mod cast;
 mod number;
 mod pair;
+#[cfg(feature = "json")]
+mod proof_file;
 #[cfg(feature = "serde")]
 pub mod record;
 mod setting;
@@ -177,11 +179,13 @@ pub use body::{
     InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
 #[cfg(feature = "json")]
-pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, Statement, Stop};
+pub use cast::{Case, CaseError};
 pub use cast::{Cast, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairProof};
+#[cfg(feature = "json")]
+pub use proof_file::{Contacts, DistanceStatement, ProofFile, Slide, Statement, Stop};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
@@ -193,6 +197,11 @@ pub use written::UnknownName;
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
+
+/// The examples of `docs/distance.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/distance.md")]
+pub struct Distances;
 
 /// The examples of `docs/solids.md`, compiled and run as tests.
 #[cfg(doctest)]

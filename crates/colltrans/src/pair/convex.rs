@@ -1,7 +1,9 @@
 //! The questions about two convex bodies.
 
+use glam::DVec3;
+
 use super::{PairProof, verify};
-use crate::answer::{CertificateError, Depth, Distance, Enclosure, Within};
+use crate::answer::{CertificateError, Depth, Distance, Enclosure, NearPoints, Within};
 use crate::body::{Features, feature};
 use crate::pair::Pair;
 use crate::setting::error::{QueryError, Stalled};
@@ -173,18 +175,24 @@ fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError
         let reason = Stalled::Distance { lower, upper: near.distance, tolerance };
         return Err(QueryError::NotConverged { reason });
     }
-    let [p, q] = bodies.weighted(&near.pairs, &near.weights);
-    let origin = bodies.translations[0];
+    let [on_moving, on_fixed] = points(bodies, &near);
     Ok(Distance {
         lower,
         upper: near.distance,
-        on_moving: bodies.moving_matrix * p + origin,
-        on_fixed: bodies.fixed_matrix * q + bodies.offset + origin,
+        on_moving,
+        on_fixed,
         normal: plane.map(|plane| plane.gap.normal),
         features: plane.map(|plane| facing(bodies, &plane, difference.noise.point())),
         near,
         gap: plane.map(|plane| plane.gap),
     })
+}
+
+/// The points of the moving and of the fixed body that are near, in the world, rounded.
+pub(crate) fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
+    let [p, q] = bodies.weighted(&near.pairs, &near.weights);
+    let origin = bodies.translations[0];
+    [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]
 }
 
 /// The parts of the bodies that lie in the planes across a normal.

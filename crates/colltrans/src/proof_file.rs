@@ -1,7 +1,7 @@
 //! A proof with all that it is about, as one file.
 //!
-//! Bodies are written as they are, exact in bits, with their poses and the direction; then what is
-//! claimed of them, with its certificates. A certificate between solids tells facets by their place
+//! Bodies are written as they are, exact in bits, with their poses and the direction of a cast; then what
+//! is claimed of them, with its certificates. A certificate between solids tells facets by their place
 //! in a tree, so it is made for the bodies as they are read back from the file.
 
 use std::fmt;
@@ -9,17 +9,19 @@ use std::fmt;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::replay::BodyRecord;
-use super::sideways::{proven_overlap, verified_overlap};
-use super::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
-use super::{CaseError, Cast};
 use crate::answer::{
-    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, Grazing, Outcome,
-    OverlapAhead, Separation, WhyFree,
+    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth, Distance,
+    Grazing, NearPoints, Outcome, OverlapAhead, PlaneGap, Separation, WhyFree, Within,
 };
 use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
-use crate::body::{ConvexPolyhedron, InputFacet, Pose};
+use crate::body::{ConvexPolyhedron, InputFacet, Placed, Pose};
+use crate::cast::replay::BodyRecord;
+use crate::cast::sideways::{proven_overlap, verified_overlap};
+use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use crate::cast::{CaseError, Cast};
+use crate::pair::Pair;
+use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
 
 /// What a file of this version calls itself.
@@ -46,15 +48,19 @@ const FORMAT: &str = "colltrans proof 1";
 pub struct ProofFile {
     bodies: Bodies,
     poses: [Pose; 2],
-    direction: DVec3,
+    /// Of a cast.
+    direction: Option<DVec3>,
     statement: Statement,
 }
 
 #[derive(Debug, Clone)]
 enum Bodies {
     Convex(Box<[ConvexPolyhedron; 2]>),
-    Solids { made: Box<[Solid; 2]>, of: [Vec<PieceRecord>; 2] },
+    Solids { made: Box<[Solid; 2]>, of: Pieces },
 }
+
+/// What the moving and the fixed body are made of.
+type Pieces = [Vec<PieceRecord>; 2];
 
 /// What a [`ProofFile`] says of its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,6 +72,40 @@ pub enum Statement {
     Separation(Separation),
     /// How far a solid can move from where it is.
     Clearance(SolidStatement),
+    /// How far convex bodies are apart where they are.
+    Distance(DistanceStatement),
+    /// How deep convex bodies overlap where they are.
+    Depth(Depth),
+    /// How far solids are apart where they are.
+    SolidDistance(DistanceCertificate),
+}
+
+/// How far two convex bodies are apart: at least, or at most, or both.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DistanceStatement {
+    /// Why they are not nearer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<PlaneGap>,
+    /// Why they are not farther.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<NearPoints>,
+}
+
+impl From<&Distance> for DistanceStatement {
+    fn from(of: &Distance) -> Self {
+        Self { gap: of.gap, near: Some(of.near) }
+    }
+}
+
+impl From<&Within> for DistanceStatement {
+    fn from(of: &Within) -> Self {
+        match of {
+            Within::Closer(near) => Self { near: Some(*near), gap: None },
+            Within::Farther(gap) => Self { gap: Some(*gap), near: None },
+            Within::Undecided(distance) => distance.into(),
+        }
+    }
 }
 
 /// The ends of the translations at which two convex bodies meet; one of them may be missing.
@@ -207,9 +247,25 @@ impl ProofFile {
         Self {
             bodies: Bodies::Convex(Box::new([cast.moving().clone(), cast.fixed().clone()])),
             poses: [cast.moving_pose(), cast.fixed_pose()],
-            direction: cast.direction(),
+            direction: Some(cast.direction()),
             statement,
         }
+    }
+
+    /// Of an answer of [`Pair::distance`] or [`Pair::within`]; `pair` is the one that was asked.
+    pub fn of_distance(pair: &Pair<'_>, answer: impl Into<DistanceStatement>) -> Self {
+        Self::of_pair(pair, Statement::Distance(answer.into()))
+    }
+
+    /// Of an answer of [`Pair::depth`]; `pair` is the one that was asked.
+    pub fn of_depth(pair: &Pair<'_>, depth: &Depth) -> Self {
+        Self::of_pair(pair, Statement::Depth(depth.clone()))
+    }
+
+    fn of_pair(pair: &Pair<'_>, statement: Statement) -> Self {
+        let bodies = Bodies::Convex(Box::new([pair.moving().clone(), pair.fixed().clone()]));
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        Self { bodies, poses, direction: None, statement }
     }
 
     /// Of [`Cast::clearance`] between solids, asked once more with its proof. `pieces` are those that
@@ -219,22 +275,38 @@ impl ProofFile {
     /// # Errors
     /// A body that its own facets do not make once more.
     pub fn of_solids(cast: &Cast<'_, Solid>, pieces: [&[&Solid]; 2]) -> Result<Self, CaseError> {
-        let of: [Vec<PieceRecord>; 2] =
-            pieces.map(|pieces| pieces.iter().map(|piece| PieceRecord::of(piece)).collect());
-        let made = Box::new([union(&of[0], "moving")?, union(&of[1], "fixed")?]);
-        for (which, made, asked) in
-            [("moving", &made[0], cast.moving()), ("fixed", &made[1], cast.fixed())]
-        {
-            if !is_same(made, asked) {
-                return Err(CaseError::Changed { which });
-            }
-        }
+        let (made, of) = again(pieces, [cast.moving(), cast.fixed()])?;
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
         let options = options(cast.options().start_overlap, cast.tolerance());
         let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
-        let statement = SolidStatement::of(&again.with_options(options)?)?;
+        let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
         let bodies = Bodies::Solids { made, of };
-        Ok(Self { bodies, poses, direction, statement: Statement::Clearance(statement) })
+        Ok(Self { bodies, poses, direction: Some(direction), statement })
+    }
+
+    /// Of the distance of solids, asked once more with its proof: of [`Pair::distance`], or of
+    /// [`Pair::within`] a length, which may prove one bound alone. `pieces` as in [`Self::of_solids`].
+    ///
+    /// # Errors
+    /// A body that its own facets do not make once more; a length that is negative or not a number.
+    pub fn of_solid_distance(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+        within: Option<f64>,
+    ) -> Result<Self, CaseError> {
+        let (made, of) = again(pieces, [pair.moving(), pair.fixed()])?;
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        let again = Pair::new(made[0].at(poses[0]), made[1].at(poses[1]))?;
+        let proof = match within {
+            None => again.certified_distance()?.1,
+            Some(length) => match again.certified_within(length)? {
+                (_, Some(proof)) => proof,
+                (Within::Closer(near), None) => DistanceCertificate::of_near(near),
+                (_, None) => again.certified_distance()?.1,
+            },
+        };
+        let (bodies, statement) = (Bodies::Solids { made, of }, Statement::SolidDistance(proof));
+        Ok(Self { bodies, poses, direction: None, statement })
     }
 
     /// What it says; true if [`Self::check`] does not object.
@@ -257,25 +329,24 @@ impl ProofFile {
         }
     }
 
-    /// Checks it as [`Cast::verify`] does, without a search.
+    /// Checks it as [`Cast::verify`] and [`Pair::verify`] do, without a search.
     ///
     /// # Errors
     /// The first thing that is not proven.
     pub fn check(&self) -> Result<(), CertificateError> {
         let [moving, fixed] = self.poses;
-        match (&self.bodies, &self.statement) {
-            (Bodies::Convex(bodies), statement) => {
+        match (&self.bodies, self.direction) {
+            (Bodies::Convex(bodies), direction) => {
                 let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction)?;
-                statement.check(&cast)
+                match direction {
+                    Some(d) => self.statement.check(&Cast::new(placed[0], placed[1], d)?),
+                    None => self.statement.check_pair(&Pair::new(placed[0], placed[1])?),
+                }
             }
-            (Bodies::Solids { made, .. }, Statement::Clearance(statement)) => {
+            (Bodies::Solids { made, .. }, direction) => {
                 let placed = [made[0].at(moving), made[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction)?;
-                let options = options(statement.start_overlap, statement.certificate.tolerance);
-                statement.check(&cast.with_options(options)?)
+                self.statement.check_solids(placed, direction)
             }
-            (Bodies::Solids { .. }, _) => Err(CertificateError::Start),
         }
     }
 
@@ -297,7 +368,7 @@ impl ProofFile {
             moving_pose,
             fixed,
             fixed_pose,
-            direction: self.direction.to_array(),
+            direction: self.direction.map(|direction| direction.to_array()),
             statement: self.statement.clone(),
         };
         serde_json::to_string(&file).expect("numbers and names")
@@ -333,9 +404,12 @@ impl ProofFile {
             _ => return Err(CaseError::Mixed),
         };
         let statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
+        if statement.is_of_pair() == file.direction.is_some() {
+            return Err(CaseError::Statement);
+        }
         let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
-        let direction = DVec3::from_array(file.direction);
-        crate::setting::check_direction(direction)?;
+        let direction = file.direction.map(DVec3::from_array);
+        direction.map_or(Ok(()), crate::setting::check_direction)?;
         Ok(Self { bodies, poses, direction, statement })
     }
 }
@@ -348,17 +422,48 @@ impl Statement {
     /// Of convex bodies.
     fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
         match self {
-            Self::Contacts(Contacts { first: None, last: None, .. }) | Self::Clearance(_) => {
-                Err(CertificateError::Start)
-            }
-            Self::Contacts(Contacts { slide, first, last }) => {
+            Self::Contacts(Contacts { slide, first, last }) if first.or(*last).is_some() => {
                 slide.map_or(Ok(()), |slide| slide.check(cast))?;
                 first.map_or(Ok(0.0), |first| cast.verify(&first))?;
                 last.map_or(Ok(0.0), |last| cast.reversed().verify(&last))?;
                 Ok(())
             }
             Self::Separation(separation) => cast.verify(separation).map(|_| ()),
+            _ => Err(CertificateError::Start),
         }
+    }
+
+    /// Of convex bodies and no direction.
+    fn check_pair(&self, pair: &Pair<'_>) -> Result<(), CertificateError> {
+        match self {
+            Self::Distance(DistanceStatement { gap, near }) if gap.is_some() || near.is_some() => {
+                gap.map_or(Ok(0.0), |gap| pair.verify(&gap))?;
+                near.map_or(Ok(0.0), |near| pair.verify(&near))?;
+                Ok(())
+            }
+            Self::Depth(depth) => pair.verify(depth).map(|_| ()),
+            _ => Err(CertificateError::Start),
+        }
+    }
+
+    fn check_solids(
+        &self,
+        [moving, fixed]: [Placed<'_, Solid>; 2],
+        direction: Option<DVec3>,
+    ) -> Result<(), CertificateError> {
+        match (self, direction) {
+            (Self::Clearance(of), Some(direction)) => {
+                let options = options(of.start_overlap, of.certificate.tolerance);
+                of.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)
+            }
+            (Self::SolidDistance(of), None) => Pair::new(moving, fixed)?.verify(of).map(|_| ()),
+            _ => Err(CertificateError::Start),
+        }
+    }
+
+    /// Whether it is of bodies where they are, without a direction.
+    const fn is_of_pair(&self) -> bool {
+        matches!(self, Self::Distance(_) | Self::Depth(_) | Self::SolidDistance(_))
     }
 }
 
@@ -424,7 +529,8 @@ struct File<S> {
     moving_pose: PoseRecord,
     fixed: BodyFile,
     fixed_pose: PoseRecord,
-    direction: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    direction: Option<[f64; 3]>,
     statement: S,
 }
 
@@ -435,23 +541,30 @@ struct StatementRecord {
     contacts: Option<Contacts>,
     separation: Option<Separation>,
     clearance: Option<SolidStatement>,
+    distance: Option<DistanceStatement>,
+    depth: Option<Depth>,
+    solid_distance: Option<DistanceCertificate>,
 }
 
 impl StatementRecord {
     /// The one thing that is said of such bodies.
     fn of(self, solids: bool) -> Result<Statement, CaseError> {
-        match self {
-            Self { contacts: Some(of), separation: None, clearance: None }
-                if !solids && (of.first.is_some() || of.last.is_some()) =>
-            {
-                Ok(Statement::Contacts(of))
-            }
-            Self { contacts: None, separation: Some(of), clearance: None } if !solids => {
-                Ok(Statement::Separation(of))
-            }
-            Self { contacts: None, separation: None, clearance: Some(of) } if solids => {
-                Ok(Statement::Clearance(of))
-            }
+        let Self { contacts, separation, clearance, distance, depth, solid_distance } = self;
+        let contacts =
+            contacts.map(|of| (of.first.is_some() || of.last.is_some(), Statement::Contacts(of)));
+        let distance =
+            distance.map(|of| (of.gap.is_some() || of.near.is_some(), Statement::Distance(of)));
+        let said = [
+            contacts.map(|(something, of)| (something && !solids, of)),
+            distance.map(|(something, of)| (something && !solids, of)),
+            separation.map(|of| (!solids, Statement::Separation(of))),
+            depth.map(|of| (!solids, Statement::Depth(of))),
+            clearance.map(|of| (solids, Statement::Clearance(of))),
+            solid_distance.map(|of| (solids, Statement::SolidDistance(of))),
+        ];
+        let mut said = said.into_iter().flatten();
+        match (said.next(), said.next()) {
+            (Some((true, statement)), None) => Ok(statement),
             _ => Err(CaseError::Statement),
         }
     }
@@ -503,6 +616,22 @@ fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError
     Solid::from_pieces(&solids).map_err(refused)
 }
 
+/// Both bodies made once more of their pieces, as they are read back from a file.
+fn again(
+    pieces: [&[&Solid]; 2],
+    asked: [&Solid; 2],
+) -> Result<(Box<[Solid; 2]>, Pieces), CaseError> {
+    let of: Pieces =
+        pieces.map(|pieces| pieces.iter().map(|piece| PieceRecord::of(piece)).collect());
+    let made = Box::new([union(&of[0], "moving")?, union(&of[1], "fixed")?]);
+    for (k, which) in ["moving", "fixed"].into_iter().enumerate() {
+        if !is_same(&made[k], asked[k]) {
+            return Err(CaseError::Changed { which });
+        }
+    }
+    Ok((made, of))
+}
+
 /// Whether two solids have the same facets, in whatever order.
 fn is_same(a: &Solid, b: &Solid) -> bool {
     let facets = |solid: &Solid| {
@@ -547,7 +676,33 @@ impl fmt::Display for Statement {
                 )
             }
             Self::Clearance(statement) => statement.fmt(f),
+            Self::Distance(DistanceStatement { gap, near }) => {
+                let near = near.as_ref().map(|near| near.distance);
+                f.write_str(&apart(gap.map(|gap| gap.gap), near))
+            }
+            Self::Depth(Depth { upper: 0.0, .. }) => write!(f, "the bodies do not overlap"),
+            Self::Depth(Depth { lower, upper, direction, .. }) => write!(
+                f,
+                "a translation of the moving body by {upper:?} along {:?} parts the bodies, none below \
+                 {lower:?} does",
+                direction.to_array()
+            ),
+            Self::SolidDistance(DistanceCertificate { lower, near, .. }) => {
+                let lower = Some(*lower).filter(|lower| *lower > 0.0);
+                f.write_str(&apart(lower, Some(near.distance())))
+            }
         }
+    }
+}
+
+/// How far bodies are apart: at least, at most.
+fn apart(lower: Option<f64>, upper: Option<f64>) -> String {
+    match (lower, upper) {
+        (_, Some(0.0)) => "the bodies have a point in common".into(),
+        (Some(a), Some(b)) => format!("the bodies are between {a:?} and {b:?} apart"),
+        (Some(a), None) => format!("the bodies are at least {a:?} apart"),
+        (None, Some(b)) => format!("the bodies are at most {b:?} apart"),
+        (None, None) => "nothing".into(),
     }
 }
 

@@ -139,7 +139,7 @@ def test_bad_input_is_refused() -> None:
     with pytest.raises(TypeError, match="body: neither"):
         obstacles.add("a cube")  # type: ignore[arg-type]
     obstacles.add(Solid.from_pieces([CUBE]))
-    with pytest.raises(QueryError, match="no solid"):
+    with pytest.raises(QueryError, match="not a solid"):
         obstacles.nearest(ConvexPolyhedron([[0, 0, 0]]))
 
 

@@ -189,7 +189,7 @@ fn poses(of: &Bound<'_, PyAny>) -> PyResult<Vec<colltrans::Pose>> {
     of.try_iter()?.map(|one| pose(Some(&one?), "poses")).collect()
 }
 
-fn vectors<'py>(py: Python<'py>, all: Vec<[f64; 3]>) -> PyResult<Bound<'py, PyAny>> {
+fn vectors(py: Python<'_>, all: Vec<[f64; 3]>) -> PyResult<Bound<'_, PyAny>> {
     let n = all.len();
     Ok(all.into_flattened().into_pyarray(py).reshape([n, 3])?.into_any())
 }

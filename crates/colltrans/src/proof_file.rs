@@ -20,7 +20,6 @@ use crate::cast::replay::BodyRecord;
 use crate::cast::sideways::{proven_overlap, verified_overlap};
 use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use crate::cast::{CaseError, Cast};
-
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;

@@ -1,10 +1,11 @@
-"""One body among many: numbers, answers beside those of single queries, rows, threads, bad input."""
+"""One body among many: numbers, answers beside single queries, rows, threads, bad input."""
 
 import math
 import threading
 
 import numpy as np
 import pytest
+
 from colltrans import (
     Blocked,
     ConvexPolyhedron,

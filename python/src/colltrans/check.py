@@ -590,7 +590,9 @@ def check(text: str) -> Report:
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
         if file.get("keep", 0) != 0:
-            raise NoProofError("the bodies are to keep a gap: `colltrans verify` checks such a proof")
+            raise NoProofError(
+                "the bodies are to keep a gap: `colltrans verify` checks such a proof"
+            )
         moving = Body.read(file["moving"], file["moving_pose"])
         fixed = Body.read(file["fixed"], file["fixed_pose"])
         if bool(moving.facets) != bool(fixed.facets):

@@ -313,3 +313,29 @@ fn tracked_distances_are_as_tight() {
         }
     }
 }
+
+#[test]
+fn lined_up_boxes_that_meet_have_a_point_in_common_for_certain() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
+    let large = ConvexPolyhedron::cuboid(DVec3::splat(-4.0), DVec3::splat(4.0)).unwrap();
+    let places = [
+        [0.0, 0.0, 0.0],
+        [0.5, 0.25, 0.0],
+        [0.1, 0.7, 0.3],
+        [1.0, 0.25, 0.5],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.5],
+        [1.0, 1.0, 1.0],
+    ];
+    for fixed in [&cube, &large] {
+        for place in places {
+            let pose = Pose::from_translation(DVec3::from_array(place)).unwrap();
+            let pair = Pair::new(cube.at(pose), fixed.at(Pose::IDENTITY)).unwrap();
+            let distance = pair.distance().unwrap();
+            assert_eq!(distance.bounds(), [0.0, 0.0], "{place:?}");
+            assert_eq!(pair.verify(&distance.near).unwrap(), 0.0);
+            assert!(distance.on_moving.distance(distance.on_fixed) < 1e-14, "{place:?}");
+            assert!(matches!(pair.within(0.0).unwrap(), Within::Closer(_)), "{place:?}");
+        }
+    }
+}

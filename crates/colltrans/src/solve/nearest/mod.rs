@@ -319,8 +319,42 @@ impl Found {
     pub(crate) fn near(&self, difference: &Difference) -> NearPoints {
         let Self { pairs, weights, .. } = *self;
         let bodies = difference.bodies;
-        let met = self.full && encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale());
-        let raised = (self.upper + difference.noise.mean_raised()).next_up();
-        NearPoints { pairs, weights, distance: if met { 0.0 } else { raised } }
+        if self.full && encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()) {
+            return NearPoints { pairs, weights, distance: 0.0 };
+        }
+        let is_near = self.upper <= NEAR * difference.noise.point();
+        let met = if is_near { self.enclosing(difference) } else { None };
+        met.unwrap_or_else(|| {
+            let distance = (self.upper + difference.noise.mean_raised()).next_up();
+            NearPoints { pairs, weights, distance }
+        })
+    }
+
+    /// Four pairs that enclose the origin, where it lies on a simplex of fewer, or beside it by rounding alone,
+    /// as of boxes that are lined up: that simplex, and support points along the axes.
+    #[cold]
+    #[inline(never)]
+    fn enclosing(&self, difference: &Difference) -> Option<NearPoints> {
+        let bodies = difference.bodies;
+        let axes = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+        let beside: Vec<VertexPair> =
+            axes.map(|normal| difference.lowest(normal, None).pair).collect();
+        let (corners, mut weights) = (self.simplex().count(), [0.0; 4]);
+        let given = self.weights.iter().filter(|weight| **weight > 0.0);
+        weights.iter_mut().zip(given).for_each(|(place, weight)| *place = *weight);
+        // Which of the six are taken, as bits.
+        let choices = (0_u32..1 << 6).filter(|bits| corners + bits.count_ones() as usize == 4);
+        let mut made = choices.map(|bits| {
+            let more = (0..6).filter(|k| bits >> k & 1 == 1).map(|k| beside[k]);
+            let mut pairs = [VertexPair::default(); 4];
+            pairs
+                .iter_mut()
+                .zip(self.simplex().chain(more))
+                .for_each(|(place, pair)| *place = pair);
+            pairs
+        });
+        let pairs =
+            made.find(|pairs| encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()))?;
+        Some(NearPoints { pairs, weights, distance: 0.0 })
     }
 }

@@ -32,6 +32,7 @@ const out = join(here, "dist");
 const MODULES = {
   "colltrans-wasm": "page",
   "colltrans-wasm-assembly": "page_assembly",
+  "colltrans-wasm-distance": "page_distance",
   "colltrans-wasm-picture": "page_picture",
 };
 

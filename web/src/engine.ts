@@ -1,8 +1,8 @@
 // A library, in a worker: questions go in, answers come out, in order.
 
 import type {
-  PageAdd, PageAlong, PageBody, PageCast, PageCertify, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad, PageMap,
-  PageParts, PagePlan, PageSearch, PageVerify, Separation,
+  PageAdd, PageAlong, PageBody, PageCast, PageCertify, PageDistance, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad,
+  PageMap, PageParts, PagePlace, PagePlan, PageSearch, PageVerify, Separation,
 } from "./answers";
 import type { Pose, Vec } from "./math";
 
@@ -24,6 +24,8 @@ interface Answers {
   map: PageMap;
   plan: PagePlan;
   draw: PageDraw;
+  place: PagePlace;
+  distance: PageDistance;
 }
 
 /** A body as it is drawn, in its own frame. */
@@ -113,7 +115,7 @@ export class Engine {
   private next = 1;
 
   /** The worker starts at once: the library is read while the page is still being made. */
-  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_picture" = "colltrans") {
+  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_picture" = "colltrans") {
     this.running();
   }
 

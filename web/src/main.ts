@@ -13,6 +13,7 @@ import { ACCEPTED } from "./formats";
 import { dot, length, placed, sub } from "./math";
 import type { AssemblyTab } from "./assembly";
 import type { Found } from "./found";
+import type { Near, Nearness, Source } from "./near";
 import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
@@ -59,6 +60,15 @@ class Page {
   private before: Pair | undefined;
   private asking = false;
   private again = false;
+  /** How far the bodies are apart: read when it is asked for. */
+  private nearness: Near | undefined;
+  private near: Nearness | undefined;
+  private nearButton: HTMLElement | undefined;
+  private nearing = false;
+  private nearAgain = false;
+  private readonly sources: Partial<Record<Slot, Source>> = {};
+  /** The bytes of the file that was given last. */
+  private readonly given: Partial<Record<Slot, Source["bytes"]>> = {};
   private loading = 0;
   /** Counts what is asked for as a body: what comes for an older one is of no use. */
   private readonly turns: Record<Slot, number> = { moving: 0, fixed: 0 };
@@ -201,6 +211,37 @@ class Page {
     this.show();
     this.found?.changed();
     this.proveSoon();
+    void this.askNear();
+  }
+
+  /** As with casts: of those that come meanwhile only the last is asked. */
+  private async askNear(): Promise<void> {
+    if (this.nearing) {
+      this.nearAgain = true;
+      return;
+    }
+    const { moving, fixed } = this.sources;
+    if (!this.state.near || !moving || !fixed || !this.bodies.moving || !this.bodies.fixed) {
+      if (this.near) {
+        this.near = undefined;
+        this.show();
+      }
+      return;
+    }
+    this.nearing = true;
+    try {
+      this.nearness ??= new (await import("./near")).Near();
+      this.near = await this.nearness.ask({ moving, fixed }, structuredClone(this.pair()));
+    } catch (error) {
+      this.near = undefined;
+      toast(`No distance: ${error instanceof Error ? error.message : String(error)}`);
+    }
+    this.nearing = false;
+    if (this.nearAgain || !this.state.near) {
+      this.nearAgain = false;
+      void this.askNear();
+    }
+    this.show();
   }
 
   /** Between small solids the proof is made once the question stands still. */
@@ -266,6 +307,7 @@ class Page {
       const response = known ? await fetch(url) : undefined;
       if (!response?.ok) throw new Refused(`${file} is not among the examples: choose or drop it again`);
       const bytes = await response.arrayBuffer();
+      this.given[slot] = async () => (await fetch(url)).arrayBuffer();
       if (turn === this.turns[slot]) await this.load(slot, file, take, bytes);
     } catch (error) {
       if (turn !== this.turns[slot]) return;
@@ -275,15 +317,17 @@ class Page {
     }
   }
 
-  private async load(slot: Slot, name: string, take: Take, bytes?: ArrayBuffer) {
+  private async load(slot: Slot, name: string, take: Take, file?: ArrayBuffer) {
     this.waiting(+1);
     try {
-      const body = await this.engine.load(slot, name, take, bytes);
+      const body = await this.engine.load(slot, name, take, file);
       forget(this.bodies[slot]);
       [this.last, this.before] = [undefined, undefined];
       this.bodies[slot] = drawn(body);
       this.state.parts[slot] = { file: name, take };
       this.made[slot] = { file: name, take };
+      const bytes = this.given[slot];
+      if (bytes) this.sources[slot] = { name, take, bytes };
       delete this.refusals[slot];
     } finally {
       this.waiting(-1);
@@ -315,6 +359,7 @@ class Page {
     try {
       const bytes = await bytesOf(file);
       if (turn !== this.turns[slot]) return;
+      this.given[slot] = () => bytesOf(file);
       // A link to a file that had to be given says how it is taken.
       await this.load(slot, file.name, !this.bodies[slot] && file.name === name ? take : "convex", bytes);
       await this.changedBody();
@@ -374,12 +419,14 @@ class Page {
       element.setAttribute("aria-selected", String(state.tab === tab));
       element.tabIndex = state.tab === tab ? 0 : -1;
     }
-    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof, verdict: this.verdict };
+    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof, near: this.near, verdict: this.verdict };
     this.panel.show(shown);
     if (state.tab !== "answer") void this.openTab(state.tab);
     this.found?.show(state, state.tab === "found");
     this.time.show(state, answer, this.pass());
     view?.setPlain(state.tab === "found");
+    view?.setNear(this.near);
+    this.nearButton?.setAttribute("aria-pressed", String(state.near));
     view?.show(state, answer);
     const seen = moving && fixed && drawable(state, answer, moving, fixed);
     named("inset").hidden = !seen || state.tab !== "answer";
@@ -412,7 +459,7 @@ class Page {
         return;
       }
       const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
-      this.state = { ...fromExample(select.value), tab, assembly: this.state.assembly };
+      this.state = { ...fromExample(select.value), tab, near: this.state.near, assembly: this.state.assembly };
       await this.loadBoth();
       this.fit();
       this.remember();
@@ -436,7 +483,7 @@ class Page {
 
   /** The example that is asked about, if it is one as it began: else it can be chosen again. */
   private showExample() {
-    const asked = toHash({ ...this.state, t: null, tab: "answer" });
+    const asked = toHash({ ...this.state, t: null, near: false, tab: "answer" });
     const same = Object.keys(EXAMPLES).find((name) => toHash(fromExample(name)) === asked) ?? "";
     const gearbox = this.assembly?.isExample ?? true ? GEARBOX : "";
     named<HTMLSelectElement>("example").value = this.state.tab === "assembly" ? gearbox : same;
@@ -476,6 +523,10 @@ class Page {
       this.held = this.held === "moving" ? "fixed" : "moving";
       pick(tools.findIndex(([tool]) => tool === this.tool));
     });
+    this.nearButton = button("Distance", "How far the bodies are apart where they are, or how deep they overlap", () => {
+      this.change((state) => (state.near = !state.near), false);
+      void this.askNear();
+    });
     const pick = (k: number) => {
       this.tool = tools[k]![0];
       tools.forEach(([, , element], other) => element.setAttribute("aria-pressed", String(other === k)));
@@ -488,6 +539,7 @@ class Page {
       h("div", { class: "group" },
         button("Fit", "Everything into the picture", () => this.fit()),
         button("Along d", "Look along the direction", () => this.fit(true))),
+      h("div", { class: "group" }, this.nearButton),
     );
     pick(0);
     addEventListener("keydown", (event) => {
@@ -560,7 +612,7 @@ class Page {
 
   /** For tests. */
   probe() {
-    return { assembly: this.assembly?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, firstAnswer: this.firstAnswer };
+    return { assembly: this.assembly?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, near: this.near?.told, firstAnswer: this.firstAnswer };
   }
 }
 

@@ -5,6 +5,7 @@ import type { Certificate, PageCast, PageCertify, PageClaims, PageConvex, PageSo
 import { MOST_MIB, type Slot, type Take, plane } from "./engine";
 import { names } from "./formats";
 import { type Vec, length, short } from "./math";
+import type { Nearness } from "./near";
 import { asCommand } from "./share";
 import type { Solver, State } from "./state";
 import type { Drawn } from "./view/body";
@@ -31,6 +32,8 @@ export interface Shown {
   refusals: Partial<Record<Slot, Refusal>>;
   /** Of an answer between solids, once it is made. */
   solidProof: PageCertify | undefined;
+  /** How far the bodies are apart where they are, if that is shown. */
+  near: Nearness | undefined;
   /** What came of the check of the proof. */
   verdict: { holds: boolean; text: string } | undefined;
 }
@@ -202,7 +205,8 @@ export class AnswerPanel {
     this.facts.parentElement!.hidden = !answer || !!error;
     this.proofCard.hidden = !answer || !!error;
     if (answer && !error) {
-      this.facts.replaceChildren(...say(answer, state).rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+      const rows = [...(shown.near?.rows ?? []), ...say(answer, state).rows];
+      this.facts.replaceChildren(...rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
       this.showProof(answer, shown);
     }
   }
@@ -215,7 +219,7 @@ export class AnswerPanel {
     return changed;
   }
 
-  private showSaid({ state, answer, error, took, bodies, refusals }: Shown) {
+  private showSaid({ state, answer, error, took, bodies, refusals, near }: Shown) {
     const missing = (["moving", "fixed"] as const).flatMap((slot) => (bodies[slot] ? [] : refusals[slot]?.message ?? []));
     if (error) {
       this.said.className = "said care";
@@ -234,7 +238,7 @@ export class AnswerPanel {
         : "";
       this.said.className = `said ${kind}`;
       this.said.replaceChildren(
-        h("h2", { id: "headline" }, headline), h("p", {}, sentence),
+        h("h2", { id: "headline" }, headline), h("p", {}, sentence), ...(near ? [h("p", { id: "near" }, near.sentence)] : []),
         h("p", { class: "took" }, `${work}${took < 0.1 ? "less than 0.1" : short(took, 2)} ms in this browser`),
       );
       this.said.dataset.t = String(translation ?? "");

@@ -17,6 +17,8 @@ export interface State {
   tolerance: number | null;
   ignore: boolean;
   solver: Solver;
+  /** Whether it is shown how far the bodies are apart where they are. */
+  near: boolean;
   /** Where the moving body is shown, in multiples of the direction; `null`: at its start. */
   t: number | null;
   tab: Tab;
@@ -40,6 +42,7 @@ export function fromExample(name: string): State {
     tolerance: null,
     ignore: false,
     solver: example.solver ?? "auto",
+    near: false,
     t: null,
     tab: "answer",
     assembly: { direction: [0, 0, 1], tolerance: null, ignore: false, part: null },
@@ -62,6 +65,7 @@ export function toHash(state: State): string {
     ["tol", state.tolerance === null ? undefined : String(state.tolerance)],
     ["ignore", state.ignore ? "1" : undefined],
     ["solver", state.solver === "auto" ? undefined : state.solver],
+    ["near", state.near ? "1" : undefined],
     ["t", state.t === null ? undefined : String(state.t)],
     ["tab", state.tab === "answer" ? undefined : state.tab],
     ...(state.tab === "assembly" ? assemblyFields(state) : []),
@@ -101,6 +105,7 @@ export function fromHash(hash: string): State {
   state.tolerance = numbers("tol", 1)?.[0] ?? null;
   state.ignore = fields.get("ignore") === "1";
   state.solver = SOLVERS.find((s) => s === fields.get("solver")) ?? "auto";
+  state.near = fields.get("near") === "1";
   state.t = numbers("t", 1)?.[0] ?? null;
   state.tab = TABS.find((tab) => tab === fields.get("tab")) ?? "answer";
   const { assembly } = state;

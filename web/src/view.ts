@@ -12,6 +12,7 @@ import { palette } from "./colours";
 import { h, soon } from "./dom";
 import type { PageCast } from "./answers";
 import { type Slot, plane, touch } from "./engine";
+import type { Nearness } from "./near";
 import { type Pose, type Vec, length, times, unit } from "./math";
 import type { State } from "./state";
 import { type Arrow, arrow } from "./view/arrow";
@@ -41,6 +42,7 @@ export class View {
   private arrow: Arrow | undefined;
   private labels: Label[] = [];
   private plain = false;
+  private near: Nearness | undefined;
   private fitted = false;
 
   onDirection: (direction: Vec, done: boolean) => void = () => {};
@@ -90,6 +92,11 @@ export class View {
   setTool(tool: Tool, slot: Slot) {
     this.handles.set(tool, slot);
     this.render();
+  }
+
+  /** How far the bodies are apart, as it is to be drawn. */
+  setNear(near: Nearness | undefined) {
+    this.near = near;
   }
 
   /** Only bodies and what others add; for the views of searches. */
@@ -163,6 +170,11 @@ export class View {
       this.labels.push(label);
     } else if (between?.margin) {
       shown.add(...gap(frame, between.normal, between.margin, state, { moving, fixed }));
+    }
+    const near = this.near?.draw(frame);
+    if (near) {
+      shown.add(...near.parts);
+      this.labels.push(...near.labels);
     }
     this.arrow = arrow(frame, moving, fixed, state.poses.moving, state.direction);
     shown.add(this.arrow.group);

@@ -35,7 +35,7 @@ test("focus goes over the page in the order in which it is read", async () => {
     assert.ok(outlined, `${seen.at(-1)} has no outline`);
   }
   const order = [
-    "example", "tab-answer", "Light or dark", /^The two bodies/, "Turn view", "Move", "Rotate", "Fit", "Along d", "Play", "start", "first contact",
+    "example", "tab-answer", "Light or dark", /^The two bodies/, "Turn view", "Move", "Rotate", "Fit", "Along d", "Distance", "Play", "start", "first contact",
     "last contact", /^Where the moving body is shown/, "Proof", "Verify", "Bodies", /^Choose a file for the moving/, /^Choose a file for the fixed/,
     "Question", "Direction x", "Direction y", "Direction z", "+x",
   ];

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 mod assembly;
 mod help;
+mod placed;
 mod values;
 
 use clap::{Args, Parser, Subcommand};
@@ -15,8 +16,10 @@ use colltrans_mesh::body::BodyOptions;
 use crate::failure::{Code, Failure};
 pub(crate) use assembly::AssemblyArguments;
 use help::{
-    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, EXIT_CODES, fitted, formats,
+    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, DISTANCE_ANSWERS, EXIT_CODES,
+    fitted, formats,
 };
+pub(crate) use placed::{PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, proof, solver, threads};
 
@@ -24,7 +27,7 @@ use values::{angles, bytes, factor, length, picture, place, proof, solver, threa
 ///
 /// Start with `colltrans info MESH` to see what a mesh is. Convex bodies: `colltrans cast MOVING FIXED
 /// --direction -z`, with proven bounds. Parts that have holes and hollows: `colltrans clearance MOVING
-/// --from FIXED --direction -z`.
+/// --from FIXED --direction -z`. How far apart two bodies are: `colltrans distance A B`.
 #[derive(Debug, Parser)]
 #[command(name = "colltrans", version, max_term_width = help::WIDEST, after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, &formats(), EXIT_CODES]))]
 pub(crate) struct Arguments {
@@ -47,6 +50,25 @@ pub(crate) enum Command {
     /// hollows, several files on a side being one body, in place. Contacts behind do not block.
     #[command(visible_alias = "clear", after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEARANCE_ANSWERS, &formats(), EXIT_CODES]))]
     Clearance(Box<ClearanceArguments>),
+    /// Say how far apart two meshes are where they are, and where they are nearest
+    ///
+    /// With proven bounds, however near they are: the true distance lies between them. Meshes are taken as
+    /// `clearance` takes them: two convex ones as convex bodies, all others as closed parts with their holes
+    /// and hollows.
+    #[command(visible_alias = "dist", after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[DISTANCE_ANSWERS, &formats(), EXIT_CODES]))]
+    Distance(Box<PlacedArguments>),
+    /// Say how deep two meshes overlap where they are: which shortest translation parts them
+    ///
+    /// Over all directions, with proven bounds, of convex bodies. Parts that are not convex have another
+    /// measure: the least tolerance with which they would not overlap, as `clearance` has it.
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[DISTANCE_ANSWERS, &formats(), EXIT_CODES]))]
+    Depth(Box<PlacedArguments>),
+    /// Say whether two meshes are closer than a length where they are
+    ///
+    /// Ended as soon as that is known, which is sooner than the distance is. Meshes are taken as `distance`
+    /// takes them.
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[DISTANCE_ANSWERS, &formats(), EXIT_CODES]))]
+    Within(Box<WithinArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[BATCH_FORMAT, EXIT_CODES]))]
     Batch(BatchArguments),
@@ -168,32 +190,41 @@ pub(crate) enum Taken {
     Parts,
 }
 
+impl<'a> Sides<'a> {
+    /// Of the files of a command line that asks something that only convex bodies have, or only parts; what
+    /// to say of one that asks both.
+    fn of(
+        meshes: &'a [PathBuf],
+        from: &'a [PathBuf],
+        asks: [bool; 2],
+        clash: &str,
+    ) -> Result<Self, Failure> {
+        let usage = |message: &str| Err(Failure::new(Code::Usage, message));
+        let files = match (meshes, from) {
+            ([_, _], []) => [&meshes[..1], &meshes[1..]],
+            (_, []) => return usage("give the mesh that moves and the one that stays, or --from"),
+            (moving, fixed) => [moving, fixed],
+        };
+        let taken = match asks {
+            [false, false] => Taken::AsTheyAre,
+            [false, true] => Taken::Parts,
+            [true, false] => Taken::Convex,
+            [true, true] => return usage(clash),
+        };
+        Ok(Self { files, taken })
+    }
+}
+
 impl ClearanceArguments {
     /// Who moves, who stays, and as what.
     pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
-        let usage = |message: &str| Err(Failure::new(Code::Usage, message));
         let asks_parts = self.tolerance.is_some()
             || self.ignore_start_overlaps
             || self.open
             || !self.from.is_empty();
-        let asks_convex = self.pair.asks_convex();
-        let files = match (self.meshes.as_slice(), self.from.as_slice()) {
-            ([_, _], []) => [&self.meshes[..1], &self.meshes[1..]],
-            (_, []) => return usage("give the mesh that moves and the one that stays, or --from"),
-            (moving, fixed) => [moving, fixed],
-        };
-        let taken = match (asks_convex, asks_parts) {
-            (false, false) => Taken::AsTheyAre,
-            (false, true) => Taken::Parts,
-            (true, false) => Taken::Convex,
-            (true, true) => {
-                return usage(
-                    "--solver, --graze-tolerance, --convex-tolerance and --hull are for two convex \
-                     meshes; --from, --tolerance, --ignore-start-overlaps and --open for parts",
-                );
-            }
-        };
-        Ok(Sides { files, taken })
+        let clash = "--solver, --graze-tolerance, --convex-tolerance and --hull are for two convex \
+             meshes; --from, --tolerance, --ignore-start-overlaps and --open for parts";
+        Sides::of(&self.meshes, &self.from, [self.pair.asks_convex(), asks_parts], clash)
     }
 
     /// How the files of the moving and of the fixed body are read as parts.
@@ -318,19 +349,28 @@ impl BodyArguments {
 impl PairArguments {
     /// Whether something is asked that only convex bodies have.
     fn asks_convex(&self) -> bool {
-        let HullArguments { hull, hull_moving, hull_fixed } = self.hulls;
-        let hulls = hull || hull_moving || hull_fixed || self.body.convex_tolerance.is_some();
-        hulls || self.solver != Solver::Auto || self.graze_tolerance != 0.0
+        self.hulls.asks_convex(self.body)
+            || self.solver != Solver::Auto
+            || self.graze_tolerance != 0.0
     }
 
     /// How the mesh files become convex bodies.
     pub(crate) fn body_options(&self) -> [BodyOptions; 2] {
-        let HullArguments { hull, hull_moving, hull_fixed } = self.hulls;
-        let one = |hull, scale| BodyOptions { hull, ..self.body.options(scale) };
-        [
-            one(hull || hull_moving, self.places.moving_scale),
-            one(hull || hull_fixed, self.places.fixed_scale),
-        ]
+        self.hulls.body_options(self.body, &self.places)
+    }
+}
+
+impl HullArguments {
+    /// Whether something is said that only convex bodies have.
+    const fn asks_convex(self, body: BodyArguments) -> bool {
+        self.hull || self.hull_moving || self.hull_fixed || body.convex_tolerance.is_some()
+    }
+
+    /// How the mesh files become convex bodies.
+    fn body_options(self, body: BodyArguments, places: &PlaceArguments) -> [BodyOptions; 2] {
+        let Self { hull, hull_moving, hull_fixed } = self;
+        let one = |hull, scale| BodyOptions { hull, ..body.options(scale) };
+        [one(hull || hull_moving, places.moving_scale), one(hull || hull_fixed, places.fixed_scale)]
     }
 }
 

@@ -91,9 +91,11 @@ impl Failure {
 
 impl From<colltrans::QueryError> for Failure {
     fn from(error: colltrans::QueryError) -> Self {
-        use colltrans::QueryError::{Direction, GrazeTolerance, NothingLeft};
+        use colltrans::QueryError::{Direction, GrazeTolerance, Length, NothingLeft};
         let code = match error {
-            Direction { .. } | GrazeTolerance { .. } | NothingLeft { .. } => Code::Usage,
+            Direction { .. } | GrazeTolerance { .. } | Length { .. } | NothingLeft { .. } => {
+                Code::Usage
+            }
             _ => Code::Query,
         };
         Self::new(code, error.to_string())

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use colltrans::{ProofFile, Statement};
+use colltrans::{DistanceStatement, ProofFile, Statement};
 use serde_json::{Map, Value, json};
 
 use crate::args::VerifyArguments;
@@ -70,6 +70,18 @@ fn told(proof: &ProofFile) -> Value {
             statement.separation.map(|plane| say("margin", json!(plane.margin)));
             let inverted = proof.inverted();
             (inverted != [0; 2]).then(|| say("inverted", json!(inverted)));
+        }
+        Statement::Distance(DistanceStatement { gap, near }) => {
+            gap.map(|gap| say("lower", json!(gap.gap)));
+            near.map(|near| say("upper", json!(near.distance)));
+        }
+        Statement::Depth(depth) => {
+            say("lower", json!(depth.lower));
+            say("upper", json!(depth.upper));
+        }
+        Statement::SolidDistance(proof) => {
+            say("lower", json!(proof.lower));
+            say("upper", json!(proof.near.distance()));
         }
     }
     say("statement", json!(proof.to_string()));

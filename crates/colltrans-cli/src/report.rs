@@ -239,7 +239,7 @@ pub(crate) fn kept(text: &mut String, record: &Record) {
 }
 
 /// By how much hulls exceed their parts, and what the answer then means.
-fn hulls(text: &mut String, told: &Line) {
+pub(crate) fn hulls(text: &mut String, told: &Line) {
     let Some(hulls) = &told.hull else { return };
     for (name, excess) in hulls.named() {
         line(text, name, &excess.to_string());
@@ -251,13 +251,23 @@ fn hulls(text: &mut String, told: &Line) {
         _ => "the fixed part itself",
     };
     let meaning = match told.record.outcome {
-        Ending::Separated => format!("proven for {whose} too"),
+        Ending::Separated | Ending::Farther => format!("proven for {whose} too"),
         Ending::Behind => format!("proven for {whose} too: free ahead"),
         Ending::Grazing | Ending::Slides => {
             format!("a bound for {whose}: no more overlap sideways, perhaps none")
         }
+        Ending::Overlapping if told.record.upper.is_some() => {
+            format!("a bound for {whose}: parted by this translation, perhaps by a shorter one")
+        }
         Ending::Overlapping => {
             format!("a bound for {whose}: free after these ways, perhaps no overlap at all")
+        }
+        Ending::Apart => format!("a bound for {whose}: no nearer to each other, perhaps farther"),
+        Ending::Meeting | Ending::Touching => {
+            format!("nothing for {whose}, perhaps apart from each other")
+        }
+        Ending::Closer | Ending::Undecided => {
+            format!("nothing for {whose}, perhaps farther from each other")
         }
         Ending::Contact | Ending::Blocked | Ending::Free | Ending::Error => {
             format!("a bound for {whose}: no contact before this one, perhaps later or none")

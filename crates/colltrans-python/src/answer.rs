@@ -47,7 +47,7 @@ macro_rules! answer {
 
         #[pymethods]
         impl $class {
-            /// Cast or SolidCast: The query; of a last contact the one turned round.
+            /// Cast or SolidCast or Pair: The query; of a last contact the one turned round.
             #[getter]
             fn query(&self, py: Python<'_>) -> Py<$query> {
                 self.query.clone_ref(py)

@@ -5,11 +5,12 @@
 //! 1. `errors` (the library's errors as exceptions), `arrays` (numbers in and out), `pose`, `frozen` (what
 //!    frozen classes have in common);
 //! 2. bodies: `offset` (reports), `body`, `solid`;
-//! 3. queries as values: `query` between convex bodies, `solid_cast` between solids;
+//! 3. queries as values: `query` between convex bodies, `solid_cast` between solids, `pair` without a
+//!    direction;
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
-//!    `solid_answer`;
+//!    `solid_answer`, `distance`;
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
-//!    bulk), `assembly` (many parts).
+//!    bulk), `obstacles` (one body among many), `assembly` (many parts).
 //!
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
@@ -19,12 +20,15 @@ mod assembly;
 mod body;
 mod certificate;
 mod clearance;
+mod distance;
 mod errors;
 mod features;
 mod frozen;
 mod many;
+mod obstacles;
 mod offset;
 mod outcome;
+mod pair;
 mod pose;
 mod query;
 mod questions;
@@ -45,19 +49,27 @@ mod _colltrans {
     #[pymodule_export]
     use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapping, Slides};
     #[pymodule_export]
+    use crate::distance::{Depth, Distance, OverlapDepth, Within};
+    #[pymodule_export]
     use crate::features::{Feature, Features, Steps};
     #[pymodule_export]
-    use crate::many::ask_many;
+    use crate::many::{ask_many, ask_pairs};
+    #[pymodule_export]
+    use crate::obstacles::{NearestObstacle, ObstacleClearance, Obstacles};
     #[pymodule_export]
     use crate::offset::{OffsetReport, ShrinkReport};
     #[pymodule_export]
     use crate::outcome::{Contact, ContactRange, Grazing, Separated};
     #[pymodule_export]
+    use crate::pair::Pair;
+    #[pymodule_export]
     use crate::pose::Pose;
     #[pymodule_export]
     use crate::query::Cast;
     #[pymodule_export]
-    use crate::questions::{cast, clearance, contact_range, directional_depth, intersects};
+    use crate::questions::{
+        cast, clearance, contact_range, depth, directional_depth, distance, intersects, within,
+    };
     #[pymodule_export]
     use crate::solid::Solid;
     #[pymodule_export]

@@ -14,9 +14,11 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::record::{PairQuestion, Record};
+use colltrans::solid::AsSolid;
 use colltrans::{
-    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Outcome, OverlapAhead, Pose,
-    WhyFree,
+    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Outcome, OverlapAhead, Pair,
+    Placed, Pose, WhyFree,
 };
 use numpy::{
     IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -28,6 +30,7 @@ use pyo3::types::{PyDict, PyString};
 use crate::arrays::coordinates;
 use crate::body;
 use crate::query::solver_called;
+use crate::solid::Solid;
 
 /// Rows of a chunk: some hundred microseconds.
 const CHUNK: usize = 256;
@@ -42,12 +45,11 @@ struct Row {
     /// An index into the question's outcomes.
     outcome: u8,
     numbers: [f64; NUMBERS.len()],
-    normal: [f64; 3],
-    point: [f64; 3],
+    vectors: [[f64; 3]; VECTORS.len()],
 }
 
 /// The names of [`Row::numbers`].
-const NUMBERS: [&str; 12] = [
+const NUMBERS: [&str; 15] = [
     "distance",
     "translation",
     "exit",
@@ -60,6 +62,9 @@ const NUMBERS: [&str; 12] = [
     "exit_lower",
     "exit_upper",
     "overlap",
+    "lower",
+    "upper",
+    "least_tolerance",
 ];
 const DISTANCE: usize = 0;
 const TRANSLATION: usize = 1;
@@ -73,6 +78,17 @@ const MARGIN: usize = 8;
 const EXIT_LOWER: usize = 9;
 const EXIT_UPPER: usize = 10;
 const OVERLAP: usize = 11;
+const AT_LEAST: usize = 12;
+const AT_MOST: usize = 13;
+const LEAST_TOLERANCE: usize = 14;
+
+/// The names of [`Row::vectors`].
+const VECTORS: [&str; 5] = ["normal", "point", "on_moving", "on_fixed", "direction"];
+const NORMAL: usize = 0;
+const POINT: usize = 1;
+const ON_MOVING: usize = 2;
+const ON_FIXED: usize = 3;
+const DIRECTION: usize = 4;
 
 /// Which question is asked of every row.
 #[derive(Clone, Copy)]
@@ -80,6 +96,9 @@ enum Question {
     Contact,
     Range,
     Clearance,
+    Distance,
+    Depth,
+    Within,
 }
 
 impl Question {
@@ -88,6 +107,9 @@ impl Question {
             "contact" => Ok(Self::Contact),
             "range" => Ok(Self::Range),
             "clearance" => Ok(Self::Clearance),
+            "distance" => Ok(Self::Distance),
+            "depth" => Ok(Self::Depth),
+            "within" => Ok(Self::Within),
             _ => Err(PyValueError::new_err(format!("no question {name:?}"))),
         }
     }
@@ -121,6 +143,17 @@ impl Question {
                 EXIT_UPPER,
                 OVERLAP,
             ],
+            Self::Depth => &[AT_LEAST, AT_MOST, LEAST_TOLERANCE],
+            Self::Distance | Self::Within => &[AT_LEAST, AT_MOST],
+        }
+    }
+
+    /// The columns of vectors that they fill.
+    const fn vectors(self) -> &'static [usize] {
+        match self {
+            Self::Contact | Self::Range | Self::Clearance => &[NORMAL, POINT],
+            Self::Distance | Self::Within => &[NORMAL, ON_MOVING, ON_FIXED],
+            Self::Depth => &[DIRECTION],
         }
     }
 
@@ -131,6 +164,9 @@ impl Question {
             Self::Clearance => {
                 &["blocked", "slides", "behind", "separated", "overlapping", "error"]
             }
+            Self::Distance => &["apart", "meeting", "error"],
+            Self::Depth => &["overlapping", "touching", "apart", "error"],
+            Self::Within => &["closer", "farther", "undecided", "error"],
         }
     }
 
@@ -150,7 +186,8 @@ impl Question {
                     .with(OVERLAP, first.overlap),
                 ContactRange::Separated(separated) => Row::separated(2, &separated),
             },
-            Self::Clearance => Row::clearance(&cast.clearance()?, cast),
+            // The others have no direction.
+            _ => Row::clearance(&cast.clearance()?, cast),
         })
     }
 }
@@ -159,13 +196,41 @@ impl Row {
     const NONE: Self = Self {
         outcome: 0,
         numbers: [f64::NAN; NUMBERS.len()],
-        normal: [f64::NAN; 3],
-        point: [f64::NAN; 3],
+        vectors: [[f64::NAN; 3]; VECTORS.len()],
     };
 
     fn with(mut self, which: usize, number: f64) -> Self {
         self.numbers[which] = number;
         self
+    }
+
+    fn along(mut self, which: usize, vector: [f64; 3]) -> Self {
+        self.vectors[which] = vector;
+        self
+    }
+
+    /// Of bodies where they are.
+    fn of_record(question: Question, record: &Record) -> Self {
+        let name = record.outcome.name();
+        let outcome = question.outcomes().iter().position(|known| *known == name);
+        let mut row = Self { outcome: outcome.unwrap_or_default() as u8, ..Self::NONE };
+        let overlap = record.start_overlaps.first().and_then(|overlap| overlap.least_tolerance);
+        let numbers =
+            [(AT_LEAST, record.lower), (AT_MOST, record.upper), (LEAST_TOLERANCE, overlap)];
+        for (which, number) in numbers {
+            row = number.map_or(row, |number| row.with(which, number));
+        }
+        let [from, to] = [0, 1].map(|k| record.points.map(|points| points[k]));
+        let vectors = [
+            (NORMAL, record.normal),
+            (ON_MOVING, from),
+            (ON_FIXED, to),
+            (DIRECTION, record.direction),
+        ];
+        for (which, vector) in vectors {
+            row = vector.map_or(row, |vector| row.along(which, vector));
+        }
+        row
     }
 
     fn with_exit(self, last: &Contact) -> Self {
@@ -174,12 +239,9 @@ impl Row {
     }
 
     fn of(outcome: u8, first: &Contact, cast: &Cast<'_>) -> Self {
-        let row = Self {
-            outcome,
-            normal: coordinates(first.normal),
-            point: coordinates(first.points(cast).on_fixed),
-            ..Self::NONE
-        };
+        let row = Self { outcome, ..Self::NONE }
+            .along(NORMAL, coordinates(first.normal))
+            .along(POINT, coordinates(first.points(cast).on_fixed));
         let proof = &first.certificate;
         row.with(TRANSLATION, first.translation)
             .with(LOWER, proof.lower)
@@ -189,7 +251,8 @@ impl Row {
 
     fn separated(outcome: u8, separated: &colltrans::Separated) -> Self {
         let normal = coordinates(separated.certificate.normal);
-        Self { outcome, normal, ..Self::NONE }.with(MARGIN, separated.certificate.margin)
+        let row = Self { outcome, ..Self::NONE }.along(NORMAL, normal);
+        row.with(MARGIN, separated.certificate.margin)
     }
 
     fn clearance(answer: &Clearance, cast: &Cast<'_>) -> Self {
@@ -214,20 +277,43 @@ impl Row {
     }
 }
 
+/// A body of any kind.
+#[derive(Clone, Copy)]
+enum AnyBody<'a> {
+    Convex(&'a ConvexPolyhedron),
+    Solid(&'a colltrans::Solid),
+}
+
+impl<'a> AnyBody<'a> {
+    fn convex(self) -> Result<&'a ConvexPolyhedron, String> {
+        match self {
+            Self::Convex(body) => Ok(body),
+            Self::Solid(_) => Err("a solid is asked for its clearance or distance".into()),
+        }
+    }
+
+    fn solid(self) -> Result<&'a colltrans::Solid, String> {
+        match self {
+            Self::Convex(body) => body.as_solid().map_err(|what| what.to_string()),
+            Self::Solid(solid) => Ok(solid),
+        }
+    }
+}
+
 /// A body of every row, or why there is none.
 struct Bodies<'a> {
     name: &'static str,
-    all: &'a [Result<&'a ConvexPolyhedron, String>],
+    all: &'a [Result<AnyBody<'a>, String>],
     /// Which one for each row; the only one without.
     index: Option<&'a [i64]>,
 }
 
 impl<'a> Bodies<'a> {
-    fn get(&self, row: usize) -> Result<&'a ConvexPolyhedron, String> {
+    fn get(&self, row: usize) -> Result<AnyBody<'a>, String> {
         let index = self.index.map_or(0, |index| index[row]);
         let found = usize::try_from(index).ok().and_then(|index| self.all.get(index));
         match found {
-            Some(Ok(body)) => Ok(body),
+            Some(Ok(body)) => Ok(*body),
             Some(Err(why)) => Err(format!("{}: {why}", self.name)),
             None => Err(format!("{}: no body {index} among {}", self.name, self.all.len())),
         }
@@ -278,21 +364,54 @@ struct Work<'a> {
     question: Question,
     bodies: [Bodies<'a>; 2],
     poses: [Table<'a>; 2],
-    directions: Table<'a>,
-    graze_tolerances: Table<'a>,
-    options: Options,
+    with: With<'a>,
+}
+
+/// What a question needs besides the bodies.
+enum With<'a> {
+    Direction { directions: Table<'a>, graze_tolerances: Table<'a>, options: Options },
+    Length(Table<'a>),
 }
 
 impl Work<'_> {
     fn answer(&self, row: usize) -> Result<Row, String> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
         let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
-        let graze_tolerance = self.graze_tolerances.row(row)[0];
-        let options = self.options.with_graze_tolerance(graze_tolerance);
-        Cast::new(moving.at(at), fixed.at(to), self.directions.vector(row))
+        let With::Direction { directions, graze_tolerances, options } = &self.with else {
+            return self.answer_placed([moving, fixed], [at, to], row);
+        };
+        let (moving, fixed) = (moving.convex()?, fixed.convex()?);
+        let options = options.with_graze_tolerance(graze_tolerances.row(row)[0]);
+        Cast::new(moving.at(at), fixed.at(to), directions.vector(row))
             .and_then(|cast| cast.with_options(options))
             .and_then(|cast| self.question.ask(&cast))
             .map_err(|what| what.to_string())
+    }
+
+    /// Of bodies where they are.
+    fn answer_placed(
+        &self,
+        bodies: [AnyBody<'_>; 2],
+        poses: [Pose; 2],
+        row: usize,
+    ) -> Result<Row, String> {
+        let question = match (self.question, &self.with) {
+            (Question::Within, With::Length(lengths)) => PairQuestion::Within(lengths.row(row)[0]),
+            (Question::Depth, _) => PairQuestion::Depth,
+            _ => PairQuestion::Distance,
+        };
+        let record = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
+            Pair::new(p.at(poses[0]), q.at(poses[1]))
+                .and_then(|pair| Ok(question.ask(&pair)?.record(&pair)))
+        } else {
+            let placed = |k: usize| -> Result<Placed<'_, _>, String> {
+                Ok(Placed { body: bodies[k].solid()?, pose: poses[k] })
+            };
+            Pair::new(placed(0)?, placed(1)?)
+                .and_then(|pair| question.ask_solids(&pair)?.record(&pair))
+        };
+        let record = record.map_err(|what| what.to_string())?;
+        Ok(Row::of_record(self.question, &record))
     }
 
     /// The answer, or what went wrong, whatever it was.
@@ -307,34 +426,33 @@ struct Part<'a> {
     first: usize,
     outcome: &'a mut [u8],
     numbers: Vec<&'a mut [f64]>,
-    vectors: [&'a mut [[f64; 3]]; 2],
+    vectors: Vec<&'a mut [[f64; 3]]>,
 }
 
 /// All columns.
 struct Columns {
     outcome: Vec<u8>,
     numbers: Vec<Vec<f64>>,
-    vectors: [Vec<[f64; 3]>; 2],
+    vectors: Vec<Vec<[f64; 3]>>,
 }
 
 impl Columns {
-    fn new(n: usize, width: usize) -> Self {
-        let vectors = [vec![[0.0; 3]; n], vec![[0.0; 3]; n]];
-        Self { outcome: vec![0; n], numbers: vec![vec![0.0; n]; width], vectors }
+    fn new(n: usize, question: Question) -> Self {
+        let numbers = vec![vec![0.0; n]; question.numbers().len()];
+        let vectors = vec![vec![[0.0; 3]; n]; question.vectors().len()];
+        Self { outcome: vec![0; n], numbers, vectors }
     }
 
     fn parts(&mut self) -> Vec<Part<'_>> {
         let mut numbers: Vec<_> = self.numbers.iter_mut().map(|c| c.chunks_mut(CHUNK)).collect();
-        let [normals, points] = &mut self.vectors;
-        let vectors = normals.chunks_mut(CHUNK).zip(points.chunks_mut(CHUNK));
-        let chunks = self.outcome.chunks_mut(CHUNK).zip(vectors).enumerate();
-        let part = |(chunk, (outcome, (normals, points)))| Part {
+        let mut vectors: Vec<_> = self.vectors.iter_mut().map(|c| c.chunks_mut(CHUNK)).collect();
+        let part = |(chunk, outcome)| Part {
             first: chunk * CHUNK,
             outcome,
             numbers: numbers.iter_mut().filter_map(Iterator::next).collect(),
-            vectors: [normals, points],
+            vectors: vectors.iter_mut().filter_map(Iterator::next).collect(),
         };
-        chunks.map(part).collect()
+        self.outcome.chunks_mut(CHUNK).enumerate().map(part).collect()
     }
 }
 
@@ -343,7 +461,7 @@ type Failures = Mutex<Vec<(usize, String)>>;
 
 /// Fills a chunk, unless `stop` says not to.
 fn fill(work: &Work<'_>, part: Part<'_>, failures: &Failures, mut stop: impl FnMut() -> bool) {
-    let Part { first, outcome, mut numbers, vectors: [normals, points] } = part;
+    let Part { first, outcome, mut numbers, mut vectors } = part;
     let error = work.question.outcomes().len() as u8 - 1;
     for i in 0..outcome.len() {
         if i % LOOK == 0 && stop() {
@@ -358,7 +476,9 @@ fn fill(work: &Work<'_>, part: Part<'_>, failures: &Failures, mut stop: impl FnM
         for (column, which) in numbers.iter_mut().zip(work.question.numbers()) {
             column[i] = row.numbers[*which];
         }
-        (normals[i], points[i]) = (row.normal, row.point);
+        for (column, which) in vectors.iter_mut().zip(work.question.vectors()) {
+            column[i] = row.vectors[*which];
+        }
     }
 }
 
@@ -399,52 +519,93 @@ fn fill_all(
 }
 
 /// The bodies of a list; exceptions in it stand for bodies that could not be built.
-fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<&'a ConvexPolyhedron, String>>> {
+fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<AnyBody<'a>, String>>> {
     let body = |item: &'a Bound<'_, PyAny>| {
         if item.is_instance_of::<pyo3::exceptions::PyException>() {
             return Ok(Err(item.to_string()));
         }
-        Ok(Ok(&item.cast::<body::ConvexPolyhedron>()?.get().0))
+        if let Ok(solid) = item.cast::<Solid>() {
+            return Ok(Ok(AnyBody::Solid(&solid.get().solid)));
+        }
+        Ok(Ok(AnyBody::Convex(&item.cast::<body::ConvexPolyhedron>()?.get().0)))
     };
     of.iter().map(body).collect()
 }
 
+/// The columns by their names, the names of the outcomes, and the messages by their rows.
+type Answered<'py> = (Bound<'py, PyDict>, &'static [&'static str], Bound<'py, PyDict>);
+
+/// Bodies, and which one for each row.
+type Side<'py> = (Vec<Bound<'py, PyAny>>, Option<PyReadonlyArray1<'py, i64>>);
+
 /// Answers `n` queries: what `colltrans.many` calls when it has made all arguments what they have to
 /// be, tables with one row or `n`.
-///
-/// Returns the columns by their names, the names of the outcomes, and the messages by their rows.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they are columns")]
 pub(crate) fn ask_many<'py>(
     py: Python<'py>,
     n: usize,
     question: &str,
-    moving: (Vec<Bound<'py, PyAny>>, Option<PyReadonlyArray1<'py, i64>>),
-    fixed: (Vec<Bound<'py, PyAny>>, Option<PyReadonlyArray1<'py, i64>>),
+    moving: Side<'py>,
+    fixed: Side<'py>,
     direction: PyReadonlyArray2<'py, f64>,
     moving_pose: PyReadonlyArray2<'py, f64>,
     fixed_pose: PyReadonlyArray2<'py, f64>,
     graze_tolerance: PyReadonlyArray2<'py, f64>,
     solver: &Bound<'py, PyString>,
     threads: Option<usize>,
-) -> PyResult<(Bound<'py, PyDict>, &'static [&'static str], Bound<'py, PyDict>)> {
+) -> PyResult<Answered<'py>> {
+    let with = With::Direction {
+        directions: table("direction", &direction, n)?,
+        graze_tolerances: table("graze_tolerance", &graze_tolerance, n)?,
+        options: Options::default().with_solver(solver_called(Some(solver))?),
+    };
+    let question = Question::called(question)?;
+    answered(py, n, question, [&moving, &fixed], [&moving_pose, &fixed_pose], with, threads)
+}
+
+/// The same of bodies where they are: what `colltrans.pairs` calls.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are columns")]
+pub(crate) fn ask_pairs<'py>(
+    py: Python<'py>,
+    n: usize,
+    question: &str,
+    moving: Side<'py>,
+    fixed: Side<'py>,
+    moving_pose: PyReadonlyArray2<'py, f64>,
+    fixed_pose: PyReadonlyArray2<'py, f64>,
+    length: PyReadonlyArray2<'py, f64>,
+    threads: Option<usize>,
+) -> PyResult<Answered<'py>> {
+    let with = With::Length(table("length", &length, n)?);
+    let question = Question::called(question)?;
+    answered(py, n, question, [&moving, &fixed], [&moving_pose, &fixed_pose], with, threads)
+}
+
+fn answered<'py>(
+    py: Python<'py>,
+    n: usize,
+    question: Question,
+    sides: [&Side<'py>; 2],
+    poses: [&PyReadonlyArray2<'py, f64>; 2],
+    with: With<'_>,
+    threads: Option<usize>,
+) -> PyResult<Answered<'py>> {
     let threads = threads
         .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get));
-    let question = Question::called(question)?;
-    let all = [bodies(&moving.0)?, bodies(&fixed.0)?];
-    let index = [index(moving.1.as_ref(), n)?, self::index(fixed.1.as_ref(), n)?];
+    let all = [bodies(&sides[0].0)?, bodies(&sides[1].0)?];
+    let index = [index(sides[0].1.as_ref(), n)?, self::index(sides[1].1.as_ref(), n)?];
     let work = Work {
         question,
         bodies: [
             Bodies { name: "moving", all: &all[0], index: index[0] },
             Bodies { name: "fixed", all: &all[1], index: index[1] },
         ],
-        poses: [table("moving_pose", &moving_pose, n)?, table("fixed_pose", &fixed_pose, n)?],
-        directions: table("direction", &direction, n)?,
-        graze_tolerances: table("graze_tolerance", &graze_tolerance, n)?,
-        options: Options::default().with_solver(solver_called(Some(solver))?),
+        poses: [table("moving_pose", poses[0], n)?, table("fixed_pose", poses[1], n)?],
+        with,
     };
-    let mut columns = Columns::new(n, question.numbers().len());
+    let mut columns = Columns::new(n, question);
     let failures = Failures::default();
     py.detach(|| fill_all(&work, columns.parts(), threads, &failures))?;
     let found = PyDict::new(py);
@@ -452,9 +613,9 @@ pub(crate) fn ask_many<'py>(
     for (which, column) in question.numbers().iter().zip(columns.numbers) {
         found.set_item(NUMBERS[*which], column.into_pyarray(py))?;
     }
-    for (name, column) in ["normal", "point"].into_iter().zip(columns.vectors) {
+    for (which, column) in question.vectors().iter().zip(columns.vectors) {
         let flat = column.into_flattened().into_pyarray(py);
-        found.set_item(name, flat.reshape([n, 3])?)?;
+        found.set_item(VECTORS[*which], flat.reshape([n, 3])?)?;
     }
     let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
     failures.sort_unstable();
@@ -481,7 +642,7 @@ fn table<'a>(
     let (rows, width) = (of.shape()[0], of.shape()[1]);
     let widths: &[usize] = match name {
         "direction" => &[3],
-        "graze_tolerance" => &[1],
+        "graze_tolerance" | "length" => &[1],
         _ => &[3, 7, 12, 16],
     };
     if (rows != n && rows != 1) || !widths.contains(&width) {

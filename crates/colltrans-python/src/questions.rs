@@ -1,13 +1,15 @@
 //! Questions: the functions of the package, and the methods of queries that ask.
 
-use colltrans::QueryError;
+use colltrans::{QueryError, Solver};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
 
 use crate::answer::Answer;
 use crate::body::ConvexPolyhedron;
 use crate::certificate::{Certificate, Separation, SolidCertificate};
+use crate::distance::{depth_of, distance_of, within_of};
 use crate::errors::{OrRaise, error};
+use crate::pair::Pair;
 use crate::query::{Arguments, Cast, solver_called};
 use crate::solid_answer::SolidOverlapping;
 use crate::solid_cast::SolidCast;
@@ -67,6 +69,24 @@ impl Cast {
             return separation.get().verify(Some(slf));
         }
         proof.cast::<Certificate>()?.get().verify(Some(slf))
+    }
+}
+
+#[pymethods]
+impl Pair {
+    /// How far apart are the bodies, and where? See :func:`distance`.
+    fn distance<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        distance_of(slf)
+    }
+
+    /// How deep do they overlap? See :func:`depth`.
+    fn depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        depth_of(slf)
+    }
+
+    /// Are they closer than a length? See :func:`within`.
+    fn within<'py>(slf: &Bound<'py, Self>, length: f64) -> PyResult<Bound<'py, PyAny>> {
+        within_of(slf, length)
     }
 }
 
@@ -385,4 +405,119 @@ question_of_any! {
     /// >>> bool(intersects(cube, cube, [1, 0, 0], moving_pose=[0.5, 0, 0]))
     /// True
     intersects => intersects, solids_meet
+}
+
+/// How far apart are two bodies where they are, and where are they nearest?
+///
+/// The bounds hold exactly, however near the bodies are: ``lower <= true distance <= upper``, a few
+/// roundings apart.
+///
+/// Parameters
+/// ----------
+/// moving, fixed : ConvexPolyhedron or Solid
+///     Nothing moves; the names tell them apart. If one of them is a solid, both are asked as solids.
+/// moving_pose, fixed_pose : array_like or Pose, optional
+///     Where the bodies are; see :class:`Pose`.
+///
+/// Returns
+/// -------
+/// Distance
+///
+/// Raises
+/// ------
+/// PoseError, InputError, BuildError
+///     An argument that is refused.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, distance
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> found = distance(cube, cube, fixed_pose=[4, 5, 0.25])
+/// >>> found.lower <= 5 <= found.upper and found.upper - found.lower < 1e-13
+/// True
+/// >>> found.features.moving.kind, found.normal.round(9)
+/// ('edge', array([0.6, 0.8, 0. ]))
+/// >>> found.verify()
+#[pyfunction]
+#[pyo3(signature = (moving, fixed, *, moving_pose=None, fixed_pose=None))]
+pub(crate) fn distance<'py>(
+    py: Python<'py>,
+    moving: &Bound<'py, PyAny>,
+    fixed: &Bound<'py, PyAny>,
+    moving_pose: Option<&Bound<'py, PyAny>>,
+    fixed_pose: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    distance_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?)
+}
+
+/// How deep do two bodies overlap: which shortest translation, over all directions, parts them?
+///
+/// Parameters
+/// ----------
+/// moving, fixed, moving_pose, fixed_pose
+///     As for :func:`distance`.
+///
+/// Returns
+/// -------
+/// Depth or OverlapDepth
+///     Of solids the second: the least tolerance with which they would not overlap.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, depth
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> found = depth(cube, cube, fixed_pose=[0.75, 0.5, 0.5])
+/// >>> found.lower <= 0.25 <= found.upper
+/// True
+/// >>> found.direction
+/// array([-1.,  0.,  0.])
+#[pyfunction]
+#[pyo3(signature = (moving, fixed, *, moving_pose=None, fixed_pose=None))]
+pub(crate) fn depth<'py>(
+    py: Python<'py>,
+    moving: &Bound<'py, PyAny>,
+    fixed: &Bound<'py, PyAny>,
+    moving_pose: Option<&Bound<'py, PyAny>>,
+    fixed_pose: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    depth_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?)
+}
+
+/// Are two bodies closer than a length where they are? Ended as soon as that is known.
+///
+/// Parameters
+/// ----------
+/// moving, fixed, moving_pose, fixed_pose
+///     As for :func:`distance`.
+/// length : float
+///     Not negative, in the unit of the bodies.
+///
+/// Returns
+/// -------
+/// Within
+///
+/// Raises
+/// ------
+/// QueryError
+///     A length that is negative or not a number.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, within
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> within(cube, cube, 4.9, fixed_pose=[4, 5, 0.25]).closer
+/// False
+/// >>> within(cube, cube, 5.1, fixed_pose=[4, 5, 0.25])
+/// Within(closer=True, length=5.1)
+#[pyfunction]
+#[pyo3(signature = (moving, fixed, length, *, moving_pose=None, fixed_pose=None))]
+pub(crate) fn within<'py>(
+    py: Python<'py>,
+    moving: &Bound<'py, PyAny>,
+    fixed: &Bound<'py, PyAny>,
+    length: f64,
+    moving_pose: Option<&Bound<'py, PyAny>>,
+    fixed_pose: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    within_of(&Bound::new(py, Pair::of(moving, fixed, [moving_pose, fixed_pose])?)?, length)
 }

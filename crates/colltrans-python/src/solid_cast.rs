@@ -82,36 +82,42 @@ impl SolidCast {
             .map_err(|what| error("QueryError", what))
     }
 
-    /// Without the interpreter's lock. Where it may take long, on a thread of its own, which is left
-    /// alone when a signal ends the waiting.
     pub(crate) fn ask<T: Send + 'static>(
         slf: &Bound<'_, Self>,
         question: impl FnOnce(&colltrans::Cast<'_, colltrans::Solid>) -> T + Send + 'static,
     ) -> PyResult<T> {
-        let (py, query) = (slf.py(), slf.get());
-        let triangles: usize = query.bodies.iter().map(Piece::triangle_count).sum();
-        if triangles < LARGE {
-            return py.detach(|| query.run(question));
-        }
         let query = slf.clone().unbind();
-        let (sender, receiver) = mpsc::sync_channel(1);
-        std::thread::Builder::new().spawn(move || {
-            // Nobody waits any more after a signal.
-            let _ = sender.send(query.get().run(question));
-        })?;
-        py.detach(move || {
-            loop {
-                match receiver.recv_timeout(PATIENCE) {
-                    Ok(answer) => return answer,
-                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
-                    Err(RecvTimeoutError::Disconnected) => {
-                        let what = "internal error; please report it";
-                        return Err(PyRuntimeError::new_err(what));
-                    }
+        patiently(slf.py(), &slf.get().bodies, move || query.get().run(question))
+    }
+}
+
+/// Does work about bodies without the interpreter's lock. Where it may take long, on a thread of its own,
+/// which is left alone when a signal ends the waiting.
+pub(crate) fn patiently<T: Send + 'static>(
+    py: Python<'_>,
+    bodies: &[Piece; 2],
+    work: impl FnOnce() -> PyResult<T> + Send + 'static,
+) -> PyResult<T> {
+    if bodies.iter().map(Piece::triangle_count).sum::<usize>() < LARGE {
+        return py.detach(work);
+    }
+    let (sender, receiver) = mpsc::sync_channel(1);
+    std::thread::Builder::new().spawn(move || {
+        // Nobody waits any more after a signal.
+        let _ = sender.send(work());
+    })?;
+    py.detach(move || {
+        loop {
+            match receiver.recv_timeout(PATIENCE) {
+                Ok(answer) => return answer,
+                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                Err(RecvTimeoutError::Disconnected) => {
+                    let what = "internal error; please report it";
+                    return Err(PyRuntimeError::new_err(what));
                 }
             }
-        })
-    }
+        }
+    })
 }
 
 #[pymethods]

@@ -5,8 +5,8 @@
 //! state), `convex` and `solid` (casts, as `told` has them), `certify` (proofs between solids), `search` (how an
 //! answer was found) -> an [`Answer`]: JSON, and perhaps numbers in binary for large things.
 //!
-//! The part for assemblies is a module of its own, read when it is asked for (`assembly/`); it has the
-//! same exported names.
+//! The parts for assemblies and for distances are modules of their own, read when they are asked for
+//! (`assembly/`, `distance/`); they have the same exported names.
 //!
 //! Nothing here computes geometry. The same code runs natively (`examples/native.rs`), so what a
 //! browser answers can be held against it, byte for byte: numbers are written with as many digits as

@@ -72,6 +72,9 @@
 //! | [`Pair::distance`] | how far apart are they, and where? | [`Distance`] |
 //! | [`Pair::within`] | are they closer than a length? | [`Within`] |
 //! | [`Pair::depth`] | which least translation parts them? | [`Depth`] |
+//! | [`Among::nearest`] | which of many is nearest? | [`Nearest`] |
+//! | [`Among::within`] | which of many are closer than a length? | [`Nearby`] |
+//! | [`Among::clearance`] | which of many is hit first, and how far is it? | [`ClearanceAmong`] |
 //!
 //! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
 //! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
@@ -139,13 +142,17 @@
 //! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries) and `tracker`. `written` and `record` say how all of them are written. [`solid`] holds what is of solids alone.
+//! `pair` (the queries), `among` (many fixed bodies), `proof_file` and `tracker`. `written` and `record` say how
+//! all of them are written. [`solid`] holds what is of solids alone.
 
+mod among;
 mod answer;
 mod body;
 mod cast;
 mod number;
 mod pair;
+#[cfg(feature = "json")]
+mod proof_file;
 #[cfg(feature = "serde")]
 pub mod record;
 mod setting;
@@ -155,6 +162,11 @@ mod tracker;
 mod work;
 mod written;
 
+pub use among::{
+    Among, AmongProof, AmongSteps, AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced,
+    ApartProof, ByKind, ClearanceAmong, ClearanceProof, Nearby, NearbyProof, Nearest, NearestProof,
+    Obstacles, PassedProof, UnknownObstacle,
+};
 pub use answer::{
     Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth,
     DirectionalDepth, Distance, Enclosure, Grazing, Intersection, NearPoints, Outcome,
@@ -165,14 +177,16 @@ pub use body::error::{BuildError, PoseError, TopologyError};
 pub use body::solid::Solid;
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
-    InputVertex, OffsetReport, Placed, Pose, VertexId, convexity_defect,
+    InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
 #[cfg(feature = "json")]
-pub use cast::{Case, CaseError, Contacts, ProofFile, Slide, Statement, Stop};
+pub use cast::{Case, CaseError};
 pub use cast::{Cast, WitnessPoints, cast};
 pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairProof};
+#[cfg(feature = "json")]
+pub use proof_file::{Contacts, DistanceStatement, ProofFile, Slide, Statement, Stop};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
@@ -185,7 +199,17 @@ pub use written::UnknownName;
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
 
+/// The examples of `docs/distance.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/distance.md")]
+pub struct Distances;
+
 /// The examples of `docs/solids.md`, compiled and run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/solids.md")]
 pub struct Solids;
+
+/// The examples of `docs/among.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/among.md")]
+pub struct AmongMany;

@@ -9,26 +9,29 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{
-    Bounded, Clearance, Contact, ContactRange, Grazing, Outcome, OverlapAhead, Separated, Solver,
-    Steps, WhyFree,
+    Bounded, Clearance, Contact, ContactRange, Depth, Distance, Grazing, Outcome, OverlapAhead,
+    Separated, Solver, Steps, WhyFree, Within,
 };
 use crate::body::solid::Solid;
-use crate::body::{Body, Feature, Features, InputVertex};
+use crate::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex};
 use crate::cast::Cast;
+use crate::pair::solid::OverlapDepth;
+use crate::pair::{Pair, points};
 use crate::setting::error::QueryError;
 use crate::solve::observe::{Nobody, Observer};
 use crate::written::{UnknownName, named};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
 ///
-/// Translations, distances and their bounds are in multiples of the direction, other lengths in the
-/// unit of the bodies.
+/// Translations, the `distance` of a clearance and their bounds are in multiples of the direction, other
+/// lengths in the unit of the bodies.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[non_exhaustive]
 pub struct Record {
     /// How the query ended.
     pub outcome: Ending,
-    /// Of one query among several directions: the direction as it was read.
+    /// Of one query among several directions: the direction as it was read. Of a depth: the unit vector
+    /// along which the moving body leaves the fixed one by the shortest way.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
     /// Blocked: how far it is safe to move.
@@ -58,13 +61,23 @@ pub struct Record {
     /// Proven: beyond the second they never meet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exit_bounds: Option<[f64; 2]>,
+    /// Of bodies where they are: a length that their distance, or depth, is not below. Proven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    /// One that it is not above. Proven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+    /// Points of the moving and of the fixed body that are `upper` apart, in the world, rounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<[[f64; 3]; 2]>,
     /// The name of what touches, or overlaps deepest, of a moving body that has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub moving: Option<String>,
     /// The same of the fixed body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed: Option<String>,
-    /// Unit normal from the moving to the fixed body, of the contact plane or of the separating one.
+    /// Unit normal from the moving to the fixed body: of the contact plane, of the separating one, or along
+    /// the shortest way.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<[f64; 3]>,
     /// The contact point on the fixed body, in the world.
@@ -129,6 +142,18 @@ pub enum Ending {
     Behind,
     /// They overlap now.
     Overlapping,
+    /// They have no point in common.
+    Apart,
+    /// They touch, or overlap by less than rounding can tell.
+    Touching,
+    /// They touch or overlap: `upper` is 0 where that is proven, else what rounding leaves.
+    Meeting,
+    /// They are at most the length apart.
+    Closer,
+    /// They are farther apart than the length.
+    Farther,
+    /// The length lies between the bounds of their distance.
+    Undecided,
     /// There is no answer.
     #[default]
     Error,
@@ -186,6 +211,31 @@ pub enum Answer {
     Clearance(Clearance),
 }
 
+/// A question about two bodies where they are, without a direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PairQuestion {
+    /// [`Pair::distance`].
+    Distance,
+    /// [`Pair::depth`]; of solids [`Pair::overlap_depth`].
+    Depth,
+    /// [`Pair::within`] a length.
+    Within(f64),
+}
+
+/// The answer of a [`PairQuestion`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", bound = "")]
+pub enum PairAnswer<B: Body = ConvexPolyhedron> {
+    /// How far they are apart.
+    Distance(Distance<B>),
+    /// Which translation parts convex bodies.
+    Depth(Depth),
+    /// How deep solids overlap.
+    OverlapDepth(OverlapDepth),
+    /// Whether they are closer than a length.
+    Within(Within<B>),
+}
+
 named!("query", Question { Contact: "contact", Clearance: "clearance" });
 named!(
     "outcome",
@@ -198,6 +248,12 @@ named!(
         Slides: "slides",
         Behind: "behind",
         Overlapping: "overlapping",
+        Apart: "apart",
+        Touching: "touching",
+        Meeting: "meeting",
+        Closer: "closer",
+        Farther: "farther",
+        Undecided: "undecided",
         Error: "error"
     }
 );
@@ -243,6 +299,71 @@ impl Answer {
             Self::Contact(range) => crate::ProofFile::of_range(cast, range),
             Self::Clearance(clearance) => crate::ProofFile::of_clearance(cast, clearance),
         }
+    }
+}
+
+impl PairQuestion {
+    /// The answer of convex bodies.
+    ///
+    /// # Errors
+    /// As the question itself.
+    pub fn ask(self, pair: &Pair) -> Result<PairAnswer, QueryError> {
+        Ok(match self {
+            Self::Distance => PairAnswer::Distance(pair.distance()?),
+            Self::Depth => PairAnswer::Depth(pair.depth()?),
+            Self::Within(length) => PairAnswer::Within(pair.within(length)?),
+        })
+    }
+
+    /// The answer of solids.
+    ///
+    /// # Errors
+    /// As the question itself.
+    pub fn ask_solids(self, pair: &Pair<'_, Solid>) -> Result<PairAnswer<Solid>, QueryError> {
+        Ok(match self {
+            Self::Distance => PairAnswer::Distance(pair.distance()?),
+            Self::Depth => PairAnswer::OverlapDepth(pair.overlap_depth()?),
+            Self::Within(length) => PairAnswer::Within(pair.within(length)?),
+        })
+    }
+}
+
+impl PairAnswer {
+    /// As front ends write it; `pair` is the one that was asked.
+    pub fn record(&self, pair: &Pair) -> Record {
+        match self {
+            Self::Distance(distance) => Record::of_distance(distance, pair),
+            Self::Depth(depth) => Record::of_depth(depth),
+            Self::OverlapDepth(depth) => Record::of_overlap_depth(*depth),
+            Self::Within(within) => Record::of_within(within, pair),
+        }
+    }
+
+    /// Its proof as a file; `pair` is the one that was asked.
+    #[cfg(feature = "json")]
+    pub fn proof(&self, pair: &Pair<'_>) -> Option<crate::ProofFile> {
+        match self {
+            Self::Distance(distance) => Some(crate::ProofFile::of_distance(pair, distance)),
+            Self::Depth(depth) => Some(crate::ProofFile::of_depth(pair, depth)),
+            Self::OverlapDepth(_) => None,
+            Self::Within(within) => Some(crate::ProofFile::of_distance(pair, within)),
+        }
+    }
+}
+
+impl PairAnswer<Solid> {
+    /// As front ends write it; `pair` is the one that was asked.
+    ///
+    /// # Errors
+    /// As the question itself.
+    pub fn record(&self, pair: &Pair<'_, Solid>) -> Result<Record, QueryError> {
+        let record = match self {
+            Self::Distance(distance) => Record::of_distance(distance, pair),
+            Self::Depth(depth) => Record::of_depth(depth),
+            Self::OverlapDepth(depth) => Record::of_overlap_depth(*depth),
+            Self::Within(within) => Record::of_solids_within(within, pair)?,
+        };
+        Ok(Record { surfaces: open_ones(pair.moving(), pair.fixed()), ..record })
     }
 }
 
@@ -331,9 +452,7 @@ impl Record {
             }
             .with_translation(contact.translation),
         };
-        let sides = [("moving", cast.moving()), ("fixed", cast.fixed())].into_iter();
-        let open = sides.filter(|(_, body)| !body.is_closed());
-        let surfaces = open.map(|(name, _)| name).collect();
+        let surfaces = open_ones(cast.moving(), cast.fixed());
         let record = Self { tolerance: Some(cast.tolerance()), surfaces, ..record };
         let record = record.keeping(cast.options().keep);
         exit.into_iter().fold(record, Self::with_exit)
@@ -342,6 +461,94 @@ impl Record {
     /// With the gap that is kept, if there is one.
     fn keeping(self, gap: f64) -> Self {
         Self { keep: (gap > 0.0).then_some(gap), ..self }
+    }
+
+    /// Of [`Pair::distance`].
+    pub fn of_distance<B: Body>(distance: &Distance<B>, pair: &Pair<'_, B>) -> Self {
+        let outcome = if distance.lower > 0.0 { Ending::Apart } else { Ending::Meeting };
+        Self {
+            outcome,
+            lower: Some(distance.lower),
+            upper: Some(distance.upper),
+            points: Some([coordinates(distance.on_moving), coordinates(distance.on_fixed)]),
+            normal: distance.normal.map(coordinates),
+            features: distance.features.map(|Features { moving, fixed }| FeaturesRecord {
+                moving: FeatureRecord::of(moving, pair.moving()),
+                fixed: FeatureRecord::of(fixed, pair.fixed()),
+            }),
+            ..Self::default()
+        }
+    }
+
+    /// Of [`Pair::depth`].
+    pub fn of_depth(depth: &Depth) -> Self {
+        let outcome = match (depth.lower > 0.0, depth.upper > 0.0) {
+            (true, _) => Ending::Overlapping,
+            (false, true) => Ending::Touching,
+            (false, false) => Ending::Apart,
+        };
+        let direction = depth.upper > 0.0;
+        Self {
+            outcome,
+            direction: direction.then(|| coordinates(depth.direction)),
+            lower: Some(depth.lower),
+            upper: Some(depth.upper),
+            ..Self::default()
+        }
+    }
+
+    /// Of [`Pair::overlap_depth`].
+    pub fn of_overlap_depth(depth: OverlapDepth) -> Self {
+        let OverlapDepth { meets, least_tolerance } = depth;
+        let outcome = match (least_tolerance, meets) {
+            (Some(0.0), false) => Ending::Apart,
+            (Some(0.0), true) => Ending::Touching,
+            _ => {
+                let overlap = StartOverlapRecord { least_tolerance, ..Default::default() };
+                let start_overlaps = vec![overlap];
+                return Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() };
+            }
+        };
+        Self { outcome, lower: Some(0.0), upper: Some(0.0), ..Self::default() }
+    }
+
+    /// Of [`Pair::within`] between convex bodies.
+    pub fn of_within(within: &Within, pair: &Pair) -> Self {
+        match within {
+            Within::Closer(near) => Self::closer(near.distance, points(&pair.bodies, near)),
+            Within::Farther(gap) => {
+                Self { normal: Some(coordinates(gap.normal)), ..Self::farther(gap.gap) }
+            }
+            Within::Undecided(distance) => {
+                Self { outcome: Ending::Undecided, ..Self::of_distance(distance, pair) }
+            }
+        }
+    }
+
+    /// Of [`Pair::within`] between solids.
+    ///
+    /// # Errors
+    /// None at present.
+    pub fn of_solids_within(
+        within: &Within<Solid>,
+        pair: &Pair<'_, Solid>,
+    ) -> Result<Self, QueryError> {
+        Ok(match within {
+            Within::Closer(near) => Self::closer(near.distance(), pair.points(near)?),
+            Within::Farther(gap) => Self::farther(gap.gap),
+            Within::Undecided(distance) => {
+                Self { outcome: Ending::Undecided, ..Self::of_distance(distance, pair) }
+            }
+        })
+    }
+
+    fn closer(upper: f64, points: [DVec3; 2]) -> Self {
+        let points = Some(points.map(coordinates));
+        Self { outcome: Ending::Closer, upper: Some(upper), points, ..Self::default() }
+    }
+
+    fn farther(lower: f64) -> Self {
+        Self { outcome: Ending::Farther, lower: Some(lower), ..Self::default() }
     }
 
     fn separated(separated: &Separated) -> Self {
@@ -396,6 +603,12 @@ impl FeatureRecord {
     pub fn of<B: Body>(feature: Feature, body: &B) -> Self {
         Self { kind: feature.kind(), vertices: feature.vertices(body) }
     }
+}
+
+/// Which of two solids are open, at least in part.
+fn open_ones(moving: &Solid, fixed: &Solid) -> Vec<&'static str> {
+    let sides = [("moving", moving), ("fixed", fixed)].into_iter();
+    sides.filter(|(_, body)| !body.is_closed()).map(|(name, _)| name).collect()
 }
 
 /// Without -0.

@@ -3,13 +3,13 @@
 
 pub use crate::answer::SolidSteps;
 pub use crate::body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, SolidError, SolidReport};
-#[cfg(feature = "json")]
-pub use crate::cast::SolidStatement;
 pub use crate::cast::solid::{
     Claim, Cover, NoGrazing, SolidCertificate, SolidFree, SolidMeeting, SolidOptions, SolidOverlap,
     SolidProof, StartOverlap, StartProof, StopProof,
 };
-pub use crate::pair::solid::{DistanceCertificate, SolidPairProof};
+pub use crate::pair::solid::{DistanceCertificate, OverlapDepth, SolidPairProof};
+#[cfg(feature = "json")]
+pub use crate::proof_file::SolidStatement;
 pub use crate::solve::solid::{
     Apart, Overlap, Reason, SolidContact, SolidGap, SolidNear, Workspace,
 };

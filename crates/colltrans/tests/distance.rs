@@ -1,6 +1,6 @@
 //! Distances: what is known in closed form, named cases, degenerate bodies, proofs and changed ones.
 
-use colltrans::glam::{DQuat, DVec3};
+use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, VertexId, Within,
 };
@@ -61,6 +61,31 @@ fn aligned_boxes_have_distances_known_in_closed_form() {
             assert_eq!(distance.normal, Some(DVec3::X));
             let features = distance.features.expect("apart");
             assert_eq!((features.moving.kind(), features.fixed.kind()), ("face", "face"));
+        }
+    }
+}
+
+/// Faces where coordinates are small, so that gaps far below the rounding of the bodies' size are numbers.
+#[test]
+fn aligned_boxes_are_apart_by_any_gap() {
+    let low = cuboid(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(0.0, 1.0, 1.0));
+    for exponent in 9..=60 {
+        let gap = 10.0_f64.powi(-exponent);
+        for (y, z) in [(0.0, 0.0), (0.25, -0.5), (2.0, 0.0), (2.0, 2.0), (1.0 / 3.0, 0.7)] {
+            // The other side of a face, an edge and a corner.
+            let far = cuboid(DVec3::new(gap, y - 1.0, z - 1.0), DVec3::new(1.0, y + 1.0, z + 1.0));
+            let turned = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
+            for turn in [DMat3::IDENTITY, turned] {
+                let at = Pose::from_matrix(turn, DVec3::ZERO).expect("a pose");
+                let (distance, noises) = judged(&low, at, &far, at);
+                let label = format!("{gap:e} {y} {z}: {distance:?}");
+                let least = if gap < 1e-15 { 0.999 * gap } else { 0.0 };
+                assert!(distance.lower > least && distance.lower <= gap, "{label}");
+                assert!(noises <= 4.0, "{label}");
+                let pair = Pair::new(low.at(at), far.at(at)).expect("a pair");
+                assert!(matches!(pair.within(0.0), Ok(Within::Farther(_))), "{label}");
+                assert!(pair.verify(&distance.gap.expect("apart")).is_ok(), "{label}");
+            }
         }
     }
 }

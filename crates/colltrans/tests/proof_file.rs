@@ -3,7 +3,7 @@
 
 use colltrans::solid::StartOverlap;
 use colltrans::{
-    CaseError, Cast, CertificateError, ConvexPolyhedron, Pose, ProofFile, QueryError, Solid,
+    CaseError, Cast, CertificateError, ConvexPolyhedron, Pair, Pose, ProofFile, QueryError, Solid,
     Statement,
 };
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
@@ -37,6 +37,81 @@ fn proofs_of_every_family_hold() {
             holds(&ProofFile::of_clearance(&cast, &clearance), family);
         }
     }
+}
+
+#[test]
+fn distances_of_every_family_hold() {
+    for (family, ..) in FAMILIES {
+        for seed in 0..20 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let cast = setting.query(&bodies).expect("a query");
+            let moving = cast.moving().at(cast.moving_pose());
+            let pair = Pair::new(moving, cast.fixed().at(cast.fixed_pose())).expect("a pair");
+            let distance = pair.distance().expect("an answer");
+            holds(&ProofFile::of_distance(&pair, &distance), family);
+            holds(&ProofFile::of_depth(&pair, &pair.depth().expect("an answer")), family);
+            for length in [0.5 * distance.lower, 2.0 * distance.upper, distance.lower] {
+                let within = pair.within(length).expect("an answer");
+                holds(&ProofFile::of_distance(&pair, &within), family);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_number_of_a_distance_that_is_changed_is_noticed() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    let turn = DQuat::from_rotation_x(0.3) * DQuat::from_rotation_z(0.2);
+    let proof = |x: f64| {
+        let start = Pose::new(turn, DVec3::new(x, 0.25, 0.1)).expect("a pose");
+        let pair = Pair::new(cube.at(start), cube.at(Pose::IDENTITY)).expect("a pair");
+        let depth = ProofFile::of_depth(&pair, &pair.depth().expect("an answer"));
+        let distance = pair.distance().expect("an answer");
+        [ProofFile::of_distance(&pair, &distance), depth].map(|proof| holds(&proof, "cubes"))
+    };
+    let both: [fn(f64) -> f64; 2] = [|x| x * 1.001 + 1e-3, |x| x * 0.999 - 1e-3];
+    let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
+    let down: [fn(f64) -> f64; 1] = [|x| x - 1e-9];
+    let [apart, _] = proof(-3.1);
+    for place in ["gap/normal", "near/weights"] {
+        let place = format!("/statement/distance/{place}");
+        assert_eq!(believed(&apart, &place, &both), [""; 0], "{place}");
+    }
+    assert_eq!(believed(&apart, "/statement/distance/gap/gap", &up), [""; 0]);
+    assert_eq!(believed(&apart, "/statement/distance/near/distance", &down), [""; 0]);
+    let [meeting, depth] = proof(-0.3);
+    assert_eq!(believed(&meeting, "/statement/distance/near/distance", &down), [""; 0]);
+    assert_eq!(believed(&depth, "/statement/depth/lower", &up), [""; 0]);
+    assert_eq!(believed(&depth, "/statement/depth/upper", &down), [""; 0]);
+    let other: [fn(f64) -> f64; 1] = [|x| x + 0.01];
+    assert_eq!(believed(&depth, "/statement/depth/direction", &other), [""; 0]);
+    assert_eq!(believed(&depth, "/statement/depth/enclosure/normals", &other), [""; 0]);
+    assert_eq!(believed(&depth, "/statement/depth/enclosure/triangles", &other), [""; 0]);
+}
+
+/// A distance has no direction, a cast has one; bodies are of the kind that is spoken of.
+#[test]
+fn a_statement_fits_its_file() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    let start = Pose::from_translation(DVec3::new(-3.0, 0.25, 0.5)).expect("a pose");
+    let pair = Pair::new(cube.at(start), cube.at(Pose::IDENTITY)).expect("a pair");
+    let proof = ProofFile::of_distance(&pair, &pair.distance().expect("an answer"));
+    let file = holds(&proof, "cubes");
+    let is_refused =
+        |file: &Value| matches!(ProofFile::from_json(&file.to_string()), Err(CaseError::Statement));
+    let mut directed = file.clone();
+    directed["direction"] = json!([1, 0, 0]);
+    assert!(is_refused(&directed));
+    let mut cast = cube_cast(&cube, 0.3);
+    cast.as_object_mut().expect("an object").remove("direction");
+    assert!(is_refused(&cast));
+    let mut nothing = file.clone();
+    nothing["statement"] = json!({"distance": {}});
+    assert!(is_refused(&nothing));
+    let mut two = file;
+    two["statement"]["separation"] = json!({"normal": [1, 0, 0], "margin": 1});
+    assert!(is_refused(&two));
 }
 
 fn refused(file: &Value) -> bool {
@@ -345,4 +420,28 @@ fn other_files_are_refused_in_words() {
     let mut still = file;
     still["direction"] = json!([0.0, 0.0, 0.0]);
     assert!(said(&still.to_string()).contains("direction"));
+}
+
+#[test]
+fn distances_of_solids_hold_and_their_numbers_count() {
+    let [a, b] = parts();
+    let place = |z: f64| Pose::from_translation(DVec3::new(0.25, 0.125, z)).expect("in range");
+    let far: [fn(f64) -> f64; 1] = [|x| x + 0.01];
+    let near: [fn(f64) -> f64; 1] = [|x| x - 0.01];
+    for (z, within) in [(12.0, None), (12.0, Some(0.5)), (12.0, Some(100.0)), (0.0, None)] {
+        let pair = Pair::new(a.at(place(z)), b.at(Pose::IDENTITY)).expect("a pair");
+        let proof = ProofFile::of_solid_distance(&pair, [&[&a], &[&b]], within).expect("an answer");
+        let Statement::SolidDistance(said) = proof.statement() else { panic!("solids") };
+        assert_eq!(said.cover.is_empty(), within == Some(100.0), "{within:?}");
+        let file = holds(&proof, "parts");
+        let of = "/statement/solid_distance";
+        assert_eq!(believed(&file, &format!("{of}/lower"), &far), [""; 0]);
+        assert_eq!(believed(&file, &format!("{of}/near/points/distance"), &near), [""; 0]);
+        assert_eq!(believed(&file, &format!("{of}/near/points/weights"), &near), [""; 0]);
+    }
+    let pair = Pair::new(a.at(place(1.0)), b.at(place(0.0))).expect("a pair");
+    let other = ProofFile::of_solid_distance(&pair, [&[&b], &[&b]], None);
+    assert!(matches!(other, Err(CaseError::Changed { which: "moving" })), "{other:?}");
+    let negative = ProofFile::of_solid_distance(&pair, [&[&a], &[&b]], Some(-1.0));
+    assert!(matches!(negative, Err(CaseError::Query(QueryError::Length { .. }))), "{negative:?}");
 }

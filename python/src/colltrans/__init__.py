@@ -1,9 +1,9 @@
 """Collision translations: how far can one body move before it touches another?
 
 A body is a :class:`ConvexPolyhedron`; a question is a function (:func:`cast`, :func:`clearance`,
-...), one about many rows ends in ``_many``; an answer is a frozen object with its proof. Parts that
-are not convex are :class:`Solid`, asked by a :class:`SolidCast`; many parts are an
-:class:`Assembly`.
+:func:`distance`, ...), one about many rows ends in ``_many``; an answer is a frozen object with its
+proof. Parts that are not convex are :class:`Solid`, asked by a :class:`SolidCast`; many parts are
+an :class:`Assembly`.
 
 Vertices are in the body frame; poses place bodies in the world. Directions, normals and points are
 in the world. Translations count in multiples of the direction, so they are lengths if it has length
@@ -18,13 +18,20 @@ from colltrans._colltrans import (
     Contact,
     ContactRange,
     ConvexPolyhedron,
+    Depth,
     DirectionalDepth,
+    Distance,
     Feature,
     Features,
     Grazing,
     Intersection,
+    NearestObstacle,
+    ObstacleClearance,
+    Obstacles,
     OffsetReport,
+    OverlapDepth,
     Overlapping,
+    Pair,
     Pose,
     Separated,
     Separation,
@@ -39,12 +46,16 @@ from colltrans._colltrans import (
     SolidOverlapping,
     Steps,
     Tracker,
+    Within,
     cast,
     clearance,
     contact_range,
+    depth,
     directional_depth,
+    distance,
     intersects,
     read,
+    within,
 )
 from colltrans.assembly import Assembly, Blocking, Plan, RemovalMap, Rooms, Step, Stuck
 from colltrans.columns import ClearanceColumns, Columns, ContactColumns, Failed, RangeColumns
@@ -61,6 +72,15 @@ from colltrans.errors import (
     QueryError,
 )
 from colltrans.many import cast_many, clearance_many, contact_range_many
+from colltrans.pairs import (
+    DepthColumns,
+    DistanceColumns,
+    PairColumns,
+    WithinColumns,
+    depth_many,
+    distance_many,
+    within_many,
+)
 from colltrans.pictures import picture, show
 from colltrans.solids import SolidColumns
 
@@ -82,7 +102,11 @@ __all__ = [
     "ContactColumns",
     "ContactRange",
     "ConvexPolyhedron",
+    "Depth",
+    "DepthColumns",
     "DirectionalDepth",
+    "Distance",
+    "DistanceColumns",
     "Failed",
     "Feature",
     "Features",
@@ -90,9 +114,15 @@ __all__ = [
     "InputError",
     "Intersection",
     "MeshError",
+    "NearestObstacle",
     "NotConvergedError",
+    "ObstacleClearance",
+    "Obstacles",
     "OffsetReport",
+    "OverlapDepth",
     "Overlapping",
+    "Pair",
+    "PairColumns",
     "Plan",
     "Pose",
     "PoseError",
@@ -116,15 +146,23 @@ __all__ = [
     "Steps",
     "Stuck",
     "Tracker",
+    "Within",
+    "WithinColumns",
     "cast",
     "cast_many",
     "clearance",
     "clearance_many",
     "contact_range",
     "contact_range_many",
+    "depth",
+    "depth_many",
     "directional_depth",
+    "distance",
+    "distance_many",
     "intersects",
     "picture",
     "read",
     "show",
+    "within",
+    "within_many",
 ]

@@ -1,6 +1,6 @@
 """The types of the extension."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -24,13 +24,20 @@ __all__ = [
     "Contact",
     "ContactRange",
     "ConvexPolyhedron",
+    "Depth",
     "DirectionalDepth",
+    "Distance",
     "Feature",
     "Features",
     "Grazing",
     "Intersection",
+    "NearestObstacle",
+    "ObstacleClearance",
+    "Obstacles",
     "OffsetReport",
+    "OverlapDepth",
     "Overlapping",
+    "Pair",
     "Pose",
     "Separated",
     "Separation",
@@ -45,13 +52,18 @@ __all__ = [
     "SolidOverlapping",
     "Steps",
     "Tracker",
+    "Within",
     "ask_many",
+    "ask_pairs",
     "cast",
     "clearance",
     "contact_range",
+    "depth",
     "directional_depth",
+    "distance",
     "intersects",
     "read",
+    "within",
 ]
 _SolidClearance: TypeAlias = SolidBlocked | SolidFree | SolidOverlapping
 
@@ -587,6 +599,174 @@ class SolidCertificate:
     def __reduce__(self) -> tuple[Any, Any]: ...
 
 @final
+class Pair:
+    def __new__(
+        cls,
+        moving: ConvexPolyhedron | Solid,
+        fixed: ConvexPolyhedron | Solid,
+        *,
+        moving_pose: _Pose = None,
+        fixed_pose: _Pose = None,
+    ) -> Pair: ...
+    def distance(self) -> Distance: ...
+    def depth(self) -> Depth | OverlapDepth: ...
+    def within(self, length: float) -> Within: ...
+    @property
+    def moving(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def fixed(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def moving_pose(self) -> Pose: ...
+    @property
+    def fixed_pose(self) -> Pose: ...
+    def __getnewargs_ex__(self) -> tuple[Any, dict[str, Any]]: ...
+    def show(self, **options: Any) -> Any: ...
+
+@type_check_only
+class _PairAnswer(_Answer):
+    @property
+    def query(self) -> Pair: ...
+
+@final
+class Distance(_PairAnswer):
+    __match_args__: Final = ("lower", "upper")
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def on_moving(self) -> _Floats: ...
+    @property
+    def on_fixed(self) -> _Floats: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+    @property
+    def features(self) -> Features | None: ...
+    def verify(self) -> None: ...
+
+@final
+class Depth(_PairAnswer):
+    __match_args__: Final = ("lower", "upper", "direction")
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def direction(self) -> _Floats: ...
+    @property
+    def translation(self) -> _Floats: ...
+    def verify(self) -> None: ...
+
+@final
+class OverlapDepth(_PairAnswer):
+    __match_args__: Final = ("meets", "least_tolerance")
+    @property
+    def meets(self) -> bool: ...
+    @property
+    def least_tolerance(self) -> float | None: ...
+
+@final
+class Within(_PairAnswer):
+    __match_args__: Final = ("closer", "lower", "upper")
+    @property
+    def length(self) -> float: ...
+    @property
+    def closer(self) -> bool | None: ...
+    @property
+    def lower(self) -> float | None: ...
+    @property
+    def upper(self) -> float | None: ...
+    @property
+    def points(self) -> tuple[_Floats, _Floats] | None: ...
+    def verify(self) -> None: ...
+
+@final
+class Obstacles:
+    def __new__(cls) -> Obstacles: ...
+    def add(self, body: ConvexPolyhedron | Solid, pose: _Pose = None) -> int: ...
+    def add_many(
+        self,
+        body: ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid],
+        poses: ArrayLike | Sequence[Pose],
+    ) -> list[int]: ...
+    def set_pose(self, obstacle: int, pose: _Pose) -> None: ...
+    def set_poses(self, obstacles: Sequence[int], poses: ArrayLike | Sequence[Pose]) -> None: ...
+    def remove(self, obstacle: int) -> None: ...
+    def pose(self, obstacle: int) -> Pose: ...
+    def __len__(self) -> int: ...
+    def __contains__(self, obstacle: int, /) -> bool: ...
+    def nearest(
+        self,
+        body: ConvexPolyhedron | Solid,
+        pose: _Pose = None,
+        *,
+        ignore: Iterable[int] = (),
+    ) -> NearestObstacle | None: ...
+    def within(
+        self,
+        body: ConvexPolyhedron | Solid,
+        length: float,
+        pose: _Pose = None,
+        *,
+        ignore: Iterable[int] = (),
+    ) -> tuple[list[int], list[int]]: ...
+    def clearance(
+        self,
+        body: ConvexPolyhedron | Solid,
+        direction: ArrayLike,
+        pose: _Pose = None,
+        *,
+        before: float = ...,
+        ignore: Iterable[int] = (),
+    ) -> ObstacleClearance: ...
+    def nearest_many(
+        self,
+        body: ConvexPolyhedron | Solid,
+        poses: ArrayLike | Sequence[Pose],
+        *,
+        ignore: Iterable[int] = (),
+        threads: int | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
+    def clearance_many(
+        self,
+        body: ConvexPolyhedron | Solid,
+        directions: ArrayLike,
+        poses: ArrayLike | Sequence[Pose],
+        *,
+        before: float = ...,
+        ignore: Iterable[int] = (),
+        threads: int | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
+
+@final
+class NearestObstacle:
+    @property
+    def obstacle(self) -> int: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def on_moving(self) -> _Floats: ...
+    @property
+    def on_fixed(self) -> _Floats: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+
+@final
+class ObstacleClearance:
+    @property
+    def outcome(self) -> Literal["blocked", "free", "overlapping"]: ...
+    @property
+    def obstacle(self) -> int | None: ...
+    @property
+    def distance(self) -> float | None: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+
+@final
 class Tracker:
     def __new__(cls) -> Tracker: ...
     def reset(self) -> None: ...
@@ -756,6 +936,45 @@ def intersects(
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
 ) -> bool: ...
+def distance(
+    moving: ConvexPolyhedron | Solid,
+    fixed: ConvexPolyhedron | Solid,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+) -> Distance: ...
+@overload
+def depth(
+    moving: ConvexPolyhedron,
+    fixed: ConvexPolyhedron,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+) -> Depth: ...
+@overload
+def depth(
+    moving: Solid,
+    fixed: ConvexPolyhedron | Solid,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+) -> OverlapDepth: ...
+@overload
+def depth(
+    moving: ConvexPolyhedron,
+    fixed: Solid,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+) -> OverlapDepth: ...
+def within(
+    moving: ConvexPolyhedron | Solid,
+    fixed: ConvexPolyhedron | Solid,
+    length: float,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+) -> Within: ...
 def read(
     path: str | PathLike[str],
     *,
@@ -774,5 +993,15 @@ def ask_many(
     fixed_pose: _Floats,
     graze_tolerance: _Floats,
     solver: _Solver,
+    threads: int | None,
+) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
+def ask_pairs(
+    n: int,
+    question: Literal["distance", "depth", "within"],
+    moving: tuple[list[Any], NDArray[np.int64] | None],
+    fixed: tuple[list[Any], NDArray[np.int64] | None],
+    moving_pose: _Floats,
+    fixed_pose: _Floats,
+    length: _Floats,
     threads: int | None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...

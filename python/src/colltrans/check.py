@@ -18,8 +18,15 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   their neighbours is above them by more than ``hull_error`` and rounding. No proof leans on them.
 - *Separation.* ``n' = n (d.d) - d (n.d)`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p``
   proves that the bodies never meet. The margin is checked along ``n``.
+- *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a gap; the weighted means of the
+  pairs, one of each body, a distance that is not exceeded. Of a distance of 0 the differences of
+  the pairs enclose the origin.
+- *Depth.* A translation of ``max_Q d.q - min_P d.p`` along the direction ``d`` parts the bodies. A
+  closed surface of triangles between differences ``q - p`` winds around the origin, seen along a
+  ray that meets none of its edges, and none of its triangles is nearer than is claimed.
 - *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
-  said of all other facets (the covers) is not checked here: ``colltrans verify`` does that.
+  said of all other facets (the covers) is not checked here: ``colltrans verify`` does that. Of a
+distance of solids the two points are checked, not that no others are nearer.
 
 Exit codes: 0 the proof holds, 7 what was checked of it holds (of solids, never all), 6 something
 does not, 3 the file is no proof, 1 there is nothing in it that can be checked here, 2 usage.
@@ -425,6 +432,149 @@ def facets(
     report.holds.append(f"{told} first meet at {at!r}, within the bounds claimed")
 
 
+def above(length: Fraction, square: Fraction) -> bool:
+    """Whether a length is at least the root of a square."""
+    return length >= 0 and length * length >= square
+
+
+def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
+    """The weighted mean."""
+    shares = [number(w) for w in weights]
+    total = sum(shares, Fraction())
+    if len(shares) != len(points) or min(shares) < 0 or total <= 0:
+        raise RefusedError("the weights are not those of a mean")
+    found = (Fraction(), Fraction(), Fraction())
+    for point, share in zip(points, shares, strict=True):
+        found = plus(found, scaled(point, share / total))
+    return found
+
+
+def ends_of(moving: Body, fixed: Body, pairs: Any) -> list[tuple[Vector, Vector]]:
+    """The points that pairs of vertices name."""
+    return [
+        (
+            moving.at(whole(pair["moving"], len(moving.points))),
+            fixed.at(whole(pair["fixed"], len(fixed.points))),
+        )
+        for pair in pairs
+    ]
+
+
+def encloses(corners: Sequence[Vector]) -> bool:
+    """Whether a tetrahedron of some volume contains the origin."""
+    a, b, c, d = corners
+    faces = ((b, c, d), (a, d, c), (a, b, d), (a, c, b))
+    signs = [dot(u, cross(v, w)) for u, v, w in faces]
+    return any(signs) and (min(signs) >= 0 or max(signs) <= 0)
+
+
+def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """How far convex bodies are apart, at least and at most."""
+    gap, near = claim.get("gap"), claim.get("near")
+    if gap is None and near is None:
+        raise NoProofError("no distance is claimed")
+    if gap is not None:
+        normal, lower = vector(gap["normal"]), number(gap["gap"])
+        unit(normal)
+        proven = min(fixed.heights(normal)) - max(moving.heights(normal))
+        if proven < 0 or not 0 <= lower * lower * dot(normal, normal) <= proven * proven:
+            raise RefusedError(f"the plane proves a gap of {float(proven)!r}, not {float(lower)!r}")
+        report.holds.append(f"the bodies are at least {float(lower)!r} apart")
+    if near is None:
+        return
+    upper, ends = number(near["distance"]), ends_of(moving, fixed, near["pairs"])
+    if len(ends) != 4:
+        raise NoProofError("there are four pairs")
+    if upper == 0:
+        if not encloses([minus(q, p) for p, q in ends]):
+            raise RefusedError("the pairs do not enclose the origin")
+        report.holds.append("the bodies have a point in common")
+        return
+    p, q = (mean([end[k] for end in ends], near["weights"]) for k in (0, 1))
+    apart(p, q, upper, report)
+
+
+def apart(p: Vector, q: Vector, upper: Fraction, report: Report) -> None:
+    """A point of each body, and how far they are apart at most."""
+    between = minus(q, p)
+    if not above(upper, dot(between, between)):
+        found = math.sqrt(float(dot(between, between)))
+        raise RefusedError(f"the points are {found!r} apart, not {float(upper)!r}")
+    report.holds.append(f"the bodies are at most {float(upper)!r} apart")
+
+
+def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """What can be checked of the distance of solids without their trees."""
+    if "points" in claim["near"]:
+        near = claim["near"]["points"]
+        corners = [
+            body.facet(whole(k, len(body.facets)))
+            for body, k in zip((moving, fixed), near["triangles"], strict=True)
+        ]
+        p, q = (mean(c, w) for c, w in zip(corners, near["weights"], strict=True))
+        apart(p, q, number(near["distance"]), report)
+    else:
+        report.partly = True
+        report.unchecked.append("that the bodies have a point in common")
+    if number(claim["lower"]) > 0:
+        report.partly = True
+        report.unchecked.append(f"that they are at least {claim['lower']!r} apart")
+
+
+def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """The shortest translation that parts convex bodies, at least and at most."""
+    d, lower, upper = vector(claim["direction"]), number(claim["lower"]), number(claim["upper"])
+    unit(d)
+    reach = -(min(moving.heights(d)) - max(fixed.heights(d)))
+    if reach > 0 and not above(upper, reach * reach / dot(d, d)):
+        raise RefusedError(f"it takes {float(reach)!r} to part the bodies, not {float(upper)!r}")
+    if upper < 0 or not 0 <= lower <= upper:
+        raise RefusedError("the bounds are in the wrong order")
+    report.holds.append(f"a translation by {float(upper)!r} along the direction parts the bodies")
+    if lower > 0:
+        surface = claim["enclosure"]
+        corners = [minus(q, p) for p, q in ends_of(moving, fixed, surface["pairs"])]
+        enclosure(corners, surface, lower)
+        report.holds.append(f"no translation below {float(lower)!r} parts them")
+
+
+def enclosure(corners: list[Vector], surface: Any, lower: Fraction) -> None:
+    """A closed surface around the origin, no part of which is nearer than a length."""
+    triangles = [tuple(whole(k, len(corners)) for k in t) for t in surface["triangles"]]
+    if any(len(t) != 3 for t in triangles) or len(surface["normals"]) != len(triangles):
+        raise NoProofError("a triangle has three corners and a normal")
+    sides = [(t[k], t[k - 2]) for t in triangles for k in range(3)]
+    if len(set(sides)) < len(sides) or any((b, a) not in set(sides) for a, b in sides):
+        raise RefusedError("the surface is not closed")
+    for t, each in zip(triangles, surface["normals"], strict=True):
+        normal = vector(each)
+        least = min(dot(normal, corners[k]) for k in t)
+        if least <= 0 or lower * lower * dot(normal, normal) > least * least:
+            raise RefusedError(f"a triangle is nearer to the origin than {float(lower)!r}")
+    if turns(corners, triangles) <= 0:
+        raise RefusedError("the surface does not wind around the origin")
+
+
+def turns(corners: list[Vector], triangles: list[tuple[int, ...]]) -> int:
+    """How often a closed surface winds around the origin."""
+    for k in range(1, 100):
+        # Some ray, that meets no edge.
+        ray = (Fraction(1, k), Fraction(k, 7), Fraction(3, k + 1))
+        total, clean = 0, True
+        for a, b, c in ((corners[i], corners[j], corners[k]) for i, j, k in triangles):
+            signs = [dot(ray, cross(u, v)) for u, v in ((a, b), (b, c), (c, a))]
+            volume = dot(a, cross(b, c))
+            if min(signs) > 0 and volume > 0:
+                total += 1
+            elif max(signs) < 0 and volume < 0:
+                total -= 1
+            elif min(signs) >= 0 or max(signs) <= 0:
+                clean = clean and 0 not in signs
+        if clean:
+            return total
+    raise RefusedError("no ray avoids all edges of the surface")
+
+
 def check(text: str) -> Report:
     """Checks a proof as it was written.
 
@@ -445,15 +595,23 @@ def check(text: str) -> Report:
         fixed = Body.read(file["fixed"], file["fixed_pose"])
         if bool(moving.facets) != bool(fixed.facets):
             raise NoProofError("one body is convex, the other is made of pieces")
-        d = vector(file["direction"])
-        if not any(d):
+        direction = file.get("direction")
+        d = None if direction is None else vector(direction)
+        if d is not None and not any(d):
             raise NoProofError("the direction is zero")
         report = Report()
         claims = {kind: claim for kind, claim in file["statement"].items() if claim is not None}
         if len(claims) != 1:
             raise NoProofError(f"it has to say one thing, not {len(claims)}")
         ((kind, claim),) = claims.items()
-        _claim(kind, claim, moving, fixed, d, report)
+        if kind in PLACED:
+            if d is not None or bool(moving.facets) != (kind == "solid_distance"):
+                raise NoProofError(f"{kind!r} is not claimed of such bodies, or of a direction")
+            PLACED[kind](moving, fixed, claim, report)
+        elif d is None:
+            raise NoProofError("there is no direction")
+        else:
+            _claim(kind, claim, moving, fixed, d, report)
     except (*_MALFORMED, RecursionError) as error:
         if isinstance(error, NoProofError):
             raise
@@ -467,6 +625,10 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(fields) < len(pairs):
         raise NoProofError("a name comes twice in an object")
     return fields
+
+
+#: What is claimed of bodies where they are.
+PLACED = {"distance": distance, "depth": depth, "solid_distance": solid_distance}
 
 
 def _claim(kind: str, claim: Any, moving: Body, fixed: Body, d: Vector, report: Report) -> None:

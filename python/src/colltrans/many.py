@@ -233,8 +233,9 @@ def clearance_many(
     bodies, indices = (moving, fixed), (moving_index, fixed_index)
     poses = (moving_pose, fixed_pose)
     if any(isinstance(body, Solid) for side in bodies for body in listed(side)):
-        if np.any(graze_tolerance):
-            raise InputError("graze_tolerance: is for convex bodies; solids have tolerance")
+        if np.any(graze_tolerance) or solver != "auto":
+            told = "graze_tolerance, solver: are for convex bodies; solids have tolerance"
+            raise InputError(told)
         tolerances = None if tolerance is None else column(tolerance, "tolerance")
         asked = queries_of(bodies, direction, poses, indices, 0.0, solver, tolerances)
         return ask_solids(asked, tolerances, ignore_start_overlaps, checked_threads(threads))

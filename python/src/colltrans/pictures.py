@@ -19,10 +19,14 @@ from colltrans._colltrans import (
     Contact,
     ContactRange,
     ConvexPolyhedron,
+    Depth,
     DirectionalDepth,
+    Distance,
     Grazing,
     Intersection,
+    OverlapDepth,
     Overlapping,
+    Pair,
     Pose,
     Separated,
     Slides,
@@ -32,6 +36,7 @@ from colltrans._colltrans import (
     SolidContact,
     SolidFree,
     SolidOverlapping,
+    Within,
 )
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -50,6 +55,14 @@ class _Mark:
     direction: Floats
 
 
+@dataclass(frozen=True)
+class _Link:
+    """Points of both bodies, and what is between them."""
+
+    name: str
+    ends: tuple[Floats, Floats]
+
+
 def picture(answer: Any) -> Any:
     """An answer, or the query of one, as a figure of plotly.
 
@@ -57,7 +70,8 @@ def picture(answer: Any) -> Any:
     ----------
     answer : Contact, Blocked, SolidBlocked, Cast or any other answer or query
         What it says of a contact is drawn: the moving body as it is and, as a ghost, where it
-        touches; the point, and the normal from the moving body to the fixed one.
+        touches; the point, and the normal from the moving body to the fixed one. Of a distance the
+        nearest points, joined; of a depth, as a ghost, where the moving body has left.
 
     Returns
     -------
@@ -85,6 +99,8 @@ def picture(answer: Any) -> Any:
         answer = answer.first_contact()
     elif isinstance(answer, SolidCast):
         answer = answer.clearance()
+    elif isinstance(answer, Pair):
+        answer = answer.distance()
     query, marks = _said(answer)
     moving = _placed(query.moving, query.moving_pose)
     fixed = _placed(query.fixed, query.fixed_pose)
@@ -93,7 +109,11 @@ def picture(answer: Any) -> Any:
     figure.add_traces(list(_body(go, fixed, "fixed", FIXED, 1.0)))
     size = float(np.ptp(np.vstack([moving[0], fixed[0]]), axis=0).max()) or 1.0
     for mark in marks:
-        figure.add_traces(list(_drawn(go, mark, moving, size)))
+        if isinstance(mark, _Link):
+            line = {"color": TOUCH, "width": 6}
+            figure.add_trace(_line(go, *mark.ends, line, mark.name))
+        else:
+            figure.add_traces(list(_drawn(go, mark, moving, size)))
     axes = {axis: {"showbackground": False} for axis in ("xaxis", "yaxis", "zaxis")}
     figure.update_layout(
         title=repr(answer),
@@ -137,9 +157,19 @@ def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:
         figure.write_html(file, include_plotlyjs=True)
 
 
-def _said(answer: Any) -> tuple[Cast | SolidCast, list[_Mark]]:
+def _said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
     """The query of an answer, and what is to be drawn of it."""
     match answer:
+        case Distance():
+            points = (answer.on_moving, answer.on_fixed)
+            return answer.query, [_Link(f"distance {answer.upper:.6g}", points)]
+        case Within(points=between):
+            links = [] if between is None else [_Link(f"at most {answer.upper:.6g}", between)]
+            return answer.query, [*links]
+        case Depth():
+            return answer.query, [_Mark("parted", answer.upper, None, None, answer.direction)]
+        case OverlapDepth():
+            return answer.query, []
         case Contact():
             return answer.query, [_mark("contact", answer)]
         case Blocked(contact=contact) | Behind(contact=contact) | Grazing(contact=contact):
@@ -148,8 +178,7 @@ def _said(answer: Any) -> tuple[Cast | SolidCast, list[_Mark]]:
             return grazing.contact.query, [_mark("slides", grazing.contact)]
         case Overlapping(first=first, last=last) | ContactRange(first=first, last=last):
             ends = [end.contact if isinstance(end, Grazing) else end for end in (first, last)]
-            marks = [_mark(name, end) for name, end in zip(("first", "last"), ends, strict=True)]
-            return ends[0].query, marks
+            return ends[0].query, [_mark("first", ends[0]), _mark("last", ends[1])]
         case DirectionalDepth():
             return _said(answer.clearance)
         case Intersection():

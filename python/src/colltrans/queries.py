@@ -97,22 +97,15 @@ def queries_of(
     tolerance: Floats | None = None,
 ) -> Queries:
     """All arguments as tables, and how many rows they have together."""
-    moving_bodies, moving_index = _body_list(bodies[0], indices[0], "moving")
-    fixed_bodies, fixed_index = _body_list(bodies[1], indices[1], "fixed")
+    moving_bodies, moving_index = body_list(bodies[0], indices[0], "moving")
+    fixed_bodies, fixed_index = body_list(bodies[1], indices[1], "fixed")
     tables = {
         "direction": _table(direction, "direction", 3),
-        "moving_pose": _pose_table(poses[0], "moving_pose"),
-        "fixed_pose": _pose_table(poses[1], "fixed_pose"),
+        "moving_pose": pose_table(poses[0], "moving_pose"),
+        "fixed_pose": pose_table(poses[1], "fixed_pose"),
         "graze_tolerance": column(graze_tolerance, "graze_tolerance"),
         "tolerance": np.zeros((1, 1)) if tolerance is None else tolerance,
     }
-    rows = {name: len(table) for name, table in tables.items() if len(table) != 1}
-    for name, index in (("moving_index", moving_index), ("fixed_index", fixed_index)):
-        if index is not None:
-            rows[name] = len(index)
-    if len(set(rows.values())) > 1:
-        found = ", ".join(f"{name} has {n} rows" for name, n in rows.items())
-        raise InputError(f"arguments of different lengths: {found}")
     return Queries(
         bodies=(moving_bodies, fixed_bodies),
         indices=(moving_index, fixed_index),
@@ -120,11 +113,25 @@ def queries_of(
         poses=(tables["moving_pose"], tables["fixed_pose"]),
         graze_tolerance=tables["graze_tolerance"],
         solver=solver,
-        count=next(iter(rows.values()), 1),
+        count=count_of(tables, (moving_index, fixed_index)),
     )
 
 
-def _body_list(
+def count_of(
+    tables: dict[str, Floats], indices: tuple[NDArray[np.int64] | None, NDArray[np.int64] | None]
+) -> int:
+    """How many rows tables of one for all, or of one for each, have together."""
+    rows = {name: len(table) for name, table in tables.items() if len(table) != 1}
+    for name, index in zip(("moving_index", "fixed_index"), indices, strict=True):
+        if index is not None:
+            rows[name] = len(index)
+    if len(set(rows.values())) > 1:
+        found = ", ".join(f"{name} has {n} rows" for name, n in rows.items())
+        raise InputError(f"arguments of different lengths: {found}")
+    return next(iter(rows.values()), 1)
+
+
+def body_list(
     bodies: AnyBodies, index: ArrayLike | None, name: str
 ) -> tuple[list[Any], NDArray[np.int64] | None]:
     alone = isinstance(bodies, (ConvexPolyhedron, Solid))
@@ -159,7 +166,7 @@ def column(values: ArrayLike, name: str) -> Floats:
     return array.reshape(-1, 1)
 
 
-def _pose_table(values: Poses, name: str) -> Floats:
+def pose_table(values: Poses, name: str) -> Floats:
     if values is None:
         return np.zeros((1, 3))
     matrices = hasattr(values, "as_matrix")

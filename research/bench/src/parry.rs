@@ -8,7 +8,9 @@ use colltrans_testkit::timing::Stopwatch;
 use glam::DVec3;
 use parry3d_f64::math as parry_math;
 use parry3d_f64::query::{self, ShapeCastOptions, cast_shapes};
-use parry3d_f64::shape::{ConvexPolyhedron as ParryPolyhedron, Shape, TriMesh};
+use parry3d_f64::shape::{
+    Compound, ConvexPolyhedron as ParryPolyhedron, Shape, SharedShape, TriMesh,
+};
 
 use crate::report::Times;
 
@@ -100,7 +102,8 @@ impl Scale {
     }
 }
 
-fn vector(v: DVec3) -> parry_math::Vector {
+/// A vector in parry's type.
+pub fn vector(v: DVec3) -> parry_math::Vector {
     parry_math::Vector::from_array(v.to_array())
 }
 
@@ -116,4 +119,16 @@ fn pose(pose: &Pose) -> parry_math::Pose {
 pub fn triangle_mesh(vertices: &[DVec3], triangles: &[[u32; 3]]) -> TriMesh {
     let points = vertices.iter().map(|v| vector(*v)).collect();
     TriMesh::new(points, triangles.to_vec()).expect("triangles")
+}
+
+/// Boxes of half-sides by number at these poses, with their tree.
+///
+/// # Panics
+/// If there are none.
+pub fn compound(poses: &[Pose], half: impl Fn(usize) -> DVec3) -> Compound {
+    let boxed = |(k, at): (usize, &Pose)| {
+        let half = half(k);
+        (pose(at), SharedShape::cuboid(half.x, half.y, half.z))
+    };
+    Compound::new(poses.iter().enumerate().map(boxed).collect())
 }

@@ -93,7 +93,7 @@ fn fill(text: &str, hang: usize, is_command: bool, width: usize, out: &mut Vec<S
 
 pub(super) const EXIT_CODES: &str = "\
 Exit codes:
-  0  answered (contact, separated, free, blocked, overlapping are all answers)
+  0  answered (contact, separated, free, blocked, overlapping, closer, farther are all answers)
   1  batch, --directions: some lines have no answer; the results say which and why
   2  the command line is wrong
   3  an input file cannot be read, a body is not what it should be, or an output would overwrite an
@@ -157,9 +157,43 @@ Examples:
     colltrans clearance pin.stl --from block.stl --direction z --ignore-start-overlaps \\
       --picture pin.svg";
 
+pub(super) const DISTANCE_ANSWERS: &str = "\
+Answers of distance:
+  apart        so far, between two bounds that are proven, with the points that are nearest, the
+               normal from the moving to the fixed body and what of each body faces the other
+  meeting      they touch or overlap, with a point of both: proven where the upper bound is 0, else
+               they are at most that far apart, which is rounding
+
+Answers of depth:
+  overlapping  of convex bodies, the shortest translation of the moving body that parts them, between
+               two bounds that are proven; of parts the least tolerance with which they would not
+               overlap
+  touching     they touch, or may overlap by less than rounding can tell
+  apart        0: they have no point in common
+
+Answers of within:
+  closer       a point of each is at most the length apart
+  farther      no two points are as near as the length
+  undecided    the length lies between the bounds of the distance, a few roundings apart
+
+All lengths are in the unit of the meshes. With --json one object, in the fields of `batch --help`; of
+parts, `moving` and `fixed` are the files that are nearest, or overlap deepest.
+
+Examples:
+  How near is a gripper to a table, and where?
+    colltrans distance gripper.stl table.stl --moving-pose 0,0,50
+  Parts with holes, several files a body, with a picture and a proof:
+    colltrans distance bolt.stl nut.stl --from plate.stl frame.stl --picture near.svg \\
+      --save-proof near.json
+  Which way out, by the hull of both?
+    colltrans depth peg.stl plate.stl --hull
+  Does a part keep 0.5 from its housing?
+    colltrans within shaft.stl --from housing.stl --length 0.5";
+
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,
-   "direction": [x,y,z], "query": "contact"|"clearance",
+   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within",
+   "length": L (of "within"),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
    "tolerance": L, "ignore_start_overlaps": true|false (of solids), "keep": GAP}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
@@ -167,16 +201,23 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
        or {"solid": "path", "scale": FACTOR, "open": BOOL} (need not be convex; open: nor closed)
   (hull and scale may be missing: as --hull says, and 1)
   query is "contact", as of `colltrans cast`, or "clearance", as of `colltrans clearance`. Solids are
-  asked for their clearance only, which is the default there.
+  not asked for "contact"; "clearance" is the default there. "distance", "depth" and "within" are those
+  of the commands, of bodies of any kind where they are.
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
-moving, fixed and direction are required. Paths are relative to the folder of the query file, or to
+moving and fixed are required, and the direction of "contact" and "clearance". Paths are relative to the folder of the query file, or to
 the current folder for standard input. Blank lines are skipped, unknown fields are errors.
 
 Each result is one JSON object with those of these fields that apply:
   id           as in the query (null if it cannot be read)
   outcome      "contact", "grazing", "separated" or "error"; of a clearance: "blocked", "slides",
-               "behind", "separated" or "overlapping"; of solids: "free", "blocked" or "overlapping"
-  direction    with --directions: the direction as it was read
+               "behind", "separated" or "overlapping"; of solids: "free", "blocked" or "overlapping";
+               of a distance: "apart" or "meeting"; of a depth: "overlapping", "touching"
+               or "apart"; within: "closer", "farther" or "undecided"
+  direction    with --directions: the direction as it was read; of a depth: the unit vector along
+               which the moving body leaves by the shortest way
+  lower upper  of a distance or a depth: at least and at most that, proven; of "closer" the upper one
+               alone, of "farther" the lower one
+  points       [moving, fixed]: points of both, in the world, that are so near
   distance     of a clearance, blocked: how far it is safe to move, the lower one of
                translation_bounds, and never negative
   back on      of a clearance, overlapping: how far to go back, or on, to be free for certain
@@ -195,7 +236,8 @@ Each result is one JSON object with those of these fields that apply:
   start_overlaps  of solids that overlap now: [{"least_tolerance"}], the one with which they
                would not; missing of surfaces
   surfaces     of solids: which bodies are open, at least in part: ["moving", "fixed"]
-  normal       unit normal from moving to fixed: of the contact plane, or of the separating plane
+  normal       unit normal from moving to fixed: of the contact plane, of the separating plane, or
+               along the shortest way
   point        the contact point on the fixed body, in the world
   features     {"moving": {"kind": "vertex"|"edge"|"face", "vertices": [...]}, "fixed": ...} by the
                indices of the points or mesh vertices in the input
@@ -211,8 +253,8 @@ Each result is one JSON object with those of these fields that apply:
   message      what is wrong; grazing: along which direction the shadows overlap
   notes        what was merged or mended when the meshes were read
 
-Distances, translations, their bounds and rounding are in multiples of the direction, other lengths
-in the unit of the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
+Translations, the distance of a clearance, their bounds and rounding are in multiples of the
+direction, other lengths in the unit of the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results
 that exists is replaced when all lines are answered, and never if a query reads it. A line may have
 up to 64 MiB."#;
 
@@ -261,6 +303,7 @@ mod tests {
             &formats(),
             CAST_EXAMPLES,
             CLEARANCE_ANSWERS,
+            DISTANCE_ANSWERS,
             BATCH_FORMAT,
             ASSEMBLY_FORMAT,
         ];

@@ -6,12 +6,11 @@
 //! reads in the same way, to the last bit. What is said of a body is handed on as it is written.
 
 use colltrans::Solver;
-use colltrans::record::Question;
 use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use serde_json::value::RawValue;
 
-use super::source::{PoseSource, Query};
+use super::source::{Asked, PoseSource, Query};
 
 /// The query of a line, if it has the usual form.
 pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
@@ -28,8 +27,9 @@ pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
         fixed: found.fixed?,
         moving_pose: found.moving_pose.unwrap_or_default(),
         fixed_pose: found.fixed_pose.unwrap_or_default(),
-        direction: found.direction?,
+        direction: found.direction,
         question: found.question,
+        length: found.length,
         graze_tolerance: found.graze_tolerance,
         solver: found.solver,
         tolerance: None,
@@ -47,7 +47,8 @@ struct Found<'a> {
     moving_pose: Option<PoseSource>,
     fixed_pose: Option<PoseSource>,
     direction: Option<[f64; 3]>,
-    question: Option<Question>,
+    question: Option<Asked>,
+    length: Option<f64>,
     graze_tolerance: Option<f64>,
     keep: Option<f64>,
     solver: Option<Solver>,
@@ -65,6 +66,7 @@ impl<'a> Found<'a> {
             "graze_tolerance" => once(&mut self.graze_tolerance, reader.number()?),
             "keep" => once(&mut self.keep, reader.number()?),
             "query" => once(&mut self.question, reader.word()?),
+            "length" => once(&mut self.length, reader.number()?),
             "solver" => once(&mut self.solver, reader.word()?),
             _ => None,
         }
@@ -231,20 +233,22 @@ mod tests {
     use super::super::source::BodySource;
     use super::*;
 
-    const LINES: [&str; 4] = [
+    const LINES: [&str; 5] = [
         r#"{"id": "q0", "moving": {"mesh": "a.off"}, "fixed": {"mesh": "b.off"}, "moving_pose": {"translation": [0.25942905256569254, -1.5e-3, 6], "rotation": [0.5, 0.5, -0.5, 0.5]}, "direction": [0.034274851448885826, -0, -1]}"#,
         r#"{"direction":[1E5,0.10,1e+2],"query":"clearance","solver":"cta","graze_tolerance":0.5,"fixed_pose":{"rotation":[0,0,0,1]},"fixed":{"points":[[0,0,0],[1,1,1]]},"moving":{"solid":"\u00fc}"},"id":17}"#,
         r#" { "id" : null , "moving" : { "mesh" : "}{é" , "scale" : 2 } , "fixed" : { } , "direction" : [ 1 , 2 , 123456789012345678901234567890 ] } "#,
         r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"direction":[0.1,2.2250738585072011e-308,5e-324],"solver":"portal","keep":2.5e-1,"query":"contact"}"#,
+        r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"query":"within","length":0.125}"#,
     ];
 
     fn bits(query: &Query<'_, impl Sized>) -> String {
-        let Query { moving_pose, fixed_pose, direction, graze_tolerance, keep, .. } = query;
+        let Query { moving_pose, fixed_pose, direction, graze_tolerance, length, keep, .. } = query;
         let numbers = [moving_pose, fixed_pose]
             .into_iter()
             .flat_map(|pose| pose.translation.into_iter().chain(pose.rotation))
-            .chain(*direction)
+            .chain(direction.iter().flatten().copied())
             .chain(*graze_tolerance)
+            .chain(*length)
             .chain(*keep);
         let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
         let id = query.id.map_or("null", RawValue::get);
@@ -272,7 +276,7 @@ mod tests {
 
     #[test]
     fn usual_lines_are_read_as_serde_reads_them() {
-        assert_eq!(LINES.map(agrees), [true, false, true, true]);
+        assert_eq!(LINES.map(agrees), [true, false, true, true, true]);
         assert!(agrees(&LINES[1].replace("\\u00fc", "ü")));
     }
 

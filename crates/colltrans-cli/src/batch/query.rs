@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::record::{Question, Record};
-use colltrans::{Cast, ConvexPolyhedron, Options, Pose};
+use colltrans::record::{PairQuestion, Question, Record};
+use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::{BodyOptions, LoadError, Take};
 use serde::Deserialize;
@@ -16,13 +16,13 @@ use super::cache::{Built, Cache, Key, Shape};
 use super::fast_path;
 use super::pipeline::Line;
 use super::recent::Recent;
-use super::source::{BodySource, PoseSource, Query};
+use super::source::{Asked, BodySource, PoseSource, Query};
 use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
 use crate::record::{Hulls, Line as Told};
 use crate::replay;
-use crate::solid::{self, PartsQuery};
+use crate::solid::{self, PartsPair, PartsQuery};
 
 /// What all lines of a batch have in common.
 pub(crate) struct Batch {
@@ -200,14 +200,54 @@ fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Told, S
     let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
     let fixed_pose = query.fixed_pose.pose().map_err(|e| format!("fixed_pose: {e}"))?;
     let poses = [moving_pose, fixed_pose];
-    match (&*moving, &*fixed) {
-        (Shape::Convex(moving), Shape::Convex(fixed)) => query.of_convex([moving, fixed], poses),
-        (moving, fixed) => query.of_solids([moving, fixed], poses),
+    let shapes = [&*moving, &*fixed];
+    match (query.asked()?, shapes) {
+        (Ask::Pair(question), shapes) => of_pair(question, shapes, poses),
+        (Ask::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
+            query.of_convex([moving, fixed], poses, direction)
+        }
+        (Ask::Cast(direction), shapes) => query.of_solids(shapes, poses, direction),
     }
 }
 
 impl<B> Query<'_, B> {
-    fn of_convex(&self, [moving, fixed]: [&Part; 2], poses: [Pose; 2]) -> Result<Told, String> {
+    /// What is asked, with all that it needs and nothing else.
+    fn asked(&self) -> Result<Ask, String> {
+        let question = match self.question {
+            Some(Asked::Distance) => PairQuestion::Distance,
+            Some(Asked::Depth) => PairQuestion::Depth,
+            Some(Asked::Within) => {
+                PairQuestion::Within(self.length.ok_or(r#""within" needs a `length`"#)?)
+            }
+            None | Some(Asked::Contact | Asked::Clearance) => {
+                if self.length.is_some() {
+                    return Err(r#"`length` is for "query": "within""#.into());
+                }
+                let direction = self.direction.ok_or("missing field `direction`")?;
+                return Ok(Ask::Cast(DVec3::from_array(direction)));
+            }
+        };
+        let of_casts = [
+            ("direction", self.direction.is_some()),
+            ("graze_tolerance", self.graze_tolerance.is_some()),
+            ("solver", self.solver.is_some()),
+            ("tolerance", self.tolerance.is_some()),
+            ("keep", self.keep.is_some()),
+            ("ignore_start_overlaps", self.ignore_start_overlaps.is_some()),
+            ("length", self.length.is_some() && self.question != Some(Asked::Within)),
+        ];
+        match of_casts.iter().find(|(_, given)| *given) {
+            Some((field, _)) => Err(format!("`{field}` is not for this query")),
+            None => Ok(Ask::Pair(question)),
+        }
+    }
+
+    fn of_convex(
+        &self,
+        [moving, fixed]: [&Part; 2],
+        poses: [Pose; 2],
+        direction: DVec3,
+    ) -> Result<Told, String> {
         if self.tolerance.is_some() || self.ignore_start_overlaps.is_some() {
             let fields = "`tolerance` and `ignore_start_overlaps`";
             return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
@@ -217,20 +257,26 @@ impl<B> Query<'_, B> {
             .with_graze_tolerance(self.graze_tolerance.unwrap_or_default())
             .with_keep(self.keep.unwrap_or_default());
         let (moving_at, fixed_at) = (moving.body.at(poses[0]), fixed.body.at(poses[1]));
-        let direction = DVec3::from_array(self.direction);
         let cast = Cast::new(moving_at, fixed_at, direction)
             .and_then(|cast| cast.with_options(options))
             .map_err(|error| error.to_string())?;
-        let answered = self.question.unwrap_or(Question::Contact).ask(&cast);
+        let question = match self.question {
+            Some(Asked::Clearance) => Question::Clearance,
+            _ => Question::Contact,
+        };
+        let answered = question.ask(&cast);
         let answer = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
-        let told = Told::from(answer.record(&cast));
-        let notes = [moving, fixed].into_iter().flat_map(|part| part.notes.clone()).collect();
-        Ok(Told { hull: Hulls::of(moving.excess, fixed.excess), notes, ..told })
+        Ok(of_parts(answer.record(&cast), [moving, fixed]))
     }
 
     /// At least one of the bodies is a solid.
-    fn of_solids(&self, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Told, String> {
-        if self.question == Some(Question::Contact) {
+    fn of_solids(
+        &self,
+        shapes: [&Shape; 2],
+        poses: [Pose; 2],
+        direction: DVec3,
+    ) -> Result<Told, String> {
+        if self.question == Some(Asked::Contact) {
             return Err(r#"solids are asked for their clearance: "query": "clearance""#.into());
         }
         if self.graze_tolerance.is_some() {
@@ -239,15 +285,13 @@ impl<B> Query<'_, B> {
         if self.solver.is_some() {
             return Err("`solver` is for convex bodies".into());
         }
-        let [moving, fixed] = shapes.map(as_solid);
-        let moving = moving.map_err(|e| format!("moving: {e}"))?;
-        let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
+        let [moving, fixed] = as_solids(shapes)?;
         let question = PartsQuery {
             moving: moving.get(),
             moving_pose: poses[0],
             fixed: fixed.get(),
             fixed_pose: poses[1],
-            direction: DVec3::from_array(self.direction),
+            direction,
             tolerance: self.tolerance,
             ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
             keep: self.keep.unwrap_or_default(),
@@ -258,6 +302,34 @@ impl<B> Query<'_, B> {
         let notes = told.cloned().collect();
         Ok(Told { notes, ..without_names(answer.record).into() })
     }
+}
+
+/// What is asked of two bodies: where they are, or along a direction.
+enum Ask {
+    Pair(PairQuestion),
+    Cast(DVec3),
+}
+
+/// Of bodies where they are.
+fn of_pair(question: PairQuestion, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Told, String> {
+    if let [Shape::Convex(moving), Shape::Convex(fixed)] = shapes {
+        let placed = [moving.body.at(poses[0]), fixed.body.at(poses[1])];
+        let pair = Pair::new(placed[0], placed[1]).map_err(|error| error.to_string())?;
+        let answer = question.ask(&pair).map_err(|error| error.to_string())?;
+        return Ok(of_parts(answer.record(&pair), [moving, fixed]));
+    }
+    let [moving, fixed] = as_solids(shapes)?;
+    let bodies = [moving.get(), fixed.get()];
+    let record = PartsPair { bodies, poses }.ask(question).map_err(|e| e.to_string())?;
+    let notes = bodies.into_iter().flat_map(|body| body.notes.clone()).collect();
+    Ok(Told { notes, ..without_names(record).into() })
+}
+
+/// What is told of convex bodies.
+fn of_parts(record: Record, parts: [&Part; 2]) -> Told {
+    let notes = parts.into_iter().flat_map(|part| part.notes.clone()).collect();
+    let hull = Hulls::of(parts[0].excess, parts[1].excess);
+    Told { hull, notes, ..record.into() }
 }
 
 /// Without the names of files: a body is one.
@@ -280,6 +352,11 @@ fn as_solid(shape: &Shape) -> Result<AsSolid<'_>, String> {
         Shape::Solid(body) => Ok(AsSolid::Is(body)),
         Shape::Convex(part) => Ok(AsSolid::Made(Box::new(solid::Body::of_convex(&part.body)?))),
     }
+}
+
+fn as_solids(shapes: [&Shape; 2]) -> Result<[AsSolid<'_>; 2], String> {
+    let [moving, fixed] = shapes.map(as_solid);
+    Ok([moving.map_err(|e| format!("moving: {e}"))?, fixed.map_err(|e| format!("fixed: {e}"))?])
 }
 
 impl AsSolid<'_> {

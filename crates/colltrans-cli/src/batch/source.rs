@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use colltrans::Solver;
-use colltrans::record::Question;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -19,14 +18,27 @@ pub(super) struct Query<'a, Body> {
     pub(super) moving_pose: PoseSource,
     #[serde(default)]
     pub(super) fixed_pose: PoseSource,
-    pub(super) direction: [f64; 3],
+    pub(super) direction: Option<[f64; 3]>,
     #[serde(rename = "query")]
-    pub(super) question: Option<Question>,
+    pub(super) question: Option<Asked>,
+    /// Of [`Asked::Within`].
+    pub(super) length: Option<f64>,
     pub(super) graze_tolerance: Option<f64>,
     pub(super) solver: Option<Solver>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
     pub(super) keep: Option<f64>,
+}
+
+/// What is asked, by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Asked {
+    Contact,
+    Clearance,
+    Distance,
+    Depth,
+    Within,
 }
 
 #[derive(Debug, Deserialize)]

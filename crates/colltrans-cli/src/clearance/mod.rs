@@ -18,6 +18,7 @@ use crate::progress;
 use crate::proof;
 use crate::record::Line;
 use crate::solid::{Body, PartsQuery};
+pub(crate) use words::overlaps;
 
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let Sides { files, taken } = arguments.sides()?;
@@ -111,7 +112,10 @@ fn scan<'a>(
 }
 
 /// Both bodies.
-fn load(files: [&[PathBuf]; 2], options: &[BodyOptions; 2]) -> Result<[Body; 2], Failure> {
+pub(crate) fn load(
+    files: [&[PathBuf]; 2],
+    options: &[BodyOptions; 2],
+) -> Result<[Body; 2], Failure> {
     let bar = progress::steps(files.iter().map(|side| side.len()).sum(), "reading");
     let load = |k: usize| Body::load(files[k], &options[k], || bar.inc(1));
     let bodies = load(0).and_then(|moving| Ok([moving, load(1)?]));

@@ -33,7 +33,18 @@ pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> Str
     if let Some([_, upper]) = record.exit_bounds {
         line(&mut text, "exit", &format!("{}; after it they never meet", times(upper)));
     }
-    overlaps(&mut text, record);
+    let ignored = record.outcome != Ending::Overlapping;
+    let name = if ignored { "ignored" } else { "overlap" };
+    overlaps(&mut text, record, name);
+    if !ignored {
+        let hint = if record.start_overlaps.iter().all(|overlap| overlap.least_tolerance.is_some())
+        {
+            "--tolerance allows for it, --ignore-start-overlaps lets it pass"
+        } else {
+            "--ignore-start-overlaps lets it pass"
+        };
+        line(&mut text, "", hint);
+    }
     if !record.surfaces.is_empty() {
         let what = "open, blocking from both sides, rims included; what is inside is not known";
         line(&mut text, "surface", &format!("{}, {what}", record.surfaces.join(" and ")));
@@ -105,8 +116,8 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
     }
 }
 
-fn overlaps(text: &mut String, record: &Record) {
-    let ignored = record.outcome != Ending::Overlapping;
+/// What overlaps what, a line each.
+pub(crate) fn overlaps(text: &mut String, record: &Record, name: &str) {
     for StartOverlapRecord { moving, fixed, least_tolerance } in &record.start_overlaps {
         let [moving, fixed] =
             [moving, fixed].map(|name| shown(name.as_deref().unwrap_or_default()));
@@ -114,17 +125,7 @@ fn overlaps(text: &mut String, record: &Record) {
             Some(least) => format!("a tolerance of {} would part them", above(*least)),
             None => "no tolerance would part them".into(),
         };
-        let name = if ignored { "ignored" } else { "overlap" };
         line(text, name, &format!("{moving} in {fixed}: {remedy}"));
-    }
-    if !ignored {
-        let hint = if record.start_overlaps.iter().all(|overlap| overlap.least_tolerance.is_some())
-        {
-            "--tolerance allows for it, --ignore-start-overlaps lets it pass"
-        } else {
-            "--ignore-start-overlaps lets it pass"
-        };
-        line(text, "", hint);
     }
 }
 

@@ -43,10 +43,8 @@ impl Layout {
         if let Some(start) = &cast.start {
             frame = union(frame, part_near(start, -view.project(cast.way), reach, view));
         }
-        if let Some(plane) = story.plane(cast) {
-            for corner in plane.map(|p| view.project(p)) {
-                frame = union(frame, Frame { low: corner, high: corner });
-            }
+        for corner in story.corners(cast).into_iter().map(|p| view.project(p)) {
+            frame = union(frame, Frame { low: corner, high: corner });
         }
         let extent = (frame.high - frame.low).max(DVec2::splat(1e-3 * size));
         let room = DVec2::new(PAGE_WIDTH, WINDOW_HEIGHT) - 2.0 * MARGIN;

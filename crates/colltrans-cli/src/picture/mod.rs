@@ -12,13 +12,15 @@
 //! Where the contact lies behind, the start may overlap `Q`; it is drawn last, as an outline that
 //! hides nothing.
 //!
-//! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths.
+//! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths, as
+//! [`pair`] does two bodies of any kind where they are.
 //!
 //! Order: [`story`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
 //! (how large, by [`size`]) -> [`solid`] and [`notes`] (the drawing) -> [`Page`].
 
 mod layout;
 mod notes;
+mod pair;
 mod parts;
 mod size;
 mod solid;
@@ -31,6 +33,7 @@ use colltrans_picture::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Page, View};
 
 use layout::Layout;
 use notes::Notes;
+pub(crate) use pair::{Shown, draw_pair};
 pub(crate) use parts::draw_solids;
 use solid::Solid;
 use story::Story;

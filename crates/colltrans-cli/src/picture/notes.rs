@@ -34,8 +34,11 @@ pub(super) struct Notes<'a> {
 
 impl Notes<'_> {
     pub(super) fn draw(&self, page: &mut Page, unit: DVec3) {
-        self.draw_way(page, unit);
+        if !self.story.is_still {
+            self.draw_way(page, unit);
+        }
         self.draw_gap(page);
+        self.draw_link(page);
         self.draw_contact(page);
         self.draw_caption(page);
     }
@@ -127,6 +130,22 @@ impl Notes<'_> {
         self.place_label(page, from.midpoint(to), across, &look, &label);
     }
 
+    /// The shortest way between the bodies, or a point that both have.
+    fn draw_link(&self, page: &mut Page) {
+        if self.story.meets {
+            page.dot(self.on_page(DVec3::ZERO), 4.0, WAY, "#ffffff");
+        }
+        let Some((ends, label)) = &self.story.link else { return };
+        let [from, to] = ends.map(|p| self.on_page(p));
+        page.haloed(Stroke::solid(WAY, 2.0), [from, to]);
+        for end in [from, to] {
+            page.dot(end, 3.5, WAY, "#ffffff");
+        }
+        let aside = (to - from).normalize_or(DVec2::X).perp();
+        let aside = if aside.y > 0.0 { -aside } else { aside };
+        self.place_label(page, from.midpoint(to), aside, &LABEL.replace(INK, WAY), label);
+    }
+
     fn draw_contact(&self, page: &mut Page) {
         if !self.story.touches {
             return;
@@ -165,6 +184,13 @@ impl Notes<'_> {
         let stop = match (touches, margin) {
             (true, _) => "moving, at contact",
             (false, Some(_)) => "moving, beside the fixed one",
+            (false, None)
+                if !self.story.is_still
+                    && self.story.link.is_none()
+                    && self.cast.start.is_some() =>
+            {
+                "moving, parted"
+            }
             (false, None) => "moving",
         };
         let mut entries = Vec::new();

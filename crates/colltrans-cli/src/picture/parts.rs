@@ -81,6 +81,9 @@ fn story(question: &PartsQuery<'_>, answer: &Answer) -> Story {
         touches: record.point.is_some(),
         marks: None,
         margin: None,
+        link: None,
+        meets: false,
+        is_still: false,
         way: place.map_or("d".into(), |place| quantity(place, length)),
         headline,
         details,
@@ -103,9 +106,9 @@ fn name(file: &str) -> Cow<'_, str> {
 }
 
 /// From the scene to the page.
-struct Eye<'a> {
-    view: &'a View,
-    layout: &'a Layout,
+pub(super) struct Eye<'a> {
+    pub(super) view: &'a View,
+    pub(super) layout: &'a Layout,
 }
 
 /// Edges that are drawn.
@@ -121,7 +124,7 @@ impl Eye<'_> {
         self.layout.on_page(self.view.project(p)).extend(p.dot(self.view.toward))
     }
 
-    fn draw(&self, page: &mut Page, cast: &Cast, [moving, fixed]: [&[Edge]; 2]) {
+    pub(super) fn draw(&self, page: &mut Page, cast: &Cast, [moving, fixed]: [&[Edge]; 2]) {
         let mut raster = Raster::new(self.layout.window);
         self.rasterise(&mut raster, &cast.fixed, 0);
         self.rasterise(&mut raster, &cast.stop, MOVING_TONES);
@@ -206,6 +209,10 @@ impl Eye<'_> {
 
     fn drawn(&self, body: &Solid, edges: &[Edge]) -> Drawn {
         let mut drawn = Drawn::default();
+        if let ([from, .., to], true) = (&body.vertices[..], body.faces.is_empty()) {
+            // A segment.
+            drawn.outline.push([*from, *to].map(|p| self.see(p)));
+        }
         let normal = |f: u32| body.areas[f as usize].normalize_or_zero();
         let is_front = |f: u32| body.areas[f as usize].dot(self.view.toward) > 0.0;
         for (ends, faces) in edges {

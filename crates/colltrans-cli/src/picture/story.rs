@@ -28,6 +28,12 @@ pub(super) struct Story {
     /// What touches there.
     pub(super) marks: Option<Marks>,
     pub(super) margin: Option<f64>,
+    /// The ends of the shortest way between the bodies, and what it is labelled with.
+    pub(super) link: Option<([DVec3; 2], String)>,
+    /// Whether both bodies have the origin.
+    pub(super) meets: bool,
+    /// Whether nothing moves.
+    pub(super) is_still: bool,
     /// What the way is labelled with.
     pub(super) way: String,
     pub(super) headline: String,
@@ -84,6 +90,9 @@ impl Story {
                 fixed: Mark::of(features.fixed, scene.cast.fixed()),
             }),
             margin: None,
+            link: None,
+            meets: false,
+            is_still: false,
             headline: match (ContactRange::Contact { first: *contact, last: *last }).clearance() {
                 Clearance::Overlapping(_) => {
                     format!("{name}: the bodies overlap now, first contact at {way}")
@@ -113,6 +122,9 @@ impl Story {
             touches: false,
             marks: None,
             margin: Some(margin),
+            link: None,
+            meets: false,
+            is_still: false,
             way: "d".into(),
             headline: "Separated: the bodies never meet along d".into(),
             details: vec![format!(
@@ -137,6 +149,12 @@ impl Story {
     pub(super) fn gap(&self, cast: &Cast) -> Option<[DVec3; 2]> {
         let from = cast.stop.support(self.normal);
         self.margin.map(|margin| [from, from + margin * self.normal])
+    }
+
+    /// What has to be seen besides the bodies.
+    pub(super) fn corners(&self, cast: &Cast) -> Vec<DVec3> {
+        let link = self.link.iter().flat_map(|(ends, _)| *ends);
+        self.plane(cast).into_iter().flatten().chain(link).collect()
     }
 
     /// A piece of the separating plane, midway in the gap.

@@ -65,18 +65,18 @@ impl PartsQuery<'_> {
         {
             (record.moving, record.fixed) = (deepest.moving.clone(), deepest.fixed.clone());
         }
-        Ok(Answer {
-            record,
-            notes: self.unshrunk(tolerance),
-            error: precisions[0] + precisions[1] + ROUNDING * self.size(),
-        })
+        Ok(Answer { record, notes: self.unshrunk(tolerance), error: self.error() })
+    }
+
+    /// How far lengths may be off by the precision of the files and by rounding.
+    pub(super) fn error(&self) -> f64 {
+        self.moving.precision() + self.fixed.precision() + ROUNDING * self.size()
     }
 
     /// The proof of the answer with a tolerance.
     pub(crate) fn prove(&self, tolerance: f64) -> Result<ProofFile, Failure> {
         let cast = self.cast(self.moving.solid(), self.fixed.solid(), [0.0; 2], Some(tolerance))?;
-        let [moving, fixed] = [self.moving, self.fixed]
-            .map(|body| body.pieces.iter().map(|piece| &piece.solid).collect::<Vec<_>>());
+        let [moving, fixed] = [self.moving, self.fixed].map(Body::solids);
         ProofFile::of_solids(&cast, [&moving, &fixed])
             .map_err(|error| Failure::new(Code::Query, error.to_string()))
     }
@@ -95,7 +95,7 @@ impl PartsQuery<'_> {
     }
 
     /// All pairs of files, because bodies overlap exactly where pieces of them do.
-    fn overlaps(
+    pub(super) fn overlaps(
         &self,
         tolerance: f64,
         mut done: impl FnMut(),
@@ -143,7 +143,7 @@ impl PartsQuery<'_> {
 
 impl Body {
     /// Numbers a feature as its file does, and returns the file.
-    fn renumber(&self, feature: &mut FeatureRecord) -> String {
+    pub(super) fn renumber(&self, feature: &mut FeatureRecord) -> String {
         let (mut first, mut base) = (feature.vertices.first().map_or(0, |v| v.0), 0);
         let mut owner = &self.pieces[0];
         // The inputs of the pieces are numbered through.

@@ -2,9 +2,11 @@
 //!
 //! A body is made of one file or of several; each is a *piece* and keeps its name, so that an
 //! answer can say which files are involved. This is the only module that knows the library's
-//! solids: [`load`](Body::load) makes them of files, [`ask`] asks them.
+//! solids: [`load`](Body::load) makes them of files, [`ask`] asks them for a clearance, [`pair`] where they
+//! are.
 
 mod ask;
+mod pair;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -18,6 +20,7 @@ use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid}
 use crate::body::{hint, of_file, refusal};
 use crate::numbers::counted;
 pub(crate) use ask::{Answer, PartsQuery};
+pub(crate) use pair::PartsPair;
 
 /// A body of one piece or several.
 #[derive(Debug)]
@@ -82,6 +85,11 @@ impl Body {
         self.union.as_ref().unwrap_or_else(|| &self.pieces[0].solid)
     }
 
+    /// The solids that it is the union of.
+    fn solids(&self) -> Vec<&Solid> {
+        self.pieces.iter().map(|piece| &piece.solid).collect()
+    }
+
     /// The coarsest of its files.
     fn precision(&self) -> f64 {
         self.pieces.iter().map(|piece| piece.precision).fold(0.0, f64::max)
@@ -99,6 +107,19 @@ impl Body {
         let placed = solid.vertices().iter().map(|&v| pose.matrix() * v + offset).collect();
         (placed, solid.triangles().to_vec())
     }
+}
+
+/// The vertices of a convex body where it is placed, relative to a point, and triangles of its faces.
+pub(crate) fn surface_of(
+    body: &ConvexPolyhedron,
+    pose: &Pose,
+    origin: DVec3,
+) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let offset = pose.translation() - origin;
+    let placed = body.vertices().iter().map(|&v| pose.matrix() * v + offset).collect();
+    let faces = (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect::<Vec<_>>());
+    let fan = |face: Vec<u32>| (2..face.len()).map(move |k| [face[0], face[k - 1], face[k]]);
+    (placed, faces.flat_map(fan).collect())
 }
 
 /// What `info` says of a mesh as a solid: a line for each heading.

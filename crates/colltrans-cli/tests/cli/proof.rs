@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::support::{CAST, answered, data, folder, json as read, refused, run, stderr, stdout};
 
 /// The checker in fractions agrees, where there is a Python to run it.
-fn checked_in_fractions(folder: &Path) {
+pub(crate) fn checked_in_fractions(folder: &Path) {
     let checker = data().join("../python/src/colltrans/check.py");
     let mut python = Command::new("python3");
     python.args(["-I", "-S"]).arg(checker).arg("proof.json").current_dir(folder);
@@ -18,7 +18,7 @@ fn checked_in_fractions(folder: &Path) {
     assert!(stdout(&output).starts_with("holds: "), "{}", stdout(&output));
 }
 
-fn saved(folder: &Path, arguments: &[&str]) -> Value {
+pub(crate) fn saved(folder: &Path, arguments: &[&str]) -> Value {
     let mut all = arguments.to_vec();
     all.extend(["--save-proof", "proof.json"]);
     answered(folder, &all);

@@ -16,7 +16,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::body::InputFacet;
+use crate::body::{InputFacet, ObstacleId};
 use crate::number::extent;
 use crate::number::noise::{self, Noise};
 use crate::setting::error::QueryError;
@@ -182,9 +182,34 @@ pub enum CertificateError {
         /// Of the fixed body.
         fixed: InputFacet,
     },
+    /// What is said of one body among many does not hold.
+    #[error("of obstacle {obstacle}: {reason}")]
+    Obstacle {
+        /// Which one.
+        obstacle: ObstacleId,
+        /// Why not.
+        reason: Box<Self>,
+    },
+    /// A body among many that nothing is proven of: its box is nearer than what is claimed, and no proof
+    /// names it.
+    #[error("nothing is proven of obstacle {obstacle}")]
+    Unproven {
+        /// Which one.
+        obstacle: ObstacleId,
+    },
+    /// A proof names a body that is not there, or is ignored, or names bodies out of order.
+    #[error("obstacle {obstacle} is not there, or ignored, or out of order")]
+    UnknownObstacle {
+        /// Which one.
+        obstacle: ObstacleId,
+    },
 }
 
 impl CertificateError {
+    pub(crate) fn of_obstacle(self, obstacle: ObstacleId) -> Self {
+        Self::Obstacle { obstacle, reason: Box::new(self) }
+    }
+
     pub(crate) const fn triangles([moving, fixed]: [u32; 2]) -> Self {
         Self::Facets { moving, fixed }
     }

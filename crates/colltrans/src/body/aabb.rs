@@ -72,6 +72,13 @@ impl Aabb {
         self.high - self.low
     }
 
+    /// Half the surface; of no box, nothing.
+    #[inline]
+    pub(crate) fn half_area(&self) -> f64 {
+        let s = self.size();
+        s.x * s.y + s.y * s.z + s.z * s.x
+    }
+
     /// The middle.
     #[inline]
     pub fn center(&self) -> DVec3 {

@@ -64,3 +64,15 @@ numbers! {
     /// triangle of the body, which has a position in [`Solid::triangles`](crate::Solid::triangles).
     InputFacet;
 }
+
+/// A body among many ([`Obstacles`](crate::Obstacles)): the number with which it came, from 0 on. It stays
+/// valid whatever else comes, moves and goes, and is never used again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
+pub struct ObstacleId(pub u64);
+
+impl fmt::Display for ObstacleId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}

@@ -9,6 +9,7 @@ pub(crate) mod inertia;
 pub(crate) mod placed;
 pub(crate) mod pose;
 pub(crate) mod solid;
+pub(crate) mod split;
 pub(crate) mod topology;
 
 pub use aabb::Aabb;
@@ -16,7 +17,7 @@ pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defe
 pub(crate) use convex::{LargeFace, greatest_on_cycle};
 pub(crate) use feature::feature;
 pub use feature::{Feature, Features};
-pub use id::{FaceId, InputFacet, InputVertex, VertexId};
+pub use id::{FaceId, InputFacet, InputVertex, ObstacleId, VertexId};
 pub(crate) use inertia::Inertia;
 pub use placed::{Body, Placed};
 pub use pose::Pose;

@@ -2,14 +2,13 @@
 //!
 //! The way: [`Cast`] holds the setting and the choices, [`derive`](mod@derive) makes the answers
 //! that take more than one cast, [`contact`] computes what is not needed for an answer but asked of
-//! it; `replay` saves a query as a file, `proof_file` a proof (feature `json`).
+//! it; `replay` saves a query as a file (feature `json`).
 
 mod contact;
 mod derive;
 #[cfg(feature = "json")]
-mod proof_file;
-#[cfg(feature = "json")]
-mod replay;
+pub(crate) mod replay;
+pub(crate) mod sideways;
 pub(crate) mod solid;
 
 use derive_where::derive_where;
@@ -30,9 +29,8 @@ use crate::solve::{WarmStart, search};
 pub use contact::WitnessPoints;
 pub(crate) use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
-pub use proof_file::{Contacts, ProofFile, Slide, SolidStatement, Statement, Stop};
-#[cfg(feature = "json")]
 pub use replay::{Case, CaseError};
+pub(crate) use sideways::verified_overlap;
 
 /// A moving body, a fixed one, and the direction in which the first is translated: what all queries
 /// are asked of.

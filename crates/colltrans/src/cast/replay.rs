@@ -61,7 +61,9 @@ pub enum CaseError {
     Mixed,
     /// Nothing is said, or more than one thing, or what is said is not of such bodies.
     #[error(
-        "it has to say one thing, and one of such bodies: contacts or a separation of convex ones, a clearance of pieces"
+        "it has to say one thing, and one of such bodies: contacts, a separation, a distance or a depth of \
+         convex ones, a clearance or a solid_distance of pieces; with a direction unless it is of a distance \
+         or a depth"
     )]
     Statement,
     /// A solid that its own facets do not make once more.
@@ -218,7 +220,7 @@ struct File {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct BodyRecord {
+pub(crate) struct BodyRecord {
     vertices: Vec<[f64; 3]>,
     /// None for a segment or a point; front and back for a flat polygon.
     faces: Vec<Vec<u32>>,
@@ -227,7 +229,7 @@ pub(super) struct BodyRecord {
 }
 
 impl BodyRecord {
-    pub(super) fn of(body: &ConvexPolyhedron) -> Self {
+    pub(crate) fn of(body: &ConvexPolyhedron) -> Self {
         Self {
             vertices: body.vertices().iter().map(DVec3::to_array).collect(),
             faces: (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect(),
@@ -236,7 +238,7 @@ impl BodyRecord {
         }
     }
 
-    pub(super) fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
+    pub(crate) fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
         let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
         ConvexPolyhedron::from_own_faces(
             &vertices,

@@ -9,6 +9,8 @@ use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
 pub(crate) use convex::distance_from;
+#[cfg(feature = "serde")]
+pub(crate) use convex::points;
 use derive_where::derive_where;
 
 /// A moving body and a fixed one, where they are: what is asked of both and no direction. Nothing moves;

@@ -12,10 +12,13 @@ use glam::DVec3;
 use crate::answer::{CertificateError, Distance, SolidSteps, Within, are_weights};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Features, Placed};
+use crate::cast::Cast;
 use crate::cast::solid::{Claim, Cover};
 use crate::pair::Pair;
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, check_length};
+#[cfg(feature = "serde")]
+use crate::solve::solid::nearest::points_of;
 use crate::solve::solid::nearest::search::{AxesOf, Search, Until, proven};
 use crate::solve::solid::nearest::{
     Apart, SolidGap, SolidNear, Spot, distance_of, meeting, shared_points, triangle,
@@ -35,6 +38,13 @@ pub struct DistanceCertificate {
     pub near: SolidNear,
     /// Why they are not nearer. That no shell is inside the other body is checked anew.
     pub cover: Cover<Apart>,
+}
+
+impl DistanceCertificate {
+    /// That the bodies are not farther apart than some points; that they are not nearer is not said.
+    pub fn of_near(near: SolidNear) -> Self {
+        Self { lower: 0.0, near, cover: Cover::default() }
+    }
 }
 
 /// A proof to check about two solids where they are.
@@ -57,6 +67,18 @@ impl<'a> From<&'a SolidNear> for SolidPairProof<'a> {
     fn from(near: &'a SolidNear) -> Self {
         Self::Near(near)
     }
+}
+
+/// The answer of [`Pair::overlap_depth`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct OverlapDepth {
+    /// Whether the bodies have a point in common, as they are and exactly.
+    pub meets: bool,
+    /// As [`Cast::least_tolerance`](crate::Cast::least_tolerance) says: 0 if the bodies do not overlap, `None` if
+    /// there is none.
+    pub least_tolerance: Option<f64>,
 }
 
 impl Cover<Apart> {
@@ -126,8 +148,7 @@ impl<'a> Pair<'a, Solid> {
     /// As [`Self::distance`].
     pub fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
         let (distance, proof) = self.ask(true)?;
-        let (lower, near, cover) = (0.0, distance.near, Cover::default());
-        Ok((distance, proof.unwrap_or(DistanceCertificate { lower, near, cover })))
+        Ok((distance, proof.unwrap_or(DistanceCertificate::of_near(distance.near))))
     }
 
     /// The distance, and the proof where that is asked for and the bodies are apart.
@@ -219,6 +240,45 @@ impl<'a> Pair<'a, Solid> {
     /// As [`Self::distance`].
     pub fn closest_features(&self) -> Result<Option<Features>, QueryError> {
         Ok(self.distance()?.features)
+    }
+
+    /// Do the bodies overlap, and how deep, by the measure that solids have: the least tolerance with which they
+    /// would not. That is no translation; convex bodies have one, [`Pair::depth`].
+    ///
+    /// # Errors
+    /// None at present.
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{Pair, Pose, ConvexPolyhedron};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let there = Pose::from_translation(DVec3::new(0.75, 0.5, 0.5))?;
+    /// let found = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?.overlap_depth()?;
+    /// assert!(found.meets && (found.least_tolerance.unwrap() - 0.25).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn overlap_depth(&self) -> Result<OverlapDepth, QueryError> {
+        let bodies = [self.bodies.moving_placed(), self.bodies.fixed_placed()];
+        // Neither question knows of a direction.
+        let cast = Cast::new(bodies[0], bodies[1], DVec3::Z)?;
+        let meets = cast.intersects()?.meets;
+        let least_tolerance = if meets { cast.least_tolerance() } else { Some(0.0) };
+        Ok(OverlapDepth { meets, least_tolerance })
+    }
+
+    /// Points of the moving and of the fixed body, in the world, rounded, that are as near to each other as is
+    /// said.
+    #[cfg(feature = "serde")]
+    pub(crate) fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
+        let scene = self.scene()?;
+        let origin = self.bodies.translations[0];
+        let points = match *near {
+            SolidNear::Meeting(place) => shared_points(&scene, place),
+            SolidNear::Points { triangles, weights, .. } => {
+                points_of(&scene, triangles, weights.map(DVec3::from_array))
+            }
+        };
+        Ok(points.map(|point| point + origin))
     }
 
     /// Checks a proof against the two bodies, and returns how far its bounds are apart, or the bound, in world

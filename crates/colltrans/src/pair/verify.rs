@@ -11,8 +11,7 @@ use crate::solve::nearest::surrounds;
 pub(super) fn gap(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
     let &PlaneGap { normal, gap } = plane;
     check_unit(normal)?;
-    let [_, square] = extent::dot(normal, normal);
-    let proven = (bodies.distance_along(normal) / square.sqrt().next_up()).next_down();
+    let proven = bodies.proven_gap(normal);
     if gap >= 0.0 && gap <= proven {
         Ok(proven)
     } else {

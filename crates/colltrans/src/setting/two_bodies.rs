@@ -175,4 +175,10 @@ impl TwoBodies<'_> {
         let moving = (self.moving.vertices(), &self.moving_matrix);
         extent::distance(normal, fixed, moving, self.exact_offset())
     }
+
+    /// The gap that a plane proves, in world units, rounded down: what a check accepts.
+    pub(crate) fn proven_gap(&self, normal: DVec3) -> f64 {
+        let [_, square] = extent::dot(normal, normal);
+        (self.distance_along(normal) / square.sqrt().next_up()).next_down()
+    }
 }

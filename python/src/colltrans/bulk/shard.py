@@ -23,14 +23,18 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from colltrans.bulk.bodies import Bodies, file_digest
-from colltrans.columns import Columns
+from colltrans.columns import Table
 from colltrans.errors import ColltransError, InputError
 from colltrans.many import cast_many, clearance_many, contact_range_many
+from colltrans.pairs import depth_many, distance_many, within_many
 
+#: Of bodies where they are, without a direction.
+PLACED: dict[str, Any] = {"distance": distance_many, "depth": depth_many, "within": within_many}
 QUESTIONS: dict[str, Any] = {
     "contact": cast_many,
     "range": contact_range_many,
     "clearance": clearance_many,
+    **PLACED,
 }
 #: Rows that are in memory at once.
 BATCH = 65_536
@@ -43,7 +47,7 @@ REFUSED = "colltrans: refused"
 class Options:
     """What is asked of every row."""
 
-    question: Literal["contact", "range", "clearance"] = "range"
+    question: Literal["contact", "range", "clearance", "distance", "depth", "within"] = "range"
     solver: Literal["auto", "cta", "portal"] = "auto"
     threads: int | None = None
 
@@ -74,19 +78,20 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     ----------
     queries : pyarrow.Table or pyarrow.RecordBatch
         Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and, if there
-        are any, ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance`` and ``id``.
+        are any, ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance`` and ``id``. A
+        distance, a depth and *within* have no ``direction``, the last has ``length``.
     bodies : Bodies
     options : Options
 
     Returns
     -------
     pyarrow.Table
-        The column ``id``, if there is one, and those of :meth:`Columns.to_arrow`. A row that cannot
+        The column ``id``, if there is one, and those of :meth:`Table.to_arrow`. A row that cannot
         be answered has the outcome *error* and a message.
     """
     count = queries.num_rows
-    arguments: dict[str, Any] = {"solver": options.solver, "threads": options.threads}
-    sides = []
+    arguments: dict[str, Any] = {"threads": options.threads}
+    sides: list[Any] = []
     for side in ("moving", "fixed"):
         keys = _column(queries, side).dictionary_encode()
         if isinstance(keys, pa.ChunkedArray):
@@ -96,13 +101,14 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
         arguments[f"{side}_index"] = index.astype(np.int64)
         if f"{side}_pose" in queries.schema.names:
             arguments[f"{side}_pose"] = _vectors(queries, f"{side}_pose", (7, 3))
-    if "graze_tolerance" in queries.schema.names:
-        tolerances = _column(queries, "graze_tolerance")
-        if not _is_number(tolerances.type):
-            raise InputError(f"the column 'graze_tolerance' has {tolerances.type}, not numbers")
-        arguments["graze_tolerance"] = np.asarray(tolerances.fill_null(0), dtype=float)
-    directions = _vectors(queries, "direction", (3,))
-    columns: Columns[Any] = QUESTIONS[options.question](*sides, directions, **arguments)
+    if options.question == "within":
+        sides.append(_numbers_of(queries, "length", np.nan))
+    elif options.question not in PLACED:
+        arguments["solver"] = options.solver
+        sides.append(_vectors(queries, "direction", (3,)))
+        if "graze_tolerance" in queries.schema.names:
+            arguments["graze_tolerance"] = _numbers_of(queries, "graze_tolerance", 0.0)
+    columns: Table[Any] = QUESTIONS[options.question](*sides, **arguments)
     answers = columns.to_arrow()
     if REFUSED in queries.schema.names:
         told = pc.coalesce(_column(queries, REFUSED), answers["message"])
@@ -117,6 +123,13 @@ def _column(queries: Any, name: str) -> Any:
     if name not in queries.schema.names:
         raise InputError(f"the queries have no column {name!r}")
     return queries.column(name)
+
+
+def _numbers_of(queries: Any, name: str, missing: float) -> np.ndarray[Any, Any]:
+    column = _column(queries, name)
+    if not _is_number(column.type):
+        raise InputError(f"the column {name!r} has {column.type}, not numbers")
+    return np.asarray(column.cast(pa.float64()).fill_null(missing), dtype=float)
 
 
 def _is_number(kind: Any) -> bool:
@@ -265,7 +278,8 @@ def _batches(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
 SIDES = ("moving", "fixed")
 #: Lists of numbers, and how many there may be.
 LISTS = {"direction": (3,), "moving_pose": (3, 7), "fixed_pose": (3, 7)}
-FIELDS = {"id", *SIDES, *LISTS, "graze_tolerance"}
+NUMBERS = ("graze_tolerance", "length")
+FIELDS = {"id", *SIDES, *LISTS, *NUMBERS}
 
 
 def _row(line: bytes, number: int) -> dict[str, Any]:
@@ -295,8 +309,9 @@ def _query(row: Any) -> dict[str, Any]:
             query[name] = _numbers(row[name], name)
             if len(query[name]) not in counts:
                 raise ValueError(f"{name}: {len(query[name])} numbers")
-    if row.get("graze_tolerance") is not None:
-        (query["graze_tolerance"],) = _numbers([row["graze_tolerance"]], "graze_tolerance")
+    for name in NUMBERS:
+        if row.get(name) is not None:
+            (query[name],) = _numbers([row[name]], name)
     return query
 
 
@@ -328,5 +343,5 @@ def _table(rows: list[dict[str, Any]]) -> Any:
     """The same columns for any rows."""
     kinds = dict.fromkeys(("id", *SIDES, REFUSED), pa.string())
     kinds |= dict.fromkeys(LISTS, pa.list_(pa.float64()))
-    kinds["graze_tolerance"] = pa.float64()
+    kinds |= dict.fromkeys(NUMBERS, pa.float64())
     return pa.table({n: pa.array([row.get(n) for row in rows], kind) for n, kind in kinds.items()})

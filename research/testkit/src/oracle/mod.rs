@@ -6,8 +6,9 @@
 //! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], casts that keep a gap by
-//! [`keep`].
+//! [`keep`], answers about one body among many by [`among`].
 
+pub mod among;
 pub mod check;
 pub mod distance;
 pub mod exact;

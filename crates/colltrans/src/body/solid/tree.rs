@@ -6,8 +6,7 @@
 //! all their vertices. Boxes are exact. The sine is an upper bound, and exactly 0 for facets whose
 //! computed normals are exact and equal; slabs are rounded, and whoever reads them allows for that.
 //!
-//! Built from the top: up to 16 bins along each axis and the surface-area heuristic; halves by count where
-//! that finds nothing. The children of node `i` are at `i + skip` and the place behind, for a search
+//! Built from the top ([`split`](mod@crate::body::split)). The children of node `i` are at `i + skip` and the place behind, for a search
 //! reads both; then comes all that is below the first, and all that is below the second. As `skip` is
 //! relative, subtrees are built apart, on several threads, and joined end to end: the tree is the same
 //! on any number of threads.
@@ -18,12 +17,10 @@ use glam::{DVec3, Vec3Swizzles};
 
 use super::cuts::{CUTS, Reach};
 use crate::body::Aabb;
+use crate::body::split::{Boxed, Rule, split};
 
 /// Facets of a leaf, at most.
 pub(crate) const LEAF: usize = 4;
-const BINS: usize = 16;
-/// More facets than this are weighed by as many of them.
-const SAMPLE: usize = 1 << 12;
 /// Subtrees with fewer facets are not worth a thread.
 const FORK: usize = 1 << 14;
 /// A sine that stands for "any angle".
@@ -84,9 +81,17 @@ impl Item {
         let normal = if area > 0.0 { normal / area } else { DVec3::ZERO };
         Self { facet, bounds: Aabb::of_points(corners), normal, area, doubt }
     }
+}
 
-    fn center(&self) -> DVec3 {
-        self.bounds.low + self.bounds.high
+impl Boxed for Item {
+    #[inline]
+    fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    #[inline]
+    fn number(&self) -> u32 {
+        self.facet
     }
 }
 
@@ -194,7 +199,7 @@ impl Builder<'_> {
         threads: usize,
         nodes: &mut Vec<Node>,
     ) -> Reach {
-        let middle = split(items);
+        let middle = split(items, Rule { least: 1, longest: false });
         let (left, right) = items.split_at_mut(middle);
         let second = first + middle as u32;
         let child = nodes.len();
@@ -299,115 +304,6 @@ fn deviation(axis: DVec3, item: &Item) -> [f64; 2] {
 fn round_up(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) < x { near.next_up() } else { near }
-}
-
-/// Puts the items of the first child in front; how many they are.
-fn split(items: &mut [Item]) -> usize {
-    let centers = Aabb::of_points(items.iter().map(Item::center));
-    if let Some((axis, bin)) = cheapest(items, &centers) {
-        let key = Binning::new(&centers, axis, items.len());
-        let middle = partition(items, |item| key.bin(item) <= bin);
-        if middle > 0 && middle < items.len() {
-            return middle;
-        }
-    }
-    let axis = centers.size().max_position();
-    let middle = items.len() / 2;
-    items.select_nth_unstable_by(middle, |a, b| {
-        let (x, y) = (a.center()[axis], b.center()[axis]);
-        x.total_cmp(&y).then(a.facet.cmp(&b.facet))
-    });
-    middle
-}
-
-/// Moves the items that `belongs` to the front; how many they are.
-fn partition(items: &mut [Item], belongs: impl Fn(&Item) -> bool) -> usize {
-    let mut middle = 0;
-    for k in 0..items.len() {
-        if belongs(&items[k]) {
-            items.swap(middle, k);
-            middle += 1;
-        }
-    }
-    middle
-}
-
-/// Intervals of the centres along an axis.
-struct Binning {
-    axis: usize,
-    low: f64,
-    scale: f64,
-    last: usize,
-}
-
-impl Binning {
-    /// For so many items: few need few.
-    fn new(centers: &Aabb, axis: usize, items: usize) -> Self {
-        let bins = items.clamp(4, BINS);
-        let scale = bins as f64 / centers.size()[axis];
-        Self { axis, low: centers.low[axis], scale, last: bins - 1 }
-    }
-
-    fn bin(&self, item: &Item) -> usize {
-        // Out of range, or not a number where all centres are one, ends at either end.
-        (((item.center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Bin {
-    bounds: Aabb,
-    count: usize,
-}
-
-impl Bin {
-    const EMPTY: Self = Self { bounds: Aabb::EMPTY, count: 0 };
-
-    fn join(self, other: Self) -> Self {
-        Self { bounds: self.bounds.join(&other.bounds), count: self.count + other.count }
-    }
-
-    /// Half the surface of the box times the count.
-    fn cost(&self) -> f64 {
-        if self.count == 0 {
-            return 0.0;
-        }
-        let s = self.bounds.size();
-        (s.x * s.y + s.y * s.z + s.z * s.x) * self.count as f64
-    }
-}
-
-/// The axis and the last bin of the first child for which the surface-area heuristic is least; of many
-/// facets a share is looked at.
-fn cheapest(items: &[Item], centers: &Aabb) -> Option<(usize, usize)> {
-    let mut best: Option<(f64, usize, usize)> = None;
-    for axis in 0..3 {
-        if centers.high[axis] <= centers.low[axis] {
-            continue;
-        }
-        let binning = Binning::new(centers, axis, items.len());
-        let mut bins = [Bin::EMPTY; BINS];
-        for item in items.iter().step_by(items.len().div_ceil(SAMPLE)) {
-            let bin = &mut bins[binning.bin(item)];
-            *bin = bin.join(Bin { bounds: item.bounds, count: 1 });
-        }
-        let mut behind = [0.0; BINS];
-        let mut all = Bin::EMPTY;
-        for k in (1..=binning.last).rev() {
-            all = all.join(bins[k]);
-            behind[k] = all.cost();
-        }
-        let mut front = Bin::EMPTY;
-        for k in 0..binning.last {
-            front = front.join(bins[k]);
-            let cost = front.cost() + behind[k + 1];
-            let both = front.count > 0 && behind[k + 1] > 0.0;
-            if both && best.is_none_or(|b| cost < b.0) {
-                best = Some((cost, axis, k));
-            }
-        }
-    }
-    best.map(|(_, axis, bin)| (axis, bin))
 }
 
 #[cfg(test)]

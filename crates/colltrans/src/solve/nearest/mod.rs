@@ -38,6 +38,9 @@ use crate::number::real::{Real, Twice, Vector};
 use crate::number::volume::encloses;
 use crate::setting::{TwoBodies, VertexPair};
 
+/// Bodies that are so many noises apart, as computed, are near contact.
+const NEAR: f64 = 4.0;
+
 /// `M` in the setting frame.
 pub(crate) struct Difference<'a> {
     pub(crate) bodies: &'a TwoBodies<'a>,
@@ -212,9 +215,18 @@ fn begin(difference: &Difference, start: &NearestPairs) -> Simplex<f64> {
         .unwrap_or_else(|| Simplex::new(difference.lowest(difference.guess(), None)))
 }
 
-/// Tries the plane across the simplex by its edges, not by its corners: where both bodies' own are short,
-/// rounding turns it less.
+/// Tries the plane across the simplex.
 fn polish(difference: &Difference, found: &mut Found) {
+    let Some(normal) = across_simplex(difference, found) else { return };
+    let normal = if normal.dot(found.normal) < 0.0 { -normal } else { normal };
+    let lowest = difference.lowest(normal, found.lowest);
+    found.note_plane(normal, &lowest);
+    found.settle(difference);
+}
+
+/// The normal across a simplex of two or three points by its edges, not by its corners: where both bodies' own
+/// are short, rounding turns it less.
+fn across_simplex(difference: &Difference, found: &Found) -> Option<DVec3> {
     let bodies = difference.bodies;
     let NearestPairs { pairs: [a, b, c], count } = found.pairs();
     let across = match count {
@@ -225,13 +237,9 @@ fn polish(difference: &Difference, found: &mut Found) {
             nearest - edge * (nearest.dot(edge) / edge.length_squared())
         }
         3 => triangle_normal([DVec3::ZERO, bodies.way(a, b), bodies.way(a, c)]),
-        _ => return,
+        _ => return None,
     };
-    let Some(normal) = unit(across) else { return };
-    let normal = if normal.dot(found.normal) < 0.0 { -normal } else { normal };
-    let lowest = difference.lowest(normal, found.lowest);
-    found.note_plane(normal, &lowest);
-    found.settle(difference);
+    unit(across)
 }
 
 /// The rest of the way, where ties are told apart by digits that rounding has lost.
@@ -280,6 +288,30 @@ impl Found {
             (points.0[k], points.1[k]) = (*pair, weight);
         }
         points
+    }
+
+    /// The same, or one that tells bodies apart that are less so than rounding.
+    #[inline]
+    pub(crate) fn best_plane(&self, difference: &Difference) -> Option<Plane> {
+        let plane = self.plane(difference);
+        let is_open = plane.is_none_or(|plane| plane.gap.gap <= 0.0);
+        let is_near = self.upper <= NEAR * difference.noise.point();
+        if is_open && is_near { self.sharp_plane(difference).or(plane) } else { plane }
+    }
+
+    /// A plane across the simplex, or from its only point, with the gap that a check finds.
+    #[cold]
+    #[inline(never)]
+    fn sharp_plane(&self, difference: &Difference) -> Option<Plane> {
+        let first = self.simplex().next().and_then(|pair| unit(difference.point(pair)));
+        let across = across_simplex(difference, self).or(first)?;
+        let planes = [across, -across, self.normal]
+            .into_iter()
+            .filter_map(unit)
+            .map(|normal| PlaneGap { normal, gap: difference.bodies.proven_gap(normal) });
+        let gap = planes.max_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|plane| plane.gap > 0.0)?;
+        let lowest = difference.lowest(gap.normal, self.lowest).pair;
+        Some(Plane { gap, lowest, beyond: 0.0 })
     }
 
     /// The points, with what they prove.

@@ -3,6 +3,7 @@
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or casts that keep a gap.
+//! Or scenes, one body among many.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -15,6 +16,7 @@
 //! campaign --distances N [--seed S] [--only FAMILY]
 //! campaign --keeping N [--seed S] [--only FAMILY]
 //! campaign --solid-keeping N [--seed S] [--only FAMILY]
+//! campaign --scenes N [--seed S] [--only FAMILY]
 //! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 //! ```
 //! Exit code 1 if anything disagrees.
@@ -23,6 +25,7 @@ mod bodies;
 mod casts;
 mod distances;
 mod keeping;
+mod scenes;
 mod sequences;
 mod solids;
 
@@ -30,6 +33,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::Instant;
 
+use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -46,6 +50,7 @@ struct Arguments {
     bodies: Option<u64>,
     distances: Option<u64>,
     keeping: Option<u64>,
+    scenes: Option<u64>,
     lp: u64,
     seed: u64,
     only: Option<String>,
@@ -83,6 +88,8 @@ fn main() -> ExitCode {
         run(&arguments, &families, count, distances::examine)
     } else if let Some(count) = arguments.keeping {
         run(&arguments, &families, count, keeping::examine)
+    } else if let Some(count) = arguments.scenes {
+        run(&arguments, &among::FAMILIES, count, scenes::examine)
     } else if let Some(queries) = arguments.sequences {
         run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
     } else {
@@ -107,6 +114,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         bodies: None,
         distances: None,
         keeping: None,
+        scenes: None,
         lp: 1_000,
         seed: 1,
         only: None,
@@ -122,6 +130,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--keeping" => arguments.keeping = Some(number(&value)?),
             "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
+            "--scenes" => arguments.scenes = Some(number(&value)?),
             "--bodies" => arguments.bodies = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,

@@ -83,8 +83,7 @@ impl Spot {
 
     /// The two points in the setting frame.
     pub(crate) fn points(&self, scene: &Scene) -> [DVec3; 2] {
-        let corners = of_both(scene, self.triangles);
-        [0, 1].map(|k| triangle::mean(&corners[k], self.nearest.weights[k]))
+        points_of(scene, self.triangles, self.nearest.weights)
     }
 
     /// What of each body is there.
@@ -110,6 +109,12 @@ impl From<Found> for Spot {
 
 fn of_both(scene: &Scene, [s, t]: [u32; 2]) -> [triangle::Corners; 2] {
     [corners(&scene.moving, s as usize), corners(&scene.fixed, t as usize)]
+}
+
+/// The points of two triangles that weights say, in the setting frame.
+pub(crate) fn points_of(scene: &Scene, triangles: [u32; 2], weights: [DVec3; 2]) -> [DVec3; 2] {
+    let corners = of_both(scene, triangles);
+    [0, 1].map(|k| triangle::mean(&corners[k], weights[k]))
 }
 
 /// Where the bodies have a point in common, given how far their surfaces are apart at least.

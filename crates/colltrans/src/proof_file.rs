@@ -1,7 +1,7 @@
 //! A proof with all that it is about, as one file.
 //!
-//! Bodies are written as they are, exact in bits, with their poses and the direction; then what is
-//! claimed of them, with its certificates. A certificate between solids tells facets by their place
+//! Bodies are written as they are, exact in bits, with their poses and the direction of a cast; then what
+//! is claimed of them, with its certificates. A certificate between solids tells facets by their place
 //! in a tree, so it is made for the bodies as they are read back from the file.
 
 use std::fmt;
@@ -9,17 +9,20 @@ use std::fmt;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::replay::BodyRecord;
-use super::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
-use super::{CaseError, Cast};
 use crate::answer::{
-    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, Grazing, Outcome,
-    OverlapAhead, Separation, WhyFree,
+    Bounded, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth, Distance,
+    Grazing, NearPoints, Outcome, OverlapAhead, PlaneGap, Separation, WhyFree, Within,
 };
 use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
-use crate::body::{ConvexPolyhedron, InputFacet, Pose};
-use crate::number::{extent, noise};
+use crate::body::{ConvexPolyhedron, InputFacet, Placed, Pose};
+use crate::cast::replay::BodyRecord;
+use crate::cast::sideways::{proven_overlap, verified_overlap};
+use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use crate::cast::{CaseError, Cast};
+
+use crate::pair::Pair;
+use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
 use crate::setting::{check_direction, check_keep};
 
@@ -47,7 +50,8 @@ const FORMAT: &str = "colltrans proof 1";
 pub struct ProofFile {
     bodies: Bodies,
     poses: [Pose; 2],
-    direction: DVec3,
+    /// Of a cast.
+    direction: Option<DVec3>,
     /// The gap that the bodies are to keep.
     keep: f64,
     statement: Statement,
@@ -56,8 +60,11 @@ pub struct ProofFile {
 #[derive(Debug, Clone)]
 enum Bodies {
     Convex(Box<[ConvexPolyhedron; 2]>),
-    Solids { made: Box<[Solid; 2]>, of: [Vec<PieceRecord>; 2] },
+    Solids { made: Box<[Solid; 2]>, of: Pieces },
 }
+
+/// What the moving and the fixed body are made of.
+type Pieces = [Vec<PieceRecord>; 2];
 
 /// What a [`ProofFile`] says of its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -69,6 +76,40 @@ pub enum Statement {
     Separation(Separation),
     /// How far a solid can move from where it is.
     Clearance(SolidStatement),
+    /// How far convex bodies are apart where they are.
+    Distance(DistanceStatement),
+    /// How deep convex bodies overlap where they are.
+    Depth(Depth),
+    /// How far solids are apart where they are.
+    SolidDistance(DistanceCertificate),
+}
+
+/// How far two convex bodies are apart: at least, or at most, or both.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DistanceStatement {
+    /// Why they are not nearer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<PlaneGap>,
+    /// Why they are not farther.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<NearPoints>,
+}
+
+impl From<&Distance> for DistanceStatement {
+    fn from(of: &Distance) -> Self {
+        Self { gap: of.gap, near: Some(of.near) }
+    }
+}
+
+impl From<&Within> for DistanceStatement {
+    fn from(of: &Within) -> Self {
+        match of {
+            Within::Closer(near) => Self { near: Some(*near), gap: None },
+            Within::Farther(gap) => Self { gap: Some(*gap), near: None },
+            Within::Undecided(distance) => distance.into(),
+        }
+    }
 }
 
 /// The ends of the translations at which two convex bodies meet; one of them may be missing.
@@ -139,24 +180,9 @@ impl Slide {
 
     fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
         let Self { normal, overlap: claimed } = *self;
-        let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-        if !is_unit || normal.dot(cast.setting.unit).abs() > noise::UNIT_VECTOR {
-            return Err(CertificateError::Normal { normal });
-        }
-        let proven = proven_overlap(normal, cast);
+        let proven = verified_overlap(normal, cast)?;
         if claimed >= proven { Ok(()) } else { Err(CertificateError::Bound { proven, claimed }) }
     }
-}
-
-/// At least how far two bodies overlap along a normal. One that is not quite orthogonal to the direction
-/// lets them overlap more, as far away as the bodies reach.
-fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
-    let setting = &cast.setting;
-    let fixed = (setting.fixed.vertices(), &setting.fixed_matrix);
-    let moving = (setting.moving.vertices(), &setting.moving_matrix);
-    let gap = extent::distance(normal, fixed, moving, setting.exact_offset());
-    let keep = cast.options().keep;
-    ((normal.dot(setting.unit).abs() * (setting.scale() + keep) - gap).next_up() + keep).next_up()
 }
 
 impl Contacts {
@@ -225,10 +251,26 @@ impl ProofFile {
         Self {
             bodies: Bodies::Convex(Box::new([cast.moving().clone(), cast.fixed().clone()])),
             poses: [cast.moving_pose(), cast.fixed_pose()],
-            direction: cast.direction(),
+            direction: Some(cast.direction()),
             keep: cast.options().keep,
             statement,
         }
+    }
+
+    /// Of an answer of [`Pair::distance`] or [`Pair::within`]; `pair` is the one that was asked.
+    pub fn of_distance(pair: &Pair<'_>, answer: impl Into<DistanceStatement>) -> Self {
+        Self::of_pair(pair, Statement::Distance(answer.into()))
+    }
+
+    /// Of an answer of [`Pair::depth`]; `pair` is the one that was asked.
+    pub fn of_depth(pair: &Pair<'_>, depth: &Depth) -> Self {
+        Self::of_pair(pair, Statement::Depth(depth.clone()))
+    }
+
+    fn of_pair(pair: &Pair<'_>, statement: Statement) -> Self {
+        let bodies = Bodies::Convex(Box::new([pair.moving().clone(), pair.fixed().clone()]));
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        Self { bodies, poses, direction: None, keep: 0.0, statement }
     }
 
     /// Of [`Cast::clearance`] between solids, asked once more with its proof. `pieces` are those that
@@ -238,24 +280,39 @@ impl ProofFile {
     /// # Errors
     /// A body that its own facets do not make once more.
     pub fn of_solids(cast: &Cast<'_, Solid>, pieces: [&[&Solid]; 2]) -> Result<Self, CaseError> {
-        let of: [Vec<PieceRecord>; 2] =
-            pieces.map(|pieces| pieces.iter().map(|piece| PieceRecord::of(piece)).collect());
-        let made = Box::new([union(&of[0], "moving")?, union(&of[1], "fixed")?]);
-        for (which, made, asked) in
-            [("moving", &made[0], cast.moving()), ("fixed", &made[1], cast.fixed())]
-        {
-            if !is_same(made, asked) {
-                return Err(CaseError::Changed { which });
-            }
-        }
+        let (made, of) = again(pieces, [cast.moving(), cast.fixed()])?;
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
         let keep = cast.options().keep;
         let options = options(cast.options().start_overlap, cast.tolerance(), keep);
         let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
-        let statement = SolidStatement::of(&again.with_options(options)?)?;
+        let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
         let bodies = Bodies::Solids { made, of };
-        let statement = Statement::Clearance(statement);
-        Ok(Self { bodies, poses, direction, keep, statement })
+        Ok(Self { bodies, poses, direction: Some(direction), keep, statement })
+    }
+
+    /// Of the distance of solids, asked once more with its proof: of [`Pair::distance`], or of
+    /// [`Pair::within`] a length, which may prove one bound alone. `pieces` as in [`Self::of_solids`].
+    ///
+    /// # Errors
+    /// A body that its own facets do not make once more; a length that is negative or not a number.
+    pub fn of_solid_distance(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+        within: Option<f64>,
+    ) -> Result<Self, CaseError> {
+        let (made, of) = again(pieces, [pair.moving(), pair.fixed()])?;
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        let again = Pair::new(made[0].at(poses[0]), made[1].at(poses[1]))?;
+        let proof = match within {
+            None => again.certified_distance()?.1,
+            Some(length) => match again.certified_within(length)? {
+                (_, Some(proof)) => proof,
+                (Within::Closer(near), None) => DistanceCertificate::of_near(near),
+                (_, None) => again.certified_distance()?.1,
+            },
+        };
+        let (bodies, statement) = (Bodies::Solids { made, of }, Statement::SolidDistance(proof));
+        Ok(Self { bodies, poses, direction: None, keep: 0.0, statement })
     }
 
     /// What it says; true if [`Self::check`] does not object.
@@ -278,26 +335,27 @@ impl ProofFile {
         }
     }
 
-    /// Checks it as [`Cast::verify`] does, without a search.
+    /// Checks it as [`Cast::verify`] and [`Pair::verify`] do, without a search.
     ///
     /// # Errors
     /// The first thing that is not proven.
     pub fn check(&self) -> Result<(), CertificateError> {
         let [moving, fixed] = self.poses;
-        match (&self.bodies, &self.statement) {
-            (Bodies::Convex(bodies), statement) => {
+        match (&self.bodies, self.direction) {
+            (Bodies::Convex(bodies), direction) => {
                 let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction)?.keeping(self.keep)?;
-                statement.check(&cast)
+                match direction {
+                    Some(d) => {
+                        let cast = Cast::new(placed[0], placed[1], d)?.keeping(self.keep)?;
+                        self.statement.check(&cast)
+                    }
+                    None => self.statement.check_pair(&Pair::new(placed[0], placed[1])?),
+                }
             }
-            (Bodies::Solids { made, .. }, Statement::Clearance(statement)) => {
+            (Bodies::Solids { made, .. }, direction) => {
                 let placed = [made[0].at(moving), made[1].at(fixed)];
-                let cast = Cast::new(placed[0], placed[1], self.direction)?;
-                let tolerance = statement.certificate.tolerance;
-                let options = options(statement.start_overlap, tolerance, self.keep);
-                statement.check(&cast.with_options(options)?)
+                self.statement.check_solids(placed, direction, self.keep)
             }
-            (Bodies::Solids { .. }, _) => Err(CertificateError::Start),
         }
     }
 
@@ -319,7 +377,7 @@ impl ProofFile {
             moving_pose,
             fixed,
             fixed_pose,
-            direction: self.direction.to_array(),
+            direction: self.direction.map(|direction| direction.to_array()),
             keep: self.keep,
             statement: self.statement.clone(),
         };
@@ -356,9 +414,13 @@ impl ProofFile {
             _ => return Err(CaseError::Mixed),
         };
         let statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
+        let is_of_pair = statement.is_of_pair();
+        if is_of_pair == file.direction.is_some() || is_of_pair && file.keep != 0.0 {
+            return Err(CaseError::Statement);
+        }
         let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
-        let direction = DVec3::from_array(file.direction);
-        check_direction(direction)?;
+        let direction = file.direction.map(DVec3::from_array);
+        direction.map_or(Ok(()), check_direction)?;
         check_keep(file.keep)?;
         Ok(Self { bodies, poses, direction, keep: file.keep, statement })
     }
@@ -378,17 +440,49 @@ impl Statement {
     /// Of convex bodies.
     fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
         match self {
-            Self::Contacts(Contacts { first: None, last: None, .. }) | Self::Clearance(_) => {
-                Err(CertificateError::Start)
-            }
-            Self::Contacts(Contacts { slide, first, last }) => {
+            Self::Contacts(Contacts { slide, first, last }) if first.or(*last).is_some() => {
                 slide.map_or(Ok(()), |slide| slide.check(cast))?;
                 first.map_or(Ok(0.0), |first| cast.verify(&first))?;
                 last.map_or(Ok(0.0), |last| cast.reversed().verify(&last))?;
                 Ok(())
             }
             Self::Separation(separation) => cast.verify(separation).map(|_| ()),
+            _ => Err(CertificateError::Start),
         }
+    }
+
+    /// Of convex bodies and no direction.
+    fn check_pair(&self, pair: &Pair<'_>) -> Result<(), CertificateError> {
+        match self {
+            Self::Distance(DistanceStatement { gap, near }) if gap.is_some() || near.is_some() => {
+                gap.map_or(Ok(0.0), |gap| pair.verify(&gap))?;
+                near.map_or(Ok(0.0), |near| pair.verify(&near))?;
+                Ok(())
+            }
+            Self::Depth(depth) => pair.verify(depth).map(|_| ()),
+            _ => Err(CertificateError::Start),
+        }
+    }
+
+    fn check_solids(
+        &self,
+        [moving, fixed]: [Placed<'_, Solid>; 2],
+        direction: Option<DVec3>,
+        keep: f64,
+    ) -> Result<(), CertificateError> {
+        match (self, direction) {
+            (Self::Clearance(of), Some(direction)) => {
+                let options = options(of.start_overlap, of.certificate.tolerance, keep);
+                of.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)
+            }
+            (Self::SolidDistance(of), None) => Pair::new(moving, fixed)?.verify(of).map(|_| ()),
+            _ => Err(CertificateError::Start),
+        }
+    }
+
+    /// Whether it is of bodies where they are, without a direction.
+    const fn is_of_pair(&self) -> bool {
+        matches!(self, Self::Distance(_) | Self::Depth(_) | Self::SolidDistance(_))
     }
 }
 
@@ -454,7 +548,8 @@ struct File<S> {
     moving_pose: PoseRecord,
     fixed: BodyFile,
     fixed_pose: PoseRecord,
-    direction: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    direction: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "crate::written::is_zero")]
     keep: f64,
     statement: S,
@@ -467,23 +562,30 @@ struct StatementRecord {
     contacts: Option<Contacts>,
     separation: Option<Separation>,
     clearance: Option<SolidStatement>,
+    distance: Option<DistanceStatement>,
+    depth: Option<Depth>,
+    solid_distance: Option<DistanceCertificate>,
 }
 
 impl StatementRecord {
     /// The one thing that is said of such bodies.
     fn of(self, solids: bool) -> Result<Statement, CaseError> {
-        match self {
-            Self { contacts: Some(of), separation: None, clearance: None }
-                if !solids && (of.first.is_some() || of.last.is_some()) =>
-            {
-                Ok(Statement::Contacts(of))
-            }
-            Self { contacts: None, separation: Some(of), clearance: None } if !solids => {
-                Ok(Statement::Separation(of))
-            }
-            Self { contacts: None, separation: None, clearance: Some(of) } if solids => {
-                Ok(Statement::Clearance(of))
-            }
+        let Self { contacts, separation, clearance, distance, depth, solid_distance } = self;
+        let contacts =
+            contacts.map(|of| (of.first.is_some() || of.last.is_some(), Statement::Contacts(of)));
+        let distance =
+            distance.map(|of| (of.gap.is_some() || of.near.is_some(), Statement::Distance(of)));
+        let said = [
+            contacts.map(|(something, of)| (something && !solids, of)),
+            distance.map(|(something, of)| (something && !solids, of)),
+            separation.map(|of| (!solids, Statement::Separation(of))),
+            depth.map(|of| (!solids, Statement::Depth(of))),
+            clearance.map(|of| (solids, Statement::Clearance(of))),
+            solid_distance.map(|of| (solids, Statement::SolidDistance(of))),
+        ];
+        let mut said = said.into_iter().flatten();
+        match (said.next(), said.next()) {
+            (Some((true, statement)), None) => Ok(statement),
             _ => Err(CaseError::Statement),
         }
     }
@@ -535,6 +637,22 @@ fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError
     Solid::from_pieces(&solids).map_err(refused)
 }
 
+/// Both bodies made once more of their pieces, as they are read back from a file.
+fn again(
+    pieces: [&[&Solid]; 2],
+    asked: [&Solid; 2],
+) -> Result<(Box<[Solid; 2]>, Pieces), CaseError> {
+    let of: Pieces =
+        pieces.map(|pieces| pieces.iter().map(|piece| PieceRecord::of(piece)).collect());
+    let made = Box::new([union(&of[0], "moving")?, union(&of[1], "fixed")?]);
+    for (k, which) in ["moving", "fixed"].into_iter().enumerate() {
+        if !is_same(&made[k], asked[k]) {
+            return Err(CaseError::Changed { which });
+        }
+    }
+    Ok((made, of))
+}
+
 /// Whether two solids have the same facets, in whatever order.
 fn is_same(a: &Solid, b: &Solid) -> bool {
     let facets = |solid: &Solid| {
@@ -582,7 +700,33 @@ impl fmt::Display for Statement {
                 )
             }
             Self::Clearance(statement) => statement.fmt(f),
+            Self::Distance(DistanceStatement { gap, near }) => {
+                let near = near.as_ref().map(|near| near.distance);
+                f.write_str(&apart(gap.map(|gap| gap.gap), near))
+            }
+            Self::Depth(Depth { upper: 0.0, .. }) => write!(f, "the bodies do not overlap"),
+            Self::Depth(Depth { lower, upper, direction, .. }) => write!(
+                f,
+                "a translation of the moving body by {upper:?} along {:?} parts the bodies, none below \
+                 {lower:?} does",
+                direction.to_array()
+            ),
+            Self::SolidDistance(DistanceCertificate { lower, near, .. }) => {
+                let lower = Some(*lower).filter(|lower| *lower > 0.0);
+                f.write_str(&apart(lower, Some(near.distance())))
+            }
         }
+    }
+}
+
+/// How far bodies are apart: at least, at most.
+fn apart(lower: Option<f64>, upper: Option<f64>) -> String {
+    match (lower, upper) {
+        (_, Some(0.0)) => "the bodies have a point in common".into(),
+        (Some(a), Some(b)) => format!("the bodies are between {a:?} and {b:?} apart"),
+        (Some(a), None) => format!("the bodies are at least {a:?} apart"),
+        (None, Some(b)) => format!("the bodies are at most {b:?} apart"),
+        (None, None) => "nothing".into(),
     }
 }
 

@@ -1,0 +1,69 @@
+//! The questions about two placed bodies without a direction.
+
+use colltrans::glam::DVec3;
+use colltrans::record::{Ending, FeaturesRecord, PairQuestion, Record};
+use colltrans::{Pair, Pose, ProofFile, QueryError, Solid};
+
+use super::{Body, PartsQuery};
+use crate::failure::{Code, Failure};
+
+/// Two bodies where they are.
+#[derive(Clone, Copy)]
+pub(crate) struct PartsPair<'a> {
+    pub(crate) bodies: [&'a Body; 2],
+    pub(crate) poses: [Pose; 2],
+}
+
+impl<'a> PartsPair<'a> {
+    /// The answer, with the names of files.
+    pub(crate) fn ask(&self, question: PairQuestion) -> Result<Record, QueryError> {
+        let pair = self.pair()?;
+        let mut record = question.ask_solids(&pair)?.record(&pair)?;
+        if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
+            record.moving = Some(self.bodies[0].renumber(moving));
+            record.fixed = Some(self.bodies[1].renumber(fixed));
+        }
+        if record.outcome == Ending::Overlapping {
+            record.start_overlaps = self.clearance().overlaps(0.0, || ())?;
+            let deepest = record.start_overlaps.first();
+            (record.moving, record.fixed) =
+                deepest.map_or((None, None), |of| (of.moving.clone(), of.fixed.clone()));
+        }
+        Ok(record)
+    }
+
+    /// The proof of a distance, or of its comparison with a length.
+    pub(crate) fn prove(&self, question: PairQuestion) -> Result<ProofFile, Failure> {
+        let [moving, fixed] = self.bodies.map(Body::solids);
+        let within = match question {
+            PairQuestion::Within(length) => Some(length),
+            PairQuestion::Distance | PairQuestion::Depth => None,
+        };
+        ProofFile::of_solid_distance(&self.pair()?, [&moving, &fixed], within)
+            .map_err(|error| Failure::new(Code::Query, error.to_string()))
+    }
+
+    /// How far lengths may be off by the precision of the files and by rounding.
+    pub(crate) fn error(&self) -> f64 {
+        self.clearance().error()
+    }
+
+    fn pair(&self) -> Result<Pair<'a, Solid>, QueryError> {
+        let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().at(self.poses[k]));
+        Pair::new(moving, fixed)
+    }
+
+    /// The same bodies, as they are, in a query whose direction plays no part.
+    const fn clearance(&self) -> PartsQuery<'a> {
+        PartsQuery {
+            moving: self.bodies[0],
+            moving_pose: self.poses[0],
+            fixed: self.bodies[1],
+            fixed_pose: self.poses[1],
+            direction: DVec3::Z,
+            tolerance: Some(0.0),
+            ignore_start_overlaps: false,
+            keep: 0.0,
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! `colltrans distance`, `depth` and `within`, their proofs and pictures, and the lines of a batch.
+
+use serde_json::{Value, json};
+
+use crate::proof::{checked_in_fractions, saved};
+use crate::support::{
+    answered, colltrans, data, folder, json as read, refused, run, stderr, stdout,
+};
+
+/// A unit cube 3 to the left of another, and a little aside.
+const APART: [&str; 4] = ["cube.off", "cube.off", "--moving-pose", "-3,0.25,-0.5"];
+/// Overlapping by a quarter along x.
+const DEEP: [&str; 4] = ["cube.off", "cube.off", "--moving-pose", "-0.75,0.25,-0.5"];
+/// A body that is not convex, over the tip of whose dent the cube stands.
+const PARTS: [&str; 4] = ["cube.off", "dent.off", "--moving-pose", "0,0,3"];
+
+fn ask(command: &str, bodies: &[&str], more: &[&str]) -> Value {
+    read(&answered(folder().path(), &[&[command], bodies, more, &["--json"]].concat()))
+}
+
+fn number(value: &Value, name: &str) -> f64 {
+    value[name].as_f64().unwrap_or_else(|| panic!("{name}: {value}"))
+}
+
+#[test]
+fn distances_have_bounds_points_and_features() {
+    let told = ask("distance", &APART, &[]);
+    assert_eq!(told["outcome"], "apart");
+    assert!(number(&told, "lower") <= 2.0 && number(&told, "upper") >= 2.0, "{told}");
+    assert!(number(&told, "upper") - number(&told, "lower") < 1e-13);
+    assert_eq!(told["normal"], json!([1.0, 0.0, 0.0]));
+    assert_eq!((&told["points"][0][0], &told["points"][1][0]), (&json!(-2.0), &json!(0.0)));
+    assert_eq!(told["features"]["moving"]["kind"], "face");
+    let told = ask("distance", &PARTS, &[]);
+    assert!(number(&told, "lower") <= 2.0 && number(&told, "upper") >= 2.0, "{told}");
+    assert_eq!((&told["moving"], &told["fixed"]), (&json!("cube.off"), &json!("dent.off")));
+    let told = ask("distance", &DEEP, &[]);
+    assert!(told["outcome"] == "meeting" && number(&told, "upper") < 1e-13, "{told}");
+    let askew =
+        ["cube.off", "cube.off", "--moving-pose", "-0.6,0.3,0.2", "--moving-rpy", "20,30,40"];
+    let told = ask("distance", &askew, &[]);
+    assert_eq!((&told["outcome"], number(&told, "upper")), (&json!("meeting"), 0.0));
+}
+
+#[test]
+fn depths_say_which_way_out() {
+    let told = ask("depth", &DEEP, &[]);
+    assert_eq!(told["outcome"], "overlapping");
+    assert!(number(&told, "lower") <= 0.25 && number(&told, "upper") >= 0.25, "{told}");
+    assert_eq!(told["direction"], json!([-1.0, 0.0, 0.0]));
+    assert_eq!(ask("depth", &APART, &[]), json!({"outcome": "apart", "lower": 0.0, "upper": 0.0}));
+    // Of parts another measure, under the name that a clearance has for it.
+    let told = ask("depth", &["cube.off", "dent.off", "--moving-pose", "0.9,0,0"], &[]);
+    let depth = number(&told["start_overlaps"][0], "depth");
+    assert!((depth - 0.1).abs() < 1e-6 && told.get("upper").is_none(), "{told}");
+    assert_eq!(ask("depth", &PARTS, &[])["outcome"], "apart");
+    let touching = ["cube.off", "dent.off", "--moving-pose", "1,0,0"];
+    assert_eq!(ask("depth", &touching, &[])["outcome"], "touching");
+}
+
+#[test]
+fn a_length_is_compared_with() {
+    for bodies in [APART, PARTS] {
+        let told = ask("within", &bodies, &["--length", "2.5"]);
+        assert!(told["outcome"] == "closer" && number(&told, "upper") <= 2.5, "{told}");
+        let told = ask("within", &bodies, &["--length", "1.5"]);
+        assert!(told["outcome"] == "farther" && number(&told, "lower") > 1.5, "{told}");
+        let told = ask("within", &bodies, &["--length", "2"]);
+        assert!(told["outcome"] == "undecided" && number(&told, "lower") <= 2.0, "{told}");
+    }
+}
+
+#[test]
+fn answers_are_told_in_words() {
+    let folder = folder();
+    for (words, said) in [
+        (&[&["distance"], &APART[..]].concat(), "distance     2\n"),
+        (&[&["distance"], &DEEP[..]].concat(), "meeting: the bodies touch or overlap"),
+        (&[&["depth"], &DEEP[..]].concat(), "direction    -1,0,0, of the moving body"),
+        (&[&["depth"], &APART[..]].concat(), "apart: the bodies have no point in common"),
+        (
+            &[&["within"], &APART[..], &["--length", "3"]].concat(),
+            "closer: the bodies are no farther apart than 3",
+        ),
+        (&[&["distance"], &PARTS[..]].concat(), "face of vertices 3 2 1 0 of cube.off"),
+    ] {
+        let text = answered(folder.path(), words);
+        assert!(text.contains(said), "{said:?} is not in {text}");
+    }
+    let hulls = ["distance", "cube.off", "dent.off", "--hull", "--moving-pose", "0,0,3"];
+    let text = answered(folder.path(), &hulls);
+    assert!(text.contains("no nearer to each other, perhaps farther"), "{text}");
+}
+
+#[test]
+fn proofs_hold_here_and_in_fractions() {
+    let folder = folder();
+    let folder = folder.path();
+    let within = |length| ["--length", length];
+    for (command, bodies, more, said) in [
+        ("distance", &APART, &[][..], "the bodies are between 1.99"),
+        ("distance", &DEEP, &[], "the bodies are at most "),
+        ("distance", &PARTS, &[], "the bodies are between 1.99"),
+        ("depth", &DEEP, &[], "a translation of the moving body by 0.25"),
+        ("depth", &APART, &[], "the bodies do not overlap"),
+        ("within", &APART, &within("9"), "the bodies are at most "),
+        ("within", &APART, &within("1"), "the bodies are at least "),
+        ("within", &PARTS, &within("9"), "the bodies are at most "),
+        ("within", &PARTS, &within("1"), "the bodies are between 1.99"),
+    ] {
+        saved(folder, &[&[command], &bodies[..], more].concat());
+        let text = answered(folder, &["verify", "proof.json"]);
+        assert!(text.starts_with(&format!("holds: {said}")), "{text}");
+        checked_in_fractions(folder);
+    }
+    let parts = ["depth", "cube.off", "dent.off", "--save-proof", "proof.json"];
+    refused(folder, &parts, 2, &["the depth of parts has no proof"]);
+}
+
+#[test]
+fn pictures_show_the_way_between() {
+    let folder = folder();
+    let folder = folder.path();
+    for (command, bodies, said) in [
+        ("distance", &APART, "distance 2"),
+        ("distance", &PARTS, "distance 2"),
+        ("depth", &DEEP, "depth 0.25"),
+    ] {
+        answered(folder, &[&[command], &bodies[..], &["--picture", "a.svg"]].concat());
+        let picture = std::fs::read_to_string(folder.join("a.svg")).unwrap();
+        assert!(picture.contains(said) && !picture.contains("NaN"), "{picture}");
+    }
+    // A point, far from a segment.
+    std::fs::write(folder.join("point.off"), "OFF\n1 0 0\n0 0 0\n").unwrap();
+    std::fs::write(folder.join("segment.off"), "OFF\n2 0 0\n0 0 0\n1 1 1\n").unwrap();
+    let bodies = ["point.off", "segment.off", "--hull", "--moving-pose", "0,0,1e6"];
+    answered(folder, &[&["distance"], &bodies[..], &["--picture", "a.svg"]].concat());
+    let picture = std::fs::read_to_string(folder.join("a.svg")).unwrap();
+    assert!(picture.contains("distance 999999") && !picture.contains("NaN"), "{picture}");
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let folder = folder();
+    let folder = folder.path();
+    let within = |length| ["within", "cube.off", "cube.off", "--length", length];
+    refused(folder, &within("-1"), 2, &["--length", "not negative"]);
+    refused(folder, &within("nan"), 2, &["--length", "finite"]);
+    refused(folder, &within("inf"), 2, &["--length", "finite"]);
+    refused(folder, &within("two"), 2, &["--length"]);
+    refused(folder, &["within", "cube.off", "cube.off"], 2, &["--length <L>"]);
+    refused(folder, &["distance", "cube.off"], 2, &["or --from"]);
+    refused(folder, &["distance", "cube.off", "cube.off", "cube.off"], 2, &["or --from"]);
+    refused(folder, &["distance", "cube.off", "none.off"], 3, &["none.off: cannot be read"]);
+    refused(folder, &["distance", "cube.off", "broken.off"], 3, &["broken.off"]);
+    refused(folder, &["distance", "cube.off", "open.off"], 3, &["open.off", "--open"]);
+    refused(folder, &["distance", "cube.off", "cube.off", "--direction", "x"], 2, &["--direction"]);
+    refused(
+        folder,
+        &["depth", "cube.off", "dent.off", "--hull", "--open"],
+        2,
+        &["--hull", "--open"],
+    );
+    let over = ["distance", "cube.off", "cube.off", "--save-proof", "cube.off"];
+    refused(folder, &over, 3, &["is the same file"]);
+    let nan = ["distance", "cube.off", "cube.off", "--moving-pose", "nan,0,0"];
+    refused(folder, &nan, 2, &["--moving-pose"]);
+}
+
+#[test]
+fn lines_of_a_batch_are_the_commands() {
+    let folder = folder();
+    let cube = r#"{"mesh":"cube.off"}"#;
+    let line = |query: &str, fixed: &str, pose: &str| {
+        format!(
+            r#"{{"moving":{cube},"fixed":{fixed},"moving_pose":{{"translation":{pose}}},"query":{query}}}"#
+        )
+    };
+    let dent = r#"{"solid":"dent.off"}"#;
+    let asked = [
+        (line(r#""distance""#, cube, "[-3,0.25,-0.5]"), ask("distance", &APART, &[])),
+        (line(r#""depth""#, cube, "[-0.75,0.25,-0.5]"), ask("depth", &DEEP, &[])),
+        (line(r#""distance""#, dent, "[0,0,3]"), ask("distance", &PARTS, &[])),
+        (
+            line(r#""within","length":1.5"#, dent, "[0,0,3]"),
+            ask("within", &PARTS, &["--length", "1.5"]),
+        ),
+        (
+            line(r#""depth""#, dent, "[0.9,0,0]"),
+            ask("depth", &["cube.off", "dent.off", "--moving-pose", "0.9,0,0"], &[]),
+        ),
+    ];
+    let lines: Vec<&str> = asked.iter().map(|(line, _)| line.as_str()).collect();
+    std::fs::write(folder.path().join("q.jsonl"), lines.join("\n")).unwrap();
+    let told = answered(folder.path(), &["batch", "q.jsonl"]);
+    for (line, (_, alone)) in told.lines().zip(&asked) {
+        let (mut told, mut alone) = (read(line), alone.clone());
+        for answer in [&mut told, &mut alone] {
+            // Names of files are the commands' alone.
+            let fields = answer.as_object_mut().unwrap();
+            fields.retain(|name, _| !["id", "moving", "fixed"].contains(&name.as_str()));
+            if let Some(overlap) = fields.get_mut("start_overlaps") {
+                overlap[0].as_object_mut().unwrap().retain(|name, _| name == "depth");
+            }
+        }
+        assert_eq!(told, alone);
+    }
+}
+
+#[test]
+fn lines_that_do_not_fit_their_query_are_refused() {
+    let folder = folder();
+    let bodies = r#""moving":{"mesh":"cube.off"},"fixed":{"mesh":"cube.off"}"#;
+    let wrong = [
+        (r#""query":"within""#, "needs a `length`"),
+        (r#""query":"within","length":-1"#, "the length -1 is negative"),
+        (r#""query":"distance","length":1"#, "`length` is not for this query"),
+        (r#""query":"distance","direction":[1,0,0]"#, "`direction` is not for this query"),
+        (r#""query":"depth","tolerance":0"#, "`tolerance` is not for this query"),
+        (r#""direction":[1,0,0],"length":1"#, r#"`length` is for "query": "within""#),
+        (r#""query":"contact""#, "missing field `direction`"),
+        (r#""query":"far""#, "within"),
+    ];
+    let lines: Vec<String> = wrong.iter().map(|(more, _)| format!("{{{bodies},{more}}}")).collect();
+    std::fs::write(folder.path().join("q.jsonl"), lines.join("\n")).unwrap();
+    let output = run(folder.path(), &["batch", "q.jsonl"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    for (line, (more, said)) in stdout(&output).lines().zip(wrong) {
+        let told = read(line);
+        let message = told["message"].as_str().unwrap();
+        assert!(told["outcome"] == "error" && message.contains(said), "{more}: {message}");
+    }
+    colltrans(folder.path()).args(["distance", "--help"]).assert().success();
+}
+
+/// What `docs/distance.md` shows is what the commands print there.
+#[test]
+fn the_page_shows_what_is_printed() {
+    let root = data().join("..");
+    let page = std::fs::read_to_string(root.join("docs/distance.md")).unwrap();
+    let blocks: Vec<&str> = page.split("```").collect();
+    let shown = blocks.windows(3).filter_map(|part| {
+        Some((part[0].strip_prefix("sh\ncolltrans ")?, part[2].strip_prefix("text\n")?))
+    });
+    let mut count = 0;
+    for (command, text) in shown {
+        let words: Vec<&str> = command.split_whitespace().collect();
+        assert_eq!(answered(&root, &words), text, "{command}");
+        count += 1;
+    }
+    assert_eq!(count, 3);
+}

@@ -1,0 +1,398 @@
+//! Answers about bodies where they are: how far apart, how deep, whether closer than a length.
+
+use colltrans::glam::DVec3;
+use colltrans::record::{PairAnswer, PairQuestion, Record};
+use colltrans::{ProofFile, Solid};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::answer::{Answer, answer, object};
+use crate::arrays::{coordinates, row};
+use crate::errors::{OrRaise, error};
+use crate::features::{Feature, Features};
+use crate::pair::{Of, Pair};
+
+type DistanceOf = Of<colltrans::Distance, colltrans::Distance<Solid>>;
+
+/// A comparison with a length.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub(crate) struct WithinOf {
+    length: f64,
+    found: Of<colltrans::Within, colltrans::Within<Solid>>,
+}
+
+/// How far two bodies are apart, and where they are nearest: ``lower <= true distance <= upper``.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Distance {
+    found: DistanceOf,
+    query: Py<Pair>,
+}
+
+answer!(Distance("lower", "upper") of DistanceOf, Pair, |it| it.found);
+
+/// What is read of either kind.
+macro_rules! either {
+    ($of:expr, $found:ident => $value:expr) => {
+        match &$of {
+            Of::Convex($found) => $value,
+            Of::Solids($found) => $value,
+        }
+    };
+}
+
+#[pymethods]
+impl Distance {
+    /// float: The bodies are not nearer; 0 if they meet, or are less apart than rounding can tell.
+    #[getter]
+    fn lower(&self) -> f64 {
+        either!(self.found, found => found.lower)
+    }
+
+    /// float: They are not farther; 0 where they are proven to meet.
+    #[getter]
+    fn upper(&self) -> f64 {
+        either!(self.found, found => found.upper)
+    }
+
+    /// ndarray of shape (3,): The point of the moving body that is nearest to the fixed one, in the
+    /// world.
+    #[getter]
+    fn on_moving<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, either!(self.found, found => found.on_moving))
+    }
+
+    /// ndarray of shape (3,): The point of the fixed body that is nearest to the moving one, in the
+    /// world.
+    #[getter]
+    fn on_fixed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, either!(self.found, found => found.on_fixed))
+    }
+
+    /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one; None
+    /// if they meet.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        either!(self.found, found => found.normal).map(|normal| row(py, normal))
+    }
+
+    /// Features or None: What of each body faces the other one; None if they meet.
+    #[getter]
+    fn features(&self) -> PyResult<Option<Features>> {
+        let query = self.query.get();
+        let features = either!(self.found, found => found.features);
+        let Some(colltrans::Features { moving, fixed }) = features else { return Ok(None) };
+        either!(query.asked()?, pair => Ok(Some(Features {
+            moving: Feature::of(moving, pair.moving()),
+            fixed: Feature::of(fixed, pair.fixed()),
+        })))
+    }
+
+    /// Checks the proof against the bodies alone; between solids they are asked once more for it.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(&self, py: Python<'_>) -> PyResult<()> {
+        proof_of(&self.found, self.query.bind(py))?.check().or_raise()
+    }
+
+    fn __repr__(&self) -> String {
+        let [lower, upper] = either!(self.found, found => found.bounds());
+        format!("Distance(lower={lower:?}, upper={upper:?})")
+    }
+}
+
+/// The shortest translation that parts two convex bodies: ``lower <= true depth <= upper``.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Depth {
+    depth: colltrans::Depth,
+    query: Py<Pair>,
+}
+
+answer!(Depth("lower", "upper", "direction") of PairAnswer, Pair, |it| PairAnswer::Depth(it.depth.clone()));
+
+#[pymethods]
+impl Depth {
+    /// float: After any shorter translation they overlap; 0 if they are apart, touch, or are flat.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.depth.lower
+    }
+
+    /// float: After a translation of this length along ``direction`` they do not; 0 if they are apart.
+    #[getter]
+    fn upper(&self) -> f64 {
+        self.depth.upper
+    }
+
+    /// ndarray of shape (3,): Unit vector, in the world, along which the moving body leaves.
+    #[getter]
+    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.depth.direction)
+    }
+
+    /// ndarray of shape (3,): The translation of the moving body that parts the bodies.
+    #[getter]
+    fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.depth.translation())
+    }
+
+    /// Checks the proof against the bodies alone.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(&self) -> PyResult<()> {
+        match self.query.get().asked()? {
+            Of::Convex(pair) => pair.verify(&self.depth).or_raise().map(|_| ()),
+            Of::Solids(_) => Err(error("CertificateError", "the bodies are solids")),
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let colltrans::Depth { lower, upper, direction, .. } = &self.depth;
+        let direction = coordinates(*direction);
+        format!("Depth(lower={lower:?}, upper={upper:?}, direction={direction:?})")
+    }
+}
+
+/// How deep two solids overlap, by the measure that they have.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct OverlapDepth {
+    depth: colltrans::solid::OverlapDepth,
+    query: Py<Pair>,
+}
+
+answer!(OverlapDepth("meets", "least_tolerance") of PairAnswer, Pair, |it| PairAnswer::OverlapDepth(it.depth));
+
+#[pymethods]
+impl OverlapDepth {
+    /// bool: Whether they have a point in common, decided exactly.
+    #[getter]
+    fn meets(&self) -> bool {
+        self.depth.meets
+    }
+
+    /// float or None: The least tolerance with which they would not overlap: 0 if they do not, None if
+    /// there is none.
+    #[getter]
+    fn least_tolerance(&self) -> Option<f64> {
+        self.depth.least_tolerance
+    }
+
+    fn __repr__(&self) -> String {
+        let (meets, depth) = (self.depth.meets, self.depth.least_tolerance);
+        let meets = if meets { "True" } else { "False" };
+        let depth = depth.map_or("None".into(), |depth| format!("{depth:?}"));
+        format!("OverlapDepth(meets={meets}, least_tolerance={depth})")
+    }
+}
+
+/// Whether two bodies are closer than a length, with a bound of their distance that proves it.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Within {
+    found: WithinOf,
+    query: Py<Pair>,
+}
+
+answer!(Within("closer", "lower", "upper") of WithinOf, Pair, |it| it.found);
+
+impl Within {
+    fn record(&self, py: Python<'_>) -> PyResult<Record> {
+        self.found.record(self.query.bind(py))
+    }
+}
+
+#[pymethods]
+impl Within {
+    /// float: The length.
+    #[getter]
+    fn length(&self) -> f64 {
+        self.found.length
+    }
+
+    /// bool or None: Whether they are; None where the length lies between the bounds of the distance, a few
+    /// roundings apart.
+    #[getter]
+    fn closer(&self) -> Option<bool> {
+        use colltrans::Within::{Closer, Farther};
+        either!(self.found.found, found => match found {
+            Closer(_) => Some(true),
+            Farther(_) => Some(false),
+            _ => None,
+        })
+    }
+
+    /// float or None: The bodies are not nearer, where that was found out.
+    #[getter]
+    fn lower(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        Ok(self.record(py)?.lower)
+    }
+
+    /// float or None: They are not farther, where that was found out.
+    #[getter]
+    fn upper(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        Ok(self.record(py)?.upper)
+    }
+
+    /// tuple of (ndarray, ndarray) or None: Points of the moving and of the fixed body, in the world, that
+    /// are ``upper`` apart.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray1<f64>>; 2]>> {
+        let points = self.record(py)?.points;
+        Ok(points.map(|points| points.map(|point| row(py, DVec3::from_array(point)))))
+    }
+
+    /// Checks the proof against the bodies alone; between solids they are asked once more for it.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(&self, py: Python<'_>) -> PyResult<()> {
+        within_proof(&self.found, self.query.bind(py))?.check().or_raise()
+    }
+
+    fn __repr__(&self) -> String {
+        let closer = match self.closer() {
+            Some(true) => "True",
+            Some(false) => "False",
+            None => "None",
+        };
+        format!("Within(closer={closer}, length={:?})", self.found.length)
+    }
+}
+
+fn proof_of(found: &DistanceOf, query: &Bound<'_, Pair>) -> PyResult<ProofFile> {
+    match (found, query.get().asked()?) {
+        (Of::Convex(distance), Of::Convex(pair)) => Ok(ProofFile::of_distance(&pair, distance)),
+        _ => query.get().solid_proof(PairQuestion::Distance),
+    }
+}
+
+fn within_proof(of: &WithinOf, query: &Bound<'_, Pair>) -> PyResult<ProofFile> {
+    match (&of.found, query.get().asked()?) {
+        (Of::Convex(within), Of::Convex(pair)) => Ok(ProofFile::of_distance(&pair, within)),
+        _ => query.get().solid_proof(PairQuestion::Within(of.length)),
+    }
+}
+
+/// An answer that is not of the bodies that it comes with.
+fn other_bodies() -> PyErr {
+    error("CaseError", "an answer of other bodies")
+}
+
+impl Answer for DistanceOf {
+    type Query = Pair;
+
+    fn object<'py>(self, query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
+        object(query.py(), Distance { found: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, Pair>) -> PyResult<Record> {
+        match (self, query.get().asked()?) {
+            (Self::Convex(found), Of::Convex(pair)) => {
+                Ok(PairAnswer::Distance(*found).record(&pair))
+            }
+            (Self::Solids(found), Of::Solids(pair)) => {
+                PairAnswer::<Solid>::Distance(*found).record(&pair).or_raise()
+            }
+            _ => Err(other_bodies()),
+        }
+    }
+
+    fn proof(&self, query: &Bound<'_, Pair>) -> PyResult<String> {
+        Ok(proof_of(self, query)?.to_json())
+    }
+}
+
+impl Answer for WithinOf {
+    type Query = Pair;
+
+    fn object<'py>(self, query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
+        object(query.py(), Within { found: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, Pair>) -> PyResult<Record> {
+        match (&self.found, query.get().asked()?) {
+            (Of::Convex(found), Of::Convex(pair)) => Ok(PairAnswer::Within(*found).record(&pair)),
+            (Of::Solids(found), Of::Solids(pair)) => {
+                PairAnswer::<Solid>::Within(*found).record(&pair).or_raise()
+            }
+            _ => Err(other_bodies()),
+        }
+    }
+
+    fn proof(&self, query: &Bound<'_, Pair>) -> PyResult<String> {
+        Ok(within_proof(self, query)?.to_json())
+    }
+}
+
+/// A depth, of either kind.
+impl Answer for PairAnswer {
+    type Query = Pair;
+
+    fn object<'py>(self, query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, asked) = (query.py(), query.clone().unbind());
+        match self {
+            Self::Depth(depth) => object(py, Depth { depth, query: asked }),
+            Self::OverlapDepth(depth) => object(py, OverlapDepth { depth, query: asked }),
+            Self::Distance(found) => DistanceOf::Convex(found).object(query),
+            Self::Within(_) => Err(other_bodies()),
+        }
+    }
+
+    fn record(&self, query: &Bound<'_, Pair>) -> PyResult<Record> {
+        match (self, query.get().asked()?) {
+            (Self::OverlapDepth(depth), Of::Solids(pair)) => {
+                PairAnswer::<Solid>::OverlapDepth(*depth).record(&pair).or_raise()
+            }
+            (answer, Of::Convex(pair)) => Ok(answer.record(&pair)),
+            _ => Err(other_bodies()),
+        }
+    }
+
+    fn proof(&self, query: &Bound<'_, Pair>) -> PyResult<String> {
+        let proof = match (self, query.get().asked()?) {
+            (Self::Depth(depth), Of::Convex(pair)) => ProofFile::of_depth(&pair, depth),
+            _ => query.get().solid_proof(PairQuestion::Depth)?,
+        };
+        Ok(proof.to_json())
+    }
+}
+
+/// The distance.
+pub(crate) fn distance_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
+    let found: DistanceOf = Pair::ask(query, |pair| {
+        Ok(match pair {
+            Of::Convex(pair) => Of::Convex(pair.distance()?),
+            Of::Solids(pair) => Of::Solids(pair.distance()?),
+        })
+    })?;
+    found.object(query)
+}
+
+/// The depth of either kind.
+pub(crate) fn depth_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
+    let found: PairAnswer = Pair::ask(query, |pair| {
+        Ok(match pair {
+            Of::Convex(pair) => PairAnswer::Depth(pair.depth()?),
+            Of::Solids(pair) => PairAnswer::OverlapDepth(pair.overlap_depth()?),
+        })
+    })?;
+    found.object(query)
+}
+
+/// Whether the bodies are closer than a length.
+pub(crate) fn within_of<'py>(query: &Bound<'py, Pair>, length: f64) -> PyResult<Bound<'py, PyAny>> {
+    let found = Pair::ask(query, move |pair| {
+        Ok(match pair {
+            Of::Convex(pair) => Of::Convex(pair.within(length)?),
+            Of::Solids(pair) => Of::Solids(pair.within(length)?),
+        })
+    })?;
+    WithinOf { length, found }.object(query)
+}

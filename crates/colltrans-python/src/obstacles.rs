@@ -1,0 +1,668 @@
+//! Many placed bodies, and one among them: the library's, kept behind a lock.
+//!
+//! Questions are asked without the interpreter's lock, any number of them at a time; what adds, moves and
+//! removes waits for them. Rows of many are answered on any number of threads, each by itself.
+
+use std::collections::{HashMap, HashSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::thread::ScopedJoinHandle;
+use std::time::Duration;
+
+use colltrans::glam::DVec3;
+use colltrans::{Among, AnyBody, AnyPlaced, ByKind, Clearance, ClearanceAmong, ObstacleId};
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{row, vector};
+use crate::errors::{OrRaise, error, input};
+use crate::pose::{Pose, pose};
+use crate::solid::Piece;
+
+/// Rows that a thread takes at a time.
+const CHUNK: usize = 64;
+/// Between two looks for signals.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// Many placed bodies, of either kind, in a tree of boxes that is kept as they come, move and go.
+///
+/// Answers are those of asking all obstacles one by one; of several that cannot be told apart, the one
+/// whose upper bound is least, and of equal ones the one that came first. Bounds hold for all obstacles
+/// together. A body that is added many times is kept once.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, Obstacles
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> shelf = Obstacles()
+/// >>> shelf.add_many(cube, [[2 * k, 0, 0] for k in range(1000)])[:3]
+/// [0, 1, 2]
+/// >>> nearest = shelf.nearest(cube, [24.25, 0, 4])
+/// >>> nearest.obstacle, nearest.lower <= 3 <= nearest.upper
+/// (12, True)
+/// >>> down = shelf.clearance(cube, [0, 0, -1], [24.25, 0, 4])
+/// >>> down.outcome, down.obstacle, 3 - 1e-11 < down.distance <= 3
+/// ('blocked', 12, True)
+/// >>> shelf.within(cube, 3.2, [24.25, 0, 4])
+/// ([12, 13], [])
+/// >>> shelf.remove(12)
+/// >>> shelf.clearance(cube, [0, 0, -1], [24.25, 0, 4])
+/// ObstacleClearance('free', obstacle=None, distance=inf)
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Obstacles {
+    /// Whoever waits for it does so without the interpreter's lock.
+    kept: RwLock<colltrans::Obstacles>,
+    /// By the address of their objects, which are kept with them.
+    bodies: Mutex<HashMap<usize, (Piece, AnyBody)>>,
+}
+
+/// Of a chunk of rows the first, and their answers.
+type Parts<T> = Vec<(usize, Vec<T>)>;
+
+impl Obstacles {
+    fn read(&self) -> RwLockReadGuard<'_, colltrans::Obstacles> {
+        self.kept.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn write(&self) -> RwLockWriteGuard<'_, colltrans::Obstacles> {
+        self.kept.write().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Asks about one body, without the interpreter's lock.
+    fn ask<T: Send>(
+        &self,
+        py: Python<'_>,
+        (body, at): (&Piece, colltrans::Pose),
+        ignore: &HashSet<u64>,
+        question: impl FnOnce(&Among<'_>) -> Result<T, colltrans::QueryError> + Send,
+    ) -> PyResult<T> {
+        let asked = || {
+            let kept = self.read();
+            let ignored = |id: ObstacleId| ignore.contains(&id.0);
+            Among::new(placed(body, at), &kept)
+                .and_then(|among| question(&among.ignoring(&ignored)))
+        };
+        py.detach(asked).or_raise()
+    }
+
+    /// Asks rows, on some threads.
+    fn ask_rows<T: Send>(
+        &self,
+        py: Python<'_>,
+        (body, poses): (&Piece, &[colltrans::Pose]),
+        ignore: &HashSet<u64>,
+        threads: Option<usize>,
+        question: impl Fn(usize, &Among<'_>) -> Result<T, colltrans::QueryError> + Sync,
+    ) -> PyResult<Vec<T>> {
+        py.detach(|| {
+            let kept = self.read();
+            let ignored = |id: ObstacleId| ignore.contains(&id.0);
+            rows(poses.len(), threads, |k| {
+                Among::new(placed(body, poses[k]), &kept)
+                    .and_then(|among| question(k, &among.ignoring(&ignored)))
+                    .map_err(|what| what.to_string())
+            })
+        })
+    }
+}
+
+fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
+    match body {
+        Piece::Convex(body) => body.get().0.at(at).into(),
+        Piece::Solid(solid) => solid.get().solid.at(at).into(),
+    }
+}
+
+/// The answers of so many rows, in order.
+fn rows<T: Send>(
+    n: usize,
+    threads: Option<usize>,
+    ask: impl Fn(usize) -> Result<T, String> + Sync,
+) -> PyResult<Vec<T>> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads.unwrap_or(all).clamp(1, n.div_ceil(CHUNK).max(1));
+    let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let parts: Mutex<Parts<T>> = Mutex::default();
+    let failed: Mutex<Option<(usize, String)>> = Mutex::default();
+    let one = |k: usize| {
+        catch_unwind(AssertUnwindSafe(|| ask(k)))
+            .unwrap_or_else(|_| Err("internal error; please report it".into()))
+    };
+    let work = || {
+        while !stopped.load(Ordering::Relaxed) {
+            let first = next.fetch_add(CHUNK, Ordering::Relaxed);
+            let rows = first..(first + CHUNK).min(n);
+            if rows.is_empty() {
+                return;
+            }
+            let answers = rows.map(|k| one(k).map_err(|what| (k, what))).collect();
+            match answers {
+                Ok(answers) => lock(&parts).push((first, answers)),
+                Err(what) => {
+                    let mut failed = lock(&failed);
+                    let least = failed.take().into_iter().chain([what]).min();
+                    *failed = least;
+                    stopped.store(true, Ordering::Relaxed);
+                }
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        wait(&workers).inspect_err(|_| stopped.store(true, Ordering::Relaxed))
+    })?;
+    if let Some((k, what)) = lock(&failed).take() {
+        return Err(error("QueryError", format_args!("row {k}: {what}")));
+    }
+    let mut parts = parts.into_inner().unwrap_or_else(PoisonError::into_inner);
+    parts.sort_unstable_by_key(|(first, _)| *first);
+    Ok(parts.into_iter().flat_map(|(_, answers)| answers).collect())
+}
+
+/// Until all have ended, or a signal raises something.
+fn wait(workers: &[ScopedJoinHandle<'_, ()>]) -> PyResult<()> {
+    let mut nap = Duration::from_micros(20);
+    while !workers.iter().all(|worker| worker.is_finished()) {
+        std::thread::sleep(nap);
+        if nap < PATIENCE {
+            nap = (nap * 2).min(PATIENCE);
+        } else {
+            Python::attach(|py| py.check_signals())?;
+        }
+    }
+    Ok(())
+}
+
+fn lock<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn unknown(obstacle: u64) -> PyErr {
+    PyKeyError::new_err(format!("there is no obstacle {obstacle}, or not any more"))
+}
+
+/// Poses of an array or a sequence.
+fn poses(of: &Bound<'_, PyAny>) -> PyResult<Vec<colltrans::Pose>> {
+    of.try_iter()?.map(|one| pose(Some(&one?), "poses")).collect()
+}
+
+fn vectors<'py>(py: Python<'py>, all: Vec<[f64; 3]>) -> PyResult<Bound<'py, PyAny>> {
+    let n = all.len();
+    Ok(all.into_flattened().into_pyarray(py).reshape([n, 3])?.into_any())
+}
+
+#[pymethods]
+impl Obstacles {
+    #[new]
+    fn new() -> Self {
+        Self { kept: RwLock::default(), bodies: Mutex::default() }
+    }
+
+    /// Adds a body.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : ConvexPolyhedron or Solid
+    /// pose : array_like or Pose, optional
+    ///     Where it is.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     Its number, which stays valid whatever else comes, moves and goes, and is never used again.
+    #[pyo3(signature = (body, pose=None))]
+    fn add(
+        &self,
+        py: Python<'_>,
+        body: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<u64> {
+        let at = self::pose(pose, "pose")?;
+        let ids = self.insert(py, std::slice::from_ref(body), vec![at])?;
+        Ok(ids[0])
+    }
+
+    /// Adds many, in one pass.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : ConvexPolyhedron, Solid or sequence of them
+    ///     One for all poses, or one for each.
+    /// poses : array_like of shape (N, ...), or sequence of Pose
+    ///
+    /// Returns
+    /// -------
+    /// list of int
+    fn add_many(
+        &self,
+        py: Python<'_>,
+        body: &Bound<'_, PyAny>,
+        poses: &Bound<'_, PyAny>,
+    ) -> PyResult<Vec<u64>> {
+        let poses = self::poses(poses)?;
+        if Piece::of(body, "body").is_ok() {
+            return self.insert(py, std::slice::from_ref(body), poses);
+        }
+        let bodies = body.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+        if bodies.len() != poses.len() {
+            let what = format!("{} bodies for {} poses", bodies.len(), poses.len());
+            return Err(input("body", what));
+        }
+        self.insert(py, &bodies, poses)
+    }
+
+    /// Puts an obstacle elsewhere.
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     There is no such one.
+    fn set_pose(&self, py: Python<'_>, obstacle: u64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
+        let at = self::pose(Some(pose), "pose")?;
+        let set = || self.write().set_pose(ObstacleId(obstacle), at);
+        py.detach(set).map_err(|_| unknown(obstacle))
+    }
+
+    /// Puts many elsewhere, in one pass: all of them, or, with a KeyError, none.
+    fn set_poses(
+        &self,
+        py: Python<'_>,
+        obstacles: Vec<u64>,
+        poses: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let poses = self::poses(poses)?;
+        if obstacles.len() != poses.len() {
+            let what = format!("{} obstacles for {} poses", obstacles.len(), poses.len());
+            return Err(input("poses", what));
+        }
+        let moves: Vec<_> = obstacles.into_iter().map(ObstacleId).zip(poses).collect();
+        py.detach(|| self.write().set_poses(&moves)).map_err(|what| unknown(what.id.0))
+    }
+
+    /// Takes an obstacle away.
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     There is no such one.
+    fn remove(&self, py: Python<'_>, obstacle: u64) -> PyResult<()> {
+        let removed = py.detach(|| self.write().remove(ObstacleId(obstacle)));
+        removed.map(|_| ()).ok_or_else(|| unknown(obstacle))
+    }
+
+    /// Where an obstacle is.
+    ///
+    /// Returns
+    /// -------
+    /// Pose
+    fn pose(&self, py: Python<'_>, obstacle: u64) -> PyResult<Pose> {
+        let at = || self.read().get(ObstacleId(obstacle)).map(|(_, pose)| pose);
+        py.detach(at).map(Pose).ok_or_else(|| unknown(obstacle))
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        py.detach(|| self.read().len())
+    }
+
+    fn __contains__(&self, py: Python<'_>, obstacle: u64) -> bool {
+        py.detach(|| self.read().get(ObstacleId(obstacle)).is_some())
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("Obstacles({})", self.__len__(py))
+    }
+
+    /// Which obstacle is nearest to a body, and how far is it?
+    ///
+    /// Parameters
+    /// ----------
+    /// body : ConvexPolyhedron or Solid
+    /// pose : array_like or Pose, optional
+    ///     Where it is.
+    /// ignore : iterable of int
+    ///     Obstacles that are not asked about: the parts of a gripper, say.
+    ///
+    /// Returns
+    /// -------
+    /// NearestObstacle or None
+    ///     None if there are none.
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     A point or a segment where a solid is asked about it.
+    #[pyo3(signature = (body, pose=None, *, ignore=HashSet::new()),
+        text_signature = "($self, body, pose=None, *, ignore=())")]
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        body: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+    ) -> PyResult<Option<NearestObstacle>> {
+        let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
+        let found = self.ask(py, (&body, at), &ignore, |among| among.nearest())?;
+        Ok(found.map(NearestObstacle))
+    }
+
+    /// Which obstacles are closer to a body than a length?
+    ///
+    /// Parameters
+    /// ----------
+    /// body, pose, ignore
+    ///     As for :meth:`nearest`.
+    /// length : float
+    ///     In world units.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of (list of int, list of int)
+    ///     Those that are, and those of which rounding cannot tell, each in the order in which they came.
+    #[pyo3(signature = (body, length, pose=None, *, ignore=HashSet::new()),
+        text_signature = "($self, body, length, pose=None, *, ignore=())")]
+    fn within(
+        &self,
+        py: Python<'_>,
+        body: &Bound<'_, PyAny>,
+        length: f64,
+        pose: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+    ) -> PyResult<(Vec<u64>, Vec<u64>)> {
+        let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
+        let found = self.ask(py, (&body, at), &ignore, |among| among.within(length))?;
+        let closer = found.closer.iter().map(|(id, _)| id.0).collect();
+        Ok((closer, found.undecided.iter().map(|(id, _)| id.0).collect()))
+    }
+
+    /// How far can a body move along a direction, and what stops it?
+    ///
+    /// Parameters
+    /// ----------
+    /// body, pose, ignore
+    ///     As for :meth:`nearest`.
+    /// direction : array_like of shape (3,)
+    ///     Of any length; translations count in multiples of it.
+    /// before : float
+    ///     What is not met before this translation is of no interest.
+    ///
+    /// Returns
+    /// -------
+    /// ObstacleClearance
+    #[pyo3(signature = (body, direction, pose=None, *, before=f64::INFINITY, ignore=HashSet::new()),
+        text_signature = "($self, body, direction, pose=None, *, before=float('inf'), ignore=())")]
+    fn clearance(
+        &self,
+        py: Python<'_>,
+        body: &Bound<'_, PyAny>,
+        direction: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
+        before: f64,
+        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+    ) -> PyResult<ObstacleClearance> {
+        let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
+        let direction = vector(direction, "direction")?;
+        let ask = |among: &Among<'_>| among.clearance_before(direction, before);
+        self.ask(py, (&body, at), &ignore, ask).map(ObstacleClearance)
+    }
+
+    /// :meth:`nearest` of many poses, on some threads.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, ignore
+    ///     As for :meth:`nearest`.
+    /// poses : array_like of shape (N, ...), or sequence of Pose
+    /// threads : int, optional
+    ///     By default as many as there are processors. Answers do not depend on it.
+    ///
+    /// Returns
+    /// -------
+    /// dict of ndarray
+    ///     Columns ``obstacle`` (-1 if there are none), ``lower``, ``upper``, ``on_moving`` and ``on_fixed``.
+    #[pyo3(signature = (body, poses, *, ignore=HashSet::new(), threads=None),
+        text_signature = "($self, body, poses, *, ignore=(), threads=None)")]
+    fn nearest_many<'py>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyAny>,
+        poses: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (body, poses) = (Piece::of(body, "body")?, self::poses(poses)?);
+        let found = self.ask_rows(py, (&body, &poses), &ignore, threads, |_, a| a.nearest())?;
+        let column = |of: fn(&colltrans::Nearest) -> f64| -> Vec<f64> {
+            found.iter().map(|n| n.as_ref().map_or(f64::INFINITY, of)).collect()
+        };
+        let points = |of: fn(&colltrans::AnyDistance) -> DVec3| {
+            let point = |n: &colltrans::Nearest| of(&n.distance).to_array();
+            let all = found.iter().map(|n| n.as_ref().map_or([f64::NAN; 3], point));
+            vectors(py, all.collect())
+        };
+        let id = |n: &Option<colltrans::Nearest>| n.map_or(-1, |n| n.obstacle.0 as i64);
+        let ids: Vec<i64> = found.iter().map(id).collect();
+        let columns = PyDict::new(py);
+        columns.set_item("obstacle", ids.into_pyarray(py))?;
+        columns.set_item("lower", column(|n| n.lower).into_pyarray(py))?;
+        columns.set_item("upper", column(|n| n.distance.upper()).into_pyarray(py))?;
+        columns.set_item("on_moving", points(|d| d.on_moving())?)?;
+        columns.set_item("on_fixed", points(|d| d.on_fixed())?)?;
+        Ok(columns)
+    }
+
+    /// :meth:`clearance` of many poses and directions, on some threads.
+    ///
+    /// Parameters
+    /// ----------
+    /// body, before, ignore
+    ///     As for :meth:`clearance`.
+    /// directions : array_like of shape (N, 3) or (3,)
+    ///     One for each pose, or one for all.
+    /// poses, threads
+    ///     As for :meth:`nearest_many`.
+    ///
+    /// Returns
+    /// -------
+    /// dict of ndarray
+    ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops it),
+    ///     ``distance`` (NaN where bodies overlap) and ``upper``.
+    #[pyo3(signature = (body, directions, poses, *, before=f64::INFINITY, ignore=HashSet::new(),
+        threads=None), text_signature = "($self, body, directions, poses, *, before=float('inf'), \
+        ignore=(), threads=None)")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    fn clearance_many<'py>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        poses: &Bound<'py, PyAny>,
+        before: f64,
+        #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (body, poses) = (Piece::of(body, "body")?, self::poses(poses)?);
+        let one = vector(directions, "directions").map(|one| vec![one]);
+        let rows = || directions.try_iter()?.map(|one| vector(&one?, "directions")).collect();
+        let directions: Vec<DVec3> = one.or_else(|_| rows())?;
+        if directions.len() != 1 && directions.len() != poses.len() {
+            let what = format!("{} for {} poses", directions.len(), poses.len());
+            return Err(input("directions", what));
+        }
+        let ask = |k: usize, among: &Among<'_>| {
+            among.clearance_before(directions[k.min(directions.len() - 1)], before)
+        };
+        let found = self.ask_rows(py, (&body, &poses), &ignore, threads, ask)?;
+        let found: Vec<_> = found.into_iter().map(ObstacleClearance).collect();
+        let kind = |one: &ObstacleClearance| match one.outcome() {
+            "blocked" => 0_u8,
+            "free" => 1,
+            _ => 2,
+        };
+        let columns = PyDict::new(py);
+        let outcome: Vec<u8> = found.iter().map(kind).collect();
+        let id = |one: &ObstacleClearance| one.obstacle().map_or(-1, |id| id as i64);
+        let ids: Vec<i64> = found.iter().map(id).collect();
+        let distance = found.iter().map(|one| one.distance().unwrap_or(f64::NAN));
+        let upper = found.iter().map(|one| one.upper());
+        columns.set_item("outcome", outcome.into_pyarray(py))?;
+        columns.set_item("obstacle", ids.into_pyarray(py))?;
+        columns.set_item("distance", distance.collect::<Vec<_>>().into_pyarray(py))?;
+        columns.set_item("upper", upper.collect::<Vec<_>>().into_pyarray(py))?;
+        Ok(columns)
+    }
+}
+
+impl Obstacles {
+    /// Bodies at poses: one for each, or one for all.
+    fn insert(
+        &self,
+        py: Python<'_>,
+        bodies: &[Bound<'_, PyAny>],
+        poses: Vec<colltrans::Pose>,
+    ) -> PyResult<Vec<u64>> {
+        let made = bodies.iter().map(|body| self.body(body)).collect::<PyResult<Vec<_>>>()?;
+        let all = poses.into_iter().enumerate();
+        let all = all.map(|(k, at)| (made[k.min(made.len() - 1)].clone(), at));
+        let ids = py.detach(|| self.write().insert_all(all));
+        Ok(ids.into_iter().map(|id| id.0).collect())
+    }
+
+    /// A body as it is kept: one object once.
+    fn body(&self, body: &Bound<'_, PyAny>) -> PyResult<AnyBody> {
+        let piece = Piece::of(body, "body")?;
+        let mut bodies = lock(&self.bodies);
+        let (_, kept) = bodies.entry(body.as_ptr() as usize).or_insert_with(|| {
+            let kept = match &piece {
+                Piece::Convex(body) => AnyBody::from(body.get().0.clone()),
+                Piece::Solid(solid) => AnyBody::from(solid.get().solid.clone()),
+            };
+            (piece, kept)
+        });
+        Ok(kept.clone())
+    }
+}
+
+/// Numbers of obstacles.
+fn numbers(of: &Bound<'_, PyAny>) -> PyResult<HashSet<u64>> {
+    of.try_iter()?.map(|one| one?.extract()).collect()
+}
+
+/// The nearest of many obstacles.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct NearestObstacle(colltrans::Nearest);
+
+#[pymethods]
+impl NearestObstacle {
+    /// int: Which one.
+    #[getter]
+    fn obstacle(&self) -> u64 {
+        self.0.obstacle.0
+    }
+
+    /// float: No obstacle is nearer, rounded down.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.0.lower
+    }
+
+    /// float: This one is not farther, rounded up.
+    #[getter]
+    fn upper(&self) -> f64 {
+        self.0.distance.upper()
+    }
+
+    /// ndarray of shape (3,): The point of the moving body that is nearest to it, in the world.
+    #[getter]
+    fn on_moving<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.distance.on_moving())
+    }
+
+    /// ndarray of shape (3,): Its point that is nearest to the moving body.
+    #[getter]
+    fn on_fixed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.distance.on_fixed())
+    }
+
+    /// ndarray of shape (3,) or None: Unit vector in the world, from the moving body to it, where they are
+    /// apart.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.0.distance.normal().map(|normal| row(py, normal))
+    }
+
+    fn __repr__(&self) -> String {
+        let (obstacle, lower, upper) = (self.obstacle(), self.lower(), self.upper());
+        format!("NearestObstacle(obstacle={obstacle}, lower={lower:?}, upper={upper:?})")
+    }
+}
+
+/// How far a body can move among obstacles, and what stops it.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct ObstacleClearance(ClearanceAmong);
+
+#[pymethods]
+impl ObstacleClearance {
+    /// str: ``"blocked"``, ``"free"`` or ``"overlapping"``.
+    #[getter]
+    fn outcome(&self) -> &'static str {
+        match (self.0.stop, self.0.distance()) {
+            (_, None) => "overlapping",
+            (Some(_), _) => "blocked",
+            (None, _) => "free",
+        }
+    }
+
+    /// int or None: What stops the body, or overlaps it.
+    #[getter]
+    fn obstacle(&self) -> Option<u64> {
+        self.0.stop.map(|(id, _)| id.0)
+    }
+
+    /// float or None: How far the body may safely move past all obstacles, in multiples of the direction; None
+    /// if it overlaps one now.
+    #[getter]
+    fn distance(&self) -> Option<f64> {
+        self.0.distance()
+    }
+
+    /// float: The body is stopped no later, for certain; infinite if nothing stops it, NaN if it overlaps an
+    /// obstacle.
+    #[getter]
+    fn upper(&self) -> f64 {
+        match self.0.stop {
+            None => f64::INFINITY,
+            Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
+                contact.certificate.upper
+            }
+            Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => {
+                contact.translation.upper
+            }
+            Some(_) => f64::NAN,
+        }
+    }
+
+    /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to what stops it.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        match self.0.stop {
+            Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
+                Some(row(py, contact.normal))
+            }
+            Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => {
+                Some(row(py, contact.normal))
+            }
+            _ => None,
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let or_none = |text: Option<String>| text.unwrap_or_else(|| "None".into());
+        let obstacle = or_none(self.obstacle().map(|id| id.to_string()));
+        let distance = or_none(self.distance().map(|distance| format!("{distance:?}")));
+        let outcome = self.outcome();
+        format!("ObstacleClearance('{outcome}', obstacle={obstacle}, distance={distance})")
+    }
+}

@@ -1,0 +1,171 @@
+//! Queries about two bodies where they are, as values.
+
+use colltrans::record::PairQuestion;
+use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::{OrRaise, error};
+use crate::frozen::{Options, Shown, show};
+use crate::pose::{Pose, pose};
+use crate::solid::Piece;
+use crate::solid_cast::patiently;
+
+/// Two bodies where they are, as a value: asked how far they are apart, how deep they overlap.
+///
+/// Parameters
+/// ----------
+/// moving, fixed : ConvexPolyhedron or Solid
+///     Nothing moves; the names tell them apart. If one of them is a solid, both are asked as solids.
+/// moving_pose, fixed_pose : array_like or Pose, optional
+///     Where the bodies are; see :class:`Pose`.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, Pair
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> pair = Pair(cube, cube, moving_pose=[-3, 0.5, 0])
+/// >>> found = pair.distance()
+/// >>> found.lower <= 2 <= found.upper
+/// True
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Pair {
+    pub(crate) bodies: [Piece; 2],
+    poses: [colltrans::Pose; 2],
+}
+
+/// Of convex bodies, or of solids.
+#[derive(Clone, Copy, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Of<C, S> {
+    Convex(C),
+    Solids(S),
+}
+
+/// The bodies, and their poses by name.
+type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
+
+/// The library's pair.
+pub(crate) type Asked<'a> = Of<colltrans::Pair<'a>, colltrans::Pair<'a, Solid>>;
+
+impl Pair {
+    pub(crate) fn of(
+        moving: &Bound<'_, PyAny>,
+        fixed: &Bound<'_, PyAny>,
+        poses: [Option<&Bound<'_, PyAny>>; 2],
+    ) -> PyResult<Self> {
+        Ok(Self {
+            bodies: [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?],
+            poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
+        })
+    }
+
+    /// The library's.
+    pub(crate) fn asked(&self) -> PyResult<Asked<'_>> {
+        let [at, to] = self.poses;
+        let pair = if let [Piece::Convex(p), Piece::Convex(q)] = &self.bodies {
+            let (p, q): (&ConvexPolyhedron, &ConvexPolyhedron) = (&p.get().0, &q.get().0);
+            colltrans::Pair::new(p.at(at), q.at(to)).map(Of::Convex)
+        } else {
+            let [p, q] = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
+            colltrans::Pair::new(p.at(at), q.at(to)).map(Of::Solids)
+        };
+        pair.or_raise()
+    }
+
+    /// An answer of the library's; without the interpreter's lock where it may take long.
+    pub(crate) fn ask<T: Send + 'static>(
+        slf: &Bound<'_, Self>,
+        question: impl FnOnce(&Asked<'_>) -> Result<T, QueryError> + Send + 'static,
+    ) -> PyResult<T> {
+        let query = slf.clone().unbind();
+        let work = move || {
+            let failed = |what: QueryError| match what {
+                QueryError::NotConverged { .. } => error("NotConvergedError", what),
+                what => error("QueryError", what),
+            };
+            question(&query.get().asked()?).map_err(failed)
+        };
+        match &slf.get().bodies {
+            [Piece::Convex(_), Piece::Convex(_)] => work(),
+            bodies => patiently(slf.py(), bodies, work),
+        }
+    }
+
+    /// The proof between solids, for which they are asked once more.
+    pub(crate) fn solid_proof(&self, question: PairQuestion) -> PyResult<ProofFile> {
+        let Of::Solids(pair) = self.asked()? else {
+            return Err(error("CaseError", "the bodies are convex"));
+        };
+        let within = match question {
+            PairQuestion::Within(length) => Some(length),
+            PairQuestion::Distance => None,
+            PairQuestion::Depth => return Err(error("CaseError", NO_PROOF)),
+        };
+        let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
+        ProofFile::of_solid_distance(&pair, [&pieces[0], &pieces[1]], within).or_raise()
+    }
+}
+
+const NO_PROOF: &str = "the depth of solids has no proof; a clearance has one of their overlap";
+
+#[pymethods]
+impl Pair {
+    #[new]
+    #[pyo3(signature = (moving, fixed, *, moving_pose=None, fixed_pose=None))]
+    fn new(
+        moving: &Bound<'_, PyAny>,
+        fixed: &Bound<'_, PyAny>,
+        moving_pose: Option<&Bound<'_, PyAny>>,
+        fixed_pose: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let query = Self::of(moving, fixed, [moving_pose, fixed_pose])?;
+        query.asked()?;
+        Ok(query)
+    }
+
+    /// ConvexPolyhedron or Solid: The moving body.
+    #[getter]
+    fn moving(&self, py: Python<'_>) -> Py<PyAny> {
+        self.bodies[0].object(py)
+    }
+
+    /// ConvexPolyhedron or Solid: The fixed body.
+    #[getter]
+    fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
+        self.bodies[1].object(py)
+    }
+
+    /// Pose: Where the moving body is.
+    #[getter]
+    fn moving_pose(&self) -> Pose {
+        Pose(self.poses[0])
+    }
+
+    /// Pose: Where the fixed body is.
+    #[getter]
+    fn fixed_pose(&self) -> Pose {
+        Pose(self.poses[1])
+    }
+
+    /// A picture of the bodies and of the shortest way between them: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    /// The arguments that make it once more, for `pickle` and `copy`.
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+        let named = PyDict::new(py);
+        named.set_item("moving_pose", self.moving_pose())?;
+        named.set_item("fixed_pose", self.fixed_pose())?;
+        Ok(((self.moving(py), self.fixed(py)), named))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        match self.bodies {
+            [Piece::Convex(_), Piece::Convex(_)] => "Pair(of convex bodies)",
+            _ => "Pair(of solids)",
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! One body among many placed ones: which is nearest, which are closer than a length, which is hit first.
+//!
+//! The bodies lie in a [`tree`] of [`boxes`]. A search asks about single bodies, with the questions that a
+//! [`Pair`] and a [`Cast`] answer, by the bounds of their boxes, the least first; what a box
+//! proves to be of no interest is not asked about.
+//!
+//! Notation. `U` is the least upper bound of an answer so far: of a distance, or of the translation at which a
+//! body stops the moving one.
+//!
+//! Invariant. A box is left out only if its bound, rounded outwards, is above `U`. What is in it then has a
+//! true value above `U`, so an upper bound above `U`, and is no better than the lower bound of the answer. So:
+//!
+//! - the answer is about the body whose own upper bound is the least of all, of equal ones the one that came
+//!   first, whatever the tree looks like: that of asking all one by one;
+//! - the least lower bound of those that were asked about is one of all.
+
+mod boxes;
+mod clearance;
+mod kinds;
+mod nearest;
+mod obstacles;
+mod proof;
+mod tree;
+
+use std::fmt;
+
+use glam::DVec3;
+
+use crate::body::solid::AsSolid;
+use crate::body::{Aabb, ObstacleId};
+use crate::cast::Cast;
+use crate::cast::solid::SolidOptions;
+use crate::pair::Pair;
+use crate::setting::error::QueryError;
+use crate::solve::options::Options;
+use crate::{ConvexPolyhedron, Solid};
+pub use clearance::ClearanceAmong;
+pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
+pub use nearest::{Nearby, Nearest};
+use obstacles::Obstacle;
+pub use obstacles::{Obstacles, UnknownObstacle};
+pub use proof::{AmongProof, ApartProof, ClearanceProof, NearbyProof, NearestProof, PassedProof};
+
+/// Bodies that are not asked about.
+type Ignored<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
+
+/// A moving body among many placed ones: what is asked of one and all of the others.
+///
+/// Made for one pose of the moving body, asked as often as one likes, from any thread. Answers are those of
+/// asking all obstacles one by one, a [`Pair`] or a [`Cast`] each: of several that cannot be told apart, the
+/// one whose upper bound is least, and of equal ones the one that came first. Bounds hold for all obstacles
+/// together.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let mut room = Obstacles::new();
+/// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
+/// let table = room.insert(table, Pose::IDENTITY);
+/// let mug = room.insert(cube.clone(), Pose::from_translation(DVec3::new(2.0, 0.0, 0.0))?);
+/// let finger = room.insert(cube.clone(), Pose::from_translation(DVec3::new(-1.0, 0.0, 3.0))?);
+///
+/// let hand = Pose::from_translation(DVec3::new(0.0, 0.0, 3.0))?;
+/// let own = |id| id == finger;
+/// let asked = Among::new(cube.at(hand), &room)?.ignoring(&own);
+/// assert_eq!(asked.nearest()?.expect("there are some").obstacle, mug);
+/// assert_eq!(asked.within(2.5)?.closer.len(), 1);
+/// let stop = asked.clearance(DVec3::NEG_Z)?.stop.expect("the table is below");
+/// assert_eq!(stop.0, table);
+///
+/// // The proof: checked against all bodies, without a search.
+/// let (down, proof) = asked.certified_clearance(DVec3::NEG_Z)?;
+/// assert!(down.lower <= 3.0 && down.lower > 2.999);
+/// assert!(asked.verify(&proof)? < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Among<'a> {
+    moving: AnyPlaced<'a>,
+    obstacles: &'a Obstacles,
+    bounds: Aabb,
+    ignored: Option<Ignored<'a>>,
+    options: Options,
+    solid_options: SolidOptions,
+}
+
+/// The work of an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct AmongSteps {
+    /// Boxes that were looked at, of obstacles and of many together.
+    pub boxes: u32,
+    /// Obstacles that were asked about.
+    pub bodies: u32,
+}
+
+/// Two bodies of the same kind.
+type AnyPair<'a> = ByKind<Pair<'a>, Pair<'a, Solid>>;
+
+/// The same, and a direction.
+type AnyCast<'a> = ByKind<Cast<'a>, Cast<'a, Solid>>;
+
+impl<'a> Among<'a> {
+    /// A placed body among obstacles, with the default choices.
+    ///
+    /// # Errors
+    /// A point or a segment where a solid is asked about it: as the moving body among solids, or among the
+    /// obstacles of a moving solid.
+    pub fn new(
+        moving: impl Into<AnyPlaced<'a>>,
+        obstacles: &'a Obstacles,
+    ) -> Result<Self, QueryError> {
+        let moving = moving.into();
+        let counts = obstacles.counts();
+        match moving {
+            ByKind::Convex(placed) if counts.solids > 0 => drop(placed.body.as_solid()?),
+            ByKind::Solid(_) if counts.bare > 0 => obstacles.refuse_bare()?,
+            _ => {}
+        }
+        Ok(Self {
+            moving,
+            obstacles,
+            bounds: moving.bounds(),
+            ignored: None,
+            options: Options::default(),
+            solid_options: SolidOptions::default(),
+        })
+    }
+
+    /// Without those for which this is true: the parts of a gripper, say.
+    #[must_use]
+    pub fn ignoring(self, ignored: &'a (dyn Fn(ObstacleId) -> bool + Sync)) -> Self {
+        Self { ignored: Some(ignored), ..self }
+    }
+
+    /// With other choices for casts at convex bodies.
+    ///
+    /// # Errors
+    /// As [`Cast::with_options`].
+    pub fn with_options(self, options: Options) -> Result<Self, QueryError> {
+        options.check()?;
+        Ok(Self { options, ..self })
+    }
+
+    /// With other choices for casts of solids; they are checked for each body that is asked about.
+    #[must_use]
+    pub fn with_solid_options(self, solid_options: SolidOptions) -> Self {
+        Self { solid_options, ..self }
+    }
+
+    /// The moving body, and where it is.
+    pub fn moving(&self) -> AnyPlaced<'a> {
+        self.moving
+    }
+
+    /// All obstacles, those that are ignored as well.
+    pub fn obstacles(&self) -> &'a Obstacles {
+        self.obstacles
+    }
+
+    fn is_ignored(&self, id: ObstacleId) -> bool {
+        self.ignored.is_some_and(|ignored| ignored(id))
+    }
+
+    /// Those that are asked about, in no order.
+    fn asked(&self) -> impl Iterator<Item = &'a Obstacle> {
+        self.obstacles.placed().iter().filter(|obstacle| !self.is_ignored(obstacle.id))
+    }
+
+    fn obstacle(&self, item: u32) -> &'a Obstacle {
+        &self.obstacles.placed()[item as usize]
+    }
+
+    fn pair(&self, obstacle: &'a Obstacle) -> Result<AnyPair<'a>, QueryError> {
+        Ok(match (self.moving, obstacle.placed()) {
+            (ByKind::Convex(p), ByKind::Convex(q)) => ByKind::Convex(Pair::new(p, q)?),
+            (ByKind::Convex(p), ByKind::Solid(q)) => ByKind::Solid(Pair::between(p, q)?),
+            (ByKind::Solid(p), ByKind::Convex(q)) => ByKind::Solid(Pair::between(p, q)?),
+            (ByKind::Solid(p), ByKind::Solid(q)) => ByKind::Solid(Pair::between(p, q)?),
+        })
+    }
+
+    fn cast(&self, obstacle: &'a Obstacle, direction: DVec3) -> Result<AnyCast<'a>, QueryError> {
+        let cast = match (self.moving, obstacle.placed()) {
+            (ByKind::Convex(p), ByKind::Convex(q)) => {
+                let cast = Cast::new(p, q, direction)?;
+                return Ok(ByKind::Convex(cast.with_options(self.options)?));
+            }
+            (ByKind::Convex(p), ByKind::Solid(q)) => Cast::between(p, q, direction)?,
+            (ByKind::Solid(p), ByKind::Convex(q)) => Cast::between(p, q, direction)?,
+            (ByKind::Solid(p), ByKind::Solid(q)) => Cast::between(p, q, direction)?,
+        };
+        Ok(ByKind::Solid(cast.with_options(self.solid_options)?))
+    }
+}
+
+impl Obstacles {
+    /// What a solid cannot be asked about.
+    fn refuse_bare(&self) -> Result<(), QueryError> {
+        for (_, body, _) in self.iter() {
+            if let AnyBody::Convex(body) = body {
+                body.as_solid()?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Among<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Among")
+            .field("moving", &self.moving)
+            .field("obstacles", &self.obstacles.len())
+            .field("ignores", &self.ignored.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+/// From any thread.
+const _: fn() = || {
+    fn shared<T: Send + Sync>() {}
+    shared::<Among<'_>>();
+    shared::<Obstacles>();
+    shared::<ConvexPolyhedron>();
+};

@@ -1,0 +1,163 @@
+"""One body among many: numbers, answers beside those of single queries, rows, threads, bad input."""
+
+import math
+import threading
+
+import numpy as np
+import pytest
+from colltrans import (
+    Blocked,
+    ConvexPolyhedron,
+    InputError,
+    Obstacles,
+    Pose,
+    QueryError,
+    Solid,
+    clearance,
+)
+
+CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+DOWN = [0, 0, -1]
+
+
+def shelf(n: int = 200) -> tuple[Obstacles, np.ndarray]:
+    rng = np.random.default_rng(5)
+    places = rng.uniform(0, 20, (n, 3))
+    obstacles = Obstacles()
+    assert obstacles.add_many(CUBE, places) == list(range(n))
+    return obstacles, places
+
+
+def test_numbers_stay_valid() -> None:
+    obstacles = Obstacles()
+    first, second = obstacles.add(CUBE), obstacles.add(CUBE, [3, 0, 0])
+    assert (first, second, len(obstacles), first in obstacles) == (0, 1, 2, True)
+    obstacles.remove(first)
+    assert first not in obstacles
+    assert obstacles.add(CUBE, [9, 0, 0]) == 2
+    assert obstacles.pose(second).translation.tolist() == [3, 0, 0]
+    obstacles.set_pose(second, Pose([4, 0, 0]))
+    found = obstacles.nearest(CUBE)
+    assert found is not None
+    assert found.obstacle == second
+    assert found.lower <= 3 <= found.upper
+    assert found.normal is not None
+    assert found.normal.tolist() == [1, 0, 0]
+    assert repr(obstacles) == "Obstacles(2)"
+    for gone in (first, 77):
+        with pytest.raises(KeyError, match="there is no obstacle"):
+            obstacles.remove(gone)
+        with pytest.raises(KeyError):
+            obstacles.set_pose(gone, [0, 0, 0])
+        with pytest.raises(KeyError):
+            obstacles.pose(gone)
+        with pytest.raises(KeyError):
+            obstacles.set_poses([second, gone], np.zeros((2, 3)))
+    assert obstacles.pose(second).translation.tolist() == [4, 0, 0]
+
+
+def test_casts_are_those_of_single_queries() -> None:
+    obstacles, places = shelf()
+    rng = np.random.default_rng(6)
+    for at in rng.uniform(0, 20, (20, 3)):
+        singly = [clearance(CUBE, CUBE, DOWN, moving_pose=at, fixed_pose=to) for to in places]
+        found = obstacles.clearance(CUBE, DOWN, at)
+        if any(one.distance is None for one in singly):
+            assert (found.outcome, found.distance) == ("overlapping", None)
+            continue
+        blocked = [
+            (one.contact.certificate.upper, k)
+            for k, one in enumerate(singly)
+            if isinstance(one, Blocked)
+        ]
+        assert found.outcome == ("blocked" if blocked else "free")
+        if blocked:
+            upper, obstacle = min(blocked)
+            assert (found.upper, found.obstacle) == (upper, obstacle)
+        else:
+            assert (found.distance, found.obstacle) == (math.inf, None)
+
+
+def test_rows_have_the_bits_of_single_answers() -> None:
+    obstacles, _ = shelf()
+    rng = np.random.default_rng(7)
+    poses, directions = rng.uniform(0, 20, (300, 3)), rng.normal(size=(300, 3))
+    ignore = {3, 5}
+    for threads in (1, 3, None):
+        near = obstacles.nearest_many(CUBE, poses, ignore=ignore, threads=threads)
+        casts = obstacles.clearance_many(CUBE, directions, poses, ignore=ignore, threads=threads)
+        assert near["on_fixed"].shape == (300, 3)
+        for k in range(300):
+            one = obstacles.nearest(CUBE, poses[k], ignore=ignore)
+            assert one is not None
+            assert (near["obstacle"][k], near["lower"][k], near["upper"][k]) == (
+                one.obstacle,
+                one.lower,
+                one.upper,
+            )
+            stop = obstacles.clearance(CUBE, directions[k], poses[k], ignore=ignore)
+            assert casts["obstacle"][k] == (-1 if stop.obstacle is None else stop.obstacle)
+            assert ["blocked", "free", "overlapping"][casts["outcome"][k]] == stop.outcome
+            if stop.distance is not None:
+                assert casts["distance"][k] == stop.distance
+    same = obstacles.clearance_many(CUBE, DOWN, poses, before=0.5)
+    assert (same["distance"][same["outcome"] == 1] == 0.5).all()
+    assert len(Obstacles().nearest_many(CUBE, poses)["obstacle"]) == 300
+
+
+def test_those_within_a_length() -> None:
+    obstacles = Obstacles()
+    obstacles.add_many([CUBE, CUBE, CUBE], [[2, 0, 0], [9, 0, 0], [0, 3, 0]])
+    assert obstacles.within(CUBE, 1.5) == ([0], [])
+    assert obstacles.within(CUBE, 2.5) == ([0, 2], [])
+    assert obstacles.within(CUBE, 2.5, ignore=[0]) == ([2], [])
+    # Exactly as far.
+    assert obstacles.within(CUBE, 2) == ([0], [2])
+
+
+def test_solids_and_convex_bodies_together() -> None:
+    step = Solid.from_pieces([CUBE, ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 3])])
+    obstacles = Obstacles()
+    obstacles.add(step, [0.5, 0, 0])
+    obstacles.add(CUBE)
+    assert obstacles.clearance(CUBE, DOWN, [0, 0, 9]).obstacle == 0
+    assert obstacles.clearance(step, DOWN, [-0.6, 0, 9]).obstacle == 1
+
+
+def test_bad_input_is_refused() -> None:
+    obstacles, _ = shelf(3)
+    with pytest.raises(QueryError, match="length"):
+        obstacles.within(CUBE, -1)
+    with pytest.raises(QueryError, match="direction"):
+        obstacles.clearance(CUBE, [0, 0, 0])
+    with pytest.raises(QueryError, match="row 1: the direction"):
+        obstacles.clearance_many(CUBE, [[0, 0, 1], [0, 0, 0]], np.zeros((2, 3)))
+    with pytest.raises(InputError):
+        obstacles.clearance_many(CUBE, np.ones((3, 3)), np.zeros((2, 3)))
+    with pytest.raises(InputError):
+        obstacles.add_many([CUBE, CUBE], np.zeros((3, 3)))
+    with pytest.raises(TypeError, match="body: neither"):
+        obstacles.add("a cube")  # type: ignore[arg-type]
+    obstacles.add(Solid.from_pieces([CUBE]))
+    with pytest.raises(QueryError, match="no solid"):
+        obstacles.nearest(ConvexPolyhedron([[0, 0, 0]]))
+
+
+def test_threads_may_ask_while_another_moves() -> None:
+    obstacles, places = shelf()
+    wrong = []
+
+    def ask() -> None:
+        for _ in range(200):
+            found = obstacles.nearest(CUBE, [50, 50, 50])
+            if found is None or not found.lower <= found.upper:
+                wrong.append(found)
+
+    workers = [threading.Thread(target=ask) for _ in range(4)]
+    for worker in workers:
+        worker.start()
+    for k in range(500):
+        obstacles.set_pose(k % 200, places[(k * 7) % 200])
+    for worker in workers:
+        worker.join()
+    assert not wrong

@@ -1,0 +1,514 @@
+//! One body among many, judged over all obstacles, one by one.
+//!
+//! - *The rule.* The answer is about the obstacle whose own answer, of a pair or a cast of its own, has the
+//!   least upper bound, and of equal ones about the one that came first: to the bit.
+//! - *Bounds.* Between convex bodies the distance of every obstacle, exactly, is at least the lower bound, and
+//!   that of one at most the upper one; no obstacle is met before the bound of a clearance, by the linear
+//!   programme, unless the bodies slide.
+//! - *The tree plays no part.* Obstacles that came, moved and went answer as those that were put where they are.
+//! - *Proofs.* They hold, and changed ones do not.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::{
+    Among, AnyBody, AnyClearance, AnyDistance, AnyPlaced, ByKind, Cast, Clearance,
+    ConvexPolyhedron, NearestProof, ObstacleId, Obstacles, Pair, Pose, QueryError, Solid, WhyFree,
+    Within,
+};
+
+use super::distance::distance;
+use super::exact::{Ratio, place};
+use super::scene::Scene;
+use super::simplex::collision_translation;
+use crate::random::Random;
+use crate::shapes::random_hull;
+
+/// Sorts of scenes, by name.
+pub const FAMILIES: [&str; 6] = ["rows", "coincident", "hulls", "thin", "far", "mixed"];
+
+/// One linear programme in so many settings.
+const PROGRAMME_EVERY: u64 = 8;
+
+/// What came out, for statistics.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Seen {
+    /// Obstacles that there were.
+    pub obstacles: usize,
+    /// Those that were asked about, for the nearest one.
+    pub asked: usize,
+    /// Whether one overlapped the moving body.
+    pub overlapped: bool,
+    /// Whether several had the least upper bound.
+    pub tied: bool,
+    /// Whether the moving body was stopped.
+    pub stopped: bool,
+    /// Changed proofs that were refused.
+    pub refused: usize,
+}
+
+/// A body, and obstacles that came, moved and went.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    obstacles: Obstacles,
+    moving: AnyBody,
+    pose: Pose,
+    direction: DVec3,
+    length: f64,
+    seed: u64,
+}
+
+type Answer = (f64, ObstacleId);
+
+fn text(error: &dyn std::fmt::Display) -> String {
+    error.to_string()
+}
+
+macro_rules! require {
+    ($condition:expr, $($text:tt)+) => {
+        let holds: bool = $condition;
+        if !holds {
+            return Err(format!($($text)+));
+        }
+    };
+}
+
+impl Setting {
+    /// The setting of a family for a seed.
+    ///
+    /// # Errors
+    /// An unknown family; a body that the library refuses.
+    pub fn draw(family: &str, seed: u64) -> Result<Self, String> {
+        let which = FAMILIES.iter().position(|name| *name == family).ok_or("no such family")?;
+        let random = &mut Random::stream(seed, &[which as u64, 0xa303]);
+        let bodies = bodies(family, random)?;
+        let count = random.pick(&[0, 1, 2, 5, 9, 14]);
+        let mut obstacles = Obstacles::new();
+        let mut all = Vec::new();
+        for _ in 0..count {
+            all.push((bodies[random.index(bodies.len())].clone(), place_for(family, random)?));
+        }
+        let mut ids = if random.one_in(2) {
+            obstacles.insert_all(all)
+        } else {
+            all.into_iter().map(|(body, pose)| obstacles.insert(body, pose)).collect()
+        };
+        for _ in 0..random.index(12) {
+            change(family, &bodies, &mut obstacles, &mut ids, random)?;
+        }
+        let pose = place_for(family, random)?;
+        let direction = if random.one_in(2) {
+            random.pick(&[DVec3::X, DVec3::NEG_Y, DVec3::new(1.0, 1.0, 0.0), DVec3::Z * 3.0])
+        } else {
+            random.direction() * random.pick(&[1.0, 1e-3, 7.0])
+        };
+        let any = random.range(0.0, 8.0);
+        let length = random.pick(&[0.0, 0.5, 1.0, 2.0, any]);
+        let moving = bodies[random.index(bodies.len())].clone();
+        Ok(Self { obstacles, moving, pose, direction, length, seed })
+    }
+
+    /// Asks everything, and judges it.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn examine(&self) -> Result<Seen, String> {
+        let asked = Among::new(self.moving.at(self.pose), &self.obstacles).map_err(|e| text(&e))?;
+        let mut seen = Seen { obstacles: self.obstacles.len(), ..Seen::default() };
+        self.judge(&asked, &|_| false, &mut seen)?;
+        let ignored = |id: ObstacleId| (id.0 ^ self.seed).is_multiple_of(3);
+        self.judge(&asked.ignoring(&ignored), &ignored, &mut Seen::default())?;
+        self.compare_anew(&asked)?;
+        Ok(seen)
+    }
+
+    /// All obstacles but those that are ignored, in the order in which they came.
+    fn all(&self, ignored: &dyn Fn(ObstacleId) -> bool) -> Vec<(ObstacleId, AnyPlaced<'_>)> {
+        let mut all: Vec<_> = self
+            .obstacles
+            .iter()
+            .filter(|(id, ..)| !ignored(*id))
+            .map(|(id, body, pose)| (id, body.at(pose)))
+            .collect();
+        all.sort_by_key(|(id, _)| *id);
+        all
+    }
+
+    fn judge(
+        &self,
+        asked: &Among,
+        ignored: &dyn Fn(ObstacleId) -> bool,
+        seen: &mut Seen,
+    ) -> Result<(), String> {
+        let all = self.all(ignored);
+        let own = self.moving.at(self.pose);
+        let squares: Vec<Option<Ratio>> = all.iter().map(|(_, one)| square(&own, one)).collect();
+        self.judge_nearest(asked, &all, &squares, seen).map_err(|e| format!("nearest: {e}"))?;
+        self.judge_within(asked, &all, &squares).map_err(|e| format!("within: {e}"))?;
+        self.judge_clearance(asked, &all, seen).map_err(|e| format!("clearance: {e}"))
+    }
+
+    fn judge_nearest(
+        &self,
+        asked: &Among,
+        all: &[(ObstacleId, AnyPlaced)],
+        squares: &[Option<Ratio>],
+        seen: &mut Seen,
+    ) -> Result<(), String> {
+        let mut best: Option<(Answer, AnyDistance)> = None;
+        for (id, one) in all {
+            let distance = distance_of(self.moving.at(self.pose), *one).map_err(|e| text(&e))?;
+            let key = (distance.upper(), *id);
+            seen.tied |= best.is_some_and(|(first, _)| first.0 == key.0);
+            if best.is_none_or(|(first, _)| key < first) {
+                best = Some((key, distance));
+            }
+        }
+        let found = asked.certified_nearest().map_err(|e| text(&e))?;
+        let (Some((answer, proof)), Some(((upper, id), distance))) = (&found, &best) else {
+            require!(found.is_none() && best.is_none(), "an answer about nothing");
+            return Ok(());
+        };
+        require!(answer.obstacle == *id, "{} and not {id}", answer.obstacle);
+        require!(answer.distance == *distance, "another distance");
+        require!(answer.lower <= answer.distance.lower(), "a lower bound above its own");
+        require!(proof.lower <= answer.lower, "a proof of more");
+        let noise = answer.distance.upper() - answer.distance.lower();
+        require!(answer.lower >= distance.lower() - 2.0 * noise, "a lower bound {}", answer.lower);
+        require!(proof.lower >= answer.lower - noise, "a proof of less: {}", proof.lower);
+        for ((id, _), square) in all.iter().zip(squares) {
+            let Some(square) = square else { continue };
+            require!(is_square_below(answer.lower, square), "{id} is nearer than the lower bound");
+        }
+        if let Some(square) =
+            all.iter().position(|(one, _)| one == id).and_then(|k| squares[k].clone())
+        {
+            require!(!is_square_below(upper.next_up(), &square) || square.is_zero(), "farther");
+        }
+        seen.asked = answer.steps.bodies as usize;
+        seen.overlapped = distance.lower() == 0.0;
+        asked.verify(proof).map_err(|e| text(&e))?;
+        seen.refused += refused(asked, proof)?;
+        Ok(())
+    }
+
+    fn judge_within(
+        &self,
+        asked: &Among,
+        all: &[(ObstacleId, AnyPlaced)],
+        squares: &[Option<Ratio>],
+    ) -> Result<(), String> {
+        let (answer, proof) = asked.certified_within(self.length).map_err(|e| text(&e))?;
+        let closer: BTreeSet<ObstacleId> = answer.closer.iter().map(|(id, _)| *id).collect();
+        let undecided: BTreeSet<ObstacleId> = answer.undecided.iter().map(|(id, _)| *id).collect();
+        for ((id, one), square) in all.iter().zip(squares) {
+            let said = (closer.contains(id), undecided.contains(id));
+            let own = within(self.moving.at(self.pose), *one, self.length).map_err(|e| text(&e))?;
+            // A box may tell what rounding leaves open to the pair.
+            require!(
+                said == own || (own.1 && said == (false, false)),
+                "{id}: {said:?}, not {own:?}"
+            );
+            let Some(square) = square else { continue };
+            let is_closer = !is_square_below(self.length.next_up(), square);
+            let is_farther = is_square_below(self.length, square);
+            require!(!said.0 || is_closer || !is_farther, "{id} is not closer");
+            require!(said != (false, false) || is_farther, "{id} is closer");
+        }
+        require!(closer.len() + undecided.len() <= all.len(), "more than there are");
+        asked.verify(&proof).map_err(|e| text(&e))?;
+        if !proof.closer.is_empty() {
+            let mut changed = proof.clone();
+            changed.closer.pop();
+            require!(asked.verify(&changed).is_err(), "a closer one left out passes");
+        }
+        Ok(())
+    }
+
+    fn judge_clearance(
+        &self,
+        asked: &Among,
+        all: &[(ObstacleId, AnyPlaced)],
+        seen: &mut Seen,
+    ) -> Result<(), String> {
+        let direction = self.direction;
+        let mut best: Option<(Answer, AnyClearance)> = None;
+        let mut least = f64::INFINITY;
+        for (id, one) in all {
+            let own = clearance_of(self.moving.at(self.pose), *one, direction);
+            let own = own.map_err(|e| text(&e))?;
+            least = least.min(own.distance().unwrap_or(0.0));
+            let key = (upper_of(&own), *id);
+            if key.0 < f64::INFINITY && best.is_none_or(|(first, _)| key < first) {
+                best = Some((key, own));
+            }
+        }
+        let (answer, proof) = asked.certified_clearance(direction).map_err(|e| text(&e))?;
+        let expected = best.map(|((_, id), own)| (id, own));
+        require!(
+            answer.stop.map(|(id, _)| id) == expected.map(|(id, _)| id),
+            "{:?} and not {:?}",
+            answer.stop,
+            expected
+        );
+        if let (Some((_, ByKind::Convex(a))), Some((_, ByKind::Convex(b)))) =
+            (answer.stop, expected)
+        {
+            require!(a == b, "another clearance");
+        }
+        require!(answer.lower >= least, "{} and not {least}", answer.lower);
+        require!(proof.lower <= answer.lower, "a proof of more");
+        seen.stopped = answer.stop.is_some();
+        asked.verify(&proof).map_err(|e| text(&e))?;
+        if proof.lower < f64::INFINITY {
+            let [mut higher, mut without] = [proof.clone(), proof.clone()];
+            higher.lower = proof.lower * 1.001 + 0.001;
+            without.passed.retain(|(id, _)| Some(*id) != proof.stop);
+            let refused = [higher, without].map(|changed| asked.verify(&changed).is_err());
+            require!(refused == [true; 2], "a changed proof passes: {refused:?}");
+            seen.refused += 2;
+        }
+        if self.seed.is_multiple_of(PROGRAMME_EVERY) && answer.distance().is_some() {
+            self.judge_translations(all, answer.lower)?;
+        }
+        self.judge_end(asked, &answer)
+    }
+
+    /// By the linear programme.
+    fn judge_translations(
+        &self,
+        all: &[(ObstacleId, AnyPlaced)],
+        lower: f64,
+    ) -> Result<(), String> {
+        for (id, one) in all {
+            if let (ByKind::Convex(p), ByKind::Convex(q)) = (self.moving.at(self.pose), *one) {
+                self.not_met_before(p, q, lower).map_err(|e| format!("{id}: {e}"))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// With an end nothing else is said of what is before it.
+    fn judge_end(&self, asked: &Among, answer: &colltrans::ClearanceAmong) -> Result<(), String> {
+        for end in [0.0, 0.5, 1.0, 4.0] {
+            let ended = asked.clearance_before(self.direction, end).map_err(|e| text(&e))?;
+            let upper = answer.stop.map_or(f64::INFINITY, |(_, stop)| upper_of(&stop));
+            let is_before = ended.stop.map(|(id, _)| id) == answer.stop.map(|(id, _)| id);
+            require!(if upper < end { is_before } else { ended.stop.is_none() }, "end {end}");
+            require!(ended.lower >= answer.lower.min(end), "end {end}: lower {}", ended.lower);
+        }
+        Ok(())
+    }
+
+    /// That an obstacle is not met between 0 and a translation, unless they slide.
+    fn not_met_before(
+        &self,
+        p: colltrans::Placed,
+        q: colltrans::Placed,
+        lower: f64,
+    ) -> Result<(), String> {
+        let cast = Cast::new(p, q, self.direction).map_err(|e| text(&e))?;
+        let Some(first) = collision_translation(&Scene::of(&cast)) else { return Ok(()) };
+        let slides = matches!(cast.clearance(), Ok(Clearance::Free(WhyFree::Slides(_))));
+        let is_before = !first.is_negative() && first < Ratio::from_f64(lower.min(1e300));
+        require!(!is_before || slides, "met at {:e}, before {lower:e}", first.to_f64());
+        Ok(())
+    }
+
+    /// The same obstacles, put where they are.
+    fn compare_anew(&self, asked: &Among) -> Result<(), String> {
+        let mut all: Vec<_> = self.obstacles.iter().collect();
+        all.sort_by_key(|(id, ..)| *id);
+        let mut anew = Obstacles::new();
+        anew.insert_all(all.iter().map(|(_, body, pose)| ((*body).clone(), *pose)));
+        let old = |id: ObstacleId| all[id.0 as usize].0;
+        let other = Among::new(self.moving.at(self.pose), &anew).map_err(|e| text(&e))?;
+        let [a, b] = [asked, &other].map(|asked| asked.nearest().ok().flatten());
+        let of = |nearest: colltrans::Nearest| (nearest.distance, nearest.lower);
+        require!(a.map(of) == b.map(of), "made anew, another nearest one");
+        require!(a.map(|a| a.obstacle) == b.map(|b| old(b.obstacle)), "made anew, another one");
+        let [a, b] = [asked, &other].map(|asked| asked.within(self.length).map_err(|e| text(&e)));
+        let (a, b) = (a?, b?);
+        let closer: Vec<_> = b.closer.iter().map(|(id, near)| (old(*id), *near)).collect();
+        require!(a.closer == closer, "made anew, others are closer");
+        let [a, b] = [asked, &other].map(|asked| asked.clearance(self.direction).ok());
+        let of = |answer: colltrans::ClearanceAmong| answer.stop.map(|(_, stop)| upper_of(&stop));
+        require!(a.map(of) == b.map(of), "made anew, another clearance");
+        Ok(())
+    }
+}
+
+/// Changes a proof, and counts how many changed ones are refused: all that do not hold.
+fn refused(asked: &Among, proof: &NearestProof) -> Result<usize, String> {
+    let changes: [&dyn Fn(&mut NearestProof); 4] = [
+        &|proof| proof.lower = proof.lower * 1.001 + 0.001,
+        &|proof| proof.lower = f64::NAN,
+        &|proof| proof.obstacle = ObstacleId(u64::MAX),
+        &|proof| proof.apart.retain(|(one, _)| *one == proof.obstacle),
+    ];
+    let mut count = 0;
+    for (k, change) in changes.into_iter().enumerate() {
+        let mut changed = proof.clone();
+        change(&mut changed);
+        if changed == *proof || (k == 3 && changed.lower == 0.0) {
+            continue;
+        }
+        let refused = asked.verify(&changed).is_err();
+        require!(refused || k == 3 && boxes_tell(asked, proof), "change {k} passes");
+        count += usize::from(refused);
+    }
+    Ok(count)
+}
+
+/// Whether boxes tell of all obstacles that a proof names: then it would do without.
+fn boxes_tell(asked: &Among, proof: &NearestProof) -> bool {
+    let mut bare = proof.clone();
+    bare.apart.clear();
+    asked.verify(&bare).is_ok()
+}
+
+/// Bodies that the obstacles of a scene are.
+fn bodies(family: &str, random: &mut Random) -> Result<Vec<AnyBody>, String> {
+    let cuboid = |low: DVec3, high: DVec3| {
+        ConvexPolyhedron::cuboid(low, high).map(AnyBody::from).map_err(|e| text(&e))
+    };
+    let points = |points: &[DVec3]| {
+        ConvexPolyhedron::from_points(points).map(AnyBody::from).map_err(|e| text(&e))
+    };
+    let cube = cuboid(DVec3::ZERO, DVec3::ONE)?;
+    let mut hull = |count| points(&random_hull(count, random).vertices);
+    Ok(match family {
+        "rows" | "coincident" => vec![cube, cuboid(DVec3::splat(-0.5), DVec3::new(1.5, 0.5, 0.5))?],
+        "hulls" | "far" => vec![hull(4)?, hull(12)?, hull(50)?],
+        "thin" => vec![
+            cube,
+            points(&[DVec3::ZERO])?,
+            points(&[DVec3::ZERO, DVec3::X])?,
+            points(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)])?,
+            cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-9))?,
+        ],
+        _ => {
+            let post = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 2.0));
+            let bar = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0));
+            let (post, bar) = (post.map_err(|e| text(&e))?, bar.map_err(|e| text(&e))?);
+            let step = Solid::from_pieces([&post, &bar]).map_err(|e| text(&e))?;
+            vec![cube, AnyBody::from(Arc::new(step)), hull(8)?]
+        }
+    })
+}
+
+/// A place: on a grid where ties are wanted.
+fn place_for(family: &str, random: &mut Random) -> Result<Pose, String> {
+    let quarter = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+    let (rotation, at) = match family {
+        "rows" => (DQuat::IDENTITY, random.grid(-3, 3) * random.pick(&[0.5, 1.0])),
+        "coincident" => (DQuat::IDENTITY, random.grid(0, 1)),
+        "thin" if random.one_in(2) => (quarter, random.grid(-2, 2)),
+        "thin" => (random.rotation(), random.grid(-2, 2)),
+        "far" => (random.rotation(), DVec3::splat(1e6) + random.vector() * 4.0),
+        "mixed" if random.one_in(2) => (quarter, random.grid(-3, 3)),
+        _ => (random.rotation(), random.vector() * 4.0),
+    };
+    Pose::new(rotation, at).map_err(|e| text(&e))
+}
+
+/// One comes, moves or goes.
+fn change(
+    family: &str,
+    bodies: &[AnyBody],
+    obstacles: &mut Obstacles,
+    ids: &mut Vec<ObstacleId>,
+    random: &mut Random,
+) -> Result<(), String> {
+    let pose = place_for(family, random)?;
+    if ids.is_empty() || random.one_in(4) {
+        ids.push(obstacles.insert(bodies[random.index(bodies.len())].clone(), pose));
+        return Ok(());
+    }
+    let which = random.index(ids.len());
+    if random.one_in(3) {
+        let id = ids.remove(which);
+        require!(obstacles.remove(id).is_some() && obstacles.remove(id).is_none(), "not removed");
+        require!(obstacles.set_pose(id, pose).is_err(), "moved though it has gone");
+        return Ok(());
+    }
+    let moved = if random.one_in(2) {
+        obstacles.set_pose(ids[which], pose)
+    } else {
+        obstacles.set_poses(&ids.iter().take(which + 1).map(|id| (*id, pose)).collect::<Vec<_>>())
+    };
+    moved.map_err(|e| text(&e))
+}
+
+fn pair<'a>(
+    p: AnyPlaced<'a>,
+    q: AnyPlaced<'a>,
+) -> Result<ByKind<Pair<'a>, Pair<'a, Solid>>, QueryError> {
+    Ok(match (p, q) {
+        (ByKind::Convex(p), ByKind::Convex(q)) => ByKind::Convex(Pair::new(p, q)?),
+        (ByKind::Convex(p), ByKind::Solid(q)) => ByKind::Solid(Pair::between(p, q)?),
+        (ByKind::Solid(p), ByKind::Convex(q)) => ByKind::Solid(Pair::between(p, q)?),
+        (ByKind::Solid(p), ByKind::Solid(q)) => ByKind::Solid(Pair::between(p, q)?),
+    })
+}
+
+fn distance_of(p: AnyPlaced, q: AnyPlaced) -> Result<AnyDistance, QueryError> {
+    Ok(match pair(p, q)? {
+        ByKind::Convex(pair) => ByKind::Convex(pair.distance()?),
+        ByKind::Solid(pair) => ByKind::Solid(pair.distance()?),
+    })
+}
+
+/// Whether it is closer, and whether that is undecided.
+fn within(p: AnyPlaced, q: AnyPlaced, length: f64) -> Result<(bool, bool), QueryError> {
+    Ok(match pair(p, q)? {
+        ByKind::Convex(pair) => match pair.within(length)? {
+            Within::Closer(_) => (true, false),
+            Within::Farther(_) => (false, false),
+            _ => (false, true),
+        },
+        ByKind::Solid(pair) => match pair.within(length)? {
+            Within::Closer(_) => (true, false),
+            Within::Farther(_) => (false, false),
+            _ => (false, true),
+        },
+    })
+}
+
+fn clearance_of(p: AnyPlaced, q: AnyPlaced, d: DVec3) -> Result<AnyClearance, QueryError> {
+    Ok(match (p, q) {
+        (ByKind::Convex(p), ByKind::Convex(q)) => ByKind::Convex(Cast::new(p, q, d)?.clearance()?),
+        (ByKind::Convex(p), ByKind::Solid(q)) => {
+            ByKind::Solid(Cast::between(p, q, d)?.clearance()?)
+        }
+        (ByKind::Solid(p), ByKind::Convex(q)) => {
+            ByKind::Solid(Cast::between(p, q, d)?.clearance()?)
+        }
+        (ByKind::Solid(p), ByKind::Solid(q)) => ByKind::Solid(Cast::between(p, q, d)?.clearance()?),
+    })
+}
+
+/// The upper bound of where it stops the body.
+fn upper_of(clearance: &AnyClearance) -> f64 {
+    match clearance {
+        ByKind::Convex(Clearance::Blocked { contact, .. }) => contact.certificate.upper,
+        ByKind::Solid(Clearance::Blocked { contact, .. }) => contact.translation.upper,
+        _ if clearance.distance().is_none() => f64::NEG_INFINITY,
+        _ => f64::INFINITY,
+    }
+}
+
+/// The square of the distance of two convex bodies, exactly.
+fn square(p: &AnyPlaced, q: &AnyPlaced) -> Option<Ratio> {
+    let (ByKind::Convex(p), ByKind::Convex(q)) = (p, q) else { return None };
+    let [p, q] =
+        [p, q].map(|one| place(one.pose.matrix(), one.pose.translation(), one.body.vertices()));
+    Some(distance(&p, &q).square)
+}
+
+/// Whether a length is at most one whose square this is.
+fn is_square_below(length: f64, square: &Ratio) -> bool {
+    let length = Ratio::from_f64(length);
+    length.times(&length) <= *square
+}

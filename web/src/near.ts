@@ -1,0 +1,89 @@
+// How far the bodies are apart where they are, and how deep they overlap: asked of a library of its own, said and drawn.
+
+import { MeshBasicMaterial, type Object3D } from "three";
+import type { Answer, PageDistance } from "./answers";
+import { Engine, type Pair, type Slot, type Take } from "./engine";
+import { SLOTS } from "./examples";
+import { type Vec, add, short, shown, times } from "./math";
+import { type Frame, type Label, above, ball, inPicture, line, rod } from "./view/shapes";
+import { feature } from "./words";
+
+/** What a body was made of. */
+export interface Source {
+  name: string;
+  take: Take;
+  bytes(): Promise<ArrayBuffer>;
+}
+
+/** What is said and drawn beside the answer. */
+export interface Nearness {
+  told: PageDistance;
+  sentence: string;
+  rows: [string, string][];
+  draw(frame: Frame): { parts: Object3D[]; labels: Label[] };
+}
+
+export class Near {
+  private readonly engine = new Engine("colltrans_distance");
+  private readonly placed: Partial<Record<Slot, Source>> = {};
+
+  async ask(sources: Record<Slot, Source>, { moving_pose, fixed_pose }: Pair): Promise<Nearness> {
+    for (const slot of SLOTS) {
+      const source = sources[slot];
+      if (this.placed[slot] === source) continue;
+      delete this.placed[slot];
+      const { name, take } = source;
+      await this.engine.ask({ do: "place", slot, name, take }, await source.bytes());
+      this.placed[slot] = source;
+    }
+    const { facts } = await this.engine.ask({ do: "distance", moving_pose, fixed_pose });
+    return { told: facts, ...say(facts), draw: (frame) => draw(frame, facts) };
+  }
+}
+
+const proven = ({ lower, upper }: Answer) => `${short(lower ?? 0, 15)} to ${short(upper ?? 0, 15)}`;
+
+function say({ distance, depth }: PageDistance): Pick<Nearness, "sentence" | "rows"> {
+  if (!depth) {
+    const { upper = 0, features } = distance;
+    return {
+      sentence: `Where they are, they are ${short(upper)} apart.`,
+      rows: [
+        ["distance now", short(upper, 12)],
+        ["proven", proven(distance)],
+        ...(features ? [["moving, nearest", feature(features.moving)], ["fixed, nearest", feature(features.fixed)]] as [string, string][] : []),
+      ],
+    };
+  }
+  const { upper, direction, start_overlaps } = depth;
+  if (direction && upper) {
+    return {
+      sentence: `Where they are, they overlap: the shortest way out is ${short(upper)} long.`,
+      rows: [["depth now", short(upper, 12)], ["proven", proven(depth)], ["way out", shown(direction as Vec)]],
+    };
+  }
+  const tolerance = start_overlaps?.[0]?.depth;
+  return {
+    sentence: start_overlaps ? `Where they are, they overlap${tolerance ? `: with a tolerance of ${short(tolerance)} they would not` : ""}.` : "Where they are, they touch.",
+    rows: tolerance ? [["depth now", short(tolerance, 9)]] : [],
+  };
+}
+
+/** The nearest points, joined; or the shortest way out, from a point of both. */
+function draw(frame: Frame, { distance, depth }: PageDistance): { parts: Object3D[]; labels: Label[] } {
+  const [from, to] = (distance.points ?? []) as Vec[];
+  if (!from || !to) return { parts: [], labels: [] };
+  const { size, colours } = frame;
+  const [start, way] = [inPicture(frame, from), depth?.direction as Vec | undefined];
+  const dot = () => new MeshBasicMaterial({ color: colours.normal });
+  const end = inPicture(frame, way ? add(from, times(way, depth?.upper ?? 0)) : to);
+  const long = start.distanceTo(end);
+  const parts = way && depth?.upper && long > 1e-3 * size
+    ? [rod(start, end, colours.normal, 0.008 * size)]
+    : [line([start, end], colours.normal), ball(start, 0.013 * size, dot()), ball(end, 0.013 * size, dot())];
+  parts.forEach(above);
+  const upper = depth ? depth.upper : distance.upper;
+  const text = depth ? (way && upper ? `depth ${short(upper)}` : "") : short(upper ?? 0);
+  const middle = start.clone().lerp(end, 0.5);
+  return { parts, labels: text ? [{ text, start: middle, end: middle, kind: "normal" }] : [] };
+}

@@ -1,0 +1,94 @@
+// How far the bodies are apart where they are, in a browser, held against the same code built natively. Needs `npm run
+// build` before, and the example `native_distance`.
+
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { answers as nativeAnswers, conform, data, site } from "../browser.mjs";
+
+let at, page;
+before(async () => {
+  at = await site();
+  page = await at.open();
+});
+after(() => at?.close());
+
+const near = () => page.evaluate(() => window.colltrans.probe().near);
+const labels = () => page.$$eval(".labels span:not([hidden])", (all) => all.map((span) => span.textContent));
+
+test("it is read when it is asked for, said, drawn, and goes again", async () => {
+  assert.ok(!page.read.some((url) => url.includes("colltrans_distance")));
+  await page.click("text='Distance'");
+  await page.waitForSelector("#near");
+  assert.equal(await page.textContent("#near"), "Where they are, they are 3.96811 apart.");
+  await page.waitForFunction(() => [...document.querySelectorAll(".labels span")].some((span) => span.textContent === "3.96811"));
+  const rows = await page.$$eval("dt", (all) => all.map((dt) => dt.textContent));
+  assert.deepEqual(rows.slice(0, 4), ["distance now", "proven", "moving, nearest", "fixed, nearest"]);
+  await page.waitForFunction(() => location.hash.includes("near=1"));
+  await page.click("text='Distance'");
+  await page.waitForFunction(() => !document.querySelector("#near"));
+  assert.ok(!(await labels()).includes("3.96811"));
+  assert.deepEqual(page.complaints, []);
+});
+
+test("it follows the bodies, into each other too", async () => {
+  await page.click("text='Distance'");
+  await page.waitForSelector("#near");
+  await page.fill('[aria-label="moving position z"]', "12.5");
+  await page.waitForFunction(() => window.colltrans.probe().near?.distance.upper > 6);
+  await page.fill('[aria-label="moving position z"]', "4");
+  await page.fill('[aria-label="moving position x"]', "2");
+  await page.waitForFunction(() => window.colltrans.probe().near?.depth?.outcome === "overlapping");
+  assert.match(await page.textContent("#near"), /^Where they are, they overlap: the shortest way out is [\d.]+ long\.$/);
+  await page.waitForFunction(() => [...document.querySelectorAll(".labels span")].some((span) => /^depth /.test(span.textContent)));
+  // Another body, and another kind.
+  await page.selectOption("#example", "shaft");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid" && window.colltrans.probe().near?.distance.outcome === "meeting");
+  assert.deepEqual(page.complaints, []);
+});
+
+test("its answers are the native ones, bit for bit, and as the schema says", async () => {
+  const pairs = [
+    ["dodecahedron.off", "convex", "bracket.obj", "convex", 6],
+    ["bolt.stl", "solid", "plate.off", "solid", 8],
+    ["dodecahedron.off", "convex", "plate.off", "solid", 8],
+  ];
+  let state = 7n;
+  const random = () => {
+    state = (state * 6364136223846793005n + 1442695040888963407n) & ((1n << 64n) - 1n);
+    return Number(state >> 11n) / 2 ** 52 - 1;
+  };
+  const turn = () => {
+    const q = [random(), random(), random(), random()];
+    const l = Math.hypot(...q);
+    return q.map((x) => x / l);
+  };
+  const questions = [];
+  for (const [moving, takeMoving, fixed, takeFixed, far] of pairs) {
+    questions.push({ file: moving, question: { do: "place", slot: "moving", name: moving, take: takeMoving } });
+    questions.push({ file: fixed, question: { do: "place", slot: "fixed", name: fixed, take: takeFixed } });
+    for (let k = 0; k < 60; k++) {
+      const place = () => [far * random(), far * random(), far * random(), ...turn()];
+      questions.push({ question: { do: "distance", moving_pose: place(), fixed_pose: [0, 0, 0, ...turn()] } });
+    }
+  }
+  const native = nativeAnswers("native_distance", questions.map(({ file, question }) =>
+    (file ? `${join(data, file)}\t` : "") + JSON.stringify(question)));
+  const seen = await page.evaluate(async (questions) => {
+    const engine = new (window.colltrans.probe().engine.constructor)("colltrans_distance");
+    const texts = [];
+    for (const { file, question } of questions) {
+      const bytes = file ? await (await fetch(`data/${file}`)).arrayBuffer() : undefined;
+      texts.push((await engine.ask(question, bytes)).text);
+    }
+    return texts;
+  }, questions);
+  assert.deepEqual(seen, native);
+  const outcomes = new Set();
+  seen.forEach((text, k) => {
+    const told = JSON.parse(text);
+    conform(questions[k].file ? "page_place" : "page_distance", told);
+    if (told.distance) outcomes.add(told.depth?.outcome ?? told.distance.outcome);
+  });
+  assert.deepEqual([...outcomes].sort(), ["apart", "overlapping"]);
+});

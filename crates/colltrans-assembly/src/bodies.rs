@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use colltrans::solid::{
     ShrinkReport, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
-use colltrans::{Bounded, Cast, Clearance, Pose, Solid};
+use colltrans::{Bounded, Cast, Clearance, MAX_MAGNITUDE, Pose, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -132,7 +132,7 @@ impl<'a> Bodies<'a> {
             Fit::Tolerance(value) => ("tolerance", value),
             Fit::Apart(value) => ("length to keep", value),
         };
-        if !(value.is_finite() && value >= 0.0) {
+        if !(0.0..=MAX_MAGNITUDE).contains(&value) {
             return Err(AssemblyError::Length { what, value });
         }
         let displaced = |part: &Part| {

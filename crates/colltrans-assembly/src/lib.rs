@@ -1,7 +1,7 @@
 //! Assemblies: which parts come out, along which directions, in which order, and what holds the rest.
 //!
 //! Data flow: files -> [`read`] (parts in one world, one unit) -> [`Assembly`] -> [`Fit`] (how
-//! tight: shrunk by a tolerance, or grown by a length to keep) -> `bodies` (two parts and a direction: the
+//! tight: shrunk by a tolerance, or to be kept a length apart) -> `bodies` (two parts and a direction: the
 //! only module that asks `colltrans`) -> [`start`] (overlaps now), [`liaisons`] (who touches whom) ->
 //! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
 //! [`blocking`] (the graph) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all

@@ -41,7 +41,7 @@ impl Meeting {
         self.stop.map_or(0.0, |stop| stop.distance())
     }
 
-    /// How far the bodies go that were shrunk, or grown: what decides who comes first.
+    /// How far the bodies go that were shrunk, or are to be kept apart: what decides who comes first.
     pub fn displaced_distance(&self) -> f64 {
         self.stop.map_or(0.0, |stop| stop.displaced.value)
     }

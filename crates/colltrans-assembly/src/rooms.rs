@@ -60,7 +60,7 @@ impl PartRoom {
         }
     }
 
-    /// How far the bodies go that were shrunk, or grown: what decides who comes first.
+    /// How far the bodies go that were shrunk, or are to be kept apart: what decides who comes first.
     pub const fn displaced_distance(&self) -> f64 {
         match self {
             Self::Blocked { stop, .. } => stop.displaced.value,

@@ -310,8 +310,23 @@ fn a_margin_is_kept_or_not() {
     let aside = room(0.4, DVec3::X);
     assert!((aside.displaced_distance() - 0.1).abs() < 1e-12, "{aside:?}");
     assert!(aside.distance() <= 0.1 && aside.distance() > 0.1 - 1e-11, "{aside:?}");
-    let refused = Bodies::new(&assembly, Fit::Apart(f64::NAN));
-    assert!(matches!(refused, Err(AssemblyError::Length { .. })));
+    for length in [f64::NAN, -1.0, f64::INFINITY, 1e61] {
+        let refused = Bodies::new(&assembly, Fit::Apart(length));
+        assert!(matches!(refused, Err(AssemblyError::Length { .. })), "{length}");
+    }
+}
+
+/// Parts that were grown by half of the length each would meet at their corners.
+#[test]
+fn corners_pass_each_other_diagonally_at_the_length_to_keep() {
+    let a = part("a", &[cuboid([0.0; 3], [1.0; 3])]);
+    let b = part("b", &[cuboid([1.4, 1.4, 4.0], [2.4, 2.4, 5.0])]);
+    let assembly = Assembly::new(vec![a, b]).unwrap();
+    let room = |apart: f64| room_of_part(&assembly, Fit::Apart(apart), 0, DVec3::Z);
+    assert!(room(0.5).is_free());
+    let stopped = room(0.6);
+    let right = 3.0 - (0.36_f64 - 0.32).sqrt();
+    assert!((stopped.displaced_distance() - right).abs() < 1e-9, "{stopped:?}");
 }
 
 #[test]

@@ -416,7 +416,8 @@ impl ProofFile {
             _ => return Err(CaseError::Mixed),
         };
         let statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
-        if statement.is_of_pair() == file.direction.is_some() {
+        let is_of_pair = statement.is_of_pair();
+        if is_of_pair == file.direction.is_some() || is_of_pair && file.keep != 0.0 {
             return Err(CaseError::Statement);
         }
         let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];

@@ -332,3 +332,19 @@ proptest! {
         prop_assert!(travel(gap + more) >= travel(gap) - more * 1e6);
     }
 }
+
+/// One that is asked among many keeps the gap from all: also from those whose boxes it passes.
+#[test]
+fn among_many_the_gap_is_kept_from_all() {
+    use colltrans::{Among, Obstacles, Options};
+    let cube = cube();
+    let mut obstacles = Obstacles::default();
+    obstacles.insert(cube.clone(), at(3.0, 1.2, 0.0));
+    obstacles.insert(cube.clone(), at(9.0, 0.0, 0.0));
+    let among = Among::new(cube.at(Pose::IDENTITY), &obstacles).expect("a question");
+    let plain = among.clearance(DVec3::X).expect("an answer").distance().expect("apart");
+    assert!((plain - 8.0).abs() < 1e-12);
+    let kept = among.with_options(Options::default().with_keep(0.5)).expect("a gap");
+    let kept = kept.clearance(DVec3::X).expect("an answer").distance().expect("apart");
+    assert!((kept - (2.0 - 0.21_f64.sqrt())).abs() < 1e-12, "{kept}");
+}

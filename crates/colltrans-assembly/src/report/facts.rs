@@ -101,7 +101,7 @@ fn room(f: &Findings, part: usize, d: DVec3, room: &PartRoom) -> Value {
                 entry["translation_bounds"] = json!(stop.translation.bounds());
                 "shrunk_distance"
             }
-            Fit::Apart(_) => "grown_distance",
+            Fit::Apart(_) => "kept_distance",
         };
         entry[name] = json!(stop.displaced.value);
         entry[format!("{name}_bounds")] = json!(stop.displaced.bounds());

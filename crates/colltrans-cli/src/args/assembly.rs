@@ -19,7 +19,7 @@ pub(crate) struct AssemblyArguments {
     /// assembly's size, for files in single precision]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,
-    /// How far parts must stay apart when they pass; every part is grown by half of it
+    /// How far parts must stay apart when they pass, in all directions
     #[arg(long, alias = "margin", value_name = "L", allow_hyphen_values = true, value_parser = length, conflicts_with = "tolerance")]
     pub(crate) keep_apart: Option<f64>,
     /// A direction to ask first: three numbers or an axis (x, -x, ...); may be given several times

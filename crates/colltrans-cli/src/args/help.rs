@@ -278,7 +278,7 @@ With --json:
    "overlaps": [{"parts": [a, b], "depth"}], "suggested_tolerance",
    "liaisons": [{"parts": [a, b], "area", "area_bounds", "center"}],
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
-     "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "grown_distance", "grown_distance_bounds")}],
+     "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
      "within", "ignored", "surfaces"}],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],

@@ -233,6 +233,7 @@ impl<B> Query<'_, B> {
             ("solver", self.solver.is_some()),
             ("keep", self.keep.is_some()),
             ("tolerance", self.tolerance.is_some()),
+            ("keep", self.keep.is_some()),
             ("ignore_start_overlaps", self.ignore_start_overlaps.is_some()),
             ("length", self.length.is_some() && self.question != Some(Asked::Within)),
         ];

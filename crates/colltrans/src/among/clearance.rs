@@ -68,7 +68,7 @@ impl Among<'_> {
     ) -> Result<ClearanceAmong, QueryError> {
         check_direction(direction)?;
         check_length(end)?;
-        let sweep = Sweep::new(self.bounds, direction);
+        let sweep = Sweep::new(self.swept(), direction);
         let mut stop: Option<(ObstacleId, AnyClearance)> = None;
         let (mut lower, mut upper, mut bodies) = (end, end, 0);
         let entry = |other: &_| sweep.entry(other);

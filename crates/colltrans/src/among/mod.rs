@@ -160,6 +160,18 @@ impl<'a> Among<'a> {
         self.obstacles
     }
 
+    /// The box of the moving body, with the gap that casts are to keep around it, and a little for rounding.
+    fn swept(&self) -> Aabb {
+        let keep = self.options.keep.max(self.solid_options.keep);
+        if keep > 0.0 {
+            let Aabb { low, high } = self.bounds;
+            let size = low.abs().max(high.abs()).max_element() + keep;
+            self.bounds.grown(keep + 16.0 * f64::EPSILON * size)
+        } else {
+            self.bounds
+        }
+    }
+
     fn is_ignored(&self, id: ObstacleId) -> bool {
         self.ignored.is_some_and(|ignored| ignored(id))
     }

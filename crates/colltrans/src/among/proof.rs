@@ -183,7 +183,7 @@ impl<'a> Among<'a> {
         if clearance.distance().is_none() {
             return stop.into_iter().collect();
         }
-        let sweep = Sweep::new(self.bounds, direction);
+        let sweep = Sweep::new(self.swept(), direction);
         let below = clearance.lower.max(f64::MIN_POSITIVE);
         let mut found = self.sorted(below, |other| sweep.entry(other));
         if let Some(stop) = stop
@@ -316,7 +316,7 @@ impl Among<'_> {
         {
             return Err(CertificateError::Order { lower: *lower, upper });
         }
-        let sweep = Sweep::new(self.bounds, *direction);
+        let sweep = Sweep::new(self.swept(), *direction);
         for one in self.asked() {
             let proven = match claims.get(&one.id) {
                 Some(claim) => self

@@ -6,7 +6,7 @@ use super::Cast;
 use crate::answer::CertificateError;
 use crate::number::noise;
 
-/// At least how far two bodies overlap along a normal. One that is not quite orthogonal to the direction
+/// At least how far two bodies overlap along a normal, with the gap that they are to keep. One that is not quite orthogonal to the direction
 /// lets them overlap more, as far away as the bodies reach.
 pub(crate) fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
     let setting = &cast.setting;

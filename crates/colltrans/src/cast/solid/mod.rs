@@ -298,7 +298,10 @@ impl<'a> Cast<'a, Solid> {
     /// The same, of bodies that the default tolerance leaves something of.
     pub(crate) fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
         let tolerance = self.tolerance();
-        self.check_left(tolerance)?;
+        // One that was given was checked then.
+        if self.options.tolerance.is_none() {
+            self.check_left(tolerance)?;
+        }
         Ok(self.scene(tolerance))
     }
 

@@ -133,7 +133,7 @@ fn what_cannot_be_answered_is_said() {
     };
     let load =
         |name: &str| json!({ "do": "load", "slot": "moving", "name": name, "take": "convex" });
-    refused(json!([1]), Vec::new(), "no object");
+    refused(json!([1]), Vec::new(), "not an object");
     refused(json!({ "do": "dance" }), Vec::new(), "dance");
     refused(json!({ "do": "cast" }), Vec::new(), "moving_pose is missing");
     refused(pair("cast", [0.0, 0.0, 1.0]), Vec::new(), "two bodies are needed");

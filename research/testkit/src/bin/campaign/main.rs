@@ -7,19 +7,7 @@
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
-//! ```text
-//! campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
-//! campaign --sequences QUERIES [--seed S] [--only FAMILY]
-//! campaign --solids N [--seed S] [--only FAMILY]
-//! campaign --solid-distances N [--seed S] [--only FAMILY]
-//! campaign --bodies N [--seed S] [--only FAMILY]
-//! campaign --distances N [--seed S] [--only FAMILY]
-//! campaign --scenes N [--seed S] [--only FAMILY]
-//! campaign --keeping N [--seed S] [--only FAMILY]
-//! campaign --solid-keeping N [--seed S] [--only FAMILY]
-//! campaign --case FAMILY:SEED | FAMILY:SEED:STEP
-//! ```
-//! Exit code 1 if anything disagrees.
+//! `--help` lists its options. Exit code 1 if anything disagrees.
 
 mod bodies;
 mod casts;
@@ -41,6 +29,19 @@ use rayon::prelude::*;
 /// Disagreements printed for each family; all are counted.
 const SHOWN: usize = 12;
 
+const USAGE: &str = "\
+campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
+campaign --sequences QUERIES [--seed S] [--only FAMILY]
+campaign --solids N [--seed S] [--only FAMILY]
+campaign --solid-distances N [--seed S] [--only FAMILY]
+campaign --bodies N [--seed S] [--only FAMILY]
+campaign --distances N [--seed S] [--only FAMILY]
+campaign --scenes N [--seed S] [--only FAMILY]
+campaign --keeping N [--seed S] [--only FAMILY]
+campaign --solid-keeping N [--seed S] [--only FAMILY]
+campaign --case FAMILY:SEED | FAMILY:SEED:STEP
+";
+
 struct Arguments {
     settings: u64,
     sequences: Option<u64>,
@@ -58,6 +59,10 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
+    if std::env::args().any(|word| word == "--help" || word == "-h") {
+        print!("{USAGE}");
+        return ExitCode::SUCCESS;
+    }
     let arguments = match parse(std::env::args().skip(1)) {
         Ok(arguments) => arguments,
         Err(message) => {
@@ -136,7 +141,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--seed" => arguments.seed = number(&value)?,
             "--only" => arguments.only = Some(value),
             "--case" => arguments.case = Some(value),
-            _ => return Err(format!("unknown option {word}")),
+            _ => return Err(format!("unknown option {word}\n{USAGE}")),
         }
     }
     Ok(arguments)

@@ -52,7 +52,7 @@ def test_one_call_takes_both_kinds() -> None:
 def test_choices_of_the_other_kind_are_refused() -> None:
     with pytest.raises(QueryError, match="tolerance and ignore_start_overlaps are for solids"):
         clearance(CUBE, CUBE, DOWN, tolerance=1e-6)  # type: ignore[call-overload]
-    with pytest.raises(QueryError, match="graze_tolerance is for convex bodies"):
+    with pytest.raises(QueryError, match="graze_tolerance and solver are for convex bodies"):
         intersects(CUBE, PLATE, DOWN, graze_tolerance=1e-6)  # type: ignore[call-overload]
     with pytest.raises(QueryError, match="no solver"):
         clearance(CUBE, PLATE, DOWN, solver="newton")  # type: ignore[call-overload]
@@ -62,7 +62,7 @@ def test_choices_of_the_other_kind_are_refused() -> None:
         cast(CUBE, PLATE, DOWN)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="solids are asked for their clearance"):
         cast_many(CUBE, [PLATE], DOWN)  # type: ignore[list-item]
-    with pytest.raises(InputError, match="graze_tolerance: is for convex bodies"):
+    with pytest.raises(InputError, match="graze_tolerance, solver: are for convex bodies"):
         clearance_many(CUBE, PLATE, DOWN, graze_tolerance=1e-3)  # type: ignore[call-overload]
     with pytest.raises(InputError, match="are for solids"):
         clearance_many(CUBE, CUBE, DOWN, tolerance=1e-3)

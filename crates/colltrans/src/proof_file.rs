@@ -679,7 +679,12 @@ impl fmt::Display for ProofFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [moving, fixed] = self.inverted();
         if self.keep() > 0.0 {
-            write!(f, "counted as meeting where they are {:?} apart or nearer, ", self.keep())?;
+            let keep = self.keep();
+            write!(f, "counted as meeting where they are {keep:?} apart or nearer, ")?;
+            // Facets that are less than eight noises nearer may pass.
+            if matches!(self.bodies, Bodies::Solids { .. }) {
+                f.write_str("to within rounding, ")?;
+            }
         }
         self.statement.fmt(f)?;
         if [moving, fixed] == [0; 2] {

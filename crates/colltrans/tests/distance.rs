@@ -339,3 +339,16 @@ fn lined_up_boxes_that_meet_have_a_point_in_common_for_certain() {
         }
     }
 }
+
+/// Normals that are some roundings too long are unit vectors still, and prove no more for that.
+#[test]
+fn a_depth_counts_in_lengths_of_its_normals() {
+    let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
+    let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(Pose::IDENTITY)).expect("a pair");
+    let mut depth = pair.depth().expect("a depth");
+    let unit = f64::EPSILON / 2.0;
+    depth.enclosure.normals.iter_mut().for_each(|normal| *normal *= 1.0 + 30.0 * unit);
+    assert!(pair.verify(&depth).expect("still a proof") <= 1.0);
+    depth.lower = 1.0 + 12.0 * unit;
+    assert!(pair.verify(&depth).is_err());
+}

@@ -348,3 +348,20 @@ fn among_many_the_gap_is_kept_from_all() {
     let kept = kept.clearance(DVec3::X).expect("an answer").distance().expect("apart");
     assert!((kept - (2.0 - 0.21_f64.sqrt())).abs() < 1e-12, "{kept}");
 }
+
+/// A gap of some roundings, and bodies that pass each other without it but not with it.
+#[test]
+fn a_slight_gap_that_alone_stops_a_body_is_proven() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a box");
+    let pose =
+        Pose::from_translation(DVec3::new(-3.0, 1.000_000_000_000_03, 0.25)).expect("a pose");
+    let cast = Cast::new(cube.at(pose), cube.at(Pose::IDENTITY), DVec3::X)
+        .and_then(|cast| cast.keeping(7.8e-14))
+        .expect("a cast");
+    let contact = match cast.first_contact().expect("an answer") {
+        Outcome::Contact(contact) => contact,
+        Outcome::Grazing(of) => of.contact,
+        Outcome::Separated(of) => panic!("{of:?}"),
+    };
+    cast.verify(&contact.certificate).expect("its own proof");
+}

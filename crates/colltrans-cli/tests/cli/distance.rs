@@ -99,7 +99,7 @@ fn proofs_hold_here_and_in_fractions() {
     let within = |length| ["--length", length];
     for (command, bodies, more, said) in [
         ("distance", &APART, &[][..], "the bodies are between 1.99"),
-        ("distance", &DEEP, &[], "the bodies are at most "),
+        ("distance", &DEEP, &[], "the bodies have a point in common"),
         ("distance", &PARTS, &[], "the bodies are between 1.99"),
         ("depth", &DEEP, &[], "a translation of the moving body by 0.25"),
         ("depth", &APART, &[], "the bodies do not overlap"),

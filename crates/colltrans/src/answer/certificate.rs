@@ -304,12 +304,12 @@ impl Certificate {
             return Err(CertificateError::Order { lower: self.lower, upper: self.upper });
         }
         let noise = Noise::of(setting.scale() + keep);
-        let claims_none = self.upper == f64::INFINITY;
-        let is_kept = keep > 0.0 && (claims_none || !noise.is_slight(keep));
-        let upper = if is_kept {
-            self.near_enough(setting, keep, noise)?
-        } else {
-            self.proven_upper(setting)? + noise.above_mean() / steepness
+        let as_near = (keep > 0.0).then(|| self.near_enough(setting, keep, noise));
+        let upper = match as_near {
+            Some(Ok(upper)) => upper,
+            Some(Err(error)) if !noise.is_slight(keep) => return Err(error),
+            // Bodies that meet are as near as any gap; of a slight one that may be all that is proven.
+            _ => self.proven_upper(setting)? + noise.above_mean() / steepness,
         };
         let lower = proven_lower(setting, normal, keep)?;
         // Of a slight gap the bounds are those of the bodies as they are, apart by the gap more.

@@ -71,11 +71,15 @@ fn enclosed(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateE
     let mut least = f64::INFINITY;
     for (corners, normal) in triangles.iter().zip(normals) {
         check_unit(*normal)?;
+        // A height counts in lengths of the normal, which may be some roundings more than 1.
+        let [_, square] = extent::dot(*normal, *normal);
+        let length = square.sqrt().next_up();
         for corner in corners {
-            least = least.min(normal.dot(points[*corner as usize]));
+            let height = normal.dot(points[*corner as usize]) - bodies.noise().height_checked();
+            least = least.min((height / length).next_down());
         }
     }
-    let proven = (least - bodies.noise().height_checked()).next_down();
+    let proven = least.next_down();
     if proven > 0.0 && surrounds(bodies, surface) {
         Ok(proven)
     } else {

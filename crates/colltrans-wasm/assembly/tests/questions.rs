@@ -102,7 +102,7 @@ fn what_cannot_be_answered_is_said() {
         let error = answer["error"].as_str().unwrap().to_owned();
         assert!(error.contains(part), "{error}");
     };
-    refused(json!([1]), b"", "no object");
+    refused(json!([1]), b"", "not an object");
     refused(json!({ "do": "dance" }), b"", "dance");
     refused(json!({ "do": "parts" }), b"", "no parts");
     refused(json!({ "do": "fit" }), b"", "no parts");

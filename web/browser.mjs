@@ -25,6 +25,21 @@ export function answers(name, questions) {
 const schema = new Ajv2020({ strict: false, allErrors: true });
 schema.addSchema(JSON.parse(readFileSync(join(root, "docs/answers.schema.json"), "utf8")), "answers");
 
+/** The same numbers each time for a seed: from -1 to 1, and unit quaternions of four of them. */
+export function draws(seed) {
+  let state = seed;
+  const random = () => {
+    state = (state * 6364136223846793005n + 1442695040888963407n) & ((1n << 64n) - 1n);
+    return Number(state >> 11n) / 2 ** 52 - 1;
+  };
+  const turn = () => {
+    const q = [random(), random(), random(), random()];
+    const l = Math.hypot(...q);
+    return q.map((x) => x / l);
+  };
+  return { random, turn };
+}
+
 /** Whether a value is what the schema of answers calls so. */
 export function conform(name, value) {
   const fits = schema.getSchema(`answers#/$defs/${name}`);

@@ -5,7 +5,7 @@ import { readFileSync, readdirSync } from "node:fs";
 import { extname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { brotliCompressSync } from "node:zlib";
-import { answers as nativeAnswers, conform, data, dist, site } from "../browser.mjs";
+import { answers as nativeAnswers, conform, data, dist, draws, site } from "../browser.mjs";
 
 let at, page;
 before(async () => {
@@ -45,16 +45,7 @@ test("1,000 answers are the native ones, bit for bit", async () => {
     ["bolt.stl", "solid", "plate.off", "solid", 8],
     ["dodecahedron.off", "convex", "plate.off", "solid", 12],
   ];
-  let state = 1n;
-  const random = () => {
-    state = (state * 6364136223846793005n + 1442695040888963407n) & ((1n << 64n) - 1n);
-    return Number(state >> 11n) / 2 ** 52 - 1;
-  };
-  const turn = () => {
-    const q = [random(), random(), random(), random()];
-    const l = Math.hypot(...q);
-    return q.map((x) => x / l);
-  };
+  const { random, turn } = draws(1n);
   const questions = [];
   for (const [moving, takeMoving, fixed, takeFixed, far] of pairs) {
     questions.push({ file: moving, question: { do: "load", slot: "moving", name: moving, take: takeMoving } });

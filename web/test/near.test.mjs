@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { answers as nativeAnswers, conform, data, site } from "../browser.mjs";
+import { answers as nativeAnswers, conform, data, draws, site } from "../browser.mjs";
 
 let at, page;
 before(async () => {
@@ -53,16 +53,7 @@ test("its answers are the native ones, bit for bit, and as the schema says", asy
     ["bolt.stl", "solid", "plate.off", "solid", 8],
     ["dodecahedron.off", "convex", "plate.off", "solid", 8],
   ];
-  let state = 7n;
-  const random = () => {
-    state = (state * 6364136223846793005n + 1442695040888963407n) & ((1n << 64n) - 1n);
-    return Number(state >> 11n) / 2 ** 52 - 1;
-  };
-  const turn = () => {
-    const q = [random(), random(), random(), random()];
-    const l = Math.hypot(...q);
-    return q.map((x) => x / l);
-  };
+  const { random, turn } = draws(7n);
   const questions = [];
   for (const [moving, takeMoving, fixed, takeFixed, far] of pairs) {
     questions.push({ file: moving, question: { do: "place", slot: "moving", name: moving, take: takeMoving } });

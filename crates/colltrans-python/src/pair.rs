@@ -9,7 +9,7 @@ use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, show};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
-use crate::solid_cast::patiently;
+use crate::solid_cast::{patiently, placed_bodies};
 
 /// Two bodies where they are, as a value: asked how far they are apart, how deep they overlap.
 ///
@@ -109,6 +109,8 @@ impl Pair {
 
 const NO_PROOF: &str = "the depth of solids has no proof; a clearance has one of their overlap";
 
+placed_bodies!(Pair);
+
 #[pymethods]
 impl Pair {
     #[new]
@@ -122,30 +124,6 @@ impl Pair {
         let query = Self::of(moving, fixed, [moving_pose, fixed_pose])?;
         query.asked()?;
         Ok(query)
-    }
-
-    /// ConvexPolyhedron or Solid: The moving body.
-    #[getter]
-    fn moving(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[0].object(py)
-    }
-
-    /// ConvexPolyhedron or Solid: The fixed body.
-    #[getter]
-    fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[1].object(py)
-    }
-
-    /// Pose: Where the moving body is.
-    #[getter]
-    fn moving_pose(&self) -> Pose {
-        Pose(self.poses[0])
-    }
-
-    /// Pose: Where the fixed body is.
-    #[getter]
-    fn fixed_pose(&self) -> Pose {
-        Pose(self.poses[1])
     }
 
     /// A picture of the bodies and of the shortest way between them: see :func:`colltrans.show`.

@@ -91,6 +91,41 @@ impl SolidCast {
     }
 }
 
+/// Where two bodies of any kind are, of a query that has `bodies` and `poses`.
+macro_rules! placed_bodies {
+    ($query:ident) => {
+        #[pymethods]
+        impl $query {
+            /// ConvexPolyhedron or Solid: The moving body.
+            #[getter]
+            fn moving(&self, py: Python<'_>) -> Py<PyAny> {
+                self.bodies[0].object(py)
+            }
+
+            /// ConvexPolyhedron or Solid: The fixed body.
+            #[getter]
+            fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
+                self.bodies[1].object(py)
+            }
+
+            /// Pose: Where the moving body is.
+            #[getter]
+            fn moving_pose(&self) -> Pose {
+                Pose(self.poses[0])
+            }
+
+            /// Pose: Where the fixed body is.
+            #[getter]
+            fn fixed_pose(&self) -> Pose {
+                Pose(self.poses[1])
+            }
+        }
+    };
+}
+pub(crate) use placed_bodies;
+
+placed_bodies!(SolidCast);
+
 /// Does work about bodies without the interpreter's lock. Where it may take long, on a thread of its own,
 /// which is left alone when a signal ends the waiting.
 pub(crate) fn patiently<T: Send + 'static>(
@@ -154,30 +189,6 @@ impl SolidCast {
     #[getter]
     fn tolerance(&self, py: Python<'_>) -> PyResult<f64> {
         py.detach(|| self.run(|cast| cast.tolerance()))
-    }
-
-    /// Solid or ConvexPolyhedron: The moving body.
-    #[getter]
-    fn moving(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[0].object(py)
-    }
-
-    /// Solid or ConvexPolyhedron: The fixed body.
-    #[getter]
-    fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[1].object(py)
-    }
-
-    /// Pose: Where the moving body is.
-    #[getter]
-    fn moving_pose(&self) -> Pose {
-        Pose(self.poses[0])
-    }
-
-    /// Pose: Where the fixed body is.
-    #[getter]
-    fn fixed_pose(&self) -> Pose {
-        Pose(self.poses[1])
     }
 
     /// ndarray of shape (3,): The direction, as given.

@@ -139,7 +139,7 @@
 //! Ties, where rounding cannot tell on which side of an edge the line passes, are decided in
 //! whole numbers.
 //!
-//! The rooms, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
+//! The modules, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
 //! `pair` (the queries), `among` (many fixed bodies), `proof_file` and `tracker`. `written` and `record` say how

@@ -13,7 +13,7 @@ use super::kinds::AnyNear;
 use super::nearest::{Closeness, Nearby, Nearest};
 use super::obstacles::Obstacle;
 use super::{Among, ByKind, ClearanceAmong};
-use crate::answer::{CertificateError, Clearance, PlaneGap, WhyFree, Within};
+use crate::answer::{CertificateError, Clearance, PlaneGap, WhyFree, Within, checked_as};
 use crate::body::{Aabb, ObstacleId};
 use crate::cast::solid::{SolidCertificate, StartProof};
 use crate::cast::{Cast, verified_overlap};
@@ -86,23 +86,7 @@ pub enum AmongProof<'a> {
     Clearance(&'a ClearanceProof),
 }
 
-impl<'a> From<&'a NearestProof> for AmongProof<'a> {
-    fn from(proof: &'a NearestProof) -> Self {
-        Self::Nearest(proof)
-    }
-}
-
-impl<'a> From<&'a NearbyProof> for AmongProof<'a> {
-    fn from(proof: &'a NearbyProof) -> Self {
-        Self::Nearby(proof)
-    }
-}
-
-impl<'a> From<&'a ClearanceProof> for AmongProof<'a> {
-    fn from(proof: &'a ClearanceProof) -> Self {
-        Self::Clearance(proof)
-    }
-}
+checked_as!(AmongProof { Nearest(NearestProof), Nearby(NearbyProof), Clearance(ClearanceProof) });
 
 /// Proofs are made of answers.
 impl<'a> Among<'a> {

@@ -224,17 +224,19 @@ pub enum Proof<'a> {
     Separation(&'a Separation),
 }
 
-impl<'a> From<&'a Certificate> for Proof<'a> {
-    fn from(certificate: &'a Certificate) -> Self {
-        Self::Contact(certificate)
-    }
+/// What can be checked, each kind a reference under the name of its variant.
+macro_rules! checked_as {
+    ($($proof:ident { $($variant:ident($of:ty)),+ $(,)? }),+) => { $($(
+        impl<'a> From<&'a $of> for $proof<'a> {
+            fn from(of: &'a $of) -> Self {
+                Self::$variant(of)
+            }
+        }
+    )+)+ };
 }
+pub(crate) use checked_as;
 
-impl<'a> From<&'a Separation> for Proof<'a> {
-    fn from(separation: &'a Separation) -> Self {
-        Self::Separation(separation)
-    }
-}
+checked_as!(Proof { Contact(Certificate), Separation(Separation) });
 
 /// A bound along a normal, and by how much rounding may have overstated it.
 #[derive(Debug, Clone, Copy)]

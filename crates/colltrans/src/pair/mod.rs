@@ -4,7 +4,7 @@ mod convex;
 pub(crate) mod solid;
 mod verify;
 
-use crate::answer::{Depth, NearPoints, PlaneGap};
+use crate::answer::{Depth, NearPoints, PlaneGap, checked_as};
 use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
@@ -35,23 +35,7 @@ pub enum PairProof<'a> {
     Depth(&'a Depth),
 }
 
-impl<'a> From<&'a Depth> for PairProof<'a> {
-    fn from(depth: &'a Depth) -> Self {
-        Self::Depth(depth)
-    }
-}
-
-impl<'a> From<&'a PlaneGap> for PairProof<'a> {
-    fn from(plane: &'a PlaneGap) -> Self {
-        Self::Gap(plane)
-    }
-}
-
-impl<'a> From<&'a NearPoints> for PairProof<'a> {
-    fn from(points: &'a NearPoints) -> Self {
-        Self::Near(points)
-    }
-}
+checked_as!(PairProof { Gap(PlaneGap), Near(NearPoints), Depth(Depth) });
 
 impl<'a, B: Body> Pair<'a, B> {
     /// Of two placed bodies.

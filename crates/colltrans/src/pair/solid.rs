@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::answer::{CertificateError, Distance, SolidSteps, Within, are_weights};
+use crate::answer::{CertificateError, Distance, SolidSteps, Within, are_weights, checked_as};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Features, Placed};
 use crate::cast::Cast;
@@ -57,17 +57,7 @@ pub enum SolidPairProof<'a> {
     Near(&'a SolidNear),
 }
 
-impl<'a> From<&'a DistanceCertificate> for SolidPairProof<'a> {
-    fn from(certificate: &'a DistanceCertificate) -> Self {
-        Self::Distance(certificate)
-    }
-}
-
-impl<'a> From<&'a SolidNear> for SolidPairProof<'a> {
-    fn from(near: &'a SolidNear) -> Self {
-        Self::Near(near)
-    }
-}
+checked_as!(SolidPairProof { Distance(DistanceCertificate), Near(SolidNear) });
 
 /// The answer of [`Pair::overlap_depth`].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,218 @@
+//! The file: what it holds, written and read.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::statement::{Contacts, DistanceStatement, SolidStatement, Statement};
+use super::{Along, Bodies, ProofFile};
+use crate::answer::{Depth, Separation};
+use crate::body::pose::PoseRecord;
+use crate::body::solid::{Solid, SolidError};
+use crate::cast::CaseError;
+use crate::cast::replay::BodyRecord;
+use crate::pair::solid::DistanceCertificate;
+use crate::setting::{check_direction, check_keep};
+
+/// What a file of this version calls itself.
+const FORMAT: &str = "colltrans proof 1";
+
+/// What the moving and the fixed body are made of.
+pub(super) type Pieces = [Vec<PieceRecord>; 2];
+
+impl ProofFile {
+    /// As a file: numbers that read back as the same bits.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        let [moving, fixed] = match &self.bodies {
+            Bodies::Convex(bodies) => {
+                bodies.each_ref().map(|body| BodyFile::Convex(BodyRecord::of(body)))
+            }
+            Bodies::Solids { of, .. } => of.each_ref().map(|of| BodyFile::Pieces(of.clone())),
+        };
+        let [moving_pose, fixed_pose] = self.poses.map(PoseRecord::from);
+        let file = File {
+            format: FORMAT.into(),
+            moving,
+            moving_pose,
+            fixed,
+            fixed_pose,
+            direction: self.along.map(|along| along.direction.to_array()),
+            keep: self.along.map_or(0.0, |along| along.keep),
+            statement: self.statement.clone(),
+        };
+        serde_json::to_string(&file).expect("numbers and names")
+    }
+
+    /// From what [`Self::to_json`] has written. It is read, not believed: see [`Self::check`].
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        #[derive(Deserialize)]
+        struct Named {
+            format: String,
+        }
+        // Some editors begin a file with a byte-order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let Named { format } = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        if format != FORMAT {
+            return Err(CaseError::Format { found: format, known: FORMAT });
+        }
+        let file: File<StatementRecord> = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let bodies = match (file.moving, file.fixed) {
+            (BodyFile::Convex(moving), BodyFile::Convex(fixed)) => {
+                let body = |record: BodyRecord, which| {
+                    record.body().map_err(|error| CaseError::Body { which, error })
+                };
+                Bodies::Convex(Box::new([body(moving, "moving")?, body(fixed, "fixed")?]))
+            }
+            (BodyFile::Pieces(moving), BodyFile::Pieces(fixed)) => Bodies::Solids {
+                made: Box::new([union(&moving, "moving")?, union(&fixed, "fixed")?]),
+                of: [moving, fixed],
+            },
+            _ => return Err(CaseError::Mixed),
+        };
+        let statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
+        let is_of_pair = statement.is_of_pair();
+        if is_of_pair == file.direction.is_some() || is_of_pair && file.keep != 0.0 {
+            return Err(CaseError::Statement);
+        }
+        let poses = [file.moving_pose.try_into()?, file.fixed_pose.try_into()?];
+        let direction = file.direction.map(DVec3::from_array);
+        direction.map_or(Ok(()), check_direction)?;
+        check_keep(file.keep)?;
+        let along = direction.map(|direction| Along { direction, keep: file.keep });
+        Ok(Self { bodies, poses, along, statement })
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File<S> {
+    format: String,
+    moving: BodyFile,
+    moving_pose: PoseRecord,
+    fixed: BodyFile,
+    fixed_pose: PoseRecord,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    direction: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    keep: f64,
+    statement: S,
+}
+
+/// A [`Statement`] as it is read.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatementRecord {
+    contacts: Option<Contacts>,
+    separation: Option<Separation>,
+    clearance: Option<SolidStatement>,
+    distance: Option<DistanceStatement>,
+    depth: Option<Depth>,
+    solid_distance: Option<DistanceCertificate>,
+}
+
+impl StatementRecord {
+    /// The one thing that is said of such bodies.
+    fn of(self, solids: bool) -> Result<Statement, CaseError> {
+        let Self { contacts, separation, clearance, distance, depth, solid_distance } = self;
+        let contacts =
+            contacts.map(|of| (of.first.is_some() || of.last.is_some(), Statement::Contacts(of)));
+        let distance =
+            distance.map(|of| (of.gap.is_some() || of.near.is_some(), Statement::Distance(of)));
+        let said = [
+            contacts.map(|(something, of)| (something && !solids, of)),
+            distance.map(|(something, of)| (something && !solids, of)),
+            separation.map(|of| (!solids, Statement::Separation(of))),
+            depth.map(|of| (!solids, Statement::Depth(of))),
+            clearance.map(|of| (solids, Statement::Clearance(of))),
+            solid_distance.map(|of| (solids, Statement::SolidDistance(of))),
+        ];
+        let mut said = said.into_iter().flatten();
+        match (said.next(), said.next()) {
+            (Some((true, statement)), None) => Ok(statement),
+            _ => Err(CaseError::Statement),
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum BodyFile {
+    Convex(BodyRecord),
+    Pieces(Vec<PieceRecord>),
+}
+
+/// A mesh that a solid is made of.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PieceRecord {
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    open: bool,
+}
+
+impl PieceRecord {
+    fn of(solid: &Solid) -> Self {
+        Self {
+            vertices: solid.vertices().iter().map(DVec3::to_array).collect(),
+            triangles: solid.triangles().to_vec(),
+            open: !solid.is_closed(),
+        }
+    }
+
+    fn solid(&self) -> Result<Solid, SolidError> {
+        let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
+        if self.open {
+            Solid::from_open_mesh(&vertices, &self.triangles)
+        } else {
+            Solid::from_mesh(&vertices, &self.triangles)
+        }
+    }
+}
+
+fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError> {
+    let refused = |error| CaseError::Solid { which, error };
+    let solids: Result<Vec<Solid>, SolidError> = pieces.iter().map(PieceRecord::solid).collect();
+    let mut solids = solids.map_err(refused)?;
+    if solids.len() == 1 {
+        return Ok(solids.remove(0));
+    }
+    Solid::from_pieces(&solids).map_err(refused)
+}
+
+/// Both bodies made once more of their pieces, as they are read back from a file.
+pub(super) fn again(
+    pieces: [&[&Solid]; 2],
+    asked: [&Solid; 2],
+) -> Result<(Box<[Solid; 2]>, Pieces), CaseError> {
+    let of: Pieces =
+        pieces.map(|pieces| pieces.iter().map(|piece| PieceRecord::of(piece)).collect());
+    let made = Box::new([union(&of[0], "moving")?, union(&of[1], "fixed")?]);
+    for (k, which) in ["moving", "fixed"].into_iter().enumerate() {
+        if !is_same(&made[k], asked[k]) {
+            return Err(CaseError::Changed { which });
+        }
+    }
+    Ok((made, of))
+}
+
+/// Whether two solids have the same facets, in whatever order.
+fn is_same(a: &Solid, b: &Solid) -> bool {
+    let facets = |solid: &Solid| {
+        // Without -0.
+        let corner = |v: u32| (solid.vertices()[v as usize] + 0.0).to_array().map(f64::to_bits);
+        let turned = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(corner);
+            [[a, b, c], [b, c, a], [c, a, b]].into_iter().min()
+        };
+        let mut all: Vec<_> = solid.triangles().iter().map(turned).collect();
+        all.sort_unstable();
+        all
+    };
+    a.is_closed() == b.is_closed() && facets(a) == facets(b)
+}

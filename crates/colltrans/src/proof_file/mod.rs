@@ -1,0 +1,220 @@
+//! A proof with all that it is about, as one file.
+//!
+//! Bodies are written as they are, exact in bits, with their poses and the direction of a cast; then what
+//! is claimed of them, with its certificates. A certificate between solids tells facets by their place
+//! in a tree, so it is made for the bodies as they are read back from the file.
+//!
+//! [`statement`] is what is said of bodies, and how it is checked; [`file`] writes and reads it; [`words`] tell it.
+
+mod file;
+mod statement;
+mod words;
+
+use glam::DVec3;
+
+use crate::answer::{
+    CertificateError, Clearance, ContactRange, Depth, Outcome, OverlapAhead, WhyFree, Within,
+};
+use crate::body::solid::Solid;
+use crate::body::{ConvexPolyhedron, Pose};
+use crate::cast::{CaseError, Cast};
+use crate::pair::Pair;
+use crate::pair::solid::DistanceCertificate;
+use file::{Pieces, again};
+use statement::options;
+pub use statement::{Contacts, DistanceStatement, Slide, SolidStatement, Statement, Stop};
+
+/// What a cast asks, besides bodies: the direction, and the gap that is kept.
+#[derive(Debug, Clone, Copy)]
+struct Along {
+    direction: DVec3,
+    keep: f64,
+}
+
+/// A proof that owns its bodies: whoever has the file can check what it says, without a search.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::{Cast, ConvexPolyhedron, Pose, ProofFile};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+/// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+///
+/// let saved = ProofFile::of_range(&cast, &cast.contact_range()?).to_json();
+/// let proof = ProofFile::from_json(&saved)?;
+/// proof.check()?;
+/// assert!(proof.statement().to_string().starts_with("the bodies meet from a translation"));
+/// assert!(ProofFile::from_json(&saved.replace("[-3.0,", "[-3.1,"))?.check().is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ProofFile {
+    bodies: Bodies,
+    poses: [Pose; 2],
+    along: Option<Along>,
+    statement: Statement,
+}
+
+#[derive(Debug, Clone)]
+enum Bodies {
+    Convex(Box<[ConvexPolyhedron; 2]>),
+    Solids { made: Box<[Solid; 2]>, of: Pieces },
+}
+
+impl ProofFile {
+    /// Of an answer of [`Cast::first_contact`]; `cast` is the one that was asked.
+    pub fn of_outcome(cast: &Cast<'_>, outcome: &Outcome) -> Self {
+        let statement = match outcome {
+            Outcome::Contact(contact) => {
+                Statement::Contacts(Contacts::between(Some(contact), None))
+            }
+            Outcome::Grazing(grazing) => {
+                Statement::Contacts(Contacts::sliding(cast, grazing, None))
+            }
+            Outcome::Separated(separated) => Statement::Separation(separated.certificate),
+        };
+        Self::of_convex(cast, statement)
+    }
+
+    /// Of an answer of [`Cast::contact_range`]; `cast` is the one that was asked.
+    pub fn of_range(cast: &Cast<'_>, range: &ContactRange) -> Self {
+        let contacts = match range {
+            ContactRange::Contact { first, last } => Contacts::between(Some(first), Some(last)),
+            ContactRange::Grazing { first, last } => Contacts::sliding(cast, first, Some(last)),
+            ContactRange::Separated(of) => return Self::of_outcome(cast, &Outcome::Separated(*of)),
+        };
+        Self::of_convex(cast, Statement::Contacts(contacts))
+    }
+
+    /// Of an answer of [`Cast::clearance`]; `cast` is the one that was asked.
+    pub fn of_clearance(cast: &Cast<'_>, clearance: &Clearance) -> Self {
+        let outcome = |of| Self::of_outcome(cast, &of);
+        let ends = |first, last| {
+            Self::of_convex(cast, Statement::Contacts(Contacts::between(first, last)))
+        };
+        match clearance {
+            Clearance::Blocked { contact, .. } => outcome(Outcome::Contact(*contact)),
+            Clearance::Free(WhyFree::Slides(grazing)) => outcome(Outcome::Grazing(*grazing)),
+            Clearance::Free(WhyFree::Separated(of)) => outcome(Outcome::Separated(*of)),
+            Clearance::Free(WhyFree::Behind(last)) => ends(None, Some(last)),
+            Clearance::Overlapping(OverlapAhead { first, last }) => ends(Some(first), Some(last)),
+        }
+    }
+
+    fn of_convex(cast: &Cast<'_>, statement: Statement) -> Self {
+        Self {
+            bodies: Bodies::Convex(Box::new([cast.moving().clone(), cast.fixed().clone()])),
+            poses: [cast.moving_pose(), cast.fixed_pose()],
+            along: Some(Along { direction: cast.direction(), keep: cast.options().keep }),
+            statement,
+        }
+    }
+
+    /// Of an answer of [`Pair::distance`] or [`Pair::within`]; `pair` is the one that was asked.
+    pub fn of_distance(pair: &Pair<'_>, answer: impl Into<DistanceStatement>) -> Self {
+        Self::of_pair(pair, Statement::Distance(answer.into()))
+    }
+
+    /// Of an answer of [`Pair::depth`]; `pair` is the one that was asked.
+    pub fn of_depth(pair: &Pair<'_>, depth: &Depth) -> Self {
+        Self::of_pair(pair, Statement::Depth(depth.clone()))
+    }
+
+    fn of_pair(pair: &Pair<'_>, statement: Statement) -> Self {
+        let bodies = Bodies::Convex(Box::new([pair.moving().clone(), pair.fixed().clone()]));
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        Self { bodies, poses, along: None, statement }
+    }
+
+    /// Of [`Cast::clearance`] between solids, asked once more with its proof. `pieces` are those that
+    /// each body is the union of ([`Solid::from_pieces`]), or the body itself. Of the choices, the
+    /// tolerance and what an overlap means count.
+    ///
+    /// # Errors
+    /// A body that its own facets do not make once more.
+    pub fn of_solids(cast: &Cast<'_, Solid>, pieces: [&[&Solid]; 2]) -> Result<Self, CaseError> {
+        let (made, of) = again(pieces, [cast.moving(), cast.fixed()])?;
+        let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
+        let keep = cast.options().keep;
+        let options = options(cast.options().start_overlap, cast.tolerance(), keep);
+        let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
+        let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
+        let bodies = Bodies::Solids { made, of };
+        Ok(Self { bodies, poses, along: Some(Along { direction, keep }), statement })
+    }
+
+    /// Of the distance of solids, asked once more with its proof: of [`Pair::distance`], or of
+    /// [`Pair::within`] a length, which may prove one bound alone. `pieces` as in [`Self::of_solids`].
+    ///
+    /// # Errors
+    /// A body that its own facets do not make once more; a length that is negative or not a number.
+    pub fn of_solid_distance(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+        within: Option<f64>,
+    ) -> Result<Self, CaseError> {
+        let (made, of) = again(pieces, [pair.moving(), pair.fixed()])?;
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        let again = Pair::new(made[0].at(poses[0]), made[1].at(poses[1]))?;
+        let proof = match within {
+            None => again.certified_distance()?.1,
+            Some(length) => match again.certified_within(length)? {
+                (_, Some(proof)) => proof,
+                (Within::Closer(near), None) => DistanceCertificate::of_near(near),
+                (_, None) => again.certified_distance()?.1,
+            },
+        };
+        let (bodies, statement) = (Bodies::Solids { made, of }, Statement::SolidDistance(proof));
+        Ok(Self { bodies, poses, along: None, statement })
+    }
+
+    /// What it says; true if [`Self::check`] does not object.
+    pub const fn statement(&self) -> &Statement {
+        &self.statement
+    }
+
+    /// How many facets of the moving and of the fixed body turn inside out, or pass through others, where
+    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](crate::solid::ShrinkReport::inverted)):
+    /// what is said of shrunk bodies says little there.
+    pub fn inverted(&self) -> [usize; 2] {
+        match (&self.bodies, &self.statement) {
+            (Bodies::Solids { made, .. }, Statement::Clearance(of))
+                if of.certificate.tolerance > 0.0 =>
+            {
+                let amount = of.certificate.tolerance / 2.0;
+                made.each_ref().map(|body| body.shrink_report(amount).inverted.len())
+            }
+            _ => [0; 2],
+        }
+    }
+
+    /// Checks it as [`Cast::verify`] and [`Pair::verify`] do, without a search.
+    ///
+    /// # Errors
+    /// The first thing that is not proven.
+    pub fn check(&self) -> Result<(), CertificateError> {
+        let [moving, fixed] = self.poses;
+        match (&self.bodies, self.along) {
+            (Bodies::Convex(bodies), along) => {
+                let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
+                match along {
+                    Some(Along { direction, keep }) => {
+                        let cast = Cast::new(placed[0], placed[1], direction)?.keeping(keep)?;
+                        self.statement.check(&cast)
+                    }
+                    None => self.statement.check_pair(&Pair::new(placed[0], placed[1])?),
+                }
+            }
+            (Bodies::Solids { made, .. }, along) => {
+                let placed = [made[0].at(moving), made[1].at(fixed)];
+                self.statement.check_solids(placed, along)
+            }
+        }
+    }
+
+    /// The gap that the bodies are to keep, in world units; 0 if they may touch.
+    pub fn keep(&self) -> f64 {
+        self.along.map_or(0.0, |along| along.keep)
+    }
+}

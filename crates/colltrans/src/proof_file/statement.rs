@@ -1,0 +1,268 @@
+//! What is said of bodies, with its certificates, and how each is checked.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::Along;
+use crate::answer::{
+    Bounded, Certificate, CertificateError, Clearance, Contact, Depth, Distance, Grazing,
+    NearPoints, PlaneGap, Separation, Within,
+};
+use crate::body::solid::Solid;
+use crate::body::{InputFacet, Placed};
+use crate::cast::Cast;
+use crate::cast::sideways::{proven_overlap, verified_overlap};
+use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use crate::pair::Pair;
+use crate::pair::solid::DistanceCertificate;
+use crate::setting::error::QueryError;
+
+/// What a [`ProofFile`](crate::ProofFile) says of its bodies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Statement {
+    /// Where convex bodies meet first, or last, or both.
+    Contacts(Contacts),
+    /// That convex bodies never meet.
+    Separation(Separation),
+    /// How far a solid can move from where it is.
+    Clearance(SolidStatement),
+    /// How far convex bodies are apart where they are.
+    Distance(DistanceStatement),
+    /// How deep convex bodies overlap where they are.
+    Depth(Depth),
+    /// How far solids are apart where they are.
+    SolidDistance(DistanceCertificate),
+}
+
+/// How far two convex bodies are apart: at least, or at most, or both.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DistanceStatement {
+    /// Why they are not nearer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<PlaneGap>,
+    /// Why they are not farther.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<NearPoints>,
+}
+
+impl From<&Distance> for DistanceStatement {
+    fn from(of: &Distance) -> Self {
+        Self { gap: of.gap, near: Some(of.near) }
+    }
+}
+
+impl From<&Within> for DistanceStatement {
+    fn from(of: &Within) -> Self {
+        match of {
+            Within::Closer(near) => Self { near: Some(*near), gap: None },
+            Within::Farther(gap) => Self { gap: Some(*gap), near: None },
+            Within::Undecided(distance) => distance.into(),
+        }
+    }
+}
+
+/// The ends of the translations at which two convex bodies meet; one of them may be missing.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contacts {
+    /// Where the bodies slide along each other: that they hardly overlap, seen along the direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slide: Option<Slide>,
+    /// Of the first contact, along the direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first: Option<Certificate>,
+    /// Of the last one: the first of the [reversed](Cast::reversed) cast.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<Certificate>,
+}
+
+/// How much of two convex bodies is in each other's way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Slide {
+    /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed one:
+    /// [`Grazing::separating_direction`].
+    pub normal: DVec3,
+    /// At least `max_P n.p - min_Q n.q`, a length, wherever on its way the moving body is near the
+    /// fixed one, and the gap that they are to keep; negative if they miss each other.
+    pub overlap: f64,
+}
+
+/// What is said of two solids.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolidStatement {
+    /// What an overlap at the start means.
+    pub start_overlap: StartOverlap,
+    /// The proof for the bodies shrunk by half of its tolerance.
+    pub certificate: SolidCertificate,
+    /// What stops the moving body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stop: Option<Stop>,
+    /// A plane between the shrunk bodies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub separation: Option<Separation>,
+}
+
+/// Two facets, and where they meet as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stop {
+    /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
+    pub facets: [InputFacet; 2],
+    /// Where they meet in their true place: [`SolidContact::translation`](crate::solid::SolidContact::translation).
+    pub translation: Bounded,
+}
+
+impl Stop {
+    const fn refused(&self) -> CertificateError {
+        let [moving, fixed] = self.facets;
+        CertificateError::OtherFacets { moving, fixed }
+    }
+}
+
+impl Slide {
+    pub(super) fn of(grazing: &Grazing, cast: &Cast<'_>) -> Self {
+        let normal = grazing.separating_direction;
+        Self { normal, overlap: proven_overlap(normal, cast) }
+    }
+
+    pub(super) fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
+        let Self { normal, overlap: claimed } = *self;
+        let proven = verified_overlap(normal, cast)?;
+        if claimed >= proven { Ok(()) } else { Err(CertificateError::Bound { proven, claimed }) }
+    }
+}
+
+impl Contacts {
+    /// The contacts at the ends, those that there are.
+    pub(super) fn between(first: Option<&Contact>, last: Option<&Contact>) -> Self {
+        let [first, last] = [first, last].map(|end| end.map(|contact| contact.certificate));
+        Self { slide: None, first, last }
+    }
+
+    /// Of bodies that slide along each other.
+    pub(super) fn sliding(cast: &Cast<'_>, first: &Grazing, last: Option<&Grazing>) -> Self {
+        let ends = Self::between(Some(&first.contact), last.map(|last| &last.contact));
+        Self { slide: Some(Slide::of(first, cast)), ..ends }
+    }
+
+    /// The translation at which the bodies first meet, and the one at which they last do: at least,
+    /// and at most.
+    pub fn bounds(&self) -> [Option<[f64; 2]>; 2] {
+        let first = self.first.map(|first| [first.lower, first.upper]);
+        // Not -0.
+        [first, self.last.map(|last| [0.0 - last.upper, 0.0 - last.lower])]
+    }
+}
+
+/// The choices that count in a proof.
+pub(super) fn options(start_overlap: StartOverlap, tolerance: f64, keep: f64) -> SolidOptions {
+    let options = SolidOptions::default().with_start_overlap(start_overlap);
+    options.with_tolerance(tolerance).with_keep(keep)
+}
+
+impl Statement {
+    /// Of convex bodies.
+    pub(super) fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
+        match self {
+            Self::Contacts(Contacts { slide, first, last }) if first.or(*last).is_some() => {
+                slide.map_or(Ok(()), |slide| slide.check(cast))?;
+                first.map_or(Ok(0.0), |first| cast.verify(&first))?;
+                last.map_or(Ok(0.0), |last| cast.reversed().verify(&last))?;
+                Ok(())
+            }
+            Self::Separation(separation) => cast.verify(separation).map(|_| ()),
+            _ => Err(CertificateError::Start),
+        }
+    }
+
+    /// Of convex bodies and no direction.
+    pub(super) fn check_pair(&self, pair: &Pair<'_>) -> Result<(), CertificateError> {
+        match self {
+            Self::Distance(DistanceStatement { gap, near }) if gap.is_some() || near.is_some() => {
+                gap.map_or(Ok(0.0), |gap| pair.verify(&gap))?;
+                near.map_or(Ok(0.0), |near| pair.verify(&near))?;
+                Ok(())
+            }
+            Self::Depth(depth) => pair.verify(depth).map(|_| ()),
+            _ => Err(CertificateError::Start),
+        }
+    }
+
+    pub(super) fn check_solids(
+        &self,
+        [moving, fixed]: [Placed<'_, Solid>; 2],
+        along: Option<Along>,
+    ) -> Result<(), CertificateError> {
+        match (self, along) {
+            (Self::Clearance(of), Some(Along { direction, keep })) => {
+                let options = options(of.start_overlap, of.certificate.tolerance, keep);
+                of.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)
+            }
+            (Self::SolidDistance(of), None) => Pair::new(moving, fixed)?.verify(of).map(|_| ()),
+            _ => Err(CertificateError::Start),
+        }
+    }
+
+    /// Whether it is of bodies where they are, without a direction.
+    pub(super) const fn is_of_pair(&self) -> bool {
+        matches!(self, Self::Distance(_) | Self::Depth(_) | Self::SolidDistance(_))
+    }
+}
+
+impl SolidStatement {
+    pub(super) fn of(cast: &Cast<'_, Solid>) -> Result<Self, QueryError> {
+        let (clearance, certificate) = cast.certified_clearance()?;
+        let (stop, separation) = match clearance {
+            Clearance::Blocked { contact, .. } => {
+                let facets = facets(cast, contact.triangles);
+                (facets.map(|facets| Stop { facets, translation: contact.translation }), None)
+            }
+            Clearance::Free(free) => (None, free.separation),
+            Clearance::Overlapping(_) => (None, None),
+        };
+        let start_overlap = cast.options().start_overlap;
+        Ok(Self { start_overlap, certificate, stop, separation })
+    }
+
+    fn check(&self, cast: &Cast<'_, Solid>) -> Result<(), CertificateError> {
+        cast.verify(&self.certificate)?;
+        if let Some(separation) = &self.separation {
+            cast.verify(separation)?;
+        }
+        let (stop, triangles) = match (self.stop, self.certificate.stop) {
+            (None, None) => return Ok(()),
+            (Some(stop), Some(proof)) => (stop, proof.triangles),
+            (Some(stop), None) => return Err(stop.refused()),
+            (None, Some(proof)) => return Err(CertificateError::triangles(proof.triangles)),
+        };
+        if facets(cast, triangles) != Some(stop.facets) {
+            return Err(stop.refused());
+        }
+        let overlapping = Some(!matches!(self.certificate.start, StartProof::Apart(_)));
+        let of_pair = Cast { options: cast.options.with_overlapping(overlapping), ..*cast };
+        let refused = CertificateError::triangles(triangles);
+        let found = of_pair.stop_by(triangles).ok_or(refused)?;
+        let (claimed, proven) = (stop.translation, found.translation);
+        let Bounded { value, lower, upper } = claimed;
+        if !(lower <= value && value <= upper) {
+            return Err(CertificateError::Value { value, lower, upper });
+        }
+        if lower > proven.lower {
+            return Err(CertificateError::Bound { proven: proven.lower, claimed: lower });
+        }
+        if upper < proven.upper {
+            return Err(CertificateError::Bound { proven: proven.upper, claimed: upper });
+        }
+        Ok(())
+    }
+}
+
+/// The facets of the input that two triangles are parts of.
+fn facets(cast: &Cast<'_, Solid>, [s, t]: [u32; 2]) -> Option<[InputFacet; 2]> {
+    let of = |body: &Solid, at: u32| body.facet_indices().get(at as usize).copied();
+    Some([of(cast.moving(), s)?, of(cast.fixed(), t)?])
+}

@@ -1,0 +1,145 @@
+//! Statements in words, each in one line.
+
+use std::fmt;
+
+use super::statement::{Contacts, DistanceStatement, Slide, SolidStatement, Statement, Stop};
+use super::{Bodies, ProofFile};
+use crate::answer::{Bounded, Depth, Separation};
+use crate::cast::solid::{SolidCertificate, StartOverlap, StartProof};
+use crate::pair::solid::DistanceCertificate;
+
+impl fmt::Display for ProofFile {
+    /// Its statement, and what shrinking has done to the bodies, in words, in one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [moving, fixed] = self.inverted();
+        if self.keep() > 0.0 {
+            let keep = self.keep();
+            write!(f, "counted as meeting where they are {keep:?} apart or nearer, ")?;
+            // Facets that are less than eight noises nearer may pass.
+            if matches!(self.bodies, Bodies::Solids { .. }) {
+                f.write_str("to within rounding, ")?;
+            }
+        }
+        self.statement.fmt(f)?;
+        if [moving, fixed] == [0; 2] {
+            return Ok(());
+        }
+        write!(
+            f,
+            "; shrunk so far, {moving} facets of the moving body and {fixed} of the fixed one are inside out: \
+             where a body is thinner than the tolerance, nothing is said of it as it is"
+        )
+    }
+}
+
+impl fmt::Display for Statement {
+    /// In words, in one line; translations in multiples of the direction.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Contacts(contacts) => contacts.fmt(f),
+            Self::Separation(Separation { margin, .. }) => {
+                write!(
+                    f,
+                    "the bodies never meet along the direction: seen along it, a gap of {margin:?} lies between them"
+                )
+            }
+            Self::Clearance(statement) => statement.fmt(f),
+            Self::Distance(DistanceStatement { gap, near }) => {
+                let near = near.as_ref().map(|near| near.distance);
+                f.write_str(&apart(gap.map(|gap| gap.gap), near))
+            }
+            Self::Depth(Depth { upper: 0.0, .. }) => write!(f, "the bodies do not overlap"),
+            Self::Depth(Depth { lower, upper, direction, .. }) => write!(
+                f,
+                "a translation of the moving body by {upper:?} along {:?} parts the bodies, none below \
+                 {lower:?} does",
+                direction.to_array()
+            ),
+            Self::SolidDistance(DistanceCertificate { lower, near, .. }) => {
+                let lower = Some(*lower).filter(|lower| *lower > 0.0);
+                f.write_str(&apart(lower, Some(near.distance())))
+            }
+        }
+    }
+}
+
+/// How far bodies are apart: at least, at most.
+fn apart(lower: Option<f64>, upper: Option<f64>) -> String {
+    match (lower, upper) {
+        (_, Some(0.0)) => "the bodies have a point in common".into(),
+        (Some(a), Some(b)) => format!("the bodies are between {a:?} and {b:?} apart"),
+        (Some(a), None) => format!("the bodies are at least {a:?} apart"),
+        (None, Some(b)) => format!("the bodies are at most {b:?} apart"),
+        (None, None) => "nothing".into(),
+    }
+}
+
+impl fmt::Display for Contacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(Slide { overlap, .. }) = self.slide {
+            write!(
+                f,
+                "the bodies slide along each other, seen along the direction they overlap by at most {overlap:?}; "
+            )?;
+        }
+        match self.bounds() {
+            [Some([a, b]), Some([c, d])] if b.is_finite() && c.is_finite() => {
+                write!(
+                    f,
+                    "the bodies meet from a translation between {a:?} and {b:?} to one between {c:?} and {d:?}"
+                )
+            }
+            [Some([a, _]), Some([_, d])] => {
+                write!(f, "the bodies meet at no translation below {a:?} or above {d:?}")
+            }
+            [Some([a, b]), None] if b.is_finite() => {
+                write!(f, "the bodies first meet at a translation between {a:?} and {b:?}")
+            }
+            [Some([a, _]), None] => write!(f, "the bodies meet at no translation below {a:?}"),
+            [None, Some([c, d])] if c.is_finite() => {
+                write!(f, "the bodies last meet at a translation between {c:?} and {d:?}")
+            }
+            [None, Some([_, d])] => write!(f, "the bodies meet at no translation above {d:?}"),
+            [None, None] => write!(f, "nothing"),
+        }
+    }
+}
+
+impl fmt::Display for SolidStatement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let SolidCertificate { tolerance, start, lower, .. } = &self.certificate;
+        if *tolerance > 0.0 {
+            write!(f, "shrunk by {:?} each, ", tolerance / 2.0)?;
+        }
+        let overlapping = matches!(start, StartProof::Overlapping(_));
+        f.write_str(if overlapping {
+            "the bodies overlap where they are"
+        } else {
+            "the bodies do not overlap where they are"
+        })?;
+        if overlapping && self.start_overlap == StartOverlap::Refuse {
+            return Ok(());
+        }
+        let later = if overlapping { " that touches later" } else { "" };
+        match self.stop {
+            None => write!(f, ", and nothing{later} ever stops the moving one"),
+            Some(Stop { translation, .. }) => write!(
+                f,
+                ", and nothing{later} stops the moving one before a translation of {lower:?}; {}",
+                meeting(translation)
+            ),
+        }
+    }
+}
+
+/// Of the facets that stop a body.
+fn meeting(Bounded { lower, upper, .. }: Bounded) -> String {
+    match [lower.is_finite(), upper.is_finite()] {
+        [true, true] => {
+            format!("the facets that do meet, as they are, between {lower:?} and {upper:?}")
+        }
+        [true, false] => format!("the facets that do meet, as they are, not before {lower:?}"),
+        [false, true] => format!("the facets that do meet, as they are, by {upper:?}"),
+        [false, false] => "it is not said where the facets that do meet, as they are".into(),
+    }
+}

@@ -38,13 +38,16 @@ const MODULES = {
 
 if (!process.argv.includes("--no-wasm")) {
   const env = { ...process.env, ...found() };
-  const packages = Object.entries(MODULES).flatMap(([name, example]) => ["-p", name, "--example", example]);
-  // All at once: what they have in common is built once.
-  execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown"], {
-    cwd: join(root, "crates/colltrans-wasm"),
-    env,
-    stdio: "inherit",
-  });
+  // What is built at once has all features that one of them asks for: assemblies keep gaps, the page does not.
+  const assembly = "colltrans-wasm-assembly";
+  for (const names of [Object.keys(MODULES).filter((name) => name !== assembly), [assembly]]) {
+    const packages = names.flatMap((name) => ["-p", name, "--example", MODULES[name]]);
+    execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown"], {
+      cwd: join(root, "crates/colltrans-wasm"),
+      env,
+      stdio: "inherit",
+    });
+  }
 }
 
 rmSync(out, { recursive: true, force: true });

@@ -25,8 +25,12 @@ pub enum QueryError {
         /// The tolerance as given.
         tolerance: f64,
     },
-    /// The gap that is to be kept is negative, not finite or larger than a coordinate may be.
-    #[error("the gap {gap} to be kept is negative, not finite or larger than 2^200")]
+    /// The gap that is to be kept is negative, not finite or larger than a coordinate may be; or the library
+    /// was built without its feature `keep`.
+    #[error(
+        "the gap {gap} to be kept is negative, not finite or larger than 2^200{}",
+        if cfg!(feature = "keep") { "" } else { ", or this build keeps none" }
+    )]
     Keep {
         /// The gap as given.
         gap: f64,

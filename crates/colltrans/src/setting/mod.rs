@@ -58,10 +58,11 @@ pub(crate) fn check_length(length: f64) -> Result<(), QueryError> {
 }
 
 /// # Errors
-/// A gap that is negative, not finite or beyond the range of coordinates.
+/// A gap that is negative, not finite or beyond the range of coordinates; any but 0 without the feature.
 #[inline]
 pub(crate) fn check_keep(gap: f64) -> Result<(), QueryError> {
-    if (0.0..=MAX_MAGNITUDE).contains(&gap) { Ok(()) } else { Err(QueryError::Keep { gap }) }
+    let most = if cfg!(feature = "keep") { MAX_MAGNITUDE } else { 0.0 };
+    if (0.0..=most).contains(&gap) { Ok(()) } else { Err(QueryError::Keep { gap }) }
 }
 
 /// Two placed bodies and a direction.

@@ -53,7 +53,7 @@ pub(crate) fn search<O: Observer>(
         solver => solver,
     };
     *next = WarmStart::Nothing;
-    if options.keep != 0.0 {
+    if cfg!(feature = "keep") && options.keep != 0.0 {
         return kept(setting, options, focus, last, next, observer);
     }
     let mut first = Run {

@@ -1,7 +1,7 @@
 //! Proofs between solids checked: each entry by itself, without a search.
 
 use super::proof::{Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves};
-use crate::answer::{CertificateError, Separation};
+use crate::answer::{CertificateError, Separation, checked_as};
 use crate::body::solid::Solid;
 use crate::cast::Cast;
 use crate::solve::solid::bound::{Reason, apart};
@@ -22,17 +22,7 @@ pub enum SolidProof<'a> {
     Separation(&'a Separation),
 }
 
-impl<'a> From<&'a SolidCertificate> for SolidProof<'a> {
-    fn from(certificate: &'a SolidCertificate) -> Self {
-        Self::Clearance(certificate)
-    }
-}
-
-impl<'a> From<&'a Separation> for SolidProof<'a> {
-    fn from(separation: &'a Separation) -> Self {
-        Self::Separation(separation)
-    }
-}
+checked_as!(SolidProof { Clearance(SolidCertificate), Separation(Separation) });
 
 impl Cast<'_, Solid> {
     /// Checks a [`SolidCertificate`] or a [`Separation`] against the two bodies, and returns how far
@@ -108,8 +98,7 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
         Reason::Disjoint if nodes == [0, 0] && whole => true,
         Reason::Disjoint => apart(scene, &projected(true, nodes[0]), &projected(false, nodes[1])),
         Reason::FaceToFace => {
-            scene.keep == 0.0
-                && projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
+            !scene.keeps() && projected(true, nodes[0]).is_face_to_face(&projected(false, nodes[1]))
         }
         Reason::Examined => {
             let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
@@ -161,7 +150,7 @@ fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<f64, Certifi
     let proven = aim.clamp(least) / scene.setting.length;
     let tolerance = (error + leaf::FINE * scene.noise) / scene.setting.length;
     if (stop.shrunk_distance - proven).abs() <= tolerance {
-        Ok(if scene.keep > 0.0 { error } else { 0.0 })
+        Ok(if scene.keeps() { error } else { 0.0 })
     } else {
         Err(CertificateError::Bound { proven, claimed: stop.shrunk_distance })
     }

@@ -31,8 +31,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::keep::nearest_after;
-use super::leaf::{self, Gap, Meeting, listed};
+use super::leaf::{self, Gap, Meeting, listed, nearest_after};
 use super::rim;
 use super::scene::{Corner, Scene, Side};
 use super::search::{Aim, Found, exact_gap};
@@ -173,7 +172,10 @@ pub(crate) fn contact(
         }
         Meeting::Near => {
             let corners = [&of_f, &of_g].map(|of| of.corners);
-            let (weights, normal) = nearest_after(scene, &corners[0], &corners[1], found.gap);
+            // Without a gap nothing is met so.
+            let near =
+                scene.keeps().then(|| nearest_after(scene, &corners[0], &corners[1], found.gap));
+            let (weights, normal) = near.unwrap_or_default();
             (weights[0], weights[1], scene.frame * normal)
         }
     };
@@ -218,7 +220,7 @@ pub(crate) fn true_place(
         let place = bounded(bare, gap, gap.0);
         Bounded { lower: place.lower.min(shrunk.lower), ..place }
     };
-    if bare.keep > 0.0 {
+    if bare.keeps() {
         return leaf::gap_of(bare, pair).map_or(shrunk, known);
     }
     let exact = leaf::gap_of(bare, pair).or_else(|| rim::least_gap_of(bare, &Gap::counts, pair));

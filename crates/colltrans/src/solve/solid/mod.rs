@@ -2,14 +2,13 @@
 //!
 //! Data flow: [`scene`] (two placed solids and a direction) -> [`overlap`] (do they overlap where
 //! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
-//! [`leaf`] for pairs of facets, [`keep`] where a gap is to be kept, [`rim`] for what is on edge in open shells) -> [`contact`], or a plane between
+//! [`leaf`] for pairs of facets, [`rim`] for what is on edge in open shells) -> [`contact`], or a plane between
 //! the bodies ([`separate`]) where there is one. [`sign`] decides what rounding cannot. [`nearest`] is of the same
 //! scene without a direction. The questions are in `cast/solid` and `pair/solid`.
 
 pub(crate) mod bound;
 pub(crate) mod contact;
 mod inside;
-pub(crate) mod keep;
 pub(crate) mod leaf;
 pub(crate) mod nearest;
 pub(crate) mod overlap;

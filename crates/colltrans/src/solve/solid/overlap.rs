@@ -28,7 +28,7 @@ use std::cmp::Ordering;
 
 use super::bound::{Reason, apart, beyond};
 use super::inside;
-use super::keep::Facets;
+use super::leaf::Facets;
 use super::projected::Projected;
 use super::scene::{Corner, Scene, Side};
 use super::search::{children, splits_moving};
@@ -157,12 +157,12 @@ impl Judge {
 
     /// Whether the bodies overlap, or are nearer than the gap that they are to keep.
     fn overlap(scene: &Scene) -> Self {
-        if scene.keep > 0.0 { Self::NEARER } else { Self::OVERLAP }
+        if scene.keeps() { Self::NEARER } else { Self::OVERLAP }
     }
 
     /// The same with bodies that touch, or are as near as the gap.
     fn touch(scene: &Scene) -> Self {
-        if scene.keep > 0.0 { Self::AS_NEAR } else { Self::TOUCH }
+        if scene.keeps() { Self::AS_NEAR } else { Self::TOUCH }
     }
 
     /// Whether a pair of nodes needs no further look. Facets of one plane that look at each other show

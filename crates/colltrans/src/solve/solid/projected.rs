@@ -56,7 +56,7 @@ impl Projected {
         projected.spread += side.defect
             + if side.permutes { 2.0 * f64::EPSILON * terms } else { 16.0 * f64::EPSILON };
         projected.bounds = boxed(scene, side, projected.local);
-        if scene.keep > 0.0 {
+        if scene.keeps() {
             // What is on edge looks neither way.
             projected.spread += f64::MIN_POSITIVE;
         }

@@ -45,7 +45,7 @@ pub(crate) struct Upright {
 /// Whether two nodes have facets without a side.
 pub(crate) fn matters(scene: &Scene, nodes: [u32; 2]) -> bool {
     // To be near, facets on edge are like any others.
-    scene.keep == 0.0
+    !scene.keeps()
         && [true, false]
             .into_iter()
             .zip(nodes)
@@ -70,7 +70,7 @@ pub(crate) fn least_gap_of(
 
 /// The gaps of two triangles of which one is an upright facet.
 pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut([u32; 2], Gap)) {
-    if scene.keep > 0.0 {
+    if scene.keeps() {
         return;
     }
     let upright = |moving, t: u32| {

@@ -84,6 +84,13 @@ impl<'a> Scene<'a> {
         Self { setting: *setting, moving, fixed, frame, keep, noise }
     }
 
+    /// Whether a gap is to be kept.
+    #[inline]
+    pub(crate) fn keeps(&self) -> bool {
+        // Without the feature what is reached by this alone is left out of programs.
+        cfg!(feature = "keep") && self.keep > 0.0
+    }
+
     /// A corner in the setting frame.
     pub(crate) fn place(&self, corner: &Corner) -> DVec3 {
         let side = self.side(corner.moving);

@@ -39,7 +39,7 @@ impl Facet {
         let (corners, turn) = listed(scene, side, triangle);
         let counts = match turn {
             // What is on edge has no gap; it can be near, as the rim of what has no thickness is.
-            Ordering::Equal => scene.keep > 0.0 && is_thin(side.solid, triangle),
+            Ordering::Equal => scene.keeps() && is_thin(side.solid, triangle),
             turn => turn == wanted || side.solid.is_open(triangle),
         };
         if !counts {

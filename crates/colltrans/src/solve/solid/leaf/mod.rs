@@ -13,18 +13,19 @@
 //! `-outside(p, q, r, s) turn(p, q, s)` (side `p q` of `f` under side `r s` of `g`).
 //!
 //! [`facet`] has a facet and the turns of its sides, [`rounded`] the gap with bounds of its error, [`exact`]
-//! the gap in whole numbers; here they are asked in turn.
+//! the gap in whole numbers; here they are asked in turn. [`keep`] is about facets that are to keep a gap.
 
 mod exact;
 mod facet;
+mod keep;
 mod rounded;
 
 use std::cmp::Ordering;
 
 pub(crate) use exact::{Above, NO_GAP, over_facet, over_side};
 pub(crate) use facet::{Facet, listed};
+pub(crate) use keep::{Facets, nearest_after};
 
-use super::keep;
 use super::scene::Scene;
 use exact::exact;
 use facet::{Turns, may_cross, separates};
@@ -86,7 +87,7 @@ pub(crate) enum Wanted {
 /// The gap where the interiors of the shadows overlap and the pair is of interest; `limit` is what it
 /// has to stay below.
 pub(crate) fn gap(scene: &Scene, f: &Facet, g: &Facet, limit: f64, wanted: Wanted) -> Option<Gap> {
-    if scene.keep > 0.0 {
+    if scene.keeps() {
         return keep::gap(scene, f, g, limit, wanted);
     }
     let noise = 4.0 * scene.noise;
@@ -152,7 +153,7 @@ pub(crate) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
 pub(crate) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
     let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
     let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
-    if scene.keep > 0.0 {
+    if scene.keeps() {
         let gap = keep::gap(scene, &f, &g, f64::INFINITY, Wanted::All)?;
         return Some((gap.least, gap.error));
     }

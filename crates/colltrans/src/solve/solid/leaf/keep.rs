@@ -14,14 +14,14 @@
 
 use glam::DVec3;
 
-use super::leaf::{Facet, Gap, Meeting, Wanted};
-use super::nearest::triangle::{self, Corners};
-use super::scene::{Corner, Scene};
+use super::super::nearest::triangle::{self, Corners};
+use super::super::scene::{Corner, Scene};
+use super::{Facet, Gap, Meeting, Wanted};
 use crate::number::noise::UNIT_VECTOR;
 use crate::solve::keep::{Line, Look, Plane, Target, Travel, shadow, travel};
 
 /// How far below the gap, in noises, facets may pass each other.
-pub(crate) const GRAZE: f64 = 8.0;
+const GRAZE: f64 = 8.0;
 
 /// Looks for a point that is near enough where none was found on the way.
 const MOST_DEEPER: usize = 8;

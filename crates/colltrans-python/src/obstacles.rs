@@ -385,25 +385,26 @@ impl Obstacles {
     ///     As for :meth:`nearest`.
     /// direction : array_like of shape (3,)
     ///     Of any length; translations count in multiples of it.
-    /// before : float
+    /// before : float, optional
     ///     What is not met before this translation is of no interest.
     ///
     /// Returns
     /// -------
     /// ObstacleClearance
-    #[pyo3(signature = (body, direction, pose=None, *, before=f64::INFINITY, ignore=HashSet::new()),
-        text_signature = "($self, body, direction, pose=None, *, before=float('inf'), ignore=())")]
+    #[pyo3(signature = (body, direction, pose=None, *, before=None, ignore=HashSet::new()),
+        text_signature = "($self, body, direction, pose=None, *, before=None, ignore=())")]
     fn clearance(
         &self,
         py: Python<'_>,
         body: &Bound<'_, PyAny>,
         direction: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
-        before: f64,
+        before: Option<f64>,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
     ) -> PyResult<ObstacleClearance> {
         let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
         let direction = vector(direction, "direction")?;
+        let before = before.unwrap_or(f64::INFINITY);
         let ask = |among: &Among<'_>| among.clearance_before(direction, before);
         self.ask(py, (&body, at), &ignore, ask).map(ObstacleClearance)
     }
@@ -469,8 +470,8 @@ impl Obstacles {
     /// dict of ndarray
     ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops it),
     ///     ``distance`` (NaN where bodies overlap) and ``upper``.
-    #[pyo3(signature = (body, directions, poses, *, before=f64::INFINITY, ignore=HashSet::new(),
-        threads=None), text_signature = "($self, body, directions, poses, *, before=float('inf'), \
+    #[pyo3(signature = (body, directions, poses, *, before=None, ignore=HashSet::new(),
+        threads=None), text_signature = "($self, body, directions, poses, *, before=None, \
         ignore=(), threads=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance_many<'py>(
@@ -479,7 +480,7 @@ impl Obstacles {
         body: &Bound<'py, PyAny>,
         directions: &Bound<'py, PyAny>,
         poses: &Bound<'py, PyAny>,
-        before: f64,
+        before: Option<f64>,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -491,6 +492,7 @@ impl Obstacles {
             let what = format!("{} for {} poses", directions.len(), poses.len());
             return Err(input("directions", what));
         }
+        let before = before.unwrap_or(f64::INFINITY);
         let ask = |k: usize, among: &Among<'_>| {
             among.clearance_before(directions[k.min(directions.len() - 1)], before)
         };

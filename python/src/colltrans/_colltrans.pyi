@@ -716,7 +716,7 @@ class Obstacles:
         direction: ArrayLike,
         pose: _Pose = None,
         *,
-        before: float = ...,
+        before: float | None = None,
         ignore: Iterable[int] = (),
     ) -> ObstacleClearance: ...
     def nearest_many(
@@ -733,7 +733,7 @@ class Obstacles:
         directions: ArrayLike,
         poses: ArrayLike | Sequence[Pose],
         *,
-        before: float = ...,
+        before: float | None = None,
         ignore: Iterable[int] = (),
         threads: int | None = None,
     ) -> dict[str, NDArray[Any]]: ...

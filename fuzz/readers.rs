@@ -17,7 +17,7 @@ fn open(name: &str, bytes: &[u8]) {
     files.insert("c.off".into(), CUBE.into());
     files.insert("c.bin".into(), (0..=255).collect());
     files.insert(name.into(), bytes.to_vec());
-    let mut options = ReadOptions { skip_missing: true, ..ReadOptions::default() };
+    let mut options = ReadOptions::default().with_skip_missing(true);
     options.packages.push("kit".into());
     match read_from(name, &files, &options) {
         Ok(assembly) => assert!(!assembly.parts().is_empty()),

@@ -218,8 +218,8 @@ export class AssemblyTab {
   private showParts(facts: PageParts, numbers: ArrayBuffer) {
     let at = 0;
     const parts = facts.parts.map(({ name, vertices, triangles }, k) => {
-      const part = { name, colour: tint(k), vertices: new Float32Array(numbers, at, 3 * vertices), triangles: new Uint32Array(numbers, at + 12 * vertices, 3 * triangles) };
-      at += 12 * (vertices + triangles);
+      const part = { name, colour: tint(k), vertices: new Float32Array(numbers, at, 3 * vertices!), triangles: new Uint32Array(numbers, at + 12 * vertices!, 3 * triangles!) };
+      at += 12 * (vertices! + triangles!);
       return part;
     });
     this.moves = [];
@@ -301,15 +301,16 @@ export class AssemblyTab {
       if (turn !== this.turn || !this.facts) return;
       const plan = (this.plan = facts);
       const { size, unit: of } = this.facts;
-      const last = plan.steps.length - 1;
-      this.moves = plan.steps.map(({ parts, direction, travel }, k) => {
+      const last = plan.plan.length - 1;
+      const places = new Map(this.facts.parts.map(({ name }, k) => [name, k]));
+      this.moves = plan.plan.map(({ parts, direction, travel }, k) => {
         // The last part stays, for there is nothing to take it out of.
         const way = k === last && travel === 0 ? 0 : travel + 0.35 * size;
-        return { parts, way: times(direction, way) };
+        return { parts: parts.map((name) => places.get(name)!), way: times(direction, way) };
       });
       this.player.show(
-        plan.steps.map(({ parts, direction, travel }) => `${this.names(parts)} along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
-        `${this.facts.parts.length} parts, ${plan.steps.length} steps; point at a part for its name.`);
+        plan.plan.map(({ parts, direction, travel }) => `${parts.join(", ")} along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
+        `${this.facts.parts.length} parts, ${plan.plan.length} steps; point at a part for its name.`);
     } catch (error) {
       if (turn === this.turn) this.refuse(error);
     } finally {
@@ -360,8 +361,8 @@ export class AssemblyTab {
 
   // --- what is shown
 
-  private names(parts: number[]): string {
-    return parts.map((part) => this.facts?.parts[part]?.name ?? "?").join(", ");
+  private name(part: number): string {
+    return this.facts?.parts[part]?.name ?? "?";
   }
 
   readonly show = soon(() => {
@@ -377,7 +378,7 @@ export class AssemblyTab {
     this.showArrow();
     const { part } = asked;
     const met = part === null ? undefined : this.along?.closures[part];
-    this.seen?.fade((k) => met !== undefined && !met.includes(k));
+    this.seen?.fade((k) => met !== undefined && !met.includes(this.name(k)));
   });
 
   themeChanged() {
@@ -397,40 +398,33 @@ export class AssemblyTab {
       refill(this.head, h("h2", {}, "…"), ...(wait ? [wait] : []));
       return;
     }
-    const free = along.first.filter(({ outcome }) => outcome === "free").length;
+    const free = along.rooms.filter(({ outcome }) => outcome === "free");
     const groups = along.removable.filter((group) => group.length > 1);
-    this.head.className = `said ${free || groups.length ? "free" : "stop"}`;
+    this.head.className = `said ${free.length || groups.length ? "free" : "stop"}`;
     refill(this.head,
-      h("h2", { id: "assembly-headline" }, free ? `${free} of ${facts.parts.length} parts come out along d` : "No part comes out alone along d"),
-      h("p", {}, free
-        ? `${this.names(along.first.flatMap(({ outcome }, k) => (outcome === "free" ? [k] : [])))}.`
-        : groups.length ? `As they are, these can leave together: ${groups.slice(0, 3).map((group) => this.names(group)).join("; ")}.` : "Everything is in the way of something."),
+      h("h2", { id: "assembly-headline" }, free.length ? `${free.length} of ${facts.parts.length} parts come out along d` : "No part comes out alone along d"),
+      h("p", {}, free.length
+        ? `${free.map(({ part }) => part).join(", ")}.`
+        : groups.length ? `As they are, these can leave together: ${groups.slice(0, 3).map((group) => group.join(", ")).join("; ")}.` : "Everything is in the way of something."),
       ...(wait ? [wait] : []));
   }
 
   private showList(facts: PageParts) {
     const { along, asked } = this;
-    const rows = facts.parts.map(({ name, defects, closed }, k) => {
-      const first = along?.first[k];
-      const told = !first ? "" : first.outcome === "free" ? "free"
-        : first.outcome === "overlapping" ? `overlaps ${this.names([first.by!])}`
-        : `${short(first.distance!, 4)}, then ${this.names([first.by!])}`;
+    const rows = facts.parts.map(({ name, defects, shells }, k) => {
+      const room = along?.rooms[k];
+      const told = !room ? "" : room.outcome === "free" ? "free"
+        : room.outcome === "overlapping" ? `overlaps ${room.by}`
+        : `${short(room.distance!, 4)}, then ${room.by}`;
       const colour = `rgb(${tint(k).map((c) => Math.round(255 * c)).join(" ")})`;
       const picked = asked.part === k;
-      const more = picked && along ? this.blockers(along, k) : "";
+      const more = picked && along ? blockers(along, k, name) : "";
       return h("button", {
-        class: `part ${first?.outcome ?? ""}`, "aria-pressed": String(picked), title: closed ? defects.join("; ") : `not closed; ${defects.join("; ")}`,
+        class: `part ${room?.outcome ?? ""}`, "aria-pressed": String(picked), title: [...(shells ? ["not closed"] : []), ...(defects ?? [])].join("; "),
         onclick: () => this.pick(picked ? null : k), onpointerenter: () => this.seen?.light(k), onpointerleave: () => this.seen?.light(-1),
       }, h("i", { style: `background: ${colour}` }), h("strong", {}, name), h("span", {}, told), more && h("small", {}, more));
     });
     refill(this.list, ...rows);
-  }
-
-  private blockers(along: PageAlong, part: number): string {
-    const met = along.meetings.filter(({ moving }) => moving === part).sort((a, b) => (a.distance ?? 0) - (b.distance ?? 0));
-    if (!met.length) return "Nothing is in its way.";
-    const each = met.map(({ fixed, distance }) => `${this.names([fixed])} ${distance === null ? "(overlap)" : `after ${short(distance, 4)}`}`).join(", ");
-    return `In its way: ${each}. With all that has to come along: ${along.closures[part]!.length} parts, in full in the view.`;
   }
 
   private showFit() {
@@ -438,13 +432,13 @@ export class AssemblyTab {
     if (this.tolerance !== document.activeElement) this.tolerance.value = this.asked.tolerance === null ? "" : String(this.asked.tolerance);
     this.ignore.checked = this.asked.ignore;
     const remaining = fit?.overlaps.filter(({ remains }) => remains) ?? [];
-    const pairs = remaining.slice(0, 6).map(({ parts: [a, b], depth }) => `${this.names([a])} and ${this.names([b])}${depth === null ? "" : ` (${short(depth, 3)})`}`);
+    const pairs = remaining.slice(0, 6).map(({ parts, least_tolerance: depth }) => `${parts.join(" and ")}${depth === null ? "" : ` (${short(depth, 3)})`}`);
     refill(this.fitCard,
       ...this.fitFields,
-      h("small", {}, !fit ? "" : `${fit.touches.length} pairs touch, ${fit.overlaps.length} overlap as the files have them, ${remaining.length} with a tolerance of ${short(fit.tolerance, 3)}.`),
+      h("small", {}, !fit ? "" : `${fit.liaisons.length} pairs touch, ${fit.overlaps.length} overlap as the files have them, ${remaining.length} with a tolerance of ${short(fit.tolerance, 3)}.`),
       ...(pairs.length ? [h("small", {}, `Overlapping, and so moving as one: ${pairs.join("; ")}${remaining.length > 6 ? "; …" : ""}.`)] : []),
-      ...(fit?.suggested && fit.suggested > fit.tolerance
-        ? [h("div", { class: "row" }, h("button", { class: "small main", onclick: () => { this.asked.tolerance = fit.suggested; void this.refit(); } }, `Use ${fit.suggested}`), h("small", {}, "no pair overlaps with it"))]
+      ...(fit?.suggested_tolerance && fit.suggested_tolerance > fit.tolerance
+        ? [h("div", { class: "row" }, h("button", { class: "small main", onclick: () => { this.asked.tolerance = fit.suggested_tolerance; void this.refit(); } }, `Use ${fit.suggested_tolerance}`), h("small", {}, "no pair overlaps with it"))]
         : []),
       h("div", { class: "row" }, h("button", { class: "small", onclick: () => this.copy(this.asCommand(), "The command") }, "Copy as command line")));
   }
@@ -454,7 +448,7 @@ export class AssemblyTab {
     const words = ["colltrans", "assembly", quoted(this.source), `--direction=${direction.join(",")}`];
     if (tolerance !== null) words.push(`--tolerance=${tolerance}`);
     if (ignore) words.push("--ignore-overlaps");
-    if (part !== null) words.push(`--map=${quoted(this.names([part]))}`);
+    if (part !== null) words.push(`--map=${quoted(this.name(part))}`);
     return [...words, "-o", "out"].join(" ");
   }
 
@@ -466,7 +460,7 @@ export class AssemblyTab {
       refill(this.mapCard, h("p", { class: "proof" }, "Pick a part, here or in the view: the sphere then shows how far it can go in every direction, against all others where they are."));
       return;
     }
-    const name = this.names([part]);
+    const name = this.name(part);
     if (!map) {
       refill(this.mapCard, h("p", { class: "proof" }, `${name}: looking in all directions.`));
       return;
@@ -491,14 +485,11 @@ export class AssemblyTab {
       refill(this.planCard, h("div", { class: "row" }, h("button", { class: "small main", disabled: !!this.busy || !this.fit, onclick: () => void this.askPlan() }, "Plan the disassembly")));
       return;
     }
-    const rows = plan.steps.map(({ parts, direction, travel, within, surfaces }, k) =>
+    const rows = plan.plan.map(({ parts, direction, travel, within, surfaces }, k) =>
       h("li", {}, h("button", { class: "link", onclick: () => this.player.go(k + 1) },
-        `${within === null ? "" : `of step ${within + 1}: `}${this.names(parts)} ${travel ? `along ${arrow(direction)}` : "stays"}`),
-        ...(surfaces.length ? [h("small", {}, ` rests on an open surface: ${this.names(surfaces)}`)] : [])));
-    const stuck = plan.stuck.map(({ parts, directions, overlapping, holds }) => h("p", { class: "proof" },
-      `No single straight motion along the ${directions} directions asked takes these apart: ${this.names(parts)}. `,
-      overlapping.length ? `They overlap: ${overlapping.slice(0, 4).map((pair) => this.names(pair)).join("; ")}.`
-        : holds.filter(({ by }) => by.length).slice(0, 4).map(({ part, by }) => `${this.names([part])} is held by ${this.names(by[0]!)}`).join("; ")));
+        `${within === undefined ? "" : `of step ${within + 1}: `}${parts.join(", ")} ${travel ? `along ${arrow(direction)}` : "stays"}`),
+        ...(surfaces ? [h("small", {}, ` rests on an open surface: ${surfaces.join(", ")}`)] : [])));
+    const stuck = plan.stuck.map(({ parts, because }) => h("p", { class: "proof" }, `${parts.join(", ")}: ${because}.`));
     refill(this.planCard, h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...stuck);
   }
 
@@ -527,6 +518,14 @@ export class AssemblyTab {
 }
 
 const said = (error: unknown) => (error instanceof Error ? error.message : String(error));
+
+/** What is in the way of a part. */
+function blockers(along: PageAlong, part: number, name: string): string {
+  const met = along.meetings.filter(({ moving }) => moving === name).sort((a, b) => a.distance - b.distance);
+  if (!met.length) return "Nothing is in its way.";
+  const each = met.map(({ fixed, outcome, distance }) => `${fixed} ${outcome === "overlapping" ? "(overlap)" : `after ${short(distance, 4)}`}`).join(", ");
+  return `In its way: ${each}. With all that has to come along: ${along.closures[part]!.length} parts, in full in the view.`;
+}
 
 function freedom({ free_share, isolated: { length: single } }: RemovalMap): string {
   const share = free_share > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)`;

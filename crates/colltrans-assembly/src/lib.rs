@@ -5,7 +5,7 @@
 //! only module that asks `colltrans`) -> [`start`] (overlaps now), [`liaisons`] (who touches whom) ->
 //! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
 //! [`blocking`] (the graph) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
-//! directions) -> [`report`] (pictures, one HTML file, an animation).
+//! directions) -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
 //!
 //! Lengths are in the unit of the files. Directions have length 1, so distances are lengths.
 //! Everything is the same on any number of threads. The memory of a run is that of the parts, 100
@@ -32,6 +32,7 @@ pub mod map;
 pub mod matrix;
 pub mod plan;
 pub mod read;
+pub mod record;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod rooms;

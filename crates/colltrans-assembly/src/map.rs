@@ -31,6 +31,7 @@ pub(crate) use way::way_out;
 
 /// Choices for a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct MapOptions {
     /// At least so many samples before anything is refined.
     pub samples: usize,
@@ -46,8 +47,29 @@ impl Default for MapOptions {
     }
 }
 
+impl MapOptions {
+    /// The same with another [`samples`](Self::samples).
+    #[must_use]
+    pub fn with_samples(self, samples: usize) -> Self {
+        Self { samples, ..self }
+    }
+
+    /// The same with another [`border`](Self::border).
+    #[must_use]
+    pub fn with_border(self, border: f64) -> Self {
+        Self { border, ..self }
+    }
+
+    /// The same with another [`start`](Self::start).
+    #[must_use]
+    pub fn with_start(self, start: StartOverlap) -> Self {
+        Self { start, ..self }
+    }
+}
+
 /// The rooms of a group over the sphere.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RemovalMap {
     /// Positions of the parts of the group.
     pub group: Vec<usize>,
@@ -107,35 +129,6 @@ impl RemovalMap {
     pub fn free_share(&self) -> f64 {
         let area: f64 = self.regions.iter().map(|r| r.solid_angle).sum();
         (area / (4.0 * std::f64::consts::PI)).max(0.0)
-    }
-
-    /// The map as JSON: samples, free regions with points of their borders, isolated directions.
-    pub fn to_json(&self, bodies: &Bodies) -> serde_json::Value {
-        let name = |k: usize| bodies.assembly().parts()[k].name();
-        let sample = |(d, room): (&DVec3, &PartRoom)| {
-            let distance = room.distance();
-            serde_json::json!({
-                "direction": d.to_array(),
-                "outcome": room.outcome(),
-                "distance": distance.is_finite().then_some(distance),
-                "by": room.by().map(name),
-            })
-        };
-        let region = |r: &Region| {
-            let border: Vec<[f64; 3]> = r.border.iter().map(DVec3::to_array).collect();
-            serde_json::json!({
-                "solid_angle": r.solid_angle,
-                "center": r.center.to_array(),
-                "border": border,
-            })
-        };
-        serde_json::json!({
-            "parts": bodies.assembly().names(&self.group),
-            "free_share": self.free_share(),
-            "regions": self.regions.iter().map(region).collect::<Vec<_>>(),
-            "isolated": self.isolated.iter().map(DVec3::to_array).collect::<Vec<_>>(),
-            "samples": self.sphere.directions.iter().zip(&self.rooms).map(sample).collect::<Vec<_>>(),
-        })
     }
 }
 

@@ -170,24 +170,6 @@ impl Matrix {
         }
         table.finish()
     }
-
-    /// The matrix as JSON: for each direction the ordered pairs that are not free.
-    pub fn to_json(&self, bodies: &Bodies) -> serde_json::Value {
-        let name = |k: usize| bodies.assembly().parts()[k].name();
-        let pair = |m: &Meeting| {
-            serde_json::json!({
-                "moving": name(m.moving),
-                "fixed": name(m.fixed),
-                "outcome": if m.stop.is_some() { "blocked" } else { "overlapping" },
-                "distance": m.distance(),
-            })
-        };
-        let row = |(d, met): (&DVec3, &Vec<Meeting>)| {
-            let pairs: Vec<_> = met.iter().map(pair).collect();
-            serde_json::json!({ "direction": d.to_array(), "pairs": pairs })
-        };
-        self.directions.iter().zip(&self.meetings).map(row).collect()
-    }
 }
 
 fn meetings(

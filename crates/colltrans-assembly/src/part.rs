@@ -110,7 +110,7 @@ fn solid(piece: &Piece) -> Result<Loaded<Solid>, Refused> {
     if piece.world_from_piece.matrix3.determinant() < 0.0 {
         mesh.faces.iter_mut().for_each(|face| face.reverse());
     }
-    body::solid(&mesh, &BodyOptions { open: true, ..BodyOptions::default() })
+    body::solid(&mesh, &BodyOptions::default().with_open(true))
 }
 
 /// What of two parts is let pass.

@@ -37,6 +37,7 @@ use single::Single;
 
 /// A group that is taken out.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Step {
     /// Positions of the parts, in increasing order.
     pub parts: Vec<usize>,
@@ -71,6 +72,7 @@ impl Step {
 /// Parts of which no group leaves along any of the directions asked. That no other single motion
 /// parts them, or several, is not said.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Stuck {
     /// Positions of the parts, in increasing order.
     pub parts: Vec<usize>,
@@ -86,6 +88,7 @@ pub struct Stuck {
 
 /// How an assembly comes apart.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Plan {
     /// What to do, in order; steps that take a group apart follow the one that took it out.
     pub steps: Vec<Step>,
@@ -97,6 +100,7 @@ pub struct Plan {
 
 /// Choices for a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct PlanOptions {
     /// What overlaps at the start mean: parts that overlap move as one, or what they do later counts.
     pub start: StartOverlap,
@@ -107,6 +111,20 @@ pub struct PlanOptions {
 impl Default for PlanOptions {
     fn default() -> Self {
         Self { start: StartOverlap::Refuse, samples: 162 }
+    }
+}
+
+impl PlanOptions {
+    /// The same with another [`start`](Self::start).
+    #[must_use]
+    pub fn with_start(self, start: StartOverlap) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The same with another [`samples`](Self::samples).
+    #[must_use]
+    pub fn with_samples(self, samples: usize) -> Self {
+        Self { samples, ..self }
     }
 }
 

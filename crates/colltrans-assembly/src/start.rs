@@ -9,6 +9,7 @@ use crate::watch::{Stage, Watch};
 
 /// Two parts that overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Overlap {
     /// Positions of the parts, the smaller first.
     pub parts: [usize; 2],
@@ -20,6 +21,7 @@ pub struct Overlap {
 
 /// How the assembly starts.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Start {
     /// Pairs that overlap as the files have them, deepest first.
     pub overlaps: Vec<Overlap>,

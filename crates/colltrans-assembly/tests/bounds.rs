@@ -63,13 +63,13 @@ fn travels_lie_within_their_bounds() {
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
         let touching = liaisons(&bodies, Watch::default()).unwrap();
         let given = vec![world.matrix3.z_axis.normalize()];
-        let choice = Choice { given, search: false, ..Choice::default() };
+        let choice = Choice::default().with_given(given).with_search(false);
         let found = candidates(&bodies, &touching, &choice).unwrap();
         let all = [true; 2];
         let start = StartOverlap::Refuse;
         let matrix =
             Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
-        let options = PlanOptions { samples: 0, ..PlanOptions::default() };
+        let options = PlanOptions::default().with_samples(0);
         let plan = disassemble(&bodies, &matrix, &[], options, Watch::default()).unwrap();
         let step = &plan.steps[0];
         assert_eq!(step.parts, [0]);

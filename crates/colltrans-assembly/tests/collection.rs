@@ -21,7 +21,7 @@ fn collection() -> Option<PathBuf> {
 
 /// For manifests that name files by absolute paths.
 fn elsewhere() -> ReadOptions {
-    ReadOptions { allow_outside: true, ..ReadOptions::default() }
+    ReadOptions::default().with_allow_outside(true)
 }
 
 fn planned(bodies: &Bodies) -> Plan {
@@ -131,7 +131,7 @@ fn the_seat_leaves_the_car_along_a_thin_band_of_directions() {
     assert!(!bodies.overlaps(0, 1));
     let plan = planned(&bodies);
     assert_eq!(plan.steps.iter().map(|s| &s.parts[..]).collect::<Vec<_>>(), [[1], [0]]);
-    let options = MapOptions { samples: 642, border: 0.02, ..MapOptions::default() };
+    let options = MapOptions::default().with_samples(642).with_border(0.02);
     let map = RemovalMap::new(&bodies, &[1], &[], options, Watch::default()).unwrap();
     assert!((0.002..0.008).contains(&map.free_share()), "{}", map.free_share());
     assert_eq!(map.regions.len(), 1);
@@ -147,7 +147,7 @@ fn the_seat_leaves_the_car_along_a_thin_band_of_directions() {
 fn the_arm_is_read_with_its_package_in_its_own_folder() {
     let Some(folder) = collection() else { return };
     let panda = folder.join("panda");
-    let options = ReadOptions { packages: vec![panda.clone()], ..ReadOptions::default() };
+    let options = ReadOptions::default().with_packages(vec![panda.clone()]);
     assert_eq!(read(panda.join("panda.urdf"), &options).unwrap().parts().len(), 11);
 }
 

@@ -52,9 +52,9 @@ fn outputs(assembly: &Assembly, title: &str) -> Outputs {
     let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
     let all = vec![true; bodies.len()];
     let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch).unwrap();
-    let options = PlanOptions { samples: 12, start };
+    let options = PlanOptions::default().with_samples(12).with_start(start);
     let plan = disassemble(&bodies, &matrix, &found.finer, options, watch).unwrap();
-    let options = MapOptions { samples: 12, border: 1.0, start };
+    let options = MapOptions::default().with_samples(12).with_border(1.0).with_start(start);
     let map = RemovalMap::new(&bodies, &[0], &[], options, watch).unwrap();
     let maps = [(title.to_owned(), map)];
     let findings = Findings {
@@ -155,7 +155,7 @@ fn cells_are_texts(table: &str) {
 fn open(name: &str, files: &[(&str, Vec<u8>)]) -> Assembly {
     let files: BTreeMap<PathBuf, Vec<u8>> =
         files.iter().map(|(name, bytes)| (name.into(), bytes.clone())).collect();
-    read_from(name, &files, &ReadOptions { skip_missing: true, ..ReadOptions::default() }).unwrap()
+    read_from(name, &files, &ReadOptions::default().with_skip_missing(true)).unwrap()
 }
 
 /// As XML writes it.

@@ -231,7 +231,7 @@ fn any_stage_ends_soon_after_it_is_cancelled() {
     let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
     let directions = found.directions();
     let matrix = Matrix::new(&bodies, &directions, &all, start, Watch::default()).unwrap();
-    let options = MapOptions { samples: 162, ..Default::default() };
+    let options = MapOptions::default().with_samples(162);
     let stages: [Stage; 6] = [
         &|w| Start::new(&bodies, w).map(drop),
         &|w| liaisons(&bodies, w).map(drop),
@@ -262,12 +262,13 @@ fn rooms_maps_and_plans_are_the_same_on_any_number_of_threads() {
             let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
             let start = StartOverlap::Ignore;
             let table = rooms(&bodies, &directions, start, Watch::default()).unwrap();
-            let options = MapOptions { samples: 162, border: 0.05, start };
+            let options =
+                MapOptions::default().with_samples(162).with_border(0.05).with_start(start);
             let map = RemovalMap::new(&bodies, &[3], &[], options, Watch::default()).unwrap();
             let all = vec![true; bodies.len()];
             let axes = DVec3::AXES;
             let matrix = Matrix::new(&bodies, &axes, &all, start, Watch::default()).unwrap();
-            let options = PlanOptions { start, ..Default::default() };
+            let options = PlanOptions::default().with_start(start);
             let plan = disassemble(&bodies, &matrix, &[], options, Watch::default()).unwrap();
             (table, map.rooms, matrix, plan)
         })
@@ -420,7 +421,7 @@ fn what_is_stuck_is_said_of_the_directions_asked() {
     let finer: Vec<Finer> = [DVec3::X, DVec3::NEG_X, DVec3::NEG_X]
         .map(|direction| Finer { direction, origin: Origin::Given, part: None })
         .to_vec();
-    let options = PlanOptions { samples: 0, ..Default::default() };
+    let options = PlanOptions::default().with_samples(0);
     let plan = disassemble(&bodies, &matrix, &finer, options, Watch::default()).unwrap();
     assert_eq!(plan.stuck[0].directions, 4);
     let because = plan.stuck[0].because(&bodies);
@@ -436,7 +437,7 @@ fn maps_find_half_spheres_and_isolated_directions() {
     let map = |parts: Vec<_>, directions: &[DVec3]| {
         let assembly = Assembly::new(parts).unwrap();
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
-        let options = MapOptions { samples: 642, border: 0.02, ..Default::default() };
+        let options = MapOptions::default().with_samples(642).with_border(0.02);
         RemovalMap::new(&bodies, &[0], directions, options, Watch::default()).unwrap()
     };
     let cube = part("cube", &[cuboid([-0.5, -0.5, 0.0], [0.5, 0.5, 1.0])]);
@@ -461,7 +462,7 @@ fn directions_and_names_that_are_wrong_are_refused() {
     assert!(matches!(assembly.index("lod"), Err(AssemblyError::UnknownPart { near: Some(_), .. })));
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     for given in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::splat(f64::INFINITY)] {
-        let choice = Choice { given: vec![given], ..Choice::default() };
+        let choice = Choice::default().with_given(vec![given]);
         assert!(matches!(candidates(&bodies, &[], &choice), Err(AssemblyError::Direction { .. })));
     }
     let twice = vec![part("a", &[cuboid([0.0; 3], [1.0; 3])]); 2];

@@ -308,7 +308,7 @@ fn a_way_between_the_samples_is_found_for_what_is_loose() {
         }
         missed += 1;
         // Without samples nothing is found.
-        let options = PlanOptions { samples: 0, ..PlanOptions::default() };
+        let options = PlanOptions::default().with_samples(0);
         assert!(planned(&bodies, options).steps.is_empty());
     }
     assert!(missed > 2, "the samples miss it in {missed} of 8 positions");

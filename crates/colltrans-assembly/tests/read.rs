@@ -117,7 +117,7 @@ const URDF: &str = r#"<robot name="r">
 fn links_of_a_robot_are_placed_by_its_joints() {
     let folder = folder(&[("robot.urdf", URDF), ("kit/meshes/c.off", CUBE)]);
     let file = folder.path().join("robot.urdf");
-    let mut options = ReadOptions { packages: vec![folder.path().into()], ..Default::default() };
+    let mut options = ReadOptions::default().with_packages(vec![folder.path().into()]);
     options.joints.insert("turn".into(), std::f64::consts::FRAC_PI_2);
     let message = read(&file, &options).unwrap_err().to_string();
     assert!(message.contains("package://kit/gone.stl"), "{message}");

@@ -507,8 +507,8 @@ fn what_a_source_names_lies_inside_of_its_folder() {
         read(at("in/m.json"), options).map_err(|e| e.to_string())
     };
     let closed = ReadOptions::default();
-    let open = ReadOptions { allow_outside: true, ..ReadOptions::default() };
-    let kit = ReadOptions { packages: vec![at("kit")], ..ReadOptions::default() };
+    let open = ReadOptions::default().with_allow_outside(true);
+    let kit = ReadOptions::default().with_packages(vec![at("kit")]);
     for inside in ["meshes/c.off", "folder/c.off", "meshes/../meshes/c.off"] {
         manifest(inside, &closed).unwrap();
     }

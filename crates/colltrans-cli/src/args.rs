@@ -231,7 +231,7 @@ impl ClearanceArguments {
     pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
         let PairArguments { places, body, .. } = &self.pair;
         [places.moving_scale, places.fixed_scale]
-            .map(|scale| BodyOptions { open: self.open, ..body.options(scale) })
+            .map(|scale| body.options(scale).with_open(self.open))
     }
 }
 
@@ -342,7 +342,10 @@ impl BodyArguments {
     /// How a mesh becomes a body, but for whether its hull is taken.
     pub(crate) fn options(&self, scale: f64) -> BodyOptions {
         let Self { convex_tolerance, merge_tolerance } = *self;
-        BodyOptions { scale, convex_tolerance, merge_tolerance, ..BodyOptions::default() }
+        BodyOptions::default()
+            .with_scale(scale)
+            .with_convex_tolerance(convex_tolerance)
+            .with_merge_tolerance(merge_tolerance)
     }
 }
 
@@ -369,7 +372,7 @@ impl HullArguments {
     /// How the mesh files become convex bodies.
     fn body_options(self, body: BodyArguments, places: &PlaceArguments) -> [BodyOptions; 2] {
         let Self { hull, hull_moving, hull_fixed } = self;
-        let one = |hull, scale| BodyOptions { hull, ..body.options(scale) };
+        let one = |hull, scale| body.options(scale).with_hull(hull);
         [one(hull || hull_moving, places.moving_scale), one(hull || hull_fixed, places.fixed_scale)]
     }
 }

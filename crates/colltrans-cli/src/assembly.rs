@@ -58,7 +58,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let start = Start::new(&bodies, watch)?;
     let touching = liaisons(&bodies, watch)?;
     let choice =
-        Choice { given: arguments.direction.clone(), search: !arguments.only, ..Choice::default() };
+        Choice::default().with_given(arguments.direction.clone()).with_search(!arguments.only);
     let mut found = candidates(&bodies, &touching, &choice)?;
     let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
     found.finer.splice(0..0, given.iter().map(finer));
@@ -67,7 +67,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
     let more = more_rooms(&bodies, &given, overlap, watch)?;
     let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
-    let options = PlanOptions { start: overlap, samples };
+    let options = PlanOptions::default().with_start(overlap).with_samples(samples);
     let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
     let maps = maps(&bodies, &groups, &found, overlap, watch)?;
     bar.finish_and_clear();
@@ -90,15 +90,12 @@ fn overlap(arguments: &AssemblyArguments) -> StartOverlap {
 
 fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     let usage = |text: String| Failure::new(Code::Usage, text);
-    let mut options = ReadOptions {
-        packages: arguments.package.clone(),
-        skip_missing: arguments.skip_missing,
-        allow_outside: arguments.allow_outside,
-        ..ReadOptions::default()
-    };
-    if arguments.visual {
-        options.geometry = Geometry::Visual;
-    }
+    let geometry = if arguments.visual { Geometry::Visual } else { Geometry::Collision };
+    let mut options = ReadOptions::default()
+        .with_packages(arguments.package.clone())
+        .with_skip_missing(arguments.skip_missing)
+        .with_allow_outside(arguments.allow_outside)
+        .with_geometry(geometry);
     for joint in &arguments.joint {
         let parts = joint.split_once('=').and_then(|(n, v)| Some((n, v.trim().parse().ok()?)));
         let (name, value): (&str, f64) = parts
@@ -218,7 +215,7 @@ fn maps(
     start: StartOverlap,
     watch: Watch,
 ) -> Result<Vec<(String, RemovalMap)>, Failure> {
-    let options = MapOptions { start, ..MapOptions::default() };
+    let options = MapOptions::default().with_start(start);
     let mut maps = Vec::new();
     for (name, group) in groups {
         let mut mask = vec![false; bodies.len()];

@@ -108,7 +108,7 @@ fn vertices(mesh: &Mesh) -> String {
 
 /// How deep a face may lie below the hull.
 fn tolerance(mesh: &Mesh, convex_tolerance: Option<f64>) -> f64 {
-    BodyOptions { convex_tolerance, ..BodyOptions::default() }.convex_tolerance_of(mesh)
+    BodyOptions::default().with_convex_tolerance(convex_tolerance).convex_tolerance_of(mesh)
 }
 
 fn faces(mesh: &Mesh) -> String {

@@ -116,7 +116,7 @@ fn found(
     watch: Watch<'_>,
 ) -> Result<Candidates, AssemblyError> {
     let search = given.is_empty();
-    let choice = Choice { given: units(given)?, search, ..Choice::default() };
+    let choice = Choice::default().with_given(units(given)?).with_search(search);
     candidates(bodies, &liaisons(bodies, watch)?, &choice)
 }
 
@@ -149,7 +149,12 @@ impl Assembly {
         allow_outside: bool,
     ) -> PyResult<Self> {
         let geometry = if visual { Geometry::Visual } else { Geometry::Collision };
-        let options = ReadOptions { packages, skip_missing, geometry, joints, allow_outside };
+        let options = ReadOptions::default()
+            .with_packages(packages)
+            .with_skip_missing(skip_missing)
+            .with_geometry(geometry)
+            .with_joints(joints)
+            .with_allow_outside(allow_outside);
         let assembly = py.detach(|| colltrans_assembly::read::read(&path, &options)).or_raise()?;
         Ok(Self(Arc::new(assembly)))
     }
@@ -231,7 +236,7 @@ impl Assembly {
             let found = found(bodies, &given, watch)?;
             let all = vec![true; bodies.len()];
             let matrix = Matrix::new(bodies, &found.directions(), &all, choices.start, watch)?;
-            let options = PlanOptions { start: choices.start, samples };
+            let options = PlanOptions::default().with_start(choices.start).with_samples(samples);
             disassemble(bodies, &matrix, &found.finer, options, watch)
         })?;
         let steps = plan.steps.into_iter();
@@ -264,7 +269,10 @@ impl Assembly {
         let choices = Choices::new(tolerance, ignore_overlaps);
         let map = self.ask(py, choices, |bodies, watch| {
             let directions = found(bodies, &[], watch)?.directions();
-            let options = MapOptions { samples, border, start: choices.start };
+            let options = MapOptions::default()
+                .with_samples(samples)
+                .with_border(border)
+                .with_start(choices.start);
             RemovalMap::new(bodies, &group, &directions, options, watch)
         })?;
         Ok((

@@ -379,8 +379,11 @@ pub(crate) fn read(
     if !scale.is_finite() || scale <= 0.0 {
         return Err(error("InputError", format_args!("scale: {scale} is not finite and positive")));
     }
-    let options =
-        BodyOptions { scale, merge_tolerance, convex_tolerance, hull, ..BodyOptions::default() };
+    let options = BodyOptions::default()
+        .with_scale(scale)
+        .with_merge_tolerance(merge_tolerance)
+        .with_convex_tolerance(convex_tolerance)
+        .with_hull(hull);
     let loaded = py.detach(|| load_convex(&path, &options)).or_raise()?;
     let notes = loaded.notes.iter().map(ToString::to_string).collect();
     Ok(ConvexPolyhedron(loaded.body, notes))

@@ -175,7 +175,7 @@ impl Solid {
         open: bool,
     ) -> PyResult<Self> {
         let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
-        let options = BodyOptions { open, ..BodyOptions::default() };
+        let options = BodyOptions::default().with_open(open);
         py.detach(|| Self::of_mesh(Mesh::new(vertices, faces), options)).or_raise()
     }
 
@@ -258,7 +258,10 @@ impl Solid {
         if !scale.is_finite() || scale <= 0.0 {
             return Err(crate::errors::input("scale", format_args!("{scale} is not positive")));
         }
-        let options = BodyOptions { scale, merge_tolerance, open, ..BodyOptions::default() };
+        let options = BodyOptions::default()
+            .with_scale(scale)
+            .with_merge_tolerance(merge_tolerance)
+            .with_open(open);
         py.detach(|| load(&path, &options, |mesh, options| Self::of_mesh(mesh, *options)))
             .or_raise()
     }
@@ -422,7 +425,7 @@ impl Solid {
     ) -> PyResult<Self> {
         let mut mesh = Mesh::new(points(v, "vertices")?, faces(f)?);
         mesh.precision = precision;
-        let options = BodyOptions { open, scale, ..BodyOptions::default() };
+        let options = BodyOptions::default().with_open(open).with_scale(scale);
         let solid = py.detach(|| Self::of_mesh(mesh, options)).or_raise()?;
         Ok(Self { notes, ..solid })
     }

@@ -93,11 +93,8 @@ pub(crate) fn read(name: &str, file: Vec<u8>) -> Result<Mesh, Refusal> {
 }
 
 pub(crate) fn build(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, Answer), Refusal> {
-    let options = BodyOptions {
-        hull: take == Take::Hull,
-        open: take == Take::Open,
-        ..BodyOptions::default()
-    };
+    let options =
+        BodyOptions::default().with_hull(take == Take::Hull).with_open(take == Take::Open);
     match take {
         Take::Convex | Take::Hull => {
             let loaded = body::convex(mesh, &options).map_err(|error| refusal(name, &error))?;

@@ -64,6 +64,7 @@ pub struct Candidate {
 
 /// How directions are chosen.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Choice {
     /// The caller's, of any length; they are kept whatever else there is.
     pub given: Vec<DVec3>,
@@ -80,6 +81,20 @@ pub struct Choice {
 impl Default for Choice {
     fn default() -> Self {
         Self { given: Vec::new(), search: true, apart: 0.005, main: 14, finer: 512 }
+    }
+}
+
+impl Choice {
+    /// The same with another [`given`](Self::given).
+    #[must_use]
+    pub fn with_given(self, given: Vec<DVec3>) -> Self {
+        Self { given, ..self }
+    }
+
+    /// The same with another [`search`](Self::search).
+    #[must_use]
+    pub fn with_search(self, search: bool) -> Self {
+        Self { search, ..self }
     }
 }
 

@@ -44,6 +44,7 @@ pub enum Geometry {
 
 /// What readers need to know beside the file.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ReadOptions {
     /// Folders in which `package://name/rest` is looked for: as `name/rest`, then as `rest`, then
     /// with fewer leading folders.
@@ -57,6 +58,38 @@ pub struct ReadOptions {
     /// Whether a source may name files that lie neither in its own folder nor in one of `packages`,
     /// by absolute paths, `..` or links.
     pub allow_outside: bool,
+}
+
+impl ReadOptions {
+    /// The same with another [`packages`](Self::packages).
+    #[must_use]
+    pub fn with_packages(self, packages: Vec<PathBuf>) -> Self {
+        Self { packages, ..self }
+    }
+
+    /// The same with another [`skip_missing`](Self::skip_missing).
+    #[must_use]
+    pub fn with_skip_missing(self, skip_missing: bool) -> Self {
+        Self { skip_missing, ..self }
+    }
+
+    /// The same with another [`geometry`](Self::geometry).
+    #[must_use]
+    pub fn with_geometry(self, geometry: Geometry) -> Self {
+        Self { geometry, ..self }
+    }
+
+    /// The same with another [`joints`](Self::joints).
+    #[must_use]
+    pub fn with_joints(self, joints: BTreeMap<String, f64>) -> Self {
+        Self { joints, ..self }
+    }
+
+    /// The same with another [`allow_outside`](Self::allow_outside).
+    #[must_use]
+    pub fn with_allow_outside(self, allow_outside: bool) -> Self {
+        Self { allow_outside, ..self }
+    }
 }
 
 /// Reads an assembly: a folder, a manifest (`.toml`, `.json`), `.urdf`, `.glb`, `.gltf`, `.3mf`, or a

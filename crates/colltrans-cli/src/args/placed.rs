@@ -65,6 +65,6 @@ impl PlacedArguments {
     /// How the files of both bodies are read as parts.
     pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
         [self.places.moving_scale, self.places.fixed_scale]
-            .map(|scale| BodyOptions { open: self.open, ..self.body.options(scale) })
+            .map(|scale| self.body.options(scale).with_open(self.open))
     }
 }

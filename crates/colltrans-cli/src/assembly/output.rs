@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use colltrans_assembly::map;
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::{Assembly, Fit};
+use colltrans_assembly::{map, record};
 
 use crate::args::AssemblyArguments;
 use crate::failure::{Failure, note, print, print_json};
@@ -18,10 +18,7 @@ pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), F
     for text in f.bodies.assembly().notes() {
         note(text);
     }
-    let mut json = facts::json(f);
-    if !f.maps.is_empty() {
-        json["maps"] = f.maps.iter().map(|(_, map)| map.to_json(f.bodies)).collect();
-    }
+    let json = facts::json(f);
     if let Some(folder) = &arguments.output {
         files(f, arguments, folder, &json)?;
     }
@@ -48,7 +45,7 @@ fn files(
         let title = format!("Room of {name} in all directions");
         put(&svg, map::svg(map, &title).as_bytes())?;
         put(&png, &map::png(map, 1_200))?;
-        put(&json, plain_json(&map.to_json(f.bodies).to_string()).as_bytes())?;
+        put(&json, plain_json(&record::map(f.bodies, map).to_string()).as_bytes())?;
     }
     outputs.finish()
 }

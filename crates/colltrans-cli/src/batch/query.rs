@@ -8,7 +8,7 @@ use colltrans::glam::{DQuat, DVec3};
 use colltrans::record::{PairQuestion, Question, Record};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose};
 use colltrans_assembly::read::plain;
-use colltrans_mesh::body::{BodyOptions, LoadError, Take};
+use colltrans_mesh::body::{LoadError, Take};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -142,7 +142,7 @@ impl Batch {
         let key = Key::Solid { path: path.clone(), scale: scale.to_bits(), open };
         self.cache.get(key, |_| {
             self.watched.note(&path);
-            let options = BodyOptions { open, ..self.body.options(scale) };
+            let options = self.body.options(scale).with_open(open);
             let body = solid::Body::load(&[path], &options, || ())?;
             Ok(Arc::new(Shape::Solid(body)))
         })
@@ -153,7 +153,7 @@ impl Batch {
         let key = Key::Mesh { path: path.clone(), hull, scale: scale.to_bits() };
         self.cache.get(key, |_| {
             self.watched.note(&path);
-            let options = BodyOptions { hull, ..self.body.options(scale) };
+            let options = self.body.options(scale).with_hull(hull);
             let part = body::load(&path, &options).map_err(|error| refusal(&error))?;
             Ok(Arc::new(Shape::Convex(part)))
         })

@@ -131,7 +131,7 @@ pub(crate) fn describe(mesh: &Mesh) -> Vec<(&'static str, String)> {
         Ok(loaded) => loaded,
         Err(refused) => {
             let mut lines = vec![("solid", format!("no: {refused}{}", hint(&refused)))];
-            let open = body::solid(mesh, &BodyOptions { open: true, ..BodyOptions::default() });
+            let open = body::solid(mesh, &BodyOptions::default().with_open(true));
             let surface = open.ok().and_then(|open| open.body.report().surface());
             lines.extend(surface.map(|surface| ("with --open", surface)));
             return lines;

@@ -311,7 +311,7 @@ fn overlaps_are_told_with_what_to_try() {
     assert!(told.contains("low, high by 0.02") && told.contains("try --tolerance 0.02"), "{told}");
     let found = facts(folder.path(), &["deep.toml"]);
     let tolerance = found["suggested_tolerance"].as_f64().unwrap().to_string();
-    let depth = found["overlaps"][0]["depth"].as_f64().unwrap();
+    let depth = found["overlaps"][0]["least_tolerance"].as_f64().unwrap();
     assert!((depth - 0.02).abs() < 1e-9, "{depth}");
     assert_eq!(names(&found["left"]), ["low", "high"]);
     let tried = facts(folder.path(), &["deep.toml", "--tolerance", &tolerance]);

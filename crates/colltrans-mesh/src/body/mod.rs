@@ -32,6 +32,7 @@ const PRECISIONS: f64 = 2.0;
 
 /// How a mesh becomes a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct BodyOptions {
     /// Lengths are multiplied by this, after the tolerances below, which are in the file's unit.
     pub scale: f64,
@@ -52,6 +53,36 @@ impl Default for BodyOptions {
 }
 
 impl BodyOptions {
+    /// The same with another [`scale`](Self::scale).
+    #[must_use]
+    pub fn with_scale(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// The same with another [`merge_tolerance`](Self::merge_tolerance).
+    #[must_use]
+    pub fn with_merge_tolerance(self, merge_tolerance: Option<f64>) -> Self {
+        Self { merge_tolerance, ..self }
+    }
+
+    /// The same with another [`convex_tolerance`](Self::convex_tolerance).
+    #[must_use]
+    pub fn with_convex_tolerance(self, convex_tolerance: Option<f64>) -> Self {
+        Self { convex_tolerance, ..self }
+    }
+
+    /// The same with another [`hull`](Self::hull).
+    #[must_use]
+    pub fn with_hull(self, hull: bool) -> Self {
+        Self { hull, ..self }
+    }
+
+    /// The same with another [`open`](Self::open).
+    #[must_use]
+    pub fn with_open(self, open: bool) -> Self {
+        Self { open, ..self }
+    }
+
     /// How deep a face of this mesh may lie below the hull, in the file's unit.
     pub fn convex_tolerance_of(&self, mesh: &Mesh) -> f64 {
         self.convex_tolerance.unwrap_or_else(|| CONVEX_TOLERANCE * mesh.extent())

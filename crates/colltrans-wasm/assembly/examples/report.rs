@@ -35,12 +35,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let found = candidates(&bodies, &liaisons, &Choice::default())?;
     let all = vec![true; bodies.len()];
     let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
-    let options = PlanOptions { start: overlap, ..PlanOptions::default() };
+    let options = PlanOptions::default().with_start(overlap);
     let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
     let mut maps = Vec::new();
     let name = assembly.parts()[0].name().to_owned();
     if is_manifest {
-        let options = MapOptions { samples: 42, border: 0.1, start: overlap };
+        let options = MapOptions::default().with_samples(42).with_border(0.1).with_start(overlap);
         maps.push((name.clone(), RemovalMap::new(&bodies, &[0], &[], options, watch)?));
     }
     let findings = Findings {

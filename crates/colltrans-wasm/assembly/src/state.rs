@@ -179,10 +179,11 @@ impl State {
         if parts.last().is_none_or(|last| *last >= bodies.len()) {
             return Err(format!("there are {} parts, and none of {group:?}", bodies.len()).into());
         }
-        let options = MapOptions { samples: SAMPLES, border: BORDER, start: *start };
+        let options =
+            MapOptions::default().with_samples(SAMPLES).with_border(BORDER).with_start(*start);
         let directions = candidates.directions();
         let map = RemovalMap::new(bodies, &parts, &directions, options, Watch::default());
-        Ok(tell::map(&map.map_err(|error| error.to_string())?))
+        Ok(tell::map(&map.map_err(|error| error.to_string())?, bodies.assembly()))
     }
 
     fn plan(&self) -> Result<Answer, Refusal> {
@@ -191,8 +192,8 @@ impl State {
         let directions = candidates.directions();
         let matrix = Matrix::new(bodies, &directions, &all, *start, watch);
         let matrix = matrix.map_err(|error| error.to_string())?;
-        let options = PlanOptions { start: *start, ..PlanOptions::default() };
+        let options = PlanOptions::default().with_start(*start);
         let plan = disassemble(bodies, &matrix, &candidates.finer, options, watch);
-        Ok(tell::plan(&plan.map_err(|error| error.to_string())?, directions.len()))
+        Ok(tell::plan(bodies, &plan.map_err(|error| error.to_string())?, directions.len()))
     }
 }

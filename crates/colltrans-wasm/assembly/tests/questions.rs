@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use colltrans::solid::StartOverlap;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_wasm_assembly::{Answer, State};
@@ -48,20 +47,22 @@ fn the_gearbox_comes_apart() {
     assert_eq!(numbers.len() as u64, 12 * (count("vertices") + count("triangles")));
     let (fit, _) = ask(&mut state, &json!({ "do": "fit", "tolerance": 0.1 }), Vec::new());
     assert_eq!(fit["tolerance"], 0.1);
-    assert!(!fit["touches"].as_array().unwrap().is_empty());
+    assert!(!fit["liaisons"].as_array().unwrap().is_empty());
     let (plan, _) = ask(&mut state, &json!({ "do": "plan" }), Vec::new());
-    let mut moved: Vec<u64> = Vec::new();
-    for step in plan["steps"].as_array().unwrap().iter().filter(|s| s["within"].is_null()) {
-        moved.extend(step["parts"].as_array().unwrap().iter().map(|p| p.as_u64().unwrap()));
+    let names: Vec<&str> = all.iter().map(|part| part["name"].as_str().unwrap()).collect();
+    let mut moved: Vec<&str> = Vec::new();
+    for step in plan["plan"].as_array().unwrap().iter().filter(|s| s["within"].is_null()) {
+        moved.extend(step["parts"].as_array().unwrap().iter().map(|p| p.as_str().unwrap()));
     }
     moved.sort_unstable();
-    assert_eq!(moved, (0..all.len() as u64).collect::<Vec<_>>(), "{plan}");
+    assert_eq!(moved, names, "{plan}");
     let (along, _) = ask(&mut state, &json!({ "do": "along", "direction": [0, 0, 2] }), Vec::new());
     // Who is free along it comes out alone.
-    for (k, first) in along["first"].as_array().unwrap().iter().enumerate() {
-        let alone = along["removable"].as_array().unwrap().contains(&json!([k]));
-        assert_eq!(first["outcome"] == "free", alone, "{k} {first}");
-        assert_eq!(first["outcome"] == "free", along["closures"][k] == json!([k]));
+    for (k, room) in along["rooms"].as_array().unwrap().iter().enumerate() {
+        let alone = along["removable"].as_array().unwrap().contains(&json!([names[k]]));
+        assert_eq!(room["part"], names[k]);
+        assert_eq!(room["outcome"] == "free", alone, "{k} {room}");
+        assert_eq!(room["outcome"] == "free", along["closures"][k] == json!([names[k]]));
     }
 }
 
@@ -81,7 +82,7 @@ fn a_map_is_the_library_s() {
     });
     let assembly = Assembly::new(parts.collect()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::Tolerance(0.1)).unwrap();
-    let options = MapOptions { samples: 642, border: 0.04, start: StartOverlap::Refuse };
+    let options = MapOptions::default().with_samples(642).with_border(0.04);
     let map = RemovalMap::new(&bodies, &[bolt], &[], options, Watch::default()).unwrap();
     let count = told["directions"].as_u64().unwrap() as usize;
     assert!(count >= 642);
@@ -165,6 +166,6 @@ fn parts_come_from_glb() {
     assert_eq!(parts["unit"], "m");
     ask(&mut state, &json!({ "do": "fit" }), Vec::new());
     let (along, _) = ask(&mut state, &json!({ "do": "along", "direction": [1, 0, 0] }), Vec::new());
-    assert_eq!(along["first"][0]["outcome"], "blocked");
-    assert_eq!(along["first"][1]["outcome"], "free");
+    assert_eq!(along["rooms"][0]["outcome"], "blocked");
+    assert_eq!(along["rooms"][1]["outcome"], "free");
 }

@@ -53,8 +53,7 @@ struct Told {
 impl Part {
     /// As [`colltrans_mesh::body`] makes it for the page's library.
     fn of(mesh: &Mesh, take: &str) -> Result<Self, String> {
-        let options =
-            BodyOptions { hull: take == "hull", open: take == "open", ..BodyOptions::default() };
+        let options = BodyOptions::default().with_hull(take == "hull").with_open(take == "open");
         let told = |error: body::Refused| error.to_string();
         match take {
             "convex" | "hull" => {

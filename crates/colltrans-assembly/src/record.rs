@@ -1,0 +1,168 @@
+//! What was found out, as JSON: the same in the files of the command line and on a page.
+//!
+//! Parts are told by their names, directions have length 1; `docs/assemblies.md` describes the fields,
+//! `docs/answers.schema.json` holds them.
+
+use colltrans::solid::ShellKind;
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use crate::bodies::{Bodies, Fit};
+use crate::liaisons::Liaison;
+use crate::map::{Region, RemovalMap};
+use crate::matrix::{Matrix, Meeting};
+use crate::part::{Assembly, Part};
+use crate::plan::{Plan, Step, Stuck};
+use crate::rooms::PartRoom;
+use crate::start::{Overlap, Start};
+
+/// A part as the file has it.
+pub fn part(part: &Part) -> Value {
+    let bounds = part.solid().volume_bounds();
+    // What is open has none.
+    let volume = bounds.map(|_| part.solid().volume());
+    let mut told = json!({
+        "name": part.name(), "facets": part.facets(), "volume": volume, "volume_bounds": bounds
+    });
+    if part.is_surface() {
+        let count = |kind: ShellKind| (kind.name().to_owned(), part.solid().report().count(kind));
+        told["shells"] = ShellKind::ALL.into_iter().map(count).collect();
+    }
+    if !part.defects().is_empty() {
+        told["defects"] = json!(part.defects());
+    }
+    told
+}
+
+/// Pairs that overlap as the files have them.
+pub fn overlaps(assembly: &Assembly, start: &Start) -> Value {
+    let told = |o: &Overlap| {
+        json!({
+            "parts": assembly.names(&o.parts),
+            "least_tolerance": o.depth,
+            "remains": o.remains,
+        })
+    };
+    start.overlaps.iter().map(told).collect()
+}
+
+/// Pairs that touch.
+pub fn liaisons(assembly: &Assembly, liaisons: &[Liaison]) -> Value {
+    let told = |l: &Liaison| {
+        json!({
+            "parts": assembly.names(&l.parts),
+            "area": l.area(),
+            "area_bounds": l.area_bounds(),
+            "center": l.center().to_array(),
+        })
+    };
+    liaisons.iter().map(told).collect()
+}
+
+/// How far a part goes alone.
+pub fn room(bodies: &Bodies, part: usize, d: DVec3, room: &PartRoom) -> Value {
+    let mut told = sample(bodies, d, room);
+    told["part"] = json!(bodies.assembly().parts()[part].name());
+    let PartRoom::Blocked { stop, .. } = room else { return told };
+    let name = match bodies.fit() {
+        Fit::Tolerance(_) => {
+            told["translation"] = json!(stop.translation.value);
+            told["translation_bounds"] = json!(stop.translation.bounds());
+            "shrunk_distance"
+        }
+        Fit::Apart(_) => "kept_distance",
+    };
+    told[name] = json!(stop.displaced.value);
+    told[format!("{name}_bounds")] = json!(stop.displaced.bounds());
+    told["point"] = json!(stop.point.to_array());
+    told["normal"] = json!(stop.normal.to_array());
+    told
+}
+
+fn sample(bodies: &Bodies, d: DVec3, room: &PartRoom) -> Value {
+    let distance = room.distance();
+    json!({
+        "direction": d.to_array(),
+        "outcome": room.outcome(),
+        "distance": distance.is_finite().then_some(distance),
+        "by": room.by().map(|k| bodies.assembly().parts()[k].name()),
+    })
+}
+
+/// The ordered pairs that are not free along a direction of a matrix.
+pub fn meetings(assembly: &Assembly, matrix: &Matrix, direction: usize) -> Value {
+    let name = |part: usize| assembly.parts()[part].name();
+    let told = |m: &Meeting| {
+        json!({
+            "moving": name(m.moving),
+            "fixed": name(m.fixed),
+            "outcome": if m.stop.is_some() { "blocked" } else { "overlapping" },
+            "distance": m.distance(),
+        })
+    };
+    matrix.meetings(direction).iter().map(told).collect()
+}
+
+/// The fields of a plan: `plan` (its steps), `left`, `stuck`.
+pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
+    let steps: Vec<Value> = plan.steps.iter().map(|s| step(bodies.assembly(), s)).collect();
+    let stuck: Vec<Value> = plan.stuck.iter().map(|s| self::stuck(bodies, s)).collect();
+    json!({ "plan": steps, "left": bodies.assembly().names(&plan.left), "stuck": stuck })
+}
+
+fn step(assembly: &Assembly, step: &Step) -> Value {
+    let mut told = json!({
+        "parts": assembly.names(&step.parts),
+        "direction": step.direction.to_array(),
+        "travel": step.travel.value,
+        "travel_bounds": step.travel.bounds(),
+    });
+    if !step.ignored.is_empty() {
+        let pairs: Vec<_> = step.ignored.iter().map(|pair| assembly.names(pair)).collect();
+        told["ignored"] = json!(pairs);
+    }
+    if let Some(within) = step.within {
+        told["within"] = json!(within);
+    }
+    if !step.surfaces.is_empty() {
+        told["surfaces"] = json!(assembly.names(&step.surfaces));
+    }
+    told
+}
+
+fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
+    let assembly = bodies.assembly();
+    let set = |(parts, d): &(Vec<usize>, DVec3)| json!({ "parts": assembly.names(parts), "direction": d.to_array() });
+    let holds = stuck.holds.iter().map(|hold| {
+        let least: Vec<Value> = hold.by.iter().map(set).collect();
+        json!({ "part": assembly.parts()[hold.part].name(), "least": least })
+    });
+    json!({
+        "parts": assembly.names(&stuck.parts),
+        "because": stuck.because(bodies),
+        "directions": stuck.directions,
+        "holds": holds.collect::<Vec<_>>(),
+    })
+}
+
+/// A removal map without its samples: free regions with points of their borders, isolated directions.
+pub fn regions(assembly: &Assembly, map: &RemovalMap) -> Value {
+    let region = |r: &Region| {
+        let border: Vec<[f64; 3]> = r.border.iter().map(DVec3::to_array).collect();
+        json!({ "solid_angle": r.solid_angle, "center": r.center.to_array(), "border": border })
+    };
+    json!({
+        "parts": assembly.names(&map.group),
+        "free_share": map.free_share(),
+        "regions": map.regions.iter().map(region).collect::<Vec<_>>(),
+        "isolated": map.isolated.iter().map(DVec3::to_array).collect::<Vec<_>>(),
+    })
+}
+
+/// A removal map with all its samples.
+pub fn map(bodies: &Bodies, map: &RemovalMap) -> Value {
+    let mut told = regions(bodies.assembly(), map);
+    let samples = map.sphere.directions.iter().zip(&map.rooms);
+    told["samples"] = samples.map(|(d, room)| sample(bodies, *d, room)).collect();
+    told
+}

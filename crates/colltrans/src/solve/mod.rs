@@ -64,8 +64,9 @@ pub(crate) fn search<O: Observer>(
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
+        next,
     };
-    let mut answer = first.run(focus, last, next);
+    let mut answer = first.run(focus, last);
     first.context.watch.ended(Phase::Answer);
     if let Err(QueryError::NotConverged { .. }) = answer {
         let turns: &[DVec2] = if first.context.watch.steps.started_from == StartedFrom::Scratch {
@@ -73,7 +74,7 @@ pub(crate) fn search<O: Observer>(
         } else {
             &TURNS
         };
-        answer = again(&mut first, turns, next);
+        answer = again(&mut first, turns);
     }
     answer
 }
@@ -102,16 +103,15 @@ fn kept<O: Observer>(
 /// Tries turns of the lateral axes from scratch until there is an answer.
 #[cold]
 fn again<O: Observer>(
-    run: &mut Run<'_, '_, O>,
+    run: &mut Run<'_, '_, '_, O>,
     turns: &[DVec2],
-    next: &mut WarmStart,
 ) -> Result<Outcome, QueryError> {
     run.context.watch.steps.started_from = StartedFrom::Scratch;
     let mut answer = Err(stalled(Stalled::Cycle));
     for &turn in turns {
         run.context.difference =
             MinkowskiDifference::turned_by(run.context.difference.setting, turn);
-        answer = run.run(&Focus::NONE, &WarmStart::Nothing, next);
+        answer = run.run(&Focus::NONE, &WarmStart::Nothing);
         if !matches!(answer, Err(QueryError::NotConverged { .. })) {
             break;
         }
@@ -140,11 +140,13 @@ enum Start {
 }
 
 /// One cast under way.
-struct Run<'a, 'o, O> {
+struct Run<'a, 'o, 'n, O> {
     context: Context<'a, 'o, O>,
     graze_tolerance: f64,
     solver: Solver,
     narrowing: Narrowing,
+    /// Where the next cast may start: written with the answer.
+    next: &'n mut WarmStart,
 }
 
 /// Whether a line that seemed to pass `M` was found not to, after which the search has begun again.
@@ -154,19 +156,14 @@ enum Attempt {
     Second,
 }
 
-impl<O: Observer> Run<'_, '_, O> {
-    fn run(
-        &mut self,
-        focus: &Focus,
-        last: &WarmStart,
-        next: &mut WarmStart,
-    ) -> Result<Outcome, QueryError> {
+impl<O: Observer> Run<'_, '_, '_, O> {
+    fn run(&mut self, focus: &Focus, last: &WarmStart) -> Result<Outcome, QueryError> {
         self.context.watch.begun(|| ShadowFrame {
             world_from_shadow: self.context.difference.setting_from_shadow,
             noise: self.context.difference.noise.point(),
         });
         if focus.features
-            && let Some(separated) = self.still_apart(last, next)
+            && let Some(separated) = self.still_apart(last)
         {
             return Ok(Outcome::Separated(separated));
         }
@@ -178,7 +175,7 @@ impl<O: Observer> Run<'_, '_, O> {
             self.enclosure(focus.region, last)
         };
         self.context.watch.ended(Phase::Finish);
-        self.concluded(enclosure, Attempt::First, next)
+        self.concluded(enclosure, Attempt::First)
     }
 
     /// What follows from a portal, or from a separating direction.
@@ -188,51 +185,41 @@ impl<O: Observer> Run<'_, '_, O> {
         &mut self,
         enclosure: Option<Enclosure>,
         attempt: Attempt,
-        next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
         match enclosure {
             None => Err(stalled(Stalled::NoPortal)),
             Some(Enclosure::Portal(mut portal, known)) => {
-                self.contact_or_grazing(&mut portal, known, attempt, next)
+                self.contact_or_grazing(&mut portal, known, attempt)
             }
-            Some(Enclosure::Beside(found)) => self.passed(found, attempt, next),
+            Some(Enclosure::Beside(found)) => self.passed(found, attempt),
         }
     }
 
     /// The line passes `M`, or its rim: separated if that can be told, else grazing.
-    fn passed(
-        &mut self,
-        found: SeparatingLine,
-        attempt: Attempt,
-        next: &mut WarmStart,
-    ) -> Result<Outcome, QueryError> {
-        if let Some(separated) = self.separated(&found, next) {
+    fn passed(&mut self, found: SeparatingLine, attempt: Attempt) -> Result<Outcome, QueryError> {
+        if let Some(separated) = self.separated(&found) {
             return Ok(Outcome::Separated(separated));
         }
         let widest = portal::widest_margin(&mut self.context, found);
         if widest.margin < -self.context.difference.touching() {
             return match attempt {
-                Attempt::First => self.enclosed_after_all(&widest, next),
+                Attempt::First => self.enclosed_after_all(&widest),
                 Attempt::Second => Err(stalled(Stalled::NoPortal)),
             };
         }
-        if let Some(separated) = self.separated(&widest, next) {
+        if let Some(separated) = self.separated(&widest) {
             return Ok(Outcome::Separated(separated));
         }
-        self.touching(&widest, next).map(Outcome::Grazing)
+        self.touching(&widest).map(Outcome::Grazing)
     }
 
     /// The line does not pass `M`: a climb had stuck. Begins again where it should have ended.
     #[cold]
-    fn enclosed_after_all(
-        &mut self,
-        refuted: &SeparatingLine,
-        next: &mut WarmStart,
-    ) -> Result<Outcome, QueryError> {
+    fn enclosed_after_all(&mut self, refuted: &SeparatingLine) -> Result<Outcome, QueryError> {
         let start =
             FirstNormal { normal: refuted.normal.extend(0.0), near: Some(refuted.point.pair) };
         let enclosure = portal::enclose(&mut self.context, &start);
-        self.concluded(enclosure, Attempt::Second, next)
+        self.concluded(enclosure, Attempt::Second)
     }
 
     /// Feature focus: a portal, or a separating direction, from those of the last answer.
@@ -392,14 +379,13 @@ impl<O: Observer> Run<'_, '_, O> {
         portal: &mut Portal,
         known: Known,
         attempt: Attempt,
-        next: &mut WarmStart,
     ) -> Result<Outcome, QueryError> {
         let Face { plane, weights } = if let Some(face) = self.known_face(portal, known) {
             face
         } else {
             match self.refine(portal) {
                 Some(Refined::Lowest(face)) => face,
-                Some(Refined::Rim(rim)) => return self.passed(rim, attempt, next),
+                Some(Refined::Rim(rim)) => return self.passed(rim, attempt),
                 None => return Err(stalled(Stalled::Cycle)),
             }
         };
@@ -407,7 +393,7 @@ impl<O: Observer> Run<'_, '_, O> {
         let overlap = portal::overlap(&mut self.context, portal, tolerance);
         self.context.watch.ended(Phase::Finish);
         let proven = Proven::new(&self.context.difference, portal, &plane, weights)?;
-        *next = WarmStart::Contact(proven.contact_portal());
+        *self.next = WarmStart::Contact(proven.contact_portal());
         match overlap {
             Overlap::Ample => {
                 Ok(Outcome::Contact(proven.contact(self.solver, self.context.watch.steps)))
@@ -445,11 +431,7 @@ impl<O: Observer> Run<'_, '_, O> {
     /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
     /// of the bodies widened sideways by a little more than that.
     #[cold]
-    fn touching(
-        &mut self,
-        rim: &SeparatingLine,
-        next: &mut WarmStart,
-    ) -> Result<Grazing, QueryError> {
+    fn touching(&mut self, rim: &SeparatingLine) -> Result<Grazing, QueryError> {
         self.context.difference = self.context.difference.widened(rim.margin);
         let start = FirstNormal::from_ellipsoids(&self.context.difference);
         let Some(Enclosure::Portal(mut portal, _)) = portal::enclose(&mut self.context, &start)
@@ -465,36 +447,36 @@ impl<O: Observer> Run<'_, '_, O> {
         let contact = proven.contact(self.solver, self.context.watch.steps);
         let grazing = proof::grazing(&self.context.difference, rim.normal, -rim.margin, contact);
         let plane = Plane::of(&self.context.difference, rim.normal.extend(0.0), rim.point.pair);
-        *next = proof::separation(&self.context.difference, &plane, rim.margin).1;
+        *self.next = proof::separation(&self.context.difference, &plane, rim.margin).1;
         Ok(grazing)
     }
 
     /// The separation that a line proves; `None` if rounding may have made it.
     #[inline]
-    fn separated(&self, found: &SeparatingLine, next: &mut WarmStart) -> Option<Separated> {
+    fn separated(&mut self, found: &SeparatingLine) -> Option<Separated> {
         if found.margin <= self.context.difference.noise.lowered() {
             return None;
         }
         let plane = Plane::of(&self.context.difference, found.normal.extend(0.0), found.point.pair);
         let settled = found.normal.dot(self.context.difference.vertex(plane.lowest).shadow());
-        self.separated_by(&plane, found.margin.min(settled), next)
+        self.separated_by(&plane, found.margin.min(settled))
     }
 
     /// The separation that a plane parallel to the direction proves.
     #[inline]
-    fn separated_by(&self, plane: &Plane, margin: f64, next: &mut WarmStart) -> Option<Separated> {
+    fn separated_by(&mut self, plane: &Plane, margin: f64) -> Option<Separated> {
         let (certificate, start) = proof::separation(&self.context.difference, plane, margin);
         if certificate.margin <= 0.0 || !self.others_agree(&certificate) {
             return None;
         }
-        *next = start;
+        *self.next = start;
         Some(Separated { certificate, solver: self.solver, steps: self.context.watch.steps })
     }
 
     /// The separation that the plane between the bodies of the last answer proves, turned with them,
     /// if its pair is still the nearest.
     #[inline]
-    fn still_apart(&mut self, last: &WarmStart, next: &mut WarmStart) -> Option<Separated> {
+    fn still_apart(&mut self, last: &WarmStart) -> Option<Separated> {
         let WarmStart::Apart { normals, pair } = last else { return None };
         let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
         let lateral = (p + q).truncate();
@@ -507,7 +489,7 @@ impl<O: Observer> Run<'_, '_, O> {
         let point = self.context.difference.vertex(plane.lowest);
         self.context.watch.support(|| Support::of(normal, &point));
         self.context.watch.steps.started_from = StartedFrom::Features;
-        let found = self.separated_by(&plane, normal.dot(point.at) / lateral.length(), next);
+        let found = self.separated_by(&plane, normal.dot(point.at) / lateral.length());
         if found.is_none() {
             self.context.watch.steps.started_from = StartedFrom::Scratch;
         }

@@ -26,3 +26,28 @@ fn solids_corpus() {
 fn track_corpus() {
     fuzz::corpus("track", 24).for_each(|bytes| fuzz::track(&bytes));
 }
+
+#[test]
+fn distance_corpus() {
+    fuzz::corpus("distance", 24).for_each(|bytes| fuzz::distance(&bytes));
+}
+
+#[test]
+fn depth_corpus() {
+    fuzz::corpus("depth", 8).for_each(|bytes| fuzz::depth(&bytes));
+}
+
+#[test]
+fn within_corpus() {
+    fuzz::corpus("within", 8).for_each(|bytes| fuzz::within(&bytes));
+}
+
+#[test]
+fn keep_corpus() {
+    fuzz::corpus("keep", 24).for_each(|bytes| fuzz::keep(&bytes));
+}
+
+#[test]
+fn among_corpus() {
+    fuzz::corpus("among", 6).for_each(|bytes| fuzz::among(&bytes));
+}

@@ -140,6 +140,33 @@ fn who_slides_along_at_the_gap_is_free_and_who_starts_nearer_is_told() {
 }
 
 #[test]
+fn who_glides_over_another_at_about_the_gap_is_told_where() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::NEG_ONE, DVec3::ONE).expect("a box");
+    let over = |tilt: f64, gap: f64| {
+        let above = DVec3::new(-0.5, 0.0, 2.01);
+        let pose = Pose::new(DQuat::from_rotation_y(tilt), above).expect("a pose");
+        let cast = Cast::new(cube.at(pose), cube.at(Pose::IDENTITY), DVec3::X).expect("a query");
+        let kept = cast.keeping(gap).expect("a gap");
+        (judged(&kept), judged(&kept.reversed()), kept)
+    };
+    // Its front edge is as near as the gap, by less than rounding can tell; all of its lower side nearly is.
+    let (first, last, kept) = over(6.3e-14, 0.01 * (1.0 + 1e-11));
+    let [first, last] = [first, last].map(|contact| contact.expect("as near as the gap"));
+    assert!((first.translation + 1.5).abs() < 1e-6, "{first:?}");
+    // It is left where that edge passes that of the other box: the best estimate, between wide bounds.
+    let proof = last.certificate;
+    assert!((last.translation + 2.5).abs() < 1e-6 && proof.gap() > 0.1, "{last:?}");
+    assert!(kept.reversed().verify(&proof).expect("a proof") <= proof.rounding);
+    assert!(matches!(kept.clearance(), Ok(Clearance::Overlapping(_))));
+    for tilt in [1e-15, 1e-14, 3e-14, 6.3e-14, 1e-13, 1e-12] {
+        for more in (0..60).map(|k| 5e-15 * f64::from(k)) {
+            over(tilt, 0.01 + more);
+            over(-tilt, 0.01 + more);
+        }
+    }
+}
+
+#[test]
 fn bodies_of_any_dimension_and_place() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     let shapes = [

@@ -183,7 +183,8 @@ impl Cast<'_> {
     /// contact's plane stays the gap away from the fixed body up to `lower`, its points are as near as the gap at `upper`;
     /// of [`Separated`](crate::Separated) bodies the margin is more than the gap; bodies whose shadows come as
     /// near as the gap to within the graze tolerance are [`Outcome::Grazing`]. Witness points are those that are
-    /// the gap apart. A gap of 0 is none. Observers hear nothing of such a search, and the solver makes no difference.
+    /// the gap apart. Where bodies glide over each other at about the gap, bounds are as far apart as a face that is all
+    /// but along the direction needs to come nearer by more than rounding. A gap of 0 is none. Observers hear nothing of such a search, and the solver makes no difference.
     ///
     /// # Errors
     /// A gap that is negative, not finite or more than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).

@@ -109,6 +109,17 @@ impl Setting {
         Ok(Self { obstacles, moving, pose, direction, length, seed })
     }
 
+    /// Any body among any obstacles.
+    pub fn of(
+        obstacles: Obstacles,
+        moving: AnyBody,
+        pose: Pose,
+        direction: DVec3,
+        length: f64,
+    ) -> Self {
+        Self { obstacles, moving, pose, direction, length, seed: 0 }
+    }
+
     /// Asks everything, and judges it.
     ///
     /// # Errors

@@ -5,6 +5,8 @@
 //! which reaches every special value and magnitude, or as small whole numbers, which reaches every
 //! tie.
 
+mod pairs;
+
 use std::fs;
 use std::path::Path;
 
@@ -18,6 +20,7 @@ use crate::oracle::solids::encloses;
 use crate::oracle::solids::facets::{rule, triangles};
 use crate::oracle::solids::proof::{MOST_PAIRS, approve};
 use crate::oracle::tracked::{Finding, Lanes};
+pub use pairs::{among, depth, distance, keep, within};
 
 /// Points of a body: more would only make a run slower.
 const MOST_POINTS: usize = 64;

@@ -24,6 +24,16 @@ use crate::solve::options::{Focus, Options};
 /// How far apart, in noises over `n.d`, the bounds of an answer may be.
 const WIDEST: f64 = 15.0;
 
+/// The same of bodies that glide: what a check takes for rounding is more.
+const WIDEST_GLIDING: f64 = 24.0;
+
+/// By how many noises points are looked for that are nearer than the gap, where those at the gap are not near enough
+/// for certain; shadows that overlap by more than grazing do by eight.
+const DEEPER: [f64; 4] = [4.0, 2.0, 6.0, 8.0];
+
+/// How far behind such a plane a point is looked for, in noises over `n.d`.
+const MOST_BEHIND: u8 = 10;
+
 /// Nearest points and a plane that are so many noises apart are looked for once more.
 const STUCK: f64 = 2.0;
 
@@ -204,15 +214,52 @@ impl<'s, 'a> Kept<'s, 'a> {
     }
 
     /// The contact, if its bounds are no farther apart than rounding explains.
-    fn contact(&self, found: &Found<'s, 'a>) -> Result<Contact, QueryError> {
+    fn contact(&mut self, found: &Found<'s, 'a>) -> Result<Contact, QueryError> {
         let tolerance = self.line.rounding(&found.plane, WIDEST);
         let upper = found.near.map_or(f64::INFINITY, |near| near.upper);
         if upper - found.lower <= tolerance {
             return Ok(self.contact_of(found, tolerance));
         }
+        if let Some(contact) = self.glided(found) {
+            return Ok(contact);
+        }
         let length = self.bodies.setting.length;
         let [lower, upper, tolerance] = [found.lower, upper, tolerance].map(|s| s / length);
         Err(stalled(Stalled::Gap { lower, upper, tolerance }))
+    }
+
+    /// The contact of bodies that glide at about the gap: a face that is all but along the direction comes nearer by so
+    /// little that points are as near for certain only far behind its front edge. That face says how far: its
+    /// plane is met where a smaller gap is asked for, and the bounds are as far apart as it is slanting. The best
+    /// estimate is still where the front edge is met.
+    #[cold]
+    fn glided(&mut self, found: &Found<'s, 'a>) -> Option<Contact> {
+        let contact = DEEPER.iter().find_map(|deeper| self.behind_edge(found, *deeper))?;
+        let Certificate { lower, upper, .. } = contact.certificate;
+        let translation = (found.lower / self.bodies.setting.length).min(upper).max(lower);
+        Some(Contact { translation, ..contact })
+    }
+
+    /// The same by a plane that is met at a gap that is so many noises smaller.
+    fn behind_edge(&mut self, found: &Found<'s, 'a>, deeper: f64) -> Option<Contact> {
+        let line = Line { keep: self.line.keep - deeper * self.line.noise.point(), ..self.line };
+        let start = self.bodies.lowest(found.plane.normal).0;
+        let mut behind = travel(&mut self.bodies, &line, start, f64::INFINITY);
+        self.steps.pivots += behind.looks;
+        let (met, plane) = (behind.lower, behind.plane);
+        behind.lower = self.line.lower(&plane)?;
+        for ahead in 1..=MOST_BEHIND {
+            if behind.near.is_some() {
+                break;
+            }
+            let from = met + self.line.rounding(&plane, f64::from(ahead));
+            let look = self.bodies.look(self.line.unit * from);
+            self.steps.pivots += 1;
+            behind.note_point(&self.line, &look);
+        }
+        let width = behind.near?.upper - behind.lower;
+        let is_explained = width <= self.line.rounding(&plane, WIDEST_GLIDING);
+        is_explained.then(|| self.contact_of(&behind, width))
     }
 
     /// The contact of bodies that graze, whatever its bounds.

@@ -262,7 +262,7 @@ impl Course {
 }
 
 impl<T: Target> Travel<T> {
-    fn note_point(&mut self, line: &Line, look: &Look<T::Support, T::Spot>) {
+    pub(crate) fn note_point(&mut self, line: &Line, look: &Look<T::Support, T::Spot>) {
         let Some(upper) = line.upper(look.point) else { return };
         if self.near.is_none_or(|near| upper < near.upper) {
             self.near = Some(Near { upper, point: look.point, spot: look.spot });

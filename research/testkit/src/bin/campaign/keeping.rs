@@ -1,11 +1,17 @@
 //! Casts that keep a gap: settings as they are drawn, with gaps from rounding errors to many times the bodies,
-//! and those at which bodies graze or begin.
+//! and those at which bodies graze or begin. And bodies that glide over each other at about the gap ([`GLIDING`]).
 
-use colltrans::{Cast, Clearance, Outcome, Pair, QueryError};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pair, Pose, QueryError};
 use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::keep::Judge;
 use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::random_hull;
+use glam::{DQuat, DVec3};
+
+/// Boxes and hulls with a flat side over another, which slide along it at the gap but for some noises and a tilt
+/// of about as many, against each other.
+pub(crate) const GLIDING: &str = "gliding";
 
 /// Bounds that are so many noises over `n.d` apart are counted.
 const WIDE: f64 = 6.0;
@@ -75,6 +81,9 @@ impl crate::Tally for Tally {
 
 /// Casts the bodies of a setting, and judges the answers.
 pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
+    if family == GLIDING {
+        return glide(seed, tally);
+    }
     let setting = setting(family, seed);
     tally.settings += 1;
     let Ok(bodies) = setting.bodies() else { return };
@@ -83,6 +92,46 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
     let gap = gap(&cast, &mut random);
     if let Err(objection) = judge(&cast, gap, tally) {
         tally.disagreements.push(format!("{setting} {gap:e} {objection}"));
+    }
+}
+
+/// One setting of [`GLIDING`].
+fn glide(seed: u64, tally: &mut Tally) {
+    let mut random = Random::new(seed ^ 0x61de);
+    tally.settings += 1;
+    let size = 10.0_f64.powf(random.range(-3.0, 3.0));
+    let flat = |random: &mut Random, side: f64| {
+        let half =
+            DVec3::new(random.range(0.5, 1.5), random.range(0.5, 1.5), random.range(0.5, 1.5));
+        let corners = (0..8).map(|k| {
+            let sign = |bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            half * DVec3::new(sign(0), sign(1), sign(2))
+        });
+        let hull = random_hull(12, random).vertices.into_iter().map(|v| v * 2.0);
+        // Corners of a box, or a hull that is cut off level on the side of the other body.
+        let cut = |v: DVec3| if v.z * side > half.z { v.with_z(half.z * side) } else { v };
+        let points: Vec<DVec3> = if random.index(2) == 0 {
+            corners.collect()
+        } else {
+            hull.chain(corners).map(cut).collect()
+        };
+        (points.into_iter().map(|v| v * size).collect::<Vec<_>>(), half.z * size)
+    };
+    let [(moving, low), (fixed, high)] = [flat(&mut random, -1.0), flat(&mut random, 1.0)];
+    let bodies = [moving, fixed].map(|points| ConvexPolyhedron::from_points(&points));
+    let [Ok(moving), Ok(fixed)] = bodies else { return };
+    let gap = size * 10.0_f64.powf(random.range(-6.0, 0.5));
+    let noise = 16.0 * f64::EPSILON * (6.0 * size + gap);
+    let tilt = DQuat::from_axis_angle(
+        DVec3::new(random.range(-0.3, 0.3), 1.0, 0.0).normalize(),
+        random.range(-8.0, 8.0) * noise / size,
+    );
+    let start = DVec3::new(random.range(-4.0, 4.0), random.range(-0.4, 0.4), 0.0) * size;
+    let height = low + high + gap - random.range(-2.0, 24.0) * noise;
+    let Ok(pose) = Pose::new(tilt, start + DVec3::Z * height) else { return };
+    let Ok(cast) = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::X) else { return };
+    if let Err(objection) = judge(&cast, gap, tally) {
+        tally.disagreements.push(format!("{GLIDING}:{seed} {gap:e} {objection}"));
     }
 }
 
@@ -126,8 +175,10 @@ fn judge(cast: &Cast, gap: f64, tally: &mut Tally) -> Result<(), Objection> {
     let judge = Judge::new(kept);
     let (outcome, clearance) = match (kept.first_contact(), kept.clearance()) {
         (Ok(outcome), Ok(clearance)) => (outcome, clearance),
-        (Err(QueryError::NotConverged { .. }), _) | (_, Err(QueryError::NotConverged { .. })) => {
+        (Err(QueryError::NotConverged { reason }), _)
+        | (_, Err(QueryError::NotConverged { reason })) => {
             tally.open += 1;
+            eprintln!("no answer with a gap of {gap:e}: {reason}");
             return Ok(());
         }
         (Err(e), _) | (_, Err(e)) => return Err(error(&e)),

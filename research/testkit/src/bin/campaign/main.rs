@@ -94,6 +94,7 @@ fn main() -> ExitCode {
     } else if let Some(count) = arguments.scenes {
         run(&arguments, &among::FAMILIES, count, scenes::examine)
     } else if let Some(count) = arguments.keeping {
+        let families: Vec<&str> = families.into_iter().chain([keeping::GLIDING]).collect();
         run(&arguments, &families, count, keeping::examine)
     } else if let Some(queries) = arguments.sequences {
         run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)

@@ -62,7 +62,15 @@ pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
         .and_then(|cast| cast.with_tolerance(0.0))
         .and_then(|cast| cast.keeping(gap))
         .map_err(|e| e.to_string())?;
-    Judge::new(&cast).examine().map(Some).map_err(|e| format!("gap {gap:e}: {e}"))
+    judge(&cast).map(Some).map_err(|e| format!("gap {gap:e}: {e}"))
+}
+
+/// Judges the answers to a cast that keeps a gap.
+///
+/// # Errors
+/// What disagrees.
+pub fn judge(cast: &Cast<Solid>) -> Result<Seen, String> {
+    Judge::new(cast).examine()
 }
 
 struct Judge<'a> {

@@ -138,7 +138,7 @@ impl Setting {
     }
 
     /// How far the bodies reach together, and are apart.
-    pub(super) fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         self.noise() / (16.0 * f64::EPSILON)
     }
 

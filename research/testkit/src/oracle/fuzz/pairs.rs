@@ -1,0 +1,197 @@
+//! Questions without a direction, casts that keep a gap, and one body among many.
+//!
+//! Bytes are read as for casts: how numbers are written, a byte of which the first two bits say which body is
+//! turned and the third whether they are solids, the bodies, their poses, and what is asked.
+
+use colltrans::{AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose};
+use glam::{DQuat, DVec3};
+
+use super::{MOST_JUDGED, Reader, read_setting, read_solid};
+use crate::oracle::settings::{Bodies, Setting};
+use crate::oracle::solids::{keep as solids_keep, nearest as solids};
+use crate::oracle::{among, keep as convex_keep, nearest};
+
+/// Pairs of facets that are judged in fractions: more would only make a run slower.
+const MOST_PAIRS: usize = 600;
+/// Vertices of both bodies up to which a depth is compared with the exact one.
+const MOST_COMPARED: usize = 12;
+/// Changes of a scene.
+const MOST_CHANGES: usize = 12;
+
+/// Two placed bodies.
+enum Read {
+    Convex(Box<(Setting, Bodies)>),
+    Solids(Box<solids::Setting>),
+}
+
+fn read(reader: &mut Reader) -> Option<Read> {
+    let turned = reader.clone().byte();
+    if turned & 4 == 0 {
+        return read_setting(reader).map(|setting| Read::Convex(Box::new(setting)));
+    }
+    reader.byte();
+    let solids = [read_solid(reader)?, read_solid(reader)?];
+    if solids[0].triangles().len() * solids[1].triangles().len() > MOST_PAIRS {
+        return None;
+    }
+    let poses = [read_pose(reader, turned & 1 == 1)?, read_pose(reader, turned & 2 == 2)?];
+    Some(Read::Solids(Box::new(solids::Setting { solids, poses })))
+}
+
+fn read_pose(reader: &mut Reader, is_turned: bool) -> Option<Pose> {
+    let rotation = if is_turned { reader.rotation() } else { DQuat::IDENTITY };
+    Pose::new(rotation, reader.vector()).ok()
+}
+
+fn pair<'a>(setting: &Setting, bodies: &'a Bodies) -> Pair<'a> {
+    let [p, q] = [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
+    Pair::new(p, q).expect("any two placed bodies are a pair")
+}
+
+/// The distance of two bodies is between its bounds, and its proofs hold and say no more; of solids also whether
+/// they are within some lengths.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn distance(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    match read(&mut reader) {
+        None => {}
+        Some(Read::Solids(setting)) => {
+            setting.examine().unwrap_or_else(|e| panic!("{e}"));
+        }
+        Some(Read::Convex(of)) => {
+            let pair = pair(&of.0, &of.1);
+            let answer = pair.distance().unwrap_or_else(|e| panic!("{e}"));
+            nearest::Judge::new(pair).check(&answer).unwrap_or_else(|e| panic!("{e}"));
+        }
+    }
+}
+
+/// The depth of two convex bodies is between its bounds, with proofs.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn depth(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let Some((setting, bodies)) = read_setting(&mut reader) else { return };
+    let pair = pair(&setting, &bodies);
+    let depth = pair.depth().unwrap_or_else(|e| panic!("{e}"));
+    let judge = nearest::Judge::new(pair);
+    judge.check_depth(&depth).unwrap_or_else(|e| panic!("{e}"));
+    let vertices = bodies.moving.vertices().len() + bodies.fixed.vertices().len();
+    if judge.truth.intersects() && vertices <= MOST_COMPARED {
+        judge.compare_depth(&depth).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// Whether two convex bodies are within a length, one of the bytes and those around the true distance.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn within(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let Some((setting, bodies)) = read_setting(&mut reader) else { return };
+    let pair = pair(&setting, &bodies);
+    let judge = nearest::Judge::new(pair);
+    let truth = judge.truth.to_f64();
+    let lengths = [truth, truth.next_up(), truth.next_down(), truth + 4.0 * judge.noise];
+    for length in lengths.into_iter().chain([reader.number(), truth * reader.number()]) {
+        if !(0.0..f64::INFINITY).contains(&length) {
+            assert!(length.is_infinite() || pair.within(length).is_err(), "{length}: no length");
+            continue;
+        }
+        let answer = pair.within(length).unwrap_or_else(|e| panic!("{length:e}: {e}"));
+        judge.check_within(length, &answer).unwrap_or_else(|e| panic!("{length:e}: {e}"));
+    }
+}
+
+/// A cast that keeps a gap is refused, or its answers are approved in fractions.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn keep(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    match read(&mut reader) {
+        None => {}
+        Some(Read::Solids(of)) => {
+            let gap = f64::from(reader.byte()) / 16.0 + 1.0 / 64.0;
+            let ([a, b], [p, q]) = (&of.solids, of.poses);
+            let cast = Cast::new(a.at(p), b.at(q), reader.vector());
+            let kept = cast.and_then(|cast| cast.with_tolerance(0.0)?.keeping(gap));
+            // What is much larger than the gap is for other judges.
+            if let Ok(cast) = kept
+                && gap > 1e-6 * of.reach()
+            {
+                solids_keep::judge(&cast).unwrap_or_else(|e| panic!("gap {gap}: {e}"));
+            }
+        }
+        Some(Read::Convex(of)) => {
+            let gap = reader.number().abs() / 16.0;
+            let Ok(cast) = of.0.query(&of.1).and_then(|cast| cast.keeping(gap)) else { return };
+            let judge = convex_keep::Judge::new(cast);
+            let outcome = cast.first_contact().unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
+            judge.check(&outcome).unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
+            let clearance = cast.clearance().unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
+            judge.check_clearance(&clearance).unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
+        }
+    }
+}
+
+/// Among obstacles that came, moved and went a body is answered as by asking all one by one.
+///
+/// # Panics
+/// If an answer is wrong.
+pub fn among(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let mut bodies: Vec<AnyBody> = Vec::new();
+    for _ in 0..=reader.byte() % 3 {
+        let solid = reader.byte() % 4 == 3;
+        if solid {
+            let Some(solid) = read_solid(&mut reader) else { return };
+            if solid.triangles().len() > MOST_PAIRS / 24 {
+                return;
+            }
+            bodies.push(solid.into());
+        } else {
+            let points = reader.points(MOST_JUDGED);
+            let Ok(body) = colltrans::ConvexPolyhedron::from_points(&points) else { return };
+            bodies.push(body.into());
+        }
+    }
+    let Some(obstacles) = scene(&mut reader, &bodies) else { return };
+    let moving = bodies[usize::from(reader.byte()) % bodies.len()].clone();
+    let Some(pose) = read_pose(&mut reader, true) else { return };
+    let (direction, length) = (reader.vector(), reader.number().abs());
+    let is_asked = direction.is_finite() && direction != DVec3::ZERO && length.is_finite();
+    if is_asked && (1e-9..1e9).contains(&direction.length()) {
+        among::Setting::of(obstacles, moving, pose, direction, length)
+            .examine()
+            .unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// Obstacles that come, move and go.
+fn scene(reader: &mut Reader, bodies: &[AnyBody]) -> Option<Obstacles> {
+    let mut obstacles = Obstacles::new();
+    let mut ids: Vec<ObstacleId> = Vec::new();
+    for _ in 0..usize::from(reader.byte()) % (MOST_CHANGES + 1) {
+        let kind = reader.byte();
+        let which = usize::from(kind / 8);
+        match kind % 8 {
+            0 if !ids.is_empty() => {
+                let id = ids.remove(which % ids.len());
+                assert!(obstacles.remove(id).is_some(), "{id} is gone already");
+            }
+            1 | 2 if !ids.is_empty() => {
+                let pose = read_pose(reader, kind % 8 == 2)?;
+                obstacles.set_pose(ids[which % ids.len()], pose).expect("it is there");
+            }
+            _ => {
+                let pose = read_pose(reader, kind % 8 == 3)?;
+                ids.push(obstacles.insert(bodies[which % bodies.len()].clone(), pose));
+            }
+        }
+    }
+    Some(obstacles)
+}

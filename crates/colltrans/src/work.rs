@@ -18,10 +18,10 @@ mod tests {
 
     use colltrans_testkit::random::Random;
     use colltrans_testkit::shapes::{Mesh, even_rings, extruded, random_hull, ring, ring_points};
-    use colltrans_testkit::solids::washer;
+    use colltrans_testkit::solids::{slab, washer};
     use glam::{DQuat, DVec3};
 
-    use crate::{ConvexPolyhedron, Solid};
+    use crate::{Cast, ConvexPolyhedron, Pose, Solid};
 
     thread_local! {
         pub(super) static LOOKS: Cell<usize> = const { Cell::new(0) };
@@ -155,6 +155,24 @@ mod tests {
                 let prism = Solid::from_mesh(&vertices, &faces).expect("a prism");
                 assert_eq!(prism.triangles().len(), 4 * sides - 4);
             });
+        }
+    }
+
+    /// What rounding leaves in doubt of flat bodies that are turned, or of positions that are no round
+    /// numbers, is told by twice the usual precision: no determinant of whole numbers.
+    #[test]
+    fn flat_bodies_need_no_whole_numbers() {
+        let Mesh { vertices, faces } = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::ONE, [4, 4, 1]);
+        let plate = Solid::from_mesh(&vertices, &faces).expect("a slab");
+        for turn in [DQuat::IDENTITY, rotation()] {
+            for (height, way) in [(1.0, DVec3::NEG_Z), (1.001, DVec3::NEG_Z), (2.0, DVec3::NEG_Z)] {
+                let at = turn * DVec3::new(0.3, -0.17, height);
+                let above = plate.at(Pose::new(turn, at).expect("a pose"));
+                let below = plate.at(Pose::new(turn, DVec3::ZERO).expect("a pose"));
+                let cast = Cast::new(above, below, turn * way).expect("a direction");
+                let count = looks(|| assert!(!cast.clearance().expect("an answer").is_free()));
+                assert_eq!(count, 0, "{turn} from {height}");
+            }
         }
     }
 }

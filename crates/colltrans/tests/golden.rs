@@ -48,11 +48,11 @@ const CASTS: &[(&str, u64)] = &[
 /// Families of solids.
 const SOLIDS: &[(&str, u64)] = &[
     ("grid", 0x7f4d_12c6_7c07_0c04),
-    ("sheared", 0x547f_115a_bdad_ddc4),
+    ("sheared", 0xaec4_5bdd_7f4e_0a6a),
     ("quarter", 0xe22c_07c1_5311_8aba),
     ("halves", 0xc928_1157_9734_729d),
-    ("mould", 0xa4b2_9b60_deac_c06b),
-    ("rotated", 0x75d5_e006_c161_a23a),
+    ("mould", 0x82bc_b2a1_ee94_1a82),
+    ("rotated", 0x53e4_792b_290c_9f5c),
 ];
 
 /// Fowler, Noll and Vo's hash, 64 bits, 1a.

@@ -10,6 +10,8 @@
 
 use std::cmp::Ordering;
 
+use crate::work;
+
 /// Limbs of numbers of ordinary size.
 pub(crate) const SMALL: usize = 15;
 /// Limbs that suffice for all.
@@ -245,6 +247,7 @@ pub(crate) fn determinant<const N: usize>(
     b: &[Integer<N>; 3],
     c: &[Integer<N>; 3],
 ) -> Integer<N> {
+    work::count(1);
     let mut sum = Integer::ZERO;
     for (k, component) in a.iter().enumerate() {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);

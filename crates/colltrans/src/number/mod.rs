@@ -5,6 +5,7 @@ pub(crate) mod determinant;
 mod double;
 pub(crate) mod error_free;
 pub(crate) mod extent;
+pub(crate) mod fine;
 pub(crate) mod integer;
 pub(crate) mod noise;
 pub(crate) mod orientation;

@@ -16,6 +16,7 @@ use super::search::children;
 use super::triangle::{Triangle, lies_on};
 use crate::body::Aabb;
 use crate::body::solid::edges::NONE;
+use crate::number::fine::Fine;
 use crate::number::integer::Integer;
 
 /// Triangles of a shell that are tried for a point off the other surface. A shell inside touches it
@@ -116,6 +117,11 @@ impl ExactPoint for Mean {
 
     fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
         place_exactly(scene.side(self.moving), &self.terms)
+    }
+
+    fn fine(&self, scene: &Scene) -> Fine {
+        let side = scene.side(self.moving);
+        Fine::placed(&side.matrix, side.offset, &self.terms)
     }
 }
 

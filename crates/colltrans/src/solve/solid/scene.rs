@@ -19,6 +19,7 @@ use glam::{DMat3, DVec3};
 use crate::body::pose::rotation_defect;
 use crate::body::solid::{Shrinking, Solid, displace};
 use crate::number::error_free::sum_error;
+use crate::number::fine::Fine;
 use crate::number::integer::Integer;
 use crate::number::noise::Noise;
 use crate::setting::Setting;
@@ -218,6 +219,8 @@ pub(crate) trait ExactPoint {
     fn world(&self, scene: &Scene) -> Option<DVec3>;
     /// In the setting frame.
     fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3];
+    /// The same in twice the usual precision.
+    fn fine(&self, scene: &Scene) -> Fine;
 }
 
 impl ExactPoint for Corner {
@@ -242,6 +245,12 @@ impl ExactPoint for Corner {
 
     fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
         place_exactly(scene.side(self.moving), &[(1.0, self.local)])
+    }
+
+    #[inline]
+    fn fine(&self, scene: &Scene) -> Fine {
+        let side = scene.side(self.moving);
+        Fine::placed(&side.matrix, side.offset, &[(1.0, self.local)])
     }
 }
 

@@ -6,13 +6,14 @@
 //! `2 e (|x| + |y| + e) + 8 u |x| |y|` in the plane and
 //! `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z|) + e^2) + 48 u |x||y||z|` in space.
 //! Where that cannot tell, coordinates that are exact in `f64` go to the adaptive predicates of the
-//! `robust` crate, others to whole numbers.
+//! `robust` crate, others to numbers of twice the precision, and what these leave in doubt to whole numbers.
 
 use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::scene::{ExactPoint, Scene};
+use crate::number::fine::{self, Fine};
 use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
 use crate::number::predicates::{orient2d, orient3d, sign};
 
@@ -47,8 +48,9 @@ impl Scene<'_> {
         if a.is_exact() && b.is_exact() && c.is_exact() {
             return sign(orient2d(a.at().xy(), b.at().xy(), c.at().xy()));
         }
-        let small = self.turn_wide::<SMALL>(a, b, c).sign();
-        small.unwrap_or_else(|| decided(&self.turn_wide::<LARGE>(a, b, c)))
+        self.turn_fine(a, b, c)
+            .or_else(|| self.turn_wide::<SMALL>(a, b, c).sign())
+            .unwrap_or_else(|| decided(&self.turn_wide::<LARGE>(a, b, c)))
     }
 
     /// Sign of `det[b - a, c - a, e - a]`: whether `e` is on the outer side of the facet `a b c`.
@@ -77,8 +79,9 @@ impl Scene<'_> {
         {
             return sign(orient3d(a, b, c, e));
         }
-        let small = self.outside_wide::<SMALL>(a, b, c, e).sign();
-        small.unwrap_or_else(|| decided(&self.outside_wide::<LARGE>(a, b, c, e)))
+        self.outside_fine(a, b, c, e)
+            .or_else(|| self.outside_wide::<SMALL>(a, b, c, e).sign())
+            .unwrap_or_else(|| decided(&self.outside_wide::<LARGE>(a, b, c, e)))
     }
 
     /// Points as seen from another, itself.
@@ -89,6 +92,42 @@ impl Scene<'_> {
     ) -> [[Integer<N>; 3]; 3] {
         let p = from.wide(self);
         points.map(|q| difference(&q.wide(self), &p))
+    }
+
+    /// Sign of `det[b - a, c - a, e - a]` if twice the usual precision tells it.
+    fn outside_fine(
+        &self,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
+        e: &impl ExactPoint,
+    ) -> Option<Ordering> {
+        let (p, ends) = (a.fine(self), [b.fine(self), c.fine(self), e.fine(self)]);
+        fine::determinant_sign(ends.each_ref().map(|q| p.to(q)))
+    }
+
+    /// Sign of `det[b - a, c - a, d]`, likewise.
+    fn turn_fine(
+        &self,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
+    ) -> Option<Ordering> {
+        let [p, q, r] = [a.fine(self), b.fine(self), c.fine(self)];
+        let d = Fine::exactly(self.setting.direction);
+        fine::determinant_sign([p.to(&q), p.to(&r), Fine::ORIGIN.to(&d)])
+    }
+
+    /// Sign of `det[b - a, c - a, e]`, likewise.
+    fn turn_about_fine(
+        &self,
+        axis: usize,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+        c: &impl ExactPoint,
+    ) -> Option<Ordering> {
+        let [p, q, r] = [a.fine(self), b.fine(self), c.fine(self)];
+        fine::minor_sign([p.to(&q), p.to(&r)], [(axis + 1) % 3, (axis + 2) % 3])
     }
 
     /// `det[b - a, c - a, e - a]` itself.
@@ -132,8 +171,9 @@ impl Scene<'_> {
         if value.abs() > error {
             return sign(value);
         }
-        let small = self.turn_about_wide::<SMALL>(axis, a, b, c).sign();
-        small.unwrap_or_else(|| decided(&self.turn_about_wide::<LARGE>(axis, a, b, c)))
+        self.turn_about_fine(axis, a, b, c)
+            .or_else(|| self.turn_about_wide::<SMALL>(axis, a, b, c).sign())
+            .unwrap_or_else(|| decided(&self.turn_about_wide::<LARGE>(axis, a, b, c)))
     }
 
     /// From the query frame, whose axes are orthogonal to within a few `u`: turned back, a coordinate
@@ -178,6 +218,7 @@ impl Scene<'_> {
         if rough.abs() > 4.0 * self.noise {
             return sign(rough);
         }
-        decided(&a.wide::<LARGE>(self)[axis].subtract(&b.wide(self)[axis]))
+        let fine = b.fine(self).to(&a.fine(self)).sign_along(axis);
+        fine.unwrap_or_else(|| decided(&a.wide::<LARGE>(self)[axis].subtract(&b.wide(self)[axis])))
     }
 }

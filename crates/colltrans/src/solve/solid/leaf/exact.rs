@@ -1,14 +1,19 @@
-//! The gap of two facets from whole numbers: exact signs, values exact but for their last roundings.
+//! The gap of two facets with exact signs, its values exact but for their last roundings.
 //!
 //! Each gap is a quotient, [`Above`]: six times the volume of a tetrahedron over that of one whose last edge
-//! is the direction. Small numbers are tried first; large ones have room for all there are.
+//! is the direction. Numbers of twice the usual precision are tried first, then whole numbers of ordinary
+//! size; large ones have room for all there are.
 
 use std::cmp::Ordering;
 
 use super::facet::{Facet, Turns, cross};
 use super::{Gap, Meeting};
+use crate::number::fine::{self, Fine, Way};
 use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
-use crate::solve::solid::scene::{Corner, Scene};
+use crate::solve::solid::scene::{Corner, ExactPoint, Scene};
+
+/// A gap may be off by so much of the noise of coordinates and is still exact but for its last roundings.
+const UNSEEN: f64 = f64::EPSILON / 4.0;
 
 /// The gap from exact signs at those corners of the common shadow that are to be kept, its values
 /// exact but for their last roundings.
@@ -20,10 +25,29 @@ pub(super) fn exact(
     of_g: &Turns,
     keep: impl Fn(Meeting) -> bool,
 ) -> Gap {
-    let small = exact_in::<SMALL>(scene, f, g, of_f, of_g, &keep);
-    let gap = small.or_else(|| exact_in::<LARGE>(scene, f, g, of_f, of_g, &keep));
-    // Large numbers have room for all there are.
-    gap.unwrap_or(NO_GAP)
+    let fine = FinePair::new(scene, f, g);
+    let mut gap = NO_GAP;
+    for at in corners(of_f, of_g).filter(|&at| keep(at)) {
+        let above = fine
+            .above(at)
+            .or_else(|| above_at::<SMALL>(scene, f, g, at))
+            .or_else(|| above_at::<LARGE>(scene, f, g, at));
+        // Large numbers have room for all there are.
+        gap.add(scene, above.unwrap_or(Above::LEVEL), at);
+    }
+    gap
+}
+
+/// The corners of the common shadow.
+fn corners<'t>(of_f: &'t Turns, of_g: &'t Turns) -> impl Iterator<Item = Meeting> + 't {
+    let ends = (0..3_u8).flat_map(|k| [Meeting::Corner(k), Meeting::Under(k)]);
+    let sides = (0..3_u8).flat_map(|k| (0..3_u8).map(move |j| Meeting::Sides(k, j)));
+    ends.chain(sides).filter(|at| match *at {
+        Meeting::Corner(k) => of_g.contain(k.into()),
+        Meeting::Under(k) => of_f.contain(k.into()),
+        Meeting::Sides(k, j) => cross(of_f, of_g, [k.into(), j.into()]),
+        _ => false,
+    })
 }
 
 /// Before any corner is looked at.
@@ -35,35 +59,72 @@ pub(crate) const NO_GAP: Gap = Gap {
     error: 0.0,
 };
 
-/// The same in numbers of a size; `None` if one does not fit.
-fn exact_in<const N: usize>(
-    scene: &Scene,
-    f: &Facet,
-    g: &Facet,
-    of_f: &Turns,
-    of_g: &Turns,
-    keep: &impl Fn(Meeting) -> bool,
-) -> Option<Gap> {
+/// How far the second facet is above the first at a corner of the common shadow; `None` if a number does
+/// not fit.
+fn above_at<const N: usize>(scene: &Scene, f: &Facet, g: &Facet, at: Meeting) -> Option<Above> {
     let direction = scene.setting.direction.to_array().map(Integer::<N>::number);
-    let above = |facet: &Facet, corner: &Corner| above_facet(scene, &direction, facet, corner);
-    let mut gap = NO_GAP;
-    for k in 0..3 {
-        if of_g.contain(k) && keep(Meeting::Corner(k as u8)) {
-            gap.add(scene, above(g, &f.corners[k])?.reversed(), Meeting::Corner(k as u8));
+    match at {
+        Meeting::Corner(k) => {
+            Some(above_facet(scene, &direction, g, &f.corners[usize::from(k)])?.reversed())
         }
-        if of_f.contain(k) && keep(Meeting::Under(k as u8)) {
-            gap.add(scene, above(f, &g.corners[k])?, Meeting::Under(k as u8));
+        Meeting::Under(k) => above_facet(scene, &direction, f, &g.corners[usize::from(k)]),
+        Meeting::Sides(k, j) => above_side(scene, &direction, f.side(k.into()), g.side(j.into())),
+        _ => None,
+    }
+}
+
+/// Two facets in twice the usual precision.
+struct FinePair<'s, 'a> {
+    scene: &'s Scene<'a>,
+    /// Their corners.
+    points: [[Fine; 3]; 2],
+    direction: Fine,
+}
+
+impl<'s, 'a> FinePair<'s, 'a> {
+    fn new(scene: &'s Scene<'a>, f: &Facet, g: &Facet) -> Self {
+        let points = [f, g].map(|facet| facet.corners.map(|c| c.fine(scene)));
+        let direction = Fine::exactly(scene.setting.direction);
+        Self { scene, points, direction }
+    }
+
+    /// As [`above_at`]; `None` where that is not known well enough.
+    fn above(&self, at: Meeting) -> Option<Above> {
+        match at {
+            Meeting::Corner(k) => Some(self.above_facet(1, k.into())?.reversed()),
+            Meeting::Under(k) => self.above_facet(0, k.into()),
+            Meeting::Sides(k, j) => self.above_side(k.into(), j.into()),
+            _ => None,
         }
     }
-    for k in 0..3 {
-        for j in 0..3 {
-            if cross(of_f, of_g, [k, j]) && keep(Meeting::Sides(k as u8, j as u8)) {
-                let above = above_side(scene, &direction, f.side(k), g.side(j))?;
-                gap.add(scene, above, Meeting::Sides(k as u8, j as u8));
-            }
-        }
+
+    /// How far a corner of the other facet is above the plane of one.
+    fn above_facet(&self, facet: usize, corner: usize) -> Option<Above> {
+        let [a, b, c] = &self.points[facet];
+        let [x, y, z] = [b, c, &self.points[1 - facet][corner]].map(|q| a.to(q));
+        self.quotient([x, y, z], [x, y])
     }
-    Some(gap)
+
+    /// How far side `j` of the second facet is above side `k` of the first where their shadows cross.
+    fn above_side(&self, k: usize, j: usize) -> Option<Above> {
+        let [p, q] = &self.points;
+        let (c, e) = (&q[j], &q[(j + 1) % 3]);
+        let [x, y, z] = [&p[(k + 1) % 3], c, e].map(|r| p[k].to(r));
+        Some(self.quotient([x, y, z], [x, c.to(e)])?.reversed())
+    }
+
+    /// A volume over an area.
+    fn quotient(&self, volume: [Way; 3], [x, y]: [Way; 2]) -> Option<Above> {
+        let over = fine::determinant(volume);
+        let Some(sign) = over.sign() else {
+            return fine::tracked_sign(volume)?.is_eq().then_some(Above::LEVEL);
+        };
+        let under = fine::determinant([x, y, Fine::ORIGIN.to(&self.direction)]);
+        let sign = if under.sign()?.is_lt() { sign.reverse() } else { sign };
+        let slack = UNSEEN * self.scene.noise / self.scene.setting.length;
+        let value = over.ratio(&under, slack)?;
+        Some(Above { sign, value })
+    }
 }
 
 /// How far a corner is above the plane through a facet, which turns counter-clockwise from below; `None`

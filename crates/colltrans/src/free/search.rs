@@ -180,14 +180,21 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Drops pairs that miss the cell, and splits what is wide against it, down to a number of pairs.
     fn refine(&mut self, pairs: &mut Vec<Pair>, cell: &Cell) {
-        let window = Window::of(cell);
+        let (window, corners) = (Window::of(cell), cell.corners());
         let mut todo = std::mem::take(pairs);
         while let Some(pair) = todo.pop() {
             if self.misses(pair, &window) {
                 continue;
             }
+            if self.is_leaf(pair) {
+                let k = self.cone(pair);
+                if !self.cones[k as usize].misses(self.bodies, &corners) {
+                    pairs.push(pair);
+                }
+                continue;
+            }
             let room = todo.len() + pairs.len() < LIST;
-            if room && !self.is_leaf(pair) && self.is_wide(pair, cell.size) {
+            if room && self.is_wide(pair, cell.size) {
                 todo.extend(self.parts(pair));
             } else {
                 pairs.push(pair);

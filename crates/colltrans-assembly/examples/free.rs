@@ -77,7 +77,8 @@ fn tell(free: &FreeDirections) {
 fn judge(bodies: &Bodies, part: usize, free: &FreeDirections, count: u64) {
     let mut state = 7 + part as u64;
     let mut unit = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let cells: Vec<_> = free.cells().collect();

@@ -6,10 +6,10 @@
 
 use std::collections::BTreeMap;
 
+use colltrans::free::FreeError;
 use colltrans::solid::{
     ShrinkReport, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
-use colltrans::free::FreeError;
 use colltrans::{Bounded, Cast, Clearance, MAX_MAGNITUDE, Pose, QueryError, Solid};
 use glam::DVec3;
 use rayon::prelude::*;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use colltrans_mesh::body::Refused;
 use colltrans::free::FreeError;
+use colltrans_mesh::body::Refused;
 use thiserror::Error;
 
 /// Why an assembly could not be read.

@@ -46,9 +46,11 @@ impl Removal {
         cancel: &AtomicBool,
     ) -> Result<FreeDirections<'_>, AssemblyError> {
         let [a, b] = self.solids.each_ref().map(|solid| solid.at(Pose::IDENTITY));
-        FreeDirections::of_unless(&a, &b, options.with_tolerance(0.0), cancel).map_err(|error| match error {
-            FreeError::Cancelled => AssemblyError::Cancelled,
-            other => AssemblyError::Free(other),
+        FreeDirections::of_unless(&a, &b, options.with_tolerance(0.0), cancel).map_err(|error| {
+            match error {
+                FreeError::Cancelled => AssemblyError::Cancelled,
+                other => AssemblyError::Free(other),
+            }
         })
     }
 

@@ -10,17 +10,16 @@ use super::cell::Cell;
 use super::cone::Cone;
 use super::error::FreeError;
 use super::options::FreeOptions;
-use super::proof::{Fate, holds, rest_of};
+use super::proof::{Fate, FreeProof, cells, fates, holds, rest_of};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
-use crate::answer::CertificateError;
+use crate::answer::{CertificateError, SolidSteps};
 use crate::body::Placed;
 use crate::body::solid::{AsSolid, Solid};
 use crate::cast::Cast;
 use crate::cast::solid::StartOverlap;
 use crate::setting::check_direction;
 use crate::setting::error::QueryError;
-use crate::answer::SolidSteps;
 use crate::solve::solid::overlap;
 
 /// What is said of a direction.
@@ -193,7 +192,8 @@ impl<'a> FreeDirections<'a> {
             cell = cell.quarter(quarter);
         }
         let blocking = |pairs: &[[u32; 2]]| {
-            let holds = |pair: &&[u32; 2]| Cone::new(&self.bodies, **pair).holds(&self.bodies, direction);
+            let holds =
+                |pair: &&[u32; 2]| Cone::new(&self.bodies, **pair).holds(&self.bodies, direction);
             pairs.iter().find(holds).map(|pair| Verdict::Blocked(*pair))
         };
         Ok(match &self.fates[at] {
@@ -234,7 +234,9 @@ impl<'a> FreeDirections<'a> {
     /// Convex regions that together are all that is free with an area, by cells: neighbours share borders.
     pub fn regions(&self) -> Vec<FreeRegion> {
         let region = |(cell, piece): (Cell, Piece)| {
-            piece.is_region().then(|| FreeRegion { corners: directions(&cell, &piece), area: piece.area() })
+            piece
+                .is_region()
+                .then(|| FreeRegion { corners: directions(&cell, &piece), area: piece.area() })
         };
         self.pieces().filter_map(region).collect()
     }
@@ -308,6 +310,36 @@ impl<'a> FreeDirections<'a> {
             }
         }
         found.into_iter().map(|(cell, piece)| directions(cell, piece)).collect()
+    }
+
+    /// All that is said, with its proof.
+    pub fn proof(&self) -> FreeProof {
+        FreeProof {
+            tolerance: self.cast.tolerance(),
+            start_overlap: self.options.start_overlap,
+            cells: cells(&self.fates),
+        }
+    }
+
+    /// What a proof says of two bodies, if it holds: no search, whoever has made it.
+    ///
+    /// # Errors
+    /// As [`Self::of`]; what is not proven, [`FreeError::NotProven`].
+    pub fn from_proof<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        proof: &FreeProof,
+    ) -> Result<Self, FreeError> {
+        let options = FreeOptions::DEFAULT
+            .with_tolerance(proof.tolerance)
+            .with_start_overlap(proof.start_overlap);
+        let (cast, bodies) = setting(moving, fixed, &options)?;
+        let misfit = CertificateError::Cover { entry: proof.cells.len() };
+        let fates = fates(&proof.cells).ok_or(misfit)?;
+        let mut all = Self { cast, bodies, options, fates, looks: 0, areas: Areas::default() };
+        all.verify()?;
+        all.areas = all.measure();
+        Ok(all)
     }
 
     /// The cells that are not cut, in order.

@@ -103,7 +103,8 @@ impl Cell {
     }
 
     /// The solid angle.
-    pub(super) fn area(&self) -> f64 {
+    #[cfg(test)]
+    fn area(&self) -> f64 {
         solid_angle(&self.places())
     }
 }

@@ -86,13 +86,13 @@ struct Signs {
 impl Signs {
     fn new(bodies: &Bodies, f: &[Spot; 3], g: &[Spot; 3]) -> Self {
         let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));
-        let outside = |a: &Corner, b: &Corner, c: &Corner, e: &Corner| bodies.scene.outside(a, b, c, e);
+        let outside =
+            |a: &Corner, b: &Corner, c: &Corner, e: &Corner| bodies.scene.outside(a, b, c, e);
         Self {
             moving: p.map(|a| outside(a, q[0], q[1], q[2])),
             fixed: q.map(|a| outside(a, p[0], p[1], p[2])),
-            edges: [0, 1, 2].map(|a| {
-                [0, 1, 2].map(|b| outside(p[a], q[b], q[(b + 1) % 3], p[(a + 1) % 3]))
-            }),
+            edges: [0, 1, 2]
+                .map(|a| [0, 1, 2].map(|b| outside(p[a], q[b], q[(b + 1) % 3], p[(a + 1) % 3]))),
         }
     }
 

@@ -58,7 +58,11 @@ fn cross(x: DVec3, y: DVec3) -> (DVec3, bool) {
 /// The power of two that brings a number between 1 and 2.
 fn scale(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52 & 0x7ff) as i32;
-    if (1..2046).contains(&exponent) { f64::from_bits(((2046 - exponent) as u64) << 52) } else { 1.0 }
+    if (1..2046).contains(&exponent) {
+        f64::from_bits(((2046 - exponent) as u64) << 52)
+    } else {
+        1.0
+    }
 }
 
 impl Line {

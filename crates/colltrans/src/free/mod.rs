@@ -24,3 +24,4 @@ mod window;
 pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePoint, FreeRegion, Verdict};
 pub use error::FreeError;
 pub use options::FreeOptions;
+pub use proof::{CellProof, FreeProof};

@@ -103,8 +103,10 @@ impl Rest {
         let [u, v] = [cell.range(0), cell.range(1)];
         // From corner to corner: the lower v, the upper u, the upper v, the lower u.
         let bounds = [(j, v[0]), (i, u[1]), (j, v[1]), (i, u[0])];
-        let lines = bounds.map(|(axis, at)| Line::exactly(DVec3::AXES[axis] - across * at)).to_vec();
-        let corner = |place| Corner { at: At::OfCell(cell.side.direction(place)), place, error: 0.0 };
+        let lines =
+            bounds.map(|(axis, at)| Line::exactly(DVec3::AXES[axis] - across * at)).to_vec();
+        let corner =
+            |place| Corner { at: At::OfCell(cell.side.direction(place)), place, error: 0.0 };
         let corners = cell.places().map(corner).to_vec();
         Self { cell, lines, pieces: vec![Piece { corners, edges: vec![0, 1, 2, 3] }] }
     }
@@ -117,8 +119,10 @@ impl Rest {
     /// The rectangle around a piece.
     pub(super) fn window(&self, piece: &Piece) -> Window {
         let around = |axis: usize| {
-            let ends = piece.corners.iter().map(|c| (c.place[axis] - c.error, c.place[axis] + c.error));
-            let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+            let ends =
+                piece.corners.iter().map(|c| (c.place[axis] - c.error, c.place[axis] + c.error));
+            let (low, high) =
+                ends.fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
             let [least, most] = self.cell.range(axis);
             [low.max(least), high.min(most)]
         };
@@ -126,7 +130,12 @@ impl Rest {
     }
 
     /// Takes a cone away; whether there was something to take.
-    pub(super) fn cut(&mut self, bodies: &Bodies, cone: &Cone, most: usize) -> Result<bool, TooMuch> {
+    pub(super) fn cut(
+        &mut self,
+        bodies: &Bodies,
+        cone: &Cone,
+        most: usize,
+    ) -> Result<bool, TooMuch> {
         let mut changed = false;
         let mut numbers = Vec::new();
         for at in (0..self.pieces.len()).rev() {
@@ -238,9 +247,16 @@ impl Rest {
     }
 
     /// The part of a piece on the inner side of a line, or on it, from the sides of its corners.
-    fn part(&self, bodies: &Bodies, piece: &Piece, line: u32, sides: &[Ordering]) -> Result<Piece, TooMuch> {
+    fn part(
+        &self,
+        bodies: &Bodies,
+        piece: &Piece,
+        line: u32,
+        sides: &[Ordering],
+    ) -> Result<Piece, TooMuch> {
         let count = piece.corners.len();
-        let (mut corners, mut edges) = (Vec::with_capacity(count + 1), Vec::with_capacity(count + 1));
+        let (mut corners, mut edges) =
+            (Vec::with_capacity(count + 1), Vec::with_capacity(count + 1));
         for k in 0..count {
             let (own, next, edge) = (sides[k], sides[(k + 1) % count], piece.edges[k]);
             if own != Less {
@@ -265,7 +281,8 @@ impl Rest {
         let (p, q) = (&self.lines[a as usize], &self.lines[b as usize]);
         let way = p.form.cross(q.form);
         let (m, n) = (p.form.abs().max_element(), q.form.abs().max_element());
-        let error = 2.02 * (p.error * n + q.error * m + p.error * q.error) + 4.0 * f64::EPSILON * m * n;
+        let error =
+            2.02 * (p.error * n + q.error * m + p.error * q.error) + 4.0 * f64::EPSILON * m * n;
         let side = self.cell.side;
         let [k, i, j] = side.axes();
         let main = way[k] * side.sign();
@@ -278,7 +295,12 @@ impl Rest {
         self.crossing_exactly(bodies, [a, b], side)
     }
 
-    fn crossing_exactly(&self, bodies: &Bodies, lines: [u32; 2], side: Side) -> Result<Corner, TooMuch> {
+    fn crossing_exactly(
+        &self,
+        bodies: &Bodies,
+        lines: [u32; 2],
+        side: Side,
+    ) -> Result<Corner, TooMuch> {
         let [p, q] = lines.map(|k| self.lines[k as usize].wide::<LARGE>(bodies));
         let way = wide_cross(&p, &q);
         let [k, i, j] = side.axes();

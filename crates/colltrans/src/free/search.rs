@@ -241,7 +241,8 @@ impl<'s, 'a> Search<'s, 'a> {
     fn blocking(&mut self, pairs: &[Pair], cell: &Cell, place: [f64; 2]) -> Option<Option<u32>> {
         let (window, d) = (Window::at(cell.side, place), cell.side.direction(place));
         let hits = |search: &mut Self, pair| !search.misses(pair, &window);
-        let judge = |search: &Self, k: u32| search.cones[k as usize].holds(search.bodies, d).then_some(k);
+        let judge =
+            |search: &Self, k: u32| search.cones[k as usize].holds(search.bodies, d).then_some(k);
         self.best_first(pairs, |search, pair| search.key(pair, d, false), hits, judge)
     }
 
@@ -255,7 +256,12 @@ impl<'s, 'a> Search<'s, 'a> {
         hits: impl Fn(&mut Self, Pair) -> bool,
         judge: impl Fn(&Self, u32) -> Option<u32>,
     ) -> Option<Option<u32>> {
-        let entry = |search: &Self, views: Pair| Entry { bound: key(search, views), number: 0, reason: (), views };
+        let entry = |search: &Self, views: Pair| Entry {
+            bound: key(search, views),
+            number: 0,
+            reason: (),
+            views,
+        };
         let mut queue: BinaryHeap<Entry> = pairs.iter().map(|&pair| entry(self, pair)).collect();
         for _ in 0..LOOKS {
             let Some(Entry { views: pair, .. }) = queue.pop() else { return Some(None) };
@@ -308,7 +314,12 @@ impl<'s, 'a> Search<'s, 'a> {
         if task.cell.depth < self.options.depth && !found_free {
             return Ok(rest.pieces.is_empty());
         }
-        self.take_all(task, rest, used, if found_free { FREE_FACTOR * REST_LOOKS } else { REST_LOOKS })
+        self.take_all(
+            task,
+            rest,
+            used,
+            if found_free { FREE_FACTOR * REST_LOOKS } else { REST_LOOKS },
+        )
     }
 
     /// Takes all that meets what is left, if it is little enough.

@@ -59,7 +59,8 @@ impl Window {
             return false;
         }
         let [k, i, j] = self.side.axes();
-        let [near, far] = if self.side.sign() > 0.0 { [low[k], high[k]] } else { [-high[k], -low[k]] };
+        let [near, far] =
+            if self.side.sign() > 0.0 { [low[k], high[k]] } else { [-high[k], -low[k]] };
         if far <= 0.0 {
             return true;
         }

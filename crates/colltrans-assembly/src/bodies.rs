@@ -6,10 +6,11 @@
 
 use std::collections::BTreeMap;
 
+use colltrans::free::FreeError;
 use colltrans::solid::{
     ShrinkReport, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
-use colltrans::{Bounded, Cast, Clearance, MAX_MAGNITUDE, Pose, Solid};
+use colltrans::{Bounded, Cast, Clearance, MAX_MAGNITUDE, Pose, QueryError, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -328,6 +329,39 @@ impl<'a> Bodies<'a> {
         let stops = stops.map(|c| self.stop([a, b], d, c.triangles, &c));
         let nearest = stops.min_by(|x, y| x.displaced.value.total_cmp(&y.displaced.value));
         nearest.map_or(Room::Free, Room::Blocked)
+    }
+
+    /// Some parts as one solid, shrunk, and where the facets of each begin among those of all.
+    pub(crate) fn joined(
+        &self,
+        parts: &[usize],
+    ) -> Result<(Solid, Vec<(usize, u32)>), AssemblyError> {
+        let mut first = 0;
+        let mut begin = |&part: &usize| {
+            let here = first;
+            first += self.solids[part].input_counts()[1];
+            (part, here)
+        };
+        let begins = parts.iter().map(&mut begin).collect();
+        let solid = Solid::from_pieces(parts.iter().map(|&part| &self.solids[part]));
+        let refused = |e| AssemblyError::Free(FreeError::Query(QueryError::NoSolid(e)));
+        Ok((solid.map_err(refused)?, begins))
+    }
+
+    /// # Errors
+    /// Parts that do not stop each other as they are: to be kept apart, ignored, or overlapping.
+    pub(crate) fn check_plain(&self, [a, b]: [usize; 2]) -> Result<(), AssemblyError> {
+        let why = if self.fit.keep() > 0.0 {
+            "they are to be kept apart"
+        } else if self.always_ignored(a, b) {
+            "they are ignored"
+        } else if self.overlaps(a, b) {
+            "they overlap where they are"
+        } else {
+            return Ok(());
+        };
+        let [a, b] = [a, b].map(|part| self.assembly.parts()[part].name().to_owned());
+        Err(AssemblyError::NoDirections { a, b, why })
     }
 
     /// What stops a part, if these were all of the facets of two; parts that overlap are not refused.

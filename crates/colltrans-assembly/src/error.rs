@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use colltrans::free::FreeError;
 use colltrans_mesh::body::Refused;
 use thiserror::Error;
 
@@ -139,6 +140,19 @@ pub enum AssemblyError {
         /// How many there may be.
         most: usize,
     },
+    /// All free directions are told of parts that stop each other as they are.
+    #[error("all directions cannot be told of {a} and {b}: {why}")]
+    NoDirections {
+        /// A part of the group.
+        a: String,
+        /// One of the others.
+        b: String,
+        /// What is in the way.
+        why: &'static str,
+    },
+    /// Free directions cannot be told.
+    #[error(transparent)]
+    Free(FreeError),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

@@ -27,6 +27,7 @@ mod work;
 
 pub mod blocking;
 pub mod candidates;
+pub mod free;
 pub mod liaisons;
 pub mod map;
 pub mod matrix;

@@ -149,6 +149,7 @@ mod among;
 mod answer;
 mod body;
 mod cast;
+pub mod free;
 mod number;
 mod pair;
 #[cfg(feature = "json")]

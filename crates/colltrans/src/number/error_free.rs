@@ -21,7 +21,7 @@ pub(crate) fn difference_error(a: f64, b: f64) -> f64 {
 
 /// The rounding error of the product `p = fl(a b)`, exactly (Dekker).
 #[inline]
-pub(super) fn product_error(a: f64, b: f64, p: f64) -> f64 {
+pub(crate) fn product_error(a: f64, b: f64, p: f64) -> f64 {
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
 }

@@ -3,7 +3,7 @@
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
-//! that keep a gap.
+//! that keep a gap. Or all free directions of solids, each held against casts along some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -12,6 +12,7 @@
 mod bodies;
 mod casts;
 mod distances;
+mod free;
 mod keeping;
 mod scenes;
 mod sequences;
@@ -34,6 +35,7 @@ campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
 campaign --sequences QUERIES [--seed S] [--only FAMILY]
 campaign --solids N [--seed S] [--only FAMILY]
 campaign --solid-distances N [--seed S] [--only FAMILY]
+campaign --free DIRECTIONS [--seed S] [--only FAMILY]
 campaign --bodies N [--seed S] [--only FAMILY]
 campaign --distances N [--seed S] [--only FAMILY]
 campaign --scenes N [--seed S] [--only FAMILY]
@@ -48,6 +50,7 @@ struct Arguments {
     solids: Option<u64>,
     solid_distances: Option<u64>,
     solid_keeping: Option<u64>,
+    free: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
     scenes: Option<u64>,
@@ -87,7 +90,9 @@ fn main() -> ExitCode {
         return exit_code(solids::keeping(count, arguments.seed, arguments.only.as_deref()));
     }
     let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
-    exit_code(if let Some(count) = arguments.bodies {
+    exit_code(if let Some(directions) = arguments.free {
+        run(&arguments, &solids::FAMILIES, directions.div_ceil(free::DIRECTIONS), free::examine)
+    } else if let Some(count) = arguments.bodies {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
     } else if let Some(count) = arguments.distances {
         run(&arguments, &families, count, distances::examine)
@@ -117,6 +122,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         solids: None,
         solid_distances: None,
         solid_keeping: None,
+        free: None,
         bodies: None,
         distances: None,
         scenes: None,
@@ -135,6 +141,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--distances" => arguments.distances = Some(number(&value)?),
             "--keeping" => arguments.keeping = Some(number(&value)?),
             "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
+            "--free" => arguments.free = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--scenes" => arguments.scenes = Some(number(&value)?),
             "--bodies" => arguments.bodies = Some(number(&value)?),

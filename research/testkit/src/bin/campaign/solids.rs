@@ -5,7 +5,8 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use colltrans_testkit::oracle::settings;
-use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
+pub(crate) use colltrans_testkit::oracle::solids::settings::FAMILIES;
+use colltrans_testkit::oracle::solids::settings::Setting;
 use colltrans_testkit::oracle::solids::{Seen, as_solids, keep, nearest, sheets};
 use rayon::prelude::*;
 

@@ -1,11 +1,12 @@
 //! What solids are judged by: bodies of cubes, whose motions are known without facets ([`cells`]), the
 //! rule over all pairs of facets in exact arithmetic ([`facets`]), proofs judged in fractions
-//! ([`proof`]), distances over all pairs of facets ([`nearest`]), casts that keep a gap ([`keep`]), and settings full of ties ([`settings`]); the same for open surfaces, bodies of cubes
+//! ([`proof`]), distances over all pairs of facets ([`nearest`]), casts that keep a gap ([`keep`]), free directions ([`free`]), and settings full of ties ([`settings`]); the same for open surfaces, bodies of cubes
 //! and of squares ([`squares`], [`sheets`]).
 
 pub mod cells;
 mod convex;
 pub mod facets;
+pub mod free;
 pub mod keep;
 pub mod nearest;
 pub mod proof;

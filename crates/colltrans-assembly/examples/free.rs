@@ -1,0 +1,110 @@
+//! All directions along which parts of an assembly can leave the rest: cells, areas, work and time, and what ordinary
+//! casts say of as many directions, half of them in cells beside borders.
+//!
+//! `free SOURCE [--tolerance L] [--parts A,B] [--depth N] [--looks N] [--judge N] [--verify 1]`
+
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use colltrans::free::{CellKind, FreeDirections, FreeOptions, Verdict};
+use colltrans::solid::{StartOverlap, Workspace};
+use colltrans_assembly::free::Removal;
+use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::rooms::room_of;
+use colltrans_assembly::{Bodies, Fit};
+use glam::DVec3;
+
+type Failure = Box<dyn std::error::Error>;
+
+fn option<T: std::str::FromStr>(name: &str) -> Option<T> {
+    let words: Vec<String> = std::env::args().collect();
+    words.windows(2).find(|w| w[0] == name).and_then(|w| w[1].parse().ok())
+}
+
+fn main() -> Result<(), Failure> {
+    let source = std::env::args().nth(1).ok_or("a folder or file of parts")?;
+    let assembly = read(&source, &ReadOptions::default())?;
+    let fit = option("--tolerance").map_or_else(|| Fit::default_for(&assembly), Fit::Tolerance);
+    let bodies = Bodies::new(&assembly, fit)?;
+    let wanted: Option<String> = option("--parts");
+    let options = FreeOptions::default()
+        .with_depth(option("--depth").unwrap_or(FreeOptions::DEFAULT.depth))
+        .with_looks(option("--looks").unwrap_or(FreeOptions::DEFAULT.looks))
+        .with_cones(option("--cones").unwrap_or(FreeOptions::DEFAULT.cones));
+    println!("tolerance {}", fit.tolerance());
+    let mut all = 0.0;
+    for part in 0..bodies.len() {
+        let name = assembly.parts()[part].name();
+        if wanted.as_ref().is_some_and(|list| !list.split(',').any(|word| word == name)) {
+            continue;
+        }
+        let started = Instant::now();
+        match Removal::new(&bodies, &[part]) {
+            Err(error) => println!("{name}: {error}"),
+            Ok(removal) => {
+                let joined = started.elapsed().as_secs_f64();
+                let free = removal.directions(options, &AtomicBool::new(false))?;
+                let seconds = started.elapsed().as_secs_f64();
+                all += seconds;
+                print!("{name}: {seconds:.4} s ({joined:.4} joining), ");
+                tell(&free);
+                judge(&bodies, part, &free, option("--judge").unwrap_or(0));
+                if option::<u8>("--verify").is_some() {
+                    let started = Instant::now();
+                    free.verify()?;
+                    println!("    verified in {:.4} s", started.elapsed().as_secs_f64());
+                }
+            }
+        }
+    }
+    println!("{all:.3} s in all");
+    Ok(())
+}
+
+fn tell(free: &FreeDirections) {
+    let count = |kind| free.cells().filter(|cell| cell.kind == kind).count();
+    let kinds = [CellKind::Free, CellKind::Blocked, CellKind::Both, CellKind::Undecided].map(count);
+    let sphere = 4.0 * std::f64::consts::PI;
+    let [low, high] = free.free_area().map(|area| area / sphere);
+    println!(
+        "free/blocked/both/undecided cells {kinds:?}, share free {low:.6e} (+{:.1e}), undecided {:.2e}, looks {}",
+        high - low,
+        free.undecided_area() / sphere,
+        free.work()[1]
+    );
+}
+
+fn judge(bodies: &Bodies, part: usize, free: &FreeDirections, count: u64) {
+    let mut state = 7 + part as u64;
+    let mut unit = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let cells: Vec<_> = free.cells().collect();
+    let (alive, mut workspace) = (vec![true; bodies.len()], Workspace::default());
+    let [mut wrong, mut open, mut silent] = [0; 3];
+    for k in 0..count {
+        let mut any = || DVec3::new(unit(), unit(), unit());
+        let d = if k.is_multiple_of(2) {
+            any() * 2.0 - 1.0
+        } else {
+            let way = any();
+            let [a, _, c, _] = cells[(unit() * cells.len() as f64) as usize].corners;
+            a + (c - a) * way
+        };
+        let d = d.normalize();
+        let room = room_of(bodies, &[part], &alive, d, StartOverlap::Refuse, &mut workspace);
+        match free.says(d) {
+            Ok(Verdict::Free) => {
+                open += 1;
+                wrong += u32::from(!room.is_free());
+            }
+            Ok(Verdict::Blocked(_)) => wrong += u32::from(room.is_free()),
+            _ => silent += 1,
+        }
+    }
+    if count > 0 {
+        println!("    judged {count}: {open} free, {silent} undecided, {wrong} wrong");
+    }
+}

@@ -1,0 +1,443 @@
+//! The answer: what is said of a direction, regions, and areas.
+
+use std::f64::consts::PI;
+use std::sync::atomic::AtomicBool;
+
+use glam::{DVec2, DVec3};
+
+use super::bodies::Bodies;
+use super::cell::Cell;
+use super::cone::Cone;
+use super::error::FreeError;
+use super::options::FreeOptions;
+use super::proof::{Fate, FreeProof, cells, fates, holds, rest_of};
+use super::rest::{Piece, Rest};
+use super::search::{Found, Search};
+use crate::answer::{CertificateError, SolidSteps};
+use crate::body::Placed;
+use crate::body::solid::{AsSolid, Solid};
+use crate::cast::Cast;
+use crate::cast::solid::StartOverlap;
+use crate::setting::check_direction;
+use crate::setting::error::QueryError;
+use crate::solve::solid::overlap;
+
+/// What is said of a direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Verdict {
+    /// Nothing blocks it, ever.
+    Free,
+    /// These two triangles block it: positions in [`Solid::triangles`] of the moving and of the fixed body.
+    Blocked([u32; 2]),
+    /// It was not found out.
+    Undecided,
+}
+
+/// A convex region of free directions, borders included.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeRegion {
+    /// Its corners in order, directions with a largest component of 1 (or -1), exact but for their last roundings.
+    pub corners: Vec<DVec3>,
+    /// Its solid angle.
+    pub area: f64,
+}
+
+/// An arc of free directions with no region around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeArc {
+    /// Its ends.
+    pub ends: [DVec3; 2],
+}
+
+/// A free direction with no other around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreePoint {
+    /// The direction, exact but for its last roundings.
+    pub direction: DVec3,
+}
+
+/// A cell of the sphere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeCell {
+    /// Its corners in order, exact: it is all that is between them.
+    pub corners: [DVec3; 4],
+    /// What is known of it.
+    pub kind: CellKind,
+}
+
+/// What is known of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum CellKind {
+    /// All of it is free.
+    Free,
+    /// One pair of facets blocks all of it.
+    Blocked,
+    /// Some pairs block all that is not free, which may be nothing.
+    Both,
+    /// Not all of it is known.
+    Undecided,
+}
+
+/// Directions on a side of the cube that differ by less are taken for one where arcs and points are listed.
+const BESIDE: f64 = 1e-12;
+
+/// Solid angles, each enclosed: `[at least, at most]`, in steradians.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Areas {
+    free: [f64; 2],
+    undecided: f64,
+}
+
+/// All directions along which a solid can leave another one: see [`Self::of`].
+pub struct FreeDirections<'a> {
+    /// Along any direction.
+    cast: Cast<'a, Solid>,
+    bodies: Bodies<'a>,
+    options: FreeOptions,
+    fates: Vec<Fate>,
+    looks: u64,
+    areas: Areas,
+}
+
+impl<'a> FreeDirections<'a> {
+    /// Along which directions can the moving body leave the fixed one? Bodies of either kind; a convex one as the
+    /// solid that it is.
+    ///
+    /// A direction is free exactly where [`Cast::clearance`] along it, with the same tolerance and meaning of an
+    /// overlap, says that it is. All decisions are exact; what is not decided within the work allowed is called
+    /// undecided.
+    ///
+    /// # Errors
+    /// Bodies that no cast can be asked about; open shells; an overlap that is not to be ignored.
+    ///
+    /// ```
+    /// use colltrans::free::{FreeDirections, FreeOptions, Verdict};
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{ConvexPolyhedron, Pose};
+    ///
+    /// // A lid on a box: it can go up and aside, not down.
+    /// let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let above = Pose::from_translation(DVec3::Z)?;
+    /// let free =
+    ///     FreeDirections::of(&block.at(above), &block.at(Pose::IDENTITY), FreeOptions::default())?;
+    /// assert_eq!(free.says(DVec3::X)?, Verdict::Free);
+    /// assert!(matches!(free.says(DVec3::new(1.0, 0.0, -1e-100))?, Verdict::Blocked(_)));
+    /// assert_eq!(free.undecided_area(), 0.0);
+    /// let half = std::f64::consts::TAU;
+    /// assert!(free.free_area()[0] <= half && half <= free.free_area()[1]);
+    /// free.verify()?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        options: FreeOptions,
+    ) -> Result<Self, FreeError> {
+        Self::search(moving, fixed, options, None)
+    }
+
+    /// The same, which ends with [`FreeError::Cancelled`] soon after the flag is set.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn of_unless<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        options: FreeOptions,
+        cancel: &AtomicBool,
+    ) -> Result<Self, FreeError> {
+        Self::search(moving, fixed, options, Some(cancel))
+    }
+
+    fn search<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        options: FreeOptions,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Self, FreeError> {
+        let (cast, bodies) = setting(moving, fixed, &options)?;
+        let found = Search::new(&bodies, options, cancel).run();
+        let Found { fates, looks } = found.ok_or(FreeError::Cancelled)?;
+        let areas = Areas::default();
+        let mut all = Self { cast, bodies, options, fates, looks, areas };
+        all.areas = all.measure();
+        Ok(all)
+    }
+
+    /// What is said of a direction, of any length.
+    ///
+    /// # Errors
+    /// A direction that is zero, not finite or out of range.
+    pub fn says(&self, direction: DVec3) -> Result<Verdict, QueryError> {
+        check_direction(direction)?;
+        let mut at = Cell::root_of(direction);
+        let mut cell = Cell::roots()[at];
+        while let Fate::Cut(first) = self.fates[at] {
+            let quarter = cell.quarter_of(direction);
+            at = first as usize + quarter;
+            cell = cell.quarter(quarter);
+        }
+        let blocking = |pairs: &[[u32; 2]]| {
+            let holds =
+                |pair: &&[u32; 2]| Cone::new(&self.bodies, **pair).holds(&self.bodies, direction);
+            pairs.iter().find(holds).map(|pair| Verdict::Blocked(*pair))
+        };
+        Ok(match &self.fates[at] {
+            Fate::Blocked(pair) => Verdict::Blocked(*pair),
+            Fate::Open(pairs) => blocking(pairs).unwrap_or(Verdict::Free),
+            Fate::Undecided(pairs) => blocking(pairs).unwrap_or(Verdict::Undecided),
+            Fate::Cut(_) => Verdict::Undecided,
+        })
+    }
+
+    /// The solid angle that is free, from below and from above, in steradians: of all directions `4 PI`. What is
+    /// undecided may be free besides.
+    pub fn free_area(&self) -> [f64; 2] {
+        self.areas.free
+    }
+
+    /// At most so much is undecided, in steradians.
+    pub fn undecided_area(&self) -> f64 {
+        self.areas.undecided
+    }
+
+    /// Whether no direction is free, for certain.
+    pub fn is_blocked(&self) -> bool {
+        self.leaves().all(|(cell, fate)| match fate {
+            Fate::Cut(_) | Fate::Blocked(_) => true,
+            Fate::Undecided(_) => false,
+            Fate::Open(pairs) => {
+                rest_of(&self.bodies, cell, pairs).is_ok_and(|rest| rest.pieces.is_empty())
+            }
+        })
+    }
+
+    /// Whether nothing is undecided.
+    pub fn is_complete(&self) -> bool {
+        self.leaves().all(|(_, fate)| !matches!(fate, Fate::Undecided(_)))
+    }
+
+    /// Convex regions that together are all that is free with an area, by cells: neighbours share borders.
+    pub fn regions(&self) -> Vec<FreeRegion> {
+        let region = |(cell, piece): (Cell, Piece)| {
+            piece
+                .is_region()
+                .then(|| FreeRegion { corners: directions(&cell, &piece), area: piece.area() })
+        };
+        self.pieces().filter_map(region).collect()
+    }
+
+    /// Arcs of free directions beside which there is no region, by cells.
+    pub fn arcs(&self) -> Vec<FreeArc> {
+        let alone = self.alone(2);
+        alone.into_iter().map(|ends| FreeArc { ends: [ends[0], ends[1]] }).collect()
+    }
+
+    /// Free directions with no other beside them.
+    pub fn points(&self) -> Vec<FreePoint> {
+        self.alone(1).into_iter().map(|ends| FreePoint { direction: ends[0] }).collect()
+    }
+
+    /// The choices.
+    pub fn options(&self) -> FreeOptions {
+        self.options
+    }
+
+    /// How many cells the sphere was cut into, and how many pairs of nodes were looked at.
+    pub fn work(&self) -> [u64; 2] {
+        [self.leaves().count() as u64, self.looks]
+    }
+
+    /// The tolerance that is used, as a length.
+    pub fn tolerance(&self) -> f64 {
+        self.cast.tolerance()
+    }
+
+    /// Checks what is said of every cell by itself, without a search.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify(&self) -> Result<(), FreeError> {
+        for (number, (cell, fate)) in self.leaves().enumerate() {
+            if !holds(&self.bodies, &cell, fate) {
+                return Err(CertificateError::Cover { entry: number }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// The cells of the proof. They are small beside borders and large elsewhere.
+    pub fn cells(&self) -> impl Iterator<Item = FreeCell> {
+        self.leaves().map(|(cell, fate)| FreeCell {
+            corners: cell.corners(),
+            kind: match fate {
+                Fate::Blocked(_) => CellKind::Blocked,
+                Fate::Open(pairs) if pairs.is_empty() => CellKind::Free,
+                Fate::Open(_) => CellKind::Both,
+                Fate::Cut(_) | Fate::Undecided(_) => CellKind::Undecided,
+            },
+        })
+    }
+
+    /// Pieces of so many corners that are not part of larger ones, by their corners.
+    fn alone(&self, count: usize) -> Vec<Vec<DVec3>> {
+        let all: Vec<(Cell, Piece)> = self.pieces().collect();
+        let mut found: Vec<&(Cell, Piece)> = Vec::new();
+        for one in all.iter().filter(|(_, piece)| piece.len() == count) {
+            let middle = one.0.side.direction(one.1.center());
+            let near = |(cell, piece): &(Cell, Piece)| is_beside(cell, piece, middle);
+            let within = |other: &&(Cell, Piece)| other.1.len() > count && near(other);
+            if all.iter().find(within).is_none() && !found.iter().any(|other| near(other)) {
+                // The wider one of two that share a border.
+                found.retain(|(cell, piece)| {
+                    !is_beside(&one.0, &one.1, cell.side.direction(piece.center()))
+                });
+                found.push(one);
+            }
+        }
+        found.into_iter().map(|(cell, piece)| directions(cell, piece)).collect()
+    }
+
+    /// All that is said, with its proof.
+    pub fn proof(&self) -> FreeProof {
+        FreeProof {
+            tolerance: self.cast.tolerance(),
+            start_overlap: self.options.start_overlap,
+            cells: cells(&self.fates),
+        }
+    }
+
+    /// What a proof says of two bodies, if it holds: no search, whoever has made it.
+    ///
+    /// # Errors
+    /// As [`Self::of`]; what is not proven, [`FreeError::NotProven`].
+    pub fn from_proof<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        proof: &FreeProof,
+    ) -> Result<Self, FreeError> {
+        let options = FreeOptions::DEFAULT
+            .with_tolerance(proof.tolerance)
+            .with_start_overlap(proof.start_overlap);
+        let (cast, bodies) = setting(moving, fixed, &options)?;
+        let misfit = CertificateError::Cover { entry: proof.cells.len() };
+        let fates = fates(&proof.cells).ok_or(misfit)?;
+        let mut all = Self { cast, bodies, options, fates, looks: 0, areas: Areas::default() };
+        all.verify()?;
+        all.areas = all.measure();
+        Ok(all)
+    }
+
+    /// The cells that are not cut, in order.
+    fn leaves(&self) -> impl Iterator<Item = (Cell, &Fate)> {
+        let mut stack: Vec<(usize, Cell)> = Cell::roots().into_iter().enumerate().rev().collect();
+        std::iter::from_fn(move || {
+            loop {
+                let (at, cell) = stack.pop()?;
+                match &self.fates[at] {
+                    Fate::Cut(first) => {
+                        let quarter = |k: usize| (*first as usize + k, cell.quarter(k));
+                        stack.extend((0..4).rev().map(quarter));
+                    }
+                    fate => return Some((cell, fate)),
+                }
+            }
+        })
+    }
+
+    /// All that is free, in pieces of cells.
+    fn pieces(&self) -> impl Iterator<Item = (Cell, Piece)> {
+        let rest = |(cell, fate): (Cell, &Fate)| {
+            let rest = match fate {
+                Fate::Open(pairs) => rest_of(&self.bodies, cell, pairs).ok(),
+                _ => None,
+            };
+            let pieces = rest.map_or_else(Vec::new, |rest| rest.pieces);
+            pieces.into_iter().map(move |piece| (cell, piece))
+        };
+        self.leaves().flat_map(rest)
+    }
+
+    fn measure(&self) -> Areas {
+        let (mut free, mut error, mut undecided) = (0.0, 0.0, 0.0);
+        for (cell, fate) in self.leaves() {
+            let (pairs, open) = match fate {
+                Fate::Open(pairs) => (pairs, true),
+                Fate::Undecided(pairs) => (pairs, false),
+                _ => continue,
+            };
+            let rest = rest_of(&self.bodies, cell, pairs).unwrap_or_else(|_| Rest::whole(cell));
+            let area: f64 = rest.pieces.iter().map(Piece::area).sum();
+            let off: f64 = rest.pieces.iter().map(Piece::area_error).sum();
+            if open {
+                (free, error) = (free + area, error + off);
+            } else {
+                undecided += area + off;
+            }
+        }
+        error += 64.0 * f64::EPSILON * free;
+        Areas { free: [(free - error).max(0.0), (free + error).min(4.0 * PI)], undecided }
+    }
+}
+
+/// Whether a direction is in a piece, or nearly so.
+fn is_beside(cell: &Cell, piece: &Piece, d: DVec3) -> bool {
+    let [k, i, j] = cell.side.axes();
+    let main = d[k] * cell.side.sign();
+    if main <= 0.0 {
+        return false;
+    }
+    let at = DVec2::new(d[i], d[j]) / main;
+    let corners: Vec<DVec2> = piece.places().into_iter().map(DVec2::from).collect();
+    let [first, .., last] = corners[..] else { return corners[0].distance(at) < BESIDE };
+    if piece.len() == 2 {
+        let way = last - first;
+        let along = ((at - first).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+        return (first + way * along).distance(at) < BESIDE;
+    }
+    let inner = (corners[1] - first).perp_dot(corners[2] - first).signum();
+    (0..corners.len()).all(|k| {
+        let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
+        inner * (to - from).perp_dot(at - from) >= -BESIDE * (to - from).length()
+    })
+}
+
+/// Directions of the corners of a piece.
+fn directions(cell: &Cell, piece: &Piece) -> Vec<DVec3> {
+    piece.places().into_iter().map(|place| cell.side.direction(place)).collect()
+}
+
+/// The bodies, checked.
+fn setting<'a, A: AsSolid, B: AsSolid>(
+    moving: &Placed<'a, A>,
+    fixed: &Placed<'a, B>,
+    options: &FreeOptions,
+) -> Result<(Cast<'a, Solid>, Bodies<'a>), FreeError> {
+    let cast = Cast::between(*moving, *fixed, DVec3::Z)?.with_options(options.of_cast())?;
+    let scene = cast.asked_of_something()?;
+    for (which, solid) in [("moving", cast.moving()), ("fixed", cast.fixed())] {
+        if !solid.is_closed() {
+            return Err(FreeError::Open { which });
+        }
+    }
+    if options.start_overlap == StartOverlap::Refuse
+        && let Some(place) = overlap::find(&scene, &mut SolidSteps::default())
+    {
+        return Err(FreeError::Overlapping { place });
+    }
+    Ok((cast, Bodies::new(scene)))
+}

@@ -1,0 +1,131 @@
+//! Two placed solids, as all directions see them: vertices in the setting frame, and one tree for each body that ends
+//! with single facets.
+
+use glam::DVec3;
+
+use super::line::Spot;
+use crate::body::solid::tree::{self, ANY, Node};
+use crate::solve::solid::projected::Projected;
+use crate::solve::solid::scene::{Corner, Scene, Side};
+
+/// What bounds some facets of one body, in the setting frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct View {
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
+    /// A unit vector, or 0.
+    pub(super) axis: DVec3,
+    /// All facets' normals differ from the axis by at most this sine; any, from 1 on.
+    pub(super) spread: f64,
+    /// Along the axis.
+    pub(super) slab: [f64; 2],
+    /// The first part, and how many there are: none of a facet.
+    parts: [u32; 2],
+}
+
+impl View {
+    /// The parts, as numbers of views.
+    pub(super) fn parts(&self) -> std::ops::Range<u32> {
+        self.parts[0]..self.parts[0] + self.parts[1]
+    }
+
+    pub(super) fn is_facet(&self) -> bool {
+        self.parts[1] == 0
+    }
+
+    pub(super) fn size(&self) -> f64 {
+        (self.high - self.low).length_squared()
+    }
+}
+
+/// Two solids, the moving one first.
+pub(super) struct Bodies<'a> {
+    /// Along `z`: then its query frame is the setting frame.
+    pub(super) scene: Scene<'a>,
+    corners: [Vec<Corner>; 2],
+    pub(super) views: [Vec<View>; 2],
+    /// Whether a turned normal is exact.
+    pub(super) permutes: [bool; 2],
+}
+
+impl<'a> Bodies<'a> {
+    /// Of a scene along `z`.
+    pub(super) fn new(scene: Scene<'a>) -> Self {
+        let sides = [&scene.moving, &scene.fixed];
+        let corners = sides.map(|side| {
+            let count = side.solid.vertices().len() as u32;
+            (0..count).map(|v| side.corner(v)).collect::<Vec<_>>()
+        });
+        let views = [0, 1].map(|k| views(&scene, sides[k], &corners[k]));
+        let permutes = sides.map(|side| side.permutes);
+        Self { scene, corners, views, permutes }
+    }
+
+    pub(super) fn corner(&self, spot: Spot) -> &Corner {
+        &self.corners[usize::from(!spot.moving)][spot.vertex as usize]
+    }
+
+    /// The corners of a triangle.
+    pub(super) fn spots(&self, moving: bool, triangle: u32) -> [Spot; 3] {
+        let solid = self.scene.side(moving).solid;
+        solid.triangles()[triangle as usize].map(|vertex| Spot { moving, vertex })
+    }
+
+    /// The triangle of a view.
+    pub(super) fn triangle(&self, moving: bool, view: u32) -> u32 {
+        view - self.scene.side(moving).solid.nodes().len() as u32
+    }
+}
+
+/// The tree's nodes, and behind them the facets.
+fn views(scene: &Scene, side: &Side, corners: &[Corner]) -> Vec<View> {
+    let nodes = side.solid.nodes();
+    let of_node = |(at, node): (usize, &Node)| {
+        let Projected { bounds, axis, slab, .. } = Projected::new(scene, side, at);
+        let parts = if node.is_leaf() {
+            [nodes.len() as u32 + node.first, node.count]
+        } else {
+            [at as u32 + node.skip, 2]
+        };
+        View { low: bounds.low, high: bounds.high, axis, spread: spread(side, at), slab, parts }
+    };
+    let of_facet = |t: &[u32; 3]| facet(scene.noise, t.map(|v| corners[v as usize]));
+    let facets = side.solid.triangles().iter().map(of_facet);
+    nodes.iter().enumerate().map(of_node).chain(facets).collect()
+}
+
+/// How far normals of a node's facets differ from its axis, a sine.
+fn spread(side: &Side, at: usize) -> f64 {
+    let own = f64::from(side.solid.nodes()[at].spread);
+    let moved = side.shrinking.map_or(0.0, |shrinking| {
+        let motion = &shrinking.nodes[at];
+        f64::from(motion.turn) * side.amount + f64::from(motion.rough)
+    });
+    // The axis is turned with rounding, the facets exactly.
+    let turned = if side.permutes { 0.0 } else { 16.0 * f64::EPSILON };
+    own + moved + side.defect + turned
+}
+
+fn facet(noise: f64, corners: [Corner; 3]) -> View {
+    let noise = if corners.iter().all(|c| c.exact) { 0.0 } else { noise };
+    let [a, b, c] = corners.map(|corner| corner.at);
+    let (normal, doubt) = tree::normal([a, b, c]);
+    let area = normal.length();
+    let size = (b - a).length() + (c - a).length();
+    let doubt = doubt + 1.01 * (4.0 * noise * size + 8.0 * noise * noise) / area;
+    let (axis, spread) = if area > 0.0 && doubt < 1.0 {
+        let unit = normal / area;
+        let is_axis = unit.abs().max_element() == 1.0 && unit.abs().element_sum() == 1.0;
+        (unit, if is_axis { doubt } else { doubt + 4.0 * f64::EPSILON })
+    } else {
+        (DVec3::ZERO, ANY)
+    };
+    let heights = [a, b, c].map(|p| axis.dot(p));
+    let slack = 2.0 * noise + 4.0 * f64::EPSILON * (a.length() + size);
+    let slab = [
+        heights.into_iter().fold(f64::INFINITY, f64::min) - slack,
+        heights.into_iter().fold(f64::NEG_INFINITY, f64::max) + slack,
+    ];
+    let (low, high) = (a.min(b).min(c) - noise, a.max(b).max(c) + noise);
+    View { low, high, axis, spread, slab, parts: [0, 0] }
+}

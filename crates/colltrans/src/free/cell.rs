@@ -1,0 +1,152 @@
+//! Cells of directions: squares on the six sides of a cube, halved again and again.
+//!
+//! A direction of a side is `s e_k + u e_(k+1) + v e_(k+2)` with `s = 1` or `-1`. Corners of cells have dyadic `u` and
+//! `v`, so they are exact, and a cell is the convex cone of its four corners: what is linear in the direction is
+//! extreme at them.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use crate::number::integer::{Integer, SMALL};
+
+/// Cells are halved no more often: `u` and `v` are exact.
+pub(super) const DEEPEST: u32 = 50;
+
+/// One of the sides of the cube: an axis and its sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Side(u8);
+
+impl Side {
+    pub(super) fn all() -> [Self; 6] {
+        [0, 1, 2, 3, 4, 5].map(Self)
+    }
+
+    /// The axis across, and the two along.
+    pub(super) fn axes(self) -> [usize; 3] {
+        let main = usize::from(self.0 / 2);
+        [main, (main + 1) % 3, (main + 2) % 3]
+    }
+
+    pub(super) fn sign(self) -> f64 {
+        if self.0.is_multiple_of(2) { 1.0 } else { -1.0 }
+    }
+
+    pub(super) fn direction(self, [u, v]: [f64; 2]) -> DVec3 {
+        let [k, i, j] = self.axes();
+        let mut d = DVec3::ZERO;
+        (d[k], d[i], d[j]) = (self.sign(), u, v);
+        d
+    }
+
+    /// The side that a direction goes through.
+    fn of(d: DVec3) -> Self {
+        let main = d.abs().max_position() as u8;
+        Self(2 * main + u8::from(d[usize::from(main)] < 0.0))
+    }
+}
+
+/// A square on a side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cell {
+    pub(super) side: Side,
+    pub(super) low: [f64; 2],
+    pub(super) size: f64,
+    pub(super) depth: u32,
+}
+
+impl Cell {
+    pub(super) fn roots() -> [Self; 6] {
+        Side::all().map(|side| Self { side, low: [-1.0; 2], size: 2.0, depth: 0 })
+    }
+
+    pub(super) fn range(&self, axis: usize) -> [f64; 2] {
+        [self.low[axis], self.low[axis] + self.size]
+    }
+
+    /// Its corners, round the square.
+    pub(super) fn places(&self) -> [[f64; 2]; 4] {
+        let ([a, b], [c, d]) = (self.range(0), self.range(1));
+        [[a, c], [b, c], [b, d], [a, d]]
+    }
+
+    pub(super) fn corners(&self) -> [DVec3; 4] {
+        self.places().map(|place| self.side.direction(place))
+    }
+
+    pub(super) fn center(&self) -> [f64; 2] {
+        self.low.map(|low| low + self.size / 2.0)
+    }
+
+    /// A quarter of it: bit 0 of the number is for the upper half along `u`, bit 1 along `v`.
+    pub(super) fn quarter(&self, number: usize) -> Self {
+        let (half, upper) = (self.size / 2.0, [number & 1, number >> 1 & 1]);
+        let low = [0, 1].map(|axis| self.low[axis] + half * upper[axis] as f64);
+        Self { side: self.side, low, size: half, depth: self.depth + 1 }
+    }
+
+    /// The number of the root that holds a direction.
+    pub(super) fn root_of(d: DVec3) -> usize {
+        usize::from(Side::of(d).0)
+    }
+
+    /// The number of a quarter that holds a direction of this cell, exactly.
+    pub(super) fn quarter_of(&self, d: DVec3) -> usize {
+        let [k, i, j] = self.side.axes();
+        let middle = self.center();
+        let upper = |axis: usize, component: f64| {
+            let there = Integer::<SMALL>::product(middle[axis], d[k].abs());
+            let beyond = Integer::number(component).subtract(&there).sign();
+            usize::from(beyond == Some(Ordering::Greater))
+        };
+        upper(0, d[i]) + 2 * upper(1, d[j])
+    }
+
+    /// The solid angle.
+    #[cfg(test)]
+    fn area(&self) -> f64 {
+        solid_angle(&self.places())
+    }
+}
+
+/// The solid angle of a convex polygon on a side.
+pub(super) fn solid_angle(places: &[[f64; 2]]) -> f64 {
+    let at = |[u, v]: [f64; 2]| DVec3::new(1.0, u, v);
+    let way = |[a, b]: [f64; 2], [c, d]: [f64; 2]| DVec3::new(0.0, c - a, d - b);
+    let triangle = |k: usize| {
+        let (a, b, c) = (at(places[0]), at(places[k - 1]), at(places[k]));
+        let (p, q, r) = (a.length(), b.length(), c.length());
+        // det[a, b, c] from the sides, which are known better than corners.
+        let volume = a.dot(way(places[0], places[k - 1]).cross(way(places[0], places[k])));
+        2.0 * volume.abs().atan2(p * q * r + a.dot(b) * r + b.dot(c) * p + c.dot(a) * q)
+    };
+    (2..places.len()).map(triangle).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn the_cells_of_a_cube_are_the_sphere() {
+        let whole: f64 = Cell::roots().iter().map(Cell::area).sum();
+        assert!((whole - 4.0 * PI).abs() < 1e-14);
+        let cell = Cell::roots()[3];
+        let parts: f64 = (0..4).map(|k| cell.quarter(k).area()).sum();
+        assert!((parts - cell.area()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_direction_is_found_in_the_cell_that_holds_it() {
+        let d = DVec3::new(0.3, -2.0, 0.1 + 0.2);
+        let mut cell = Cell::roots()[Cell::root_of(d)];
+        assert_eq!((cell.side.axes(), cell.side.sign()), ([1, 2, 0], -1.0));
+        for _ in 0..DEEPEST {
+            cell = cell.quarter(cell.quarter_of(d));
+        }
+        let [u, v] = cell.center();
+        assert!((u - d.z / 2.0).abs() < 1e-15 && (v - d.x / 2.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,146 @@
+//! The directions along which one facet runs into another.
+//!
+//! With `f` of the moving body and `g` of the fixed one these are an open convex cone `C`: `n_f.d > 0`, `n_g.d < 0`,
+//! and `d` inside the cone over the differences `g - f`. The sides of that cone are spanned by a vertex of one and an
+//! edge of the other whose plane has all nine differences on one side: for vertex `f_i` and edge `g_j g_k` that is
+//! so if the plane has the third vertex of `g` on one side and the other two of `f` on the other, or on itself.
+//! Fifteen signs of four of the six vertices decide it for all 18 candidates.
+//!
+//! Facets of one plane have a cone without an inside. If they look at each other and their interiors overlap,
+//! `C = { n_f.d > 0 }`: they touch and block. Facets that cross have no sides, and `C` is taken to be empty: they
+//! overlap where they are, which is the answer or ignored.
+
+use std::cmp::Ordering;
+use std::cmp::Ordering::{Equal, Greater, Less};
+
+use glam::DVec3;
+
+use super::bodies::Bodies;
+use super::line::{Line, Spot};
+use crate::solve::solid::scene::Corner;
+
+/// What a pair of facets blocks: directions on the positive side of all lines. Of none, nothing.
+#[derive(Debug, Clone)]
+pub(super) struct Cone {
+    pub(super) pair: [u32; 2],
+    pub(super) lines: Vec<Line>,
+}
+
+impl Cone {
+    /// Of a triangle of the moving and one of the fixed body.
+    pub(super) fn new(bodies: &Bodies, pair: [u32; 2]) -> Self {
+        let (f, g) = (bodies.spots(true, pair[0]), bodies.spots(false, pair[1]));
+        let signs = Signs::new(bodies, &f, &g);
+        let looks = [Line::of(bodies, f), Line::of(bodies, [g[0], g[2], g[1]])];
+        if signs.are_flat() {
+            let blocks = push_in_one_plane(bodies, f, g);
+            return Self { pair, lines: if blocks { vec![looks[0]] } else { Vec::new() } };
+        }
+        let mut lines = looks.to_vec();
+        for k in 0..3 {
+            for from in 0..3 {
+                let to = (from + 1) % 3;
+                if let Some(turned) = signs.of_moving_corner(k, from) {
+                    lines.push(line(bodies, f[k], [g[from], g[to]], turned));
+                }
+                if let Some(turned) = signs.of_fixed_corner(k, from) {
+                    lines.push(line(bodies, g[k], [f[from], f[to]], turned));
+                }
+            }
+        }
+        let crosses = lines.len() == 2;
+        Self { pair, lines: if crosses { Vec::new() } else { lines } }
+    }
+
+    /// Whether it holds a direction.
+    pub(super) fn holds(&self, bodies: &Bodies, d: DVec3) -> bool {
+        !self.lines.is_empty() && self.lines.iter().all(|line| line.side(bodies, d) == Greater)
+    }
+
+    /// Whether it holds the convex cone of some directions.
+    pub(super) fn covers(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
+        corners.iter().all(|&d| self.holds(bodies, d))
+    }
+
+    /// Whether one of its sides has all of the directions behind.
+    pub(super) fn misses(&self, bodies: &Bodies, corners: &[DVec3; 4]) -> bool {
+        let behind = |line: &Line| corners.iter().all(|&d| line.side(bodies, d) != Greater);
+        self.lines.is_empty() || self.lines.iter().any(behind)
+    }
+}
+
+/// Through a vertex of one body and an edge of the other.
+fn line(bodies: &Bodies, corner: Spot, [a, b]: [Spot; 2], turned: bool) -> Line {
+    Line::of(bodies, if turned { [corner, b, a] } else { [corner, a, b] })
+}
+
+/// On which sides of planes through three vertices of two facets a fourth one is.
+struct Signs {
+    /// `outside(f_i; g)` and `outside(g_i; f)`.
+    moving: [Ordering; 3],
+    fixed: [Ordering; 3],
+    /// `outside(f_a, g_b, g_(b+1), f_(a+1))`.
+    edges: [[Ordering; 3]; 3],
+}
+
+impl Signs {
+    fn new(bodies: &Bodies, f: &[Spot; 3], g: &[Spot; 3]) -> Self {
+        let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));
+        let outside =
+            |a: &Corner, b: &Corner, c: &Corner, e: &Corner| bodies.scene.outside(a, b, c, e);
+        Self {
+            moving: p.map(|a| outside(a, q[0], q[1], q[2])),
+            fixed: q.map(|a| outside(a, p[0], p[1], p[2])),
+            edges: [0, 1, 2]
+                .map(|a| [0, 1, 2].map(|b| outside(p[a], q[b], q[(b + 1) % 3], p[(a + 1) % 3]))),
+        }
+    }
+
+    /// Whether all vertices are in one plane.
+    fn are_flat(&self) -> bool {
+        self.moving.iter().chain(&self.fixed).all(|sign| *sign == Equal)
+    }
+
+    /// Whether the plane through `f_k` and the edge of `g` from `b` has all differences on one side: the negative one
+    /// of `det[g_b - f_k, g_(b+1) - f_k, d]` if turned.
+    fn of_moving_corner(&self, k: usize, b: usize) -> Option<bool> {
+        let others = [self.edges[k][b], self.edges[(k + 2) % 3][b].reverse()];
+        supports(self.moving[k], others.map(Ordering::reverse))
+    }
+
+    /// The same of `g_k` and the edge of `f` from `a`, of `det[f_a - g_k, f_(a+1) - g_k, d]`.
+    fn of_fixed_corner(&self, k: usize, a: usize) -> Option<bool> {
+        // outside(g_k, f_a, f_(a+1), g_l), an even permutation of outside(f_a, g_k, g_l, f_(a+1)).
+        let others = [self.edges[a][k], self.edges[a][(k + 2) % 3].reverse()];
+        supports(self.fixed[k].reverse(), others)
+    }
+}
+
+/// Whether signs are not on both sides, nor all on none; and on which.
+fn supports(one: Ordering, others: [Ordering; 2]) -> Option<bool> {
+    let all = [one, others[0], others[1]];
+    match (all.contains(&Greater), all.contains(&Less)) {
+        (true, false) => Some(false),
+        (false, true) => Some(true),
+        _ => None,
+    }
+}
+
+/// Whether two triangles of one plane look at each other, and their interiors overlap.
+fn push_in_one_plane(bodies: &Bodies, f: [Spot; 3], g: [Spot; 3]) -> bool {
+    let scene = &bodies.scene;
+    let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));
+    let facing = |axis: usize| scene.turn_about(axis, p[0], p[1], p[2]);
+    let Some(axis) = (0..3).find(|&axis| facing(axis) != Equal) else { return false };
+    let turn = facing(axis);
+    if scene.turn_about(axis, q[0], q[1], q[2]) != turn.reverse() {
+        return false;
+    }
+    let separates = |[a, b]: [&Corner; 2], others: [&Corner; 3], inner: Ordering| {
+        others.iter().all(|c| scene.turn_about(axis, a, b, *c) != inner)
+    };
+    !(0..3).any(|k| {
+        separates([p[k], p[(k + 1) % 3]], q, turn)
+            || separates([q[k], q[(k + 1) % 3]], p, turn.reverse())
+    })
+}

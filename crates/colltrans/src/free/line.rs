@@ -1,0 +1,146 @@
+//! Great circles: planes through the origin, as linear forms that are positive on one side.
+//!
+//! The form of three points `a, b, c` is `det[b - a, c - a, d]`: on which side of the line through the shadows of
+//! `a` and `b` along `d` that of `c` lies. Forms are kept rounded with a bound of their error; signs are exact, from
+//! the rounded form where its error allows and from whole numbers otherwise. Of forms that rounding has taken nothing
+//! from these are numbers of one limb or two.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::bodies::Bodies;
+use crate::number::error_free::{difference_error, product_error};
+use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
+use crate::number::predicates::sign;
+use crate::solve::solid::scene::ExactPoint;
+
+const U: f64 = f64::EPSILON / 2.0;
+
+/// A vertex of one of the bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Spot {
+    pub(super) moving: bool,
+    pub(super) vertex: u32,
+}
+
+/// What a form is, exactly.
+#[derive(Debug, Clone, Copy)]
+enum Source {
+    Spots([Spot; 3]),
+    /// The components themselves.
+    Itself,
+}
+
+/// A linear form on directions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    /// Scaled by a power of two to components of at most 2.
+    pub(super) form: DVec3,
+    /// A bound of the error of each component.
+    pub(super) error: f64,
+    source: Source,
+}
+
+/// The vector product of differences, and whether it is exact.
+fn cross(x: DVec3, y: DVec3) -> (DVec3, bool) {
+    let minor = |i: usize, j: usize| {
+        let (p, q) = (x[i] * y[j], x[j] * y[i]);
+        let exact = product_error(x[i], y[j], p) == 0.0
+            && product_error(x[j], y[i], q) == 0.0
+            && difference_error(p, q) == 0.0;
+        (p - q, exact)
+    };
+    let [a, b, c] = [minor(1, 2), minor(2, 0), minor(0, 1)];
+    (DVec3::new(a.0, b.0, c.0), a.1 && b.1 && c.1)
+}
+
+/// The power of two that brings a number between 1 and 2.
+fn scale(x: f64) -> f64 {
+    let exponent = (x.to_bits() >> 52 & 0x7ff) as i32;
+    if (1..2046).contains(&exponent) {
+        f64::from_bits(((2046 - exponent) as u64) << 52)
+    } else {
+        1.0
+    }
+}
+
+impl Line {
+    /// Of three vertices.
+    pub(super) fn of(bodies: &Bodies, spots: [Spot; 3]) -> Self {
+        let [a, b, c] = spots.map(|spot| bodies.corner(spot));
+        let (x, y) = (b.at - a.at, c.at - a.at);
+        let lost = |p: DVec3, q: DVec3| (0..3).any(|k| difference_error(p[k], q[k]) != 0.0);
+        let rounded = !(a.exact && b.exact && c.exact) || lost(b.at, a.at) || lost(c.at, a.at);
+        let (form, exact) = cross(x, y);
+        let source = Source::Spots(spots);
+        if !rounded && exact {
+            let factor = scale(form.abs().max_element());
+            return Self { form: form * factor, error: 0.0, source: Source::Itself };
+        }
+        let (m, n) = (x.abs().max_element(), y.abs().max_element());
+        let noise = |p: bool, q: bool| (f64::from(!p) + f64::from(!q)) * bodies.scene.noise;
+        let (e, f) = (noise(a.exact, b.exact) + 2.0 * U * m, noise(a.exact, c.exact) + 2.0 * U * n);
+        let error = 2.02 * (e * n + f * m + e * f) + 8.0 * U * m * n + f64::MIN_POSITIVE;
+        let factor = scale(form.abs().max_element().max(error));
+        Self { form: form * factor, error: error * factor, source }
+    }
+
+    /// With components that are exact.
+    pub(super) fn exactly(form: DVec3) -> Self {
+        Self { form, error: 0.0, source: Source::Itself }
+    }
+
+    /// On which side a direction is, exactly.
+    pub(super) fn side(&self, bodies: &Bodies, d: DVec3) -> Ordering {
+        let value = self.form.dot(d);
+        let (size, terms) = (d.abs().element_sum(), (self.form * d).abs().element_sum());
+        if value.abs() > self.error * size + 4.0 * U * terms + f64::MIN_POSITIVE {
+            return sign(value);
+        }
+        self.wide_side::<SMALL>(bodies, d)
+            .or_else(|| self.wide_side::<LARGE>(bodies, d))
+            .unwrap_or(Ordering::Equal)
+    }
+
+    fn wide_side<const N: usize>(&self, bodies: &Bodies, d: DVec3) -> Option<Ordering> {
+        let form = self.wide::<N>(bodies);
+        let term = |k: usize| form[k].multiply(&Integer::number(d[k]));
+        term(0).add(&term(1)).add(&term(2)).sign()
+    }
+
+    /// The form in whole numbers, up to a positive factor.
+    pub(super) fn wide<const N: usize>(&self, bodies: &Bodies) -> [Integer<N>; 3] {
+        let Source::Spots(spots) = self.source else {
+            return self.form.to_array().map(Integer::number);
+        };
+        let [a, b, c] = spots.map(|spot| bodies.corner(spot).wide::<N>(&bodies.scene));
+        let (x, y) = (difference(&b, &a), difference(&c, &a));
+        wide_cross(&x, &y)
+    }
+}
+
+/// The vector product.
+pub(super) fn wide_cross<const N: usize>(
+    x: &[Integer<N>; 3],
+    y: &[Integer<N>; 3],
+) -> [Integer<N>; 3] {
+    [[1, 2], [2, 0], [0, 1]].map(|[i, j]| x[i].multiply(&y[j]).subtract(&x[j].multiply(&y[i])))
+}
+
+/// The sign of the determinant of three forms; `None` if its numbers are too large.
+pub(super) fn orientation(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering> {
+    let [a, b, c] = lines.map(|line| line.form);
+    let value = a.cross(b).dot(c);
+    let sizes = lines.map(|line| line.form.abs().max_element());
+    let product = |errors: [f64; 3]| (0..3).map(|k| sizes[k] + errors[k]).product::<f64>();
+    let (least, most) = (product([0.0; 3]), product(lines.map(|line| line.error)));
+    if value.abs() > 6.06 * (most - least) + 64.0 * U * most + f64::MIN_POSITIVE {
+        return Some(sign(value));
+    }
+    fn wide<const N: usize>(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering> {
+        let [a, b, c] = lines.map(|line| line.wide::<N>(bodies));
+        determinant(&a, &b, &c).sign()
+    }
+    wide::<SMALL>(bodies, lines).or_else(|| wide::<LARGE>(bodies, lines))
+}

@@ -1,0 +1,164 @@
+//! What is proven of each cell, and the check of it without a search.
+//!
+//! *Blocked*: the cone of one pair of facets holds the four corners of the cell. *Open*: it is blocked where the cones
+//! of some pairs are, and no other pair meets what they leave. The cones are taken from the cell again, and both trees are gone down
+//! for each piece that is left: a pair of nodes ends there, or its parts are looked at, down to single facets.
+//! *Undecided*: it is blocked where the cones are, and nothing is said of the rest.
+
+use super::bodies::Bodies;
+use super::cell::{Cell, DEEPEST};
+use super::cone::Cone;
+use super::rest::{Piece, Rest, TooMuch};
+use super::search::PIECES;
+use super::window::Window;
+use crate::cast::solid::StartOverlap;
+
+/// What became of a cell; pairs are positions in [`Solid::triangles`](crate::Solid::triangles) of the moving and of
+/// the fixed body.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Fate {
+    /// Cut in four: the number of the first quarter.
+    Cut(u32),
+    /// Blocked by one pair.
+    Blocked([u32; 2]),
+    /// Blocked by these pairs where they block, and free elsewhere.
+    Open(Vec<[u32; 2]>),
+    /// Blocked by these pairs where they block, and not known elsewhere.
+    Undecided(Vec<[u32; 2]>),
+}
+
+impl Fate {
+    /// Nothing is known.
+    pub(super) const UNKNOWN: Self = Self::Undecided(Vec::new());
+}
+
+/// What is said of all directions, with its proof: the cells in preorder, from the six sides of a cube, `+x`, `-x`,
+/// `+y`, ..., each followed by its quarters if it is cut.
+///
+/// On the side across axis `k` a direction is `s e_k + u e_(k+1) + v e_(k+2)` with `u` and `v` from -1 to 1; quarters
+/// are those of low `u` and low `v`, high `u` and low `v`, low `u` and high `v`, high and high.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeProof {
+    /// The tolerance: both bodies are shrunk by half of it.
+    pub tolerance: f64,
+    /// Whether facets that cross now count.
+    pub start_overlap: StartOverlap,
+    /// What is said of each cell.
+    pub cells: Vec<CellProof>,
+}
+
+/// What is said of a cell. Pairs are positions in [`Solid::triangles`](crate::Solid::triangles) of the moving and of
+/// the fixed body.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum CellProof {
+    /// It is cut in four, which follow.
+    Cut,
+    /// This pair blocks all of it.
+    Blocked([u32; 2]),
+    /// These pairs block some of it; all that they leave is free.
+    Open(Vec<[u32; 2]>),
+    /// These pairs block some of it; nothing is said of the rest.
+    Undecided(Vec<[u32; 2]>),
+}
+
+/// The cells of a proof, by their numbers; `None` if they are not those of a sphere.
+pub(super) fn fates(cells: &[CellProof]) -> Option<Vec<Fate>> {
+    let mut fates = vec![Fate::UNKNOWN; 6];
+    let mut stack: Vec<(usize, u32)> = (0..6).rev().map(|at| (at, 0)).collect();
+    for cell in cells {
+        let (at, depth) = stack.pop()?;
+        fates[at] = match cell {
+            CellProof::Blocked(pair) => Fate::Blocked(*pair),
+            CellProof::Open(pairs) => Fate::Open(pairs.clone()),
+            CellProof::Undecided(pairs) => Fate::Undecided(pairs.clone()),
+            CellProof::Cut if depth >= DEEPEST => return None,
+            CellProof::Cut => {
+                let first = fates.len();
+                stack.extend((0..4).rev().map(|k| (first + k, depth + 1)));
+                Fate::Cut(first as u32)
+            }
+        };
+        if let Fate::Cut(_) = fates[at] {
+            fates.extend([const { Fate::UNKNOWN }; 4]);
+        }
+    }
+    stack.is_empty().then_some(fates)
+}
+
+/// The other way round.
+pub(super) fn cells(fates: &[Fate]) -> Vec<CellProof> {
+    let mut cells = Vec::with_capacity(fates.len());
+    let mut stack: Vec<usize> = (0..6).rev().collect();
+    while let Some(at) = stack.pop() {
+        cells.push(match &fates[at] {
+            Fate::Blocked(pair) => CellProof::Blocked(*pair),
+            Fate::Open(pairs) => CellProof::Open(pairs.clone()),
+            Fate::Undecided(pairs) => CellProof::Undecided(pairs.clone()),
+            Fate::Cut(first) => {
+                stack.extend((0..4).rev().map(|k| *first as usize + k));
+                CellProof::Cut
+            }
+        });
+    }
+    cells
+}
+
+/// What pairs of facets leave of a cell.
+pub(super) fn rest_of(bodies: &Bodies, cell: Cell, pairs: &[[u32; 2]]) -> Result<Rest, TooMuch> {
+    let mut rest = Rest::whole(cell);
+    for &pair in pairs {
+        rest.cut(bodies, &Cone::new(bodies, pair), PIECES)?;
+    }
+    Ok(rest)
+}
+
+/// Whether what is said of a cell holds.
+pub(super) fn holds(bodies: &Bodies, cell: &Cell, fate: &Fate) -> bool {
+    match fate {
+        Fate::Cut(_) => true,
+        Fate::Blocked(pair) => {
+            exists(bodies, *pair) && Cone::new(bodies, *pair).covers(bodies, &cell.corners())
+        }
+        Fate::Undecided(pairs) => pairs.iter().all(|pair| exists(bodies, *pair)),
+        Fate::Open(pairs) => {
+            pairs.iter().all(|pair| exists(bodies, *pair))
+                && rest_of(bodies, *cell, pairs)
+                    .is_ok_and(|rest| rest.pieces.iter().all(|piece| is_free(bodies, &rest, piece)))
+        }
+    }
+}
+
+fn exists(bodies: &Bodies, pair: [u32; 2]) -> bool {
+    let count = |moving| bodies.scene.side(moving).solid.triangles().len() as u32;
+    pair[0] < count(true) && pair[1] < count(false)
+}
+
+/// Whether no pair of facets blocks any direction of a piece.
+fn is_free(bodies: &Bodies, rest: &Rest, piece: &Piece) -> bool {
+    let window = rest.window(piece);
+    let mut alone = rest.only(piece);
+    let mut stack = vec![[0, 0]];
+    while let Some([a, b]) = stack.pop() {
+        let [p, q] = [&bodies.views[0][a as usize], &bodies.views[1][b as usize]];
+        if Window::is_missed(&window, bodies, p, q) {
+            continue;
+        }
+        if !p.is_facet() && (q.is_facet() || p.size() >= q.size()) {
+            stack.extend(p.parts().map(|part| [part, b]));
+        } else if !q.is_facet() {
+            stack.extend(q.parts().map(|part| [a, part]));
+        } else {
+            let pair = [bodies.triangle(true, a), bodies.triangle(false, b)];
+            if !matches!(alone.cut(bodies, &Cone::new(bodies, pair), PIECES), Ok(false)) {
+                return false;
+            }
+        }
+    }
+    true
+}

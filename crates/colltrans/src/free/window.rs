@@ -1,0 +1,123 @@
+//! Rectangles of directions, and which pairs of nodes block none of them.
+//!
+//! A pair of facets blocks an open cone: if it blocks a direction of a rectangle that has an inside, it blocks one of
+//! that inside. So whatever reaches a border only does not count there; of rectangles without an inside it does.
+//! Facets that block do so at differences `g - f = t d` with `t > 0`, or lie in one plane with a common point.
+
+use glam::DVec3;
+
+use super::bodies::{Bodies, View};
+use super::cell::{Cell, Side};
+
+/// Ratios of differences are off by less.
+const RATIO: f64 = 8.0 * f64::EPSILON;
+
+/// A rectangle on a side of the cube.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    side: Side,
+    pub(super) u: [f64; 2],
+    pub(super) v: [f64; 2],
+    /// Whether it has an inside.
+    solid: bool,
+    corners: [DVec3; 4],
+    lengths: [f64; 4],
+    /// How many of the corners differ.
+    count: usize,
+}
+
+impl Window {
+    pub(super) fn new(side: Side, u: [f64; 2], v: [f64; 2]) -> Self {
+        let places = [[u[0], v[0]], [u[1], v[0]], [u[1], v[1]], [u[0], v[1]]];
+        let corners = places.map(|place| side.direction(place));
+        let count = if u[0] == u[1] && v[0] == v[1] { 1 } else { 4 };
+        let solid = u[0] < u[1] && v[0] < v[1];
+        Self { side, u, v, solid, corners, lengths: corners.map(DVec3::length), count }
+    }
+
+    pub(super) fn of(cell: &Cell) -> Self {
+        Self::new(cell.side, cell.range(0), cell.range(1))
+    }
+
+    pub(super) fn at(side: Side, [u, v]: [f64; 2]) -> Self {
+        Self::new(side, [u; 2], [v; 2])
+    }
+
+    /// Whether no facet of `a`, of the moving body, blocks one of `b`, of the fixed one, along any of the directions.
+    pub(super) fn is_missed(&self, bodies: &Bodies, a: &View, b: &View) -> bool {
+        let (low, high) = (b.low - a.high, b.high - a.low);
+        self.boxes_miss(low, high)
+            || self.looks_away(a.axis, a.spread, bodies.permutes[0])
+            || self.looks_away(-b.axis, b.spread, bodies.permutes[1])
+            || self.is_behind(a.axis, a.slab, [b.low, b.high], false)
+            || self.is_behind(b.axis, b.slab, [a.low, a.high], true)
+    }
+
+    /// Whether no difference of a box is a positive multiple of one of the directions, and none is zero.
+    fn boxes_miss(&self, low: DVec3, high: DVec3) -> bool {
+        if low.max_element() <= 0.0 && high.min_element() >= 0.0 {
+            return false;
+        }
+        let [k, i, j] = self.side.axes();
+        let [near, far] =
+            if self.side.sign() > 0.0 { [low[k], high[k]] } else { [-high[k], -low[k]] };
+        if far <= 0.0 {
+            return true;
+        }
+        let mut range = [near.max(0.0) * (1.0 - RATIO), far * (1.0 + RATIO)];
+        self.bound(&mut range, self.u[1], low[i])
+            || self.bound(&mut range, -self.u[0], -high[i])
+            || self.bound(&mut range, self.v[1], low[j])
+            || self.bound(&mut range, -self.v[0], -high[j])
+            || range[0] > range[1]
+    }
+
+    /// Narrows a range of positive `t` to where `t slope > limit`, or `>=` without an inside; whether nothing is left.
+    fn bound(&self, range: &mut [f64; 2], slope: f64, limit: f64) -> bool {
+        if slope > 0.0 {
+            if limit > 0.0 {
+                range[0] = range[0].max(limit / slope * (1.0 - RATIO));
+            }
+            return false;
+        }
+        if limit > 0.0 || limit == 0.0 && (self.solid || slope < 0.0) {
+            return true;
+        }
+        if slope < 0.0 {
+            range[1] = range[1].min(limit / slope * (1.0 + RATIO));
+        }
+        false
+    }
+
+    /// Whether no facet near an axis looks along any of the directions.
+    fn looks_away(&self, axis: DVec3, spread: f64, permutes: bool) -> bool {
+        let away = |k: usize| {
+            let terms = axis * self.corners[k];
+            // What vanishes in quarter turns vanishes exactly.
+            let size = if permutes { terms.abs().element_sum() } else { self.lengths[k] };
+            terms.element_sum() <= -(spread * self.lengths[k] * (1.0 + RATIO) + RATIO * size)
+        };
+        spread < 1.0 && (0..self.count).all(away)
+    }
+
+    /// Whether a box is behind a slab, as seen along all of the directions; `turned` if the slab is of the fixed body.
+    fn is_behind(&self, axis: DVec3, slab: [f64; 2], bounds: [DVec3; 2], turned: bool) -> bool {
+        if slab[1] == f64::INFINITY {
+            return false;
+        }
+        let (middle, half) = ((bounds[0] + bounds[1]) * 0.5, (bounds[1] - bounds[0]) * 0.5);
+        let (center, reach) = (axis.dot(middle), axis.abs().dot(half));
+        let slack = RATIO * (axis.abs().dot(middle.abs()) + reach);
+        let [low, high] = [center - reach - slack, center + reach + slack];
+        let [least, most] =
+            if turned { [slab[0] - high, slab[1] - low] } else { [low - slab[1], high - slab[0]] };
+        if least <= 0.0 && most >= 0.0 {
+            return false;
+        }
+        let way = if most < 0.0 { axis } else { -axis };
+        (0..self.count).all(|k| {
+            let terms = way * self.corners[k];
+            terms.element_sum() >= RATIO * terms.abs().element_sum()
+        })
+    }
+}

@@ -1,0 +1,181 @@
+//! Free directions: closed forms, casts in random directions, brute force over all cones in fractions, and proofs
+//! that were changed.
+
+use std::f64::consts::{PI, TAU};
+
+use colltrans::free::{FreeDirections, FreeError, FreeOptions, Verdict};
+use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::solid::StartOverlap;
+use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans_testkit::oracle::solids::free::{Judged, examine};
+use colltrans_testkit::oracle::solids::settings::FAMILIES;
+
+const EXACT: FreeOptions = FreeOptions::DEFAULT.with_no_tolerance();
+
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
+    let body = ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high)).unwrap();
+    Solid::from_convex(&body).unwrap()
+}
+
+fn joined(pieces: &[Solid]) -> Solid {
+    Solid::from_pieces(pieces).unwrap()
+}
+
+fn free<'a>(a: &'a Solid, b: &'a Solid, options: FreeOptions) -> FreeDirections<'a> {
+    let all = FreeDirections::of(&a.at(Pose::IDENTITY), &b.at(Pose::IDENTITY), options).unwrap();
+    all.verify().unwrap();
+    all
+}
+
+fn assert_area(free: &FreeDirections, expected: f64) {
+    let [low, high] = free.free_area();
+    assert!(low <= expected && expected <= high && high - low < 1e-12, "{low} {high}: {expected}");
+    assert_eq!(free.undecided_area(), 0.0);
+    assert!(free.is_complete());
+}
+
+#[test]
+fn a_lid_on_a_box_is_free_along_half_of_all_directions() {
+    let (lid, table) =
+        (cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]), cuboid([-3.0, -2.0, -1.0], [2.0, 5.0, 0.0]));
+    let all = free(&lid, &table, EXACT);
+    assert_area(&all, TAU);
+    assert_eq!(all.says(DVec3::new(0.3, -5.0, 0.0)), Ok(Verdict::Free));
+    assert!(matches!(all.says(DVec3::new(0.3, -5.0, -1e-60)), Ok(Verdict::Blocked(_))));
+    assert!(all.says(DVec3::ZERO).is_err());
+    assert!(!all.is_blocked());
+}
+
+#[test]
+fn a_cube_in_a_corner_is_free_along_an_octant() {
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let walls = joined(&[
+        cuboid([-1.0, -1.0, -1.0], [5.0, 5.0, 0.0]),
+        cuboid([-1.0, -1.0, 0.0], [0.0, 5.0, 5.0]),
+        cuboid([0.0, -1.0, 0.0], [5.0, 0.0, 5.0]),
+    ]);
+    let all = free(&cube, &walls, EXACT);
+    assert_area(&all, PI / 2.0);
+}
+
+#[test]
+fn a_rail_has_two_directions() {
+    let bar = cuboid([0.0, 0.0, 0.0], [4.0, 1.0, 1.0]);
+    let rail = joined(&[
+        cuboid([-1.0, -1.0, -1.0], [7.0, 2.0, 0.0]),
+        cuboid([-1.0, -1.0, 1.0], [7.0, 2.0, 2.0]),
+        cuboid([-1.0, -1.0, 0.0], [7.0, 0.0, 1.0]),
+        cuboid([-1.0, 1.0, 0.0], [7.0, 2.0, 1.0]),
+    ]);
+    let all = free(&bar, &rail, EXACT);
+    assert_area(&all, 0.0);
+    assert!(all.regions().is_empty() && all.arcs().is_empty());
+    let points = all.points();
+    assert_eq!(points.len(), 2, "{points:?}");
+    for d in [DVec3::X, DVec3::NEG_X] {
+        assert!(points.iter().any(|p| p.direction == d));
+        assert_eq!(all.says(d), Ok(Verdict::Free));
+    }
+}
+
+#[test]
+fn a_plate_between_two_others_has_a_circle() {
+    let plate = cuboid([0.0; 3], [1.0; 3]);
+    let stack = joined(&[
+        cuboid([-5.0, -5.0, -1.0], [5.0, 5.0, 0.0]),
+        cuboid([-5.0, -5.0, 1.0], [5.0, 5.0, 2.0]),
+    ]);
+    let all = free(&plate, &stack, EXACT);
+    assert_area(&all, 0.0);
+    assert!(all.points().is_empty());
+    let length: f64 = all.arcs().iter().map(|arc| arc.ends[0].angle_between(arc.ends[1])).sum();
+    assert!((length - TAU).abs() < 1e-12, "{length}");
+}
+
+#[test]
+fn a_bar_in_a_vee_has_half_a_sector() {
+    // A bar with a square section on its edge, in a groove of two planes at right angles, with ends closed: it can
+    // go up between the planes, and no more.
+    let turn = DMat3::from_cols(
+        DVec3::new(3.0, 4.0, 0.0) / 5.0,
+        DVec3::new(-4.0, 3.0, 0.0) / 5.0,
+        DVec3::Z,
+    );
+    let pose = Pose::from_matrix(turn, DVec3::ZERO).unwrap();
+    let bar = cuboid([0.0, 0.0, 0.0], [1.0, 1.0, 2.0]);
+    let groove = joined(&[
+        cuboid([-1.0, -1.0, -1.0], [9.0, 0.0, 3.0]),
+        cuboid([-1.0, 0.0, -1.0], [0.0, 9.0, 3.0]),
+        cuboid([0.0, 0.0, -1.0], [9.0, 9.0, 0.0]),
+        cuboid([0.0, 0.0, 2.0], [9.0, 9.0, 3.0]),
+    ]);
+    let all = free(&bar, &groove, EXACT);
+    assert_area(&all, 0.0);
+    let length: f64 = all.arcs().iter().map(|arc| arc.ends[0].angle_between(arc.ends[1])).sum();
+    assert!((length - PI / 2.0).abs() < 1e-12, "{length}");
+    assert!(all.points().is_empty());
+    let turned = FreeDirections::of(&bar.at(pose), &groove.at(pose), EXACT).unwrap();
+    turned.verify().unwrap();
+    assert!(turned.undecided_area() < 1e-9);
+}
+
+#[test]
+fn nothing_leaves_a_closed_box() {
+    let cube = cuboid([1.0; 3], [2.0; 3]);
+    let cavity = joined(&[
+        cuboid([0.0, 0.0, 0.0], [3.0, 3.0, 0.5]),
+        cuboid([0.0, 0.0, 2.5], [3.0, 3.0, 3.0]),
+        cuboid([0.0, 0.0, 0.5], [0.5, 3.0, 2.5]),
+        cuboid([2.5, 0.0, 0.5], [3.0, 3.0, 2.5]),
+        cuboid([0.5, 0.0, 0.5], [2.5, 0.5, 2.5]),
+        cuboid([0.5, 2.5, 0.5], [2.5, 3.0, 2.5]),
+    ]);
+    let all = free(&cube, &cavity, EXACT);
+    assert!(all.is_blocked());
+    assert_area(&all, 0.0);
+}
+
+#[test]
+fn overlaps_and_open_shells_are_refused() {
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let other = cuboid([0.5; 3], [2.0; 3]);
+    let place =
+        |options| FreeDirections::of(&cube.at(Pose::IDENTITY), &other.at(Pose::IDENTITY), options);
+    assert!(matches!(place(EXACT), Err(FreeError::Overlapping { .. })));
+    assert!(place(EXACT.with_start_overlap(StartOverlap::Ignore)).is_ok());
+    assert!(matches!(place(EXACT.with_tolerance(-1.0)), Err(FreeError::Query(_))));
+    let sheet = Solid::from_open_mesh(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]).unwrap();
+    let all = FreeDirections::of(&sheet.at(Pose::IDENTITY), &other.at(Pose::IDENTITY), EXACT);
+    assert!(matches!(all, Err(FreeError::Open { which: "moving" })));
+}
+
+#[test]
+fn casts_and_fractions_agree_and_changed_proofs_are_refused() {
+    for family in FAMILIES {
+        let mut all = Judged::default();
+        for seed in 0..10 {
+            let judged =
+                examine(family, seed, 40).unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
+            all += judged.unwrap_or_default();
+        }
+        assert!(all.directions > 100 && all.refused > 0, "{family}: {all:?}");
+    }
+}
+
+#[test]
+fn bodies_turned_together_say_the_same() {
+    let q = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.5, 0.9);
+    let turned = Pose::new(q, DVec3::new(1.0, 2.0, 3.0)).unwrap();
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let wall = joined(&[
+        cuboid([-1.0, -1.0, -1.0], [5.0, 5.0, 0.0]),
+        cuboid([-1.0, -1.0, 0.0], [-0.125, 5.0, 5.0]),
+    ]);
+    let plain = free(&cube, &wall, FreeOptions::default());
+    let all =
+        FreeDirections::of(&cube.at(turned), &wall.at(turned), FreeOptions::default()).unwrap();
+    all.verify().unwrap();
+    let [low, high] = all.free_area();
+    assert!((low - plain.free_area()[0]).abs() < 1e-9 && high >= plain.free_area()[0], "{low}");
+    assert!(all.undecided_area() < 1e-9);
+}

@@ -42,6 +42,28 @@ fn grid(side: u32, random: &mut Random) -> Vec<Pose> {
 }
 
 #[test]
+fn who_cannot_be_asked_about_is_named() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let two_sides = Solid::from_mesh(&corners, &[[0, 1, 2], [0, 2, 1]]).expect("closed");
+    let cube = Solid::from_convex(&cuboid(DVec3::ZERO, DVec3::ONE)).expect("a solid");
+    let mut scene = Obstacles::new();
+    scene.insert(cube.clone(), at(0.0, 0.0, 3.0));
+    let thin = scene.insert(two_sides, at(0.0, 0.0, 7.0));
+    // Bodies that are turned are shrunk by more than nothing.
+    let turned = |z: f64| {
+        let pose = Pose::new(DQuat::from_rotation_z(0.5), DVec3::Z * z).expect("a pose");
+        Among::new(cube.at(pose), &scene).expect("a solid")
+    };
+    let refused = turned(5.0).clearance(DVec3::Z).expect_err("nothing is left of it");
+    let QueryError::Obstacle { obstacle, reason } = &refused else { panic!("{refused}") };
+    assert_eq!(*obstacle, thin);
+    assert!(matches!(**reason, QueryError::NothingLeft { which: "fixed", .. }), "{refused}");
+    assert!(refused.to_string().starts_with("obstacle 1: the tolerance"), "{refused}");
+    let stopped = turned(0.0).clearance(DVec3::Z).expect("only the first is asked about");
+    assert!(stopped.lower > 1.9 && stopped.steps.bodies == 1);
+}
+
+#[test]
 fn few_boxes_are_looked_at() {
     let mut random = Random::new(11);
     let small = Arc::new(cuboid(DVec3::splat(-0.1), DVec3::splat(0.1)));

@@ -81,7 +81,8 @@ impl Among<'_> {
                 return Ok(upper.max(0.0));
             }
             bodies += 1;
-            let found = self.clearance_of(obstacle, direction, upper.max(0.0))?;
+            let found = self.clearance_of(obstacle, direction, upper.max(0.0));
+            let found = found.map_err(|e| e.of_obstacle(id))?;
             lower = lower.min(found.distance().unwrap_or(0.0));
             if (found.upper(), id) < (upper, first) {
                 (stop, upper) = (Some((id, found)), found.upper());

@@ -55,7 +55,8 @@ impl Among<'_> {
                 return Ok(limit);
             }
             bodies += 1;
-            let (least, distance) = self.distance_to(obstacle, limit)?;
+            let found = self.distance_to(obstacle, limit);
+            let (least, distance) = found.map_err(|e| e.of_obstacle(id))?;
             lower = lower.min(least);
             if let Some(distance) = distance {
                 let (upper, first) = (distance.upper(), best.map_or(id, |(first, _)| first));
@@ -98,7 +99,8 @@ impl Among<'_> {
         let boxes = self.obstacles.tree().search(length, bound, |item, _| {
             let obstacle = self.obstacle(item);
             if !self.is_ignored(obstacle.id) {
-                nearby.add(obstacle.id, self.is_within(obstacle, length)?);
+                let found = self.is_within(obstacle, length);
+                nearby.add(obstacle.id, found.map_err(|e| e.of_obstacle(obstacle.id))?);
             }
             Ok::<_, QueryError>(length)
         })?;

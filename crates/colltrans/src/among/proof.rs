@@ -100,7 +100,8 @@ impl<'a> Among<'a> {
         let Nearest { obstacle, mut lower, distance, .. } = nearest;
         let mut apart = Vec::new();
         for one in self.sorted(lower, |other| boxes::distance(&self.bounds, other)) {
-            let Some(proof) = self.prove_apart(one, lower)? else {
+            let apart_from = self.prove_apart(one, lower).map_err(|e| e.of_obstacle(one.id))?;
+            let Some(proof) = apart_from else {
                 lower = 0.0;
                 break;
             };
@@ -124,8 +125,9 @@ impl<'a> Among<'a> {
         let closer = nearby.closer.clone();
         let mut proof = NearbyProof { length, closer, undecided, apart: Vec::new() };
         for one in self.sorted(length.next_up(), |other| boxes::distance(&self.bounds, other)) {
-            if let Closeness::Farther = self.is_within(one, length)? {
-                match self.prove_apart(one, length)? {
+            let of_one = |e: QueryError| e.of_obstacle(one.id);
+            if let Closeness::Farther = self.is_within(one, length).map_err(of_one)? {
+                match self.prove_apart(one, length).map_err(of_one)? {
                     Some(apart) if gap_of(&apart) > length => proof.apart.push((one.id, apart)),
                     _ => proof.undecided.push(one.id),
                 }
@@ -149,14 +151,18 @@ impl<'a> Among<'a> {
         let mut proof =
             ClearanceProof { direction, lower: clearance.lower, stop, passed: Vec::new() };
         for one in self.before(&clearance, direction) {
-            let passed = match self.cast(one, direction)? {
-                ByKind::Convex(cast) => ByKind::Convex(cast.clearance()?),
-                ByKind::Solid(cast) => ByKind::Solid(cast.certified_clearance()?.1),
-            };
+            let passed = self.prove_passed(one, direction).map_err(|e| e.of_obstacle(one.id))?;
             proof.lower = proof.lower.min(lower_of(&passed));
             proof.passed.push((one.id, passed));
         }
         Ok((clearance, proof))
+    }
+
+    fn prove_passed(&self, one: &'a Obstacle, direction: DVec3) -> Result<PassedProof, QueryError> {
+        Ok(match self.cast(one, direction)? {
+            ByKind::Convex(cast) => ByKind::Convex(cast.clearance()?),
+            ByKind::Solid(cast) => ByKind::Solid(cast.certified_clearance()?.1),
+        })
     }
 
     /// Obstacles whose boxes do not tell that they are met later than the moving body is stopped, and the one

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::body::ObstacleId;
 use crate::body::solid::SolidError;
 
 /// Why a query has no answer.
@@ -85,6 +86,21 @@ pub enum QueryError {
         /// What went wrong.
         reason: Stalled,
     },
+    /// One of many obstacles has no answer.
+    #[error("obstacle {obstacle}: {reason}")]
+    Obstacle {
+        /// Which one.
+        obstacle: ObstacleId,
+        /// Why.
+        #[source]
+        reason: Box<Self>,
+    },
+}
+
+impl QueryError {
+    pub(crate) fn of_obstacle(self, obstacle: ObstacleId) -> Self {
+        Self::Obstacle { obstacle, reason: Box::new(self) }
+    }
 }
 
 /// Why a search ended without an answer.

@@ -247,8 +247,10 @@ impl Setting {
         let mut best: Option<(Answer, AnyClearance)> = None;
         let mut least = f64::INFINITY;
         for (id, one) in all {
-            let own = clearance_of(self.moving.at(self.pose), *one, direction);
-            let own = own.map_err(|e| text(&e))?;
+            let own = match clearance_of(self.moving.at(self.pose), *one, direction) {
+                Err(QueryError::NothingLeft { .. }) => return self.judge_refusal(asked, *id),
+                own => own.map_err(|e| text(&e))?,
+            };
             least = least.min(own.distance().unwrap_or(0.0));
             let key = (upper_of(&own), *id);
             if key.0 < f64::INFINITY && best.is_none_or(|(first, _)| key < first) {
@@ -284,6 +286,19 @@ impl Setting {
             self.judge_translations(all, answer.lower)?;
         }
         self.judge_end(asked, &answer)
+    }
+
+    /// Of one of two thin solids nothing is left: it is refused by name, if it is asked about.
+    fn judge_refusal(&self, asked: &Among, thin: ObstacleId) -> Result<(), String> {
+        match asked.certified_clearance(self.direction) {
+            Ok(_) => Ok(()),
+            Err(QueryError::Obstacle { reason, .. })
+                if matches!(*reason, QueryError::NothingLeft { .. }) =>
+            {
+                Ok(())
+            }
+            Err(error) => Err(format!("{thin} is too thin, but: {error}")),
+        }
     }
 
     /// By the linear programme.

@@ -37,7 +37,7 @@ impl Answer {
 }
 
 impl Refusal {
-    pub(crate) fn told(self) -> Answer {
+    pub(crate) fn answer(self) -> Answer {
         Answer::of(&json!({ "error": self.error, "instead": self.instead, "gone": self.gone }))
     }
 }

@@ -8,8 +8,8 @@ use crate::answer::{Answer, Refusal};
 use crate::body::{Facets, Part};
 use crate::convex::judged;
 use crate::question::Pair;
+use crate::record::Proof;
 use crate::solid::query;
-use crate::told::Proof;
 
 const REASONS: [(Reason, &str); 8] = [
     (Reason::MovingFacesAway, "facets of the moving body look away"),

@@ -10,7 +10,7 @@ use crate::answer::{Answer, Refusal};
 use crate::body::Hull;
 use crate::pose::pose;
 use crate::question::Pair;
-use crate::told::{Lit, Proof, Told, Touching};
+use crate::record::{CastAnswer, Lit, Proof, Touching};
 
 /// The query that a question asks.
 pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
@@ -33,7 +33,7 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
         ContactRange::Grazing { first, .. } => Ok(&first.contact),
         ContactRange::Separated(separated) => Err(separated.certificate),
     };
-    Ok(Answer::of(&Told {
+    Ok(Answer::of(&CastAnswer {
         kind: "convex",
         record: Record::of_contact_range(&range, &cast),
         clearance: Some(Record::of_clearance(&clearance, &cast)),

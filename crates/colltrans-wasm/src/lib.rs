@@ -2,7 +2,7 @@
 //!
 //! Data flow: a page writes a question, JSON and perhaps the bytes of a file, to a buffer (`exports`) ->
 //! [`State::ask`] reads it as a `question::Question` -> `body` (files become bodies, which stay in the
-//! state), `convex` and `solid` (casts, as `told` has them), `certify` (proofs between solids), `search` (how an
+//! state), `convex` and `solid` (casts, as `record` has them), `certify` (proofs between solids), `search` (how an
 //! answer was found) -> an [`Answer`]: JSON, and perhaps numbers in binary for large things.
 //!
 //! The parts for assemblies and for distances are modules of their own, read when they are asked for
@@ -21,10 +21,10 @@ mod fields;
 mod levels;
 mod pose;
 mod question;
+mod record;
 mod search;
 mod solid;
 mod state;
-mod told;
 
 pub use answer::Answer;
 pub use state::State;

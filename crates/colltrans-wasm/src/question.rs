@@ -9,7 +9,7 @@ use serde::Deserialize as _;
 use serde_json::Value;
 
 use crate::fields::Fields;
-use crate::told::Proof;
+use crate::record::Proof;
 
 /// One question.
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! What is told of a cast: the record of the library, and what only a page needs.
+//! The record of a cast as the page takes it: that of the library, and what only a page needs.
 
 use colltrans::record::Record;
 use colltrans::solid::SolidCertificate;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// An answer to `cast`; fields that do not apply are left out.
 #[derive(Serialize)]
-pub(crate) struct Told {
+pub(crate) struct CastAnswer {
     /// How the bodies were taken: `convex` or `solid`.
     pub(crate) kind: &'static str,
     /// Between convex bodies of when they meet, between solids of how far the moving one can go.

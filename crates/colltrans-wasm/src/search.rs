@@ -55,11 +55,11 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
     let outcome = cast.first_contact_observed(&mut recording).map_err(|error| error.to_string())?;
     let events = told_of(&recording);
     let solver = if cast.options().solver == Solver::Cta { Solver::Cta } else { Solver::Portal };
-    let mut told = Found { events, steps: outcome.steps(), region: None, tracked: None };
+    let mut found = Found { events, steps: outcome.steps(), region: None, tracked: None };
     if let Some(before) = &asked.after {
         let first = query(bodies, before)?;
         if solver == Solver::Cta {
-            told.region = region(&first, &cast)?;
+            found.region = region(&first, &cast)?;
         }
         let (mut tracker, mut seen) = (Tracker::new(), Recording::default());
         let mut outcome = None;
@@ -69,9 +69,9 @@ pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refus
             outcome = Some(answered.map_err(|error| error.to_string())?);
         }
         let steps = outcome.map(|outcome| outcome.steps()).unwrap_or_default();
-        told.tracked = Some(Tracked { steps, events: told_of(&seen) });
+        found.tracked = Some(Tracked { steps, events: told_of(&seen) });
     }
-    Ok(Answer::of(&told))
+    Ok(Answer::of(&found))
 }
 
 /// The minimisation again, in the neighbourhood `N(p)` of the solution `p` of the query before: a

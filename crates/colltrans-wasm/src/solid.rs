@@ -10,7 +10,7 @@ use crate::answer::{Answer, Refusal};
 use crate::body::{Facets, Part};
 use crate::pose::pose;
 use crate::question::Pair;
-use crate::told::{Lit, Proof, Told, Touching};
+use crate::record::{CastAnswer, Lit, Proof, Touching};
 
 pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);
@@ -27,7 +27,7 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
             });
         }
     }
-    Ok(Answer::of(&Told {
+    Ok(Answer::of(&CastAnswer {
         kind: "solid",
         record: Record::of_solids(&clearance, cast.exit(), &cast),
         clearance: None,

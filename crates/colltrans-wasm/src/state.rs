@@ -80,7 +80,7 @@ impl State {
             Ok(question) => self.answer(question, file),
             Err(error) => Err(format!("the question cannot be read: {error}").into()),
         };
-        answer.unwrap_or_else(Refusal::told)
+        answer.unwrap_or_else(Refusal::answer)
     }
 
     fn answer(&mut self, question: Question, file: Vec<u8>) -> Result<Answer, Refusal> {

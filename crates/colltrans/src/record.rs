@@ -18,7 +18,7 @@ use crate::cast::Cast;
 use crate::pair::solid::OverlapDepth;
 use crate::pair::{Pair, points};
 use crate::setting::error::QueryError;
-use crate::solve::observe::{Nobody, Observer};
+use crate::solve::observe::{NoObserver, Observer};
 use crate::written::{UnknownName, named};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
@@ -264,7 +264,7 @@ impl Question {
     /// # Errors
     /// As the question itself.
     pub fn ask(self, cast: &Cast) -> Result<Answer, QueryError> {
-        self.ask_observed(cast, &mut Nobody)
+        self.ask_observed(cast, &mut NoObserver)
     }
 
     /// The same, with an observer, as for [`Cast::first_contact_observed`].

@@ -17,7 +17,7 @@ use crate::cast::{Cast, clearance_of, depth_of, intersection_of, range_of};
 use crate::pair::{Pair, distance_from};
 use crate::setting::error::QueryError;
 use crate::solve::nearest::NearestPairs;
-use crate::solve::observe::{Nobody, Observer};
+use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Region};
 use crate::solve::{WarmStart, search};
 
@@ -107,7 +107,7 @@ impl<'a> Tracker<'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn first_contact(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
-        self.first_contact_observed(cast, &mut Nobody)
+        self.first_contact_observed(cast, &mut NoObserver)
     }
 
     /// The same, with an observer, as for [`Cast::first_contact_observed`].
@@ -156,7 +156,7 @@ impl<'a> Tracker<'a> {
     /// As [`Cast::first_contact`].
     pub fn intersects(&mut self, cast: &Cast<'a>) -> Result<Intersection, QueryError> {
         self.begin(cast);
-        intersection_of(cast, |cast| self.run(cast, BETWEEN_CENTERS, &mut Nobody))
+        intersection_of(cast, |cast| self.run(cast, BETWEEN_CENTERS, &mut NoObserver))
     }
 
     /// [`Pair::distance`], starting from the last answer to the same question: the pairs of vertices that
@@ -209,7 +209,7 @@ impl<'a> Tracker<'a> {
 
     /// A cast along the direction of the query, or against it.
     fn run_either_way(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
-        self.run(cast, usize::from(cast.direction().dot(self.direction) < 0.0), &mut Nobody)
+        self.run(cast, usize::from(cast.direction().dot(self.direction) < 0.0), &mut NoObserver)
     }
 
     /// One cast of a query.

@@ -20,7 +20,7 @@ use super::source::{Asked, BodySource, PoseSource, Query};
 use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
-use crate::record::{Hulls, Line as Told};
+use crate::record::{Hulls, Line as AnswerLine};
 use crate::replay;
 use crate::solid::{self, PartsPair, PartsQuery};
 
@@ -56,9 +56,9 @@ impl Batch {
             Line::Text(text) => self.answer_text(number, text, recent),
             Line::TooLong => (None, Err(format!("line {number}: longer than 64 MiB"))),
         };
-        let told = answer.unwrap_or_else(Told::error);
-        told.write_with(id, results);
-        !told.is_error()
+        let line = answer.unwrap_or_else(AnswerLine::error);
+        line.write_with(id, results);
+        !line.is_error()
     }
 
     /// The id of a line, if it has one, and its answer.
@@ -67,7 +67,7 @@ impl Batch {
         number: u64,
         text: &'a [u8],
         recent: &mut Recent,
-    ) -> (Option<&'a RawValue>, Result<Told, String>) {
+    ) -> (Option<&'a RawValue>, Result<AnswerLine, String>) {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let usual = str::from_utf8(text).ok().and_then(fast_path::read);
@@ -94,7 +94,7 @@ impl Batch {
         number: u64,
         query: &Query<'_, &str>,
         recent: &mut Recent,
-    ) -> Option<Result<Told, String>> {
+    ) -> Option<Result<AnswerLine, String>> {
         let answer = guarded(number, || {
             let moving = self.body_by_words(query.moving, recent);
             let fixed = self.body_by_words(query.fixed, recent);
@@ -194,7 +194,7 @@ fn guarded<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result
     Err(format!("line {number}: {what}"))
 }
 
-fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Told, String> {
+fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerLine, String> {
     let moving = moving.map_err(|e| format!("moving: {e}"))?;
     let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
     let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
@@ -248,7 +248,7 @@ impl<B> Query<'_, B> {
         [moving, fixed]: [&Part; 2],
         poses: [Pose; 2],
         direction: DVec3,
-    ) -> Result<Told, String> {
+    ) -> Result<AnswerLine, String> {
         if self.tolerance.is_some() || self.ignore_start_overlaps.is_some() {
             let fields = "`tolerance` and `ignore_start_overlaps`";
             return Err(format!("{fields} are for solids; convex bodies have `graze_tolerance`"));
@@ -276,7 +276,7 @@ impl<B> Query<'_, B> {
         shapes: [&Shape; 2],
         poses: [Pose; 2],
         direction: DVec3,
-    ) -> Result<Told, String> {
+    ) -> Result<AnswerLine, String> {
         if self.question == Some(Asked::Contact) {
             return Err(r#"solids are asked for their clearance: "query": "clearance""#.into());
         }
@@ -299,9 +299,9 @@ impl<B> Query<'_, B> {
         };
         let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
         let bodies = [question.moving, question.fixed];
-        let told = bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
-        let notes = told.cloned().collect();
-        Ok(Told { notes, ..without_names(answer.record).into() })
+        let notes = bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
+        let notes = notes.cloned().collect();
+        Ok(AnswerLine { notes, ..without_names(answer.record).into() })
     }
 }
 
@@ -312,7 +312,11 @@ enum Ask {
 }
 
 /// Of bodies where they are.
-fn of_pair(question: PairQuestion, shapes: [&Shape; 2], poses: [Pose; 2]) -> Result<Told, String> {
+fn of_pair(
+    question: PairQuestion,
+    shapes: [&Shape; 2],
+    poses: [Pose; 2],
+) -> Result<AnswerLine, String> {
     if let [Shape::Convex(moving), Shape::Convex(fixed)] = shapes {
         let placed = [moving.body.at(poses[0]), fixed.body.at(poses[1])];
         let pair = Pair::new(placed[0], placed[1]).map_err(|error| error.to_string())?;
@@ -323,14 +327,14 @@ fn of_pair(question: PairQuestion, shapes: [&Shape; 2], poses: [Pose; 2]) -> Res
     let bodies = [moving.get(), fixed.get()];
     let record = PartsPair { bodies, poses }.ask(question).map_err(|e| e.to_string())?;
     let notes = bodies.into_iter().flat_map(|body| body.notes.clone()).collect();
-    Ok(Told { notes, ..without_names(record).into() })
+    Ok(AnswerLine { notes, ..without_names(record).into() })
 }
 
-/// What is told of convex bodies.
-fn of_parts(record: Record, parts: [&Part; 2]) -> Told {
+/// The line of an answer about convex bodies.
+fn of_parts(record: Record, parts: [&Part; 2]) -> AnswerLine {
     let notes = parts.into_iter().flat_map(|part| part.notes.clone()).collect();
     let hull = Hulls::of(parts[0].excess, parts[1].excess);
-    Told { hull, notes, ..record.into() }
+    AnswerLine { hull, notes, ..record.into() }
 }
 
 /// Without the names of files: a body is one.

@@ -7,7 +7,7 @@ use colltrans::glam::DVec2;
 use colltrans_picture::{Frame, View};
 
 use super::size::working_size;
-use super::story::Story;
+use super::subject::Subject;
 use super::{Cast, Solid};
 
 const PAGE_WIDTH: f64 = 720.0;
@@ -32,7 +32,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn of(cast: &Cast, story: &Story, view: &View) -> Self {
+    pub(super) fn of(cast: &Cast, subject: &Subject, view: &View) -> Self {
         let radii = [cast.stop.ball().1, cast.fixed.ball().1];
         let size = working_size(radii[0], radii[1], cast.way.length());
         let is_whole = radii[0].max(radii[1]) <= WHOLE * size / 3.0;
@@ -43,14 +43,14 @@ impl Layout {
         if let Some(start) = &cast.start {
             frame = union(frame, part_near(start, -view.project(cast.way), reach, view));
         }
-        for corner in story.corners(cast).into_iter().map(|p| view.project(p)) {
+        for corner in subject.corners(cast).into_iter().map(|p| view.project(p)) {
             frame = union(frame, Frame { low: corner, high: corner });
         }
         let extent = (frame.high - frame.low).max(DVec2::splat(1e-3 * size));
         let room = DVec2::new(PAGE_WIDTH, WINDOW_HEIGHT) - 2.0 * MARGIN;
         let scale = (room / extent).min_element();
         let height = (extent.y * scale).max(140.0) + 2.0 * MARGIN.y;
-        let caption = CAPTION_HEIGHT + LINE_HEIGHT * story.details.len() as f64;
+        let caption = CAPTION_HEIGHT + LINE_HEIGHT * subject.details.len() as f64;
         let window = Frame { low: DVec2::ZERO, high: DVec2::new(PAGE_WIDTH, height) };
         Self {
             scale,

@@ -15,7 +15,7 @@
 //! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths, as
 //! [`pair`] does two bodies of any kind where they are.
 //!
-//! Order: [`story`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
+//! Order: [`subject`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
 //! (how large, by [`size`]) -> [`solid`] and [`notes`] (the drawing) -> [`Page`].
 
 mod layout;
@@ -24,7 +24,7 @@ mod pair;
 mod parts;
 mod size;
 mod solid;
-mod story;
+mod subject;
 mod viewpoint;
 
 use colltrans::ContactRange;
@@ -36,7 +36,7 @@ use notes::Notes;
 pub(crate) use pair::{Shown, draw_pair};
 pub(crate) use parts::draw_solids;
 use solid::Solid;
-use story::Story;
+use subject::Subject;
 
 /// A query and its answer.
 pub(crate) struct Scene<'a> {
@@ -60,48 +60,48 @@ struct Cast {
 
 /// The SVG file.
 pub(crate) fn draw(scene: &Scene<'_>) -> String {
-    let story = Story::of(scene);
-    let cast = Cast::of(scene, &story);
+    let subject = Subject::of(scene);
+    let cast = Cast::of(scene, &subject);
     let unit = scene.cast.direction().normalize();
-    let view = viewpoint::choose([&cast.stop, &cast.fixed], unit, story.looked_along());
-    let layout = Layout::of(&cast, &story, &view);
+    let view = viewpoint::choose([&cast.stop, &cast.fixed], unit, subject.looked_along());
+    let layout = Layout::of(&cast, &subject, &view);
     let on_page = |p: DVec3| layout.on_page(view.project(p));
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
-    cast.draw(&mut page, &view, &story, on_page);
-    if let Some(marks) = story.marks {
+    cast.draw(&mut page, &view, &subject, on_page);
+    if let Some(marks) = subject.marks {
         cast.fixed.mark_hidden(&mut page, marks.fixed, FIXED_MARK, on_page);
         cast.stop.mark_hidden(&mut page, marks.moving, MOVING_MARK, on_page);
     }
     page.close_group();
-    let notes = Notes { cast: &cast, story: &story, layout: &layout, view: &view };
+    let notes = Notes { cast: &cast, subject: &subject, layout: &layout, view: &view };
     notes.draw(&mut page, unit);
-    page.finish(layout.size, layout.window, &story.headline)
+    page.finish(layout.size, layout.window, &subject.headline)
 }
 
 /// Which of the bodies may hide the other; the plane between them decides.
-fn fixed_is_nearer(story: &Story, view: &View) -> bool {
-    story.normal.dot(view.toward) > 0.0
+fn fixed_is_nearer(subject: &Subject, view: &View) -> bool {
+    subject.normal.dot(view.toward) > 0.0
 }
 
 impl Cast {
-    fn of(scene: &Scene<'_>, story: &Story) -> Self {
+    fn of(scene: &Scene<'_>, subject: &Subject) -> Self {
         let cast = scene.cast;
-        let fixed = Solid::new(cast.fixed(), &cast.fixed_pose(), story.origin);
-        let moving = Solid::new(cast.moving(), &cast.moving_pose(), story.origin);
-        Self::placed(&moving, fixed, cast.direction(), story)
+        let fixed = Solid::new(cast.fixed(), &cast.fixed_pose(), subject.origin);
+        let moving = Solid::new(cast.moving(), &cast.moving_pose(), subject.origin);
+        Self::placed(&moving, fixed, cast.direction(), subject)
     }
 
     /// From where the bodies are.
-    fn placed(moving: &Solid, fixed: Solid, direction: DVec3, story: &Story) -> Self {
+    fn placed(moving: &Solid, fixed: Solid, direction: DVec3, subject: &Subject) -> Self {
         let unit = direction.normalize();
-        let stop = moving.moved(unit * story.stop);
-        let size = size::working_size(stop.ball().1, fixed.ball().1, story.stop.abs());
+        let stop = moving.moved(unit * subject.stop);
+        let size = size::working_size(stop.ball().1, fixed.ball().1, subject.stop.abs());
         let longest = 5.0 * size;
-        let shown = story.stop.clamp(-longest, longest);
+        let shown = subject.stop.clamp(-longest, longest);
         let way = unit * shown;
         let start = (shown.abs() > 0.01 * size).then(|| stop.moved(-way));
-        Self { start, stop, fixed, way, is_broken: shown != story.stop }
+        Self { start, stop, fixed, way, is_broken: shown != subject.stop }
     }
 
     /// From back to front.
@@ -109,12 +109,12 @@ impl Cast {
         &self,
         page: &mut Page,
         view: &View,
-        story: &Story,
+        subject: &Subject,
         on_page: impl Fn(DVec3) -> DVec2 + Copy,
     ) {
-        let fixed_is_nearer = fixed_is_nearer(story, view);
+        let fixed_is_nearer = fixed_is_nearer(subject, view);
         let stop_is_nearer = self.way.dot(view.toward) > 0.0;
-        let is_behind = story.stop < 0.0;
+        let is_behind = subject.stop < 0.0;
         let draw_start = |page: &mut Page| {
             if let Some(start) = &self.start {
                 start.draw_ghost(page, view, &MOVING, on_page);
@@ -125,7 +125,7 @@ impl Cast {
                 draw_start(page);
             }
             self.stop.draw(page, view, &MOVING, on_page);
-            if let Some(marks) = story.marks {
+            if let Some(marks) = subject.marks {
                 self.stop.mark(page, view, marks.moving, MOVING_MARK, on_page);
             }
             if !stop_is_nearer && !is_behind {
@@ -134,12 +134,12 @@ impl Cast {
         };
         let draw_fixed = |page: &mut Page| {
             self.fixed.draw(page, view, &FIXED, on_page);
-            if let Some(marks) = story.marks {
+            if let Some(marks) = subject.marks {
                 self.fixed.mark(page, view, marks.fixed, FIXED_MARK, on_page);
             }
         };
         let draw_plane = |page: &mut Page| {
-            if let Some(plane) = story.plane(self) {
+            if let Some(plane) = subject.plane(self) {
                 let look =
                     r##"fill="#f0b429" fill-opacity="0.28" stroke="#a87600" stroke-width="0.8""##;
                 page.polygons(look, [plane.map(on_page).to_vec()]);
@@ -205,17 +205,17 @@ mod tests {
             let question = colltrans::Cast::new(moving, fixed, direction).unwrap();
             let answer = question.contact_range().unwrap();
             let scene = Scene { cast: &question, answer: &answer };
-            let story = Story::of(&scene);
-            if story.stop < 0.0 {
+            let subject = Subject::of(&scene);
+            if subject.stop < 0.0 {
                 continue;
             }
-            let cast = Cast::of(&scene, &story);
+            let cast = Cast::of(&scene, &subject);
             let view = viewpoint::choose(
                 [&cast.stop, &cast.fixed],
                 direction.normalize(),
-                [story.normal, -story.normal][round % 2],
+                [subject.normal, -subject.normal][round % 2],
             );
-            let fixed_is_nearer = fixed_is_nearer(&story, &view);
+            let fixed_is_nearer = fixed_is_nearer(&subject, &view);
             for solid in [Some(&cast.stop), cast.start.as_ref()].into_iter().flatten() {
                 for _ in 0..400 {
                     let point = 0.8 * random.vector();
@@ -223,7 +223,7 @@ mod tests {
                     let [Some(p), Some(q)] = depths else { continue };
                     compared[usize::from(fixed_is_nearer)] += 1;
                     let ahead = if fixed_is_nearer { q - p } else { p - q };
-                    assert!(ahead > -1e-9, "{ahead} in {:?}", story.headline);
+                    assert!(ahead > -1e-9, "{ahead} in {:?}", subject.headline);
                 }
             }
         }

@@ -6,7 +6,7 @@ use colltrans_picture::{FIXED, FIXED_MARK, Frame, MOVING, MOVING_MARK, Page, Str
 use super::Cast;
 use super::layout::{LINE_HEIGHT, Layout};
 use super::solid::convex_outline;
-use super::story::{Story, short};
+use super::subject::{Subject, short};
 
 const WAY: &str = "#b3261e";
 const NORMAL: &str = "#14733f";
@@ -27,14 +27,14 @@ const MOSTLY_OUTSIDE: u32 = 34;
 
 pub(super) struct Notes<'a> {
     pub(super) cast: &'a Cast,
-    pub(super) story: &'a Story,
+    pub(super) subject: &'a Subject,
     pub(super) layout: &'a Layout,
     pub(super) view: &'a View,
 }
 
 impl Notes<'_> {
     pub(super) fn draw(&self, page: &mut Page, unit: DVec3) {
-        if !self.story.is_still {
+        if !self.subject.is_still {
             self.draw_way(page, unit);
         }
         self.draw_gap(page);
@@ -61,7 +61,7 @@ impl Notes<'_> {
         let along = seen(unit).normalize_or(DVec2::X);
         let way = seen(self.cast.way);
         let is_short = way.length() < SHORT_WAY || self.cast.start.is_none();
-        let label = if is_short { "d" } else { &self.story.way };
+        let label = if is_short { "d" } else { &self.subject.way };
         let shape: Vec<DVec2> = self.cast.stop.vertices.iter().map(|&v| self.on_page(v)).collect();
         let other: Vec<DVec2> = self.cast.fixed.vertices.iter().map(|&v| self.on_page(v)).collect();
         let other = convex_outline(&other);
@@ -118,24 +118,24 @@ impl Notes<'_> {
 
     /// Between separated bodies, how far apart they stay.
     fn draw_gap(&self, page: &mut Page) {
-        let Some(gap) = self.story.gap(self.cast) else { return };
+        let Some(gap) = self.subject.gap(self.cast) else { return };
         let [from, to] = gap.map(|p| self.on_page(p));
         let across = (to - from).normalize_or(DVec2::Y).perp();
         page.haloed(Stroke::solid(NORMAL, 1.8), [from, to]);
         for end in [from, to] {
             page.haloed(Stroke::solid(NORMAL, 1.4), [end - across * 5.0, end + across * 5.0]);
         }
-        let label = format!("margin {}", short(self.story.margin.unwrap_or_default()));
+        let label = format!("margin {}", short(self.subject.margin.unwrap_or_default()));
         let look = LABEL.replace(INK, NORMAL);
         self.place_label(page, from.midpoint(to), across, &look, &label);
     }
 
     /// The shortest way between the bodies, or a point that both have.
     fn draw_link(&self, page: &mut Page) {
-        if self.story.meets {
+        if self.subject.meets {
             page.dot(self.on_page(DVec3::ZERO), 4.0, WAY, "#ffffff");
         }
-        let Some((ends, label)) = &self.story.link else { return };
+        let Some((ends, label)) = &self.subject.link else { return };
         let [from, to] = ends.map(|p| self.on_page(p));
         page.haloed(Stroke::solid(WAY, 2.0), [from, to]);
         for end in [from, to] {
@@ -147,12 +147,12 @@ impl Notes<'_> {
     }
 
     fn draw_contact(&self, page: &mut Page) {
-        if !self.story.touches {
+        if !self.subject.touches {
             return;
         }
         // The contact is the origin.
         let at = self.on_page(DVec3::ZERO);
-        let seen = self.view.project(self.story.normal);
+        let seen = self.view.project(self.subject.normal);
         let seen = DVec2::new(seen.x, -seen.y);
         let tip = at + seen.normalize_or(DVec2::NEG_Y) * (56.0 * seen.length()).max(24.0);
         page.arrow(NORMAL, 2.2, [at, tip]);
@@ -166,9 +166,9 @@ impl Notes<'_> {
         let left = 16.0;
         let mut y = self.layout.window.high.y + 16.0;
         let fixed_width = r##"font-size="15" font-weight="bold" fill="#222222""##;
-        page.text(DVec2::new(left, y), "start", fixed_width, &self.story.headline);
+        page.text(DVec2::new(left, y), "start", fixed_width, &self.subject.headline);
         let small = r##"font-size="12" fill="#222222""##;
-        for detail in &self.story.details {
+        for detail in &self.subject.details {
             y += LINE_HEIGHT;
             page.text(DVec2::new(left, y), "start", small, detail);
         }
@@ -180,13 +180,13 @@ impl Notes<'_> {
     }
 
     fn draw_legend(&self, page: &mut Page, at: DVec2, look: &str) {
-        let Story { touches, margin, marks, .. } = self.story;
+        let Subject { touches, margin, marks, .. } = self.subject;
         let stop = match (touches, margin) {
             (true, _) => "moving, at contact",
             (false, Some(_)) => "moving, beside the fixed one",
             (false, None)
-                if !self.story.is_still
-                    && self.story.link.is_none()
+                if !self.subject.is_still
+                    && self.subject.link.is_none()
                     && self.cast.start.is_some() =>
             {
                 "moving, parted"

@@ -9,7 +9,7 @@ use super::layout::Layout;
 use super::notes::Notes;
 use super::parts::Eye;
 use super::solid::Solid;
-use super::story::{Story, components, short};
+use super::subject::{Subject, components, short};
 use super::viewpoint;
 
 /// Vertices relative to a point, and triangles.
@@ -26,26 +26,26 @@ pub(crate) struct Shown<'a> {
 
 /// The SVG file of an answer.
 pub(crate) fn draw_pair(shown: Shown<'_>) -> String {
-    let story = story(&shown);
-    let surfaces = [0, 1].map(|k| (shown.surface)(k, story.origin));
+    let subject = subject(&shown);
+    let surfaces = [0, 1].map(|k| (shown.surface)(k, subject.origin));
     let [moving, fixed] = surfaces.each_ref().map(|(v, t)| Solid::of_triangles(v.clone(), t));
     // The way that a depth is long, or the one that is looked along.
     let way = shown.record.direction.or(shown.record.normal).map_or(DVec3::X, DVec3::from);
-    let cast = Cast::placed(&moving, fixed, way, &story);
-    let view = viewpoint::choose([&cast.stop, &cast.fixed], way, story.normal);
-    let layout = Layout::of(&cast, &story, &view);
+    let cast = Cast::placed(&moving, fixed, way, &subject);
+    let view = viewpoint::choose([&cast.stop, &cast.fixed], way, subject.normal);
+    let layout = Layout::of(&cast, &subject, &view);
     let eye = Eye { view: &view, layout: &layout };
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
     let [moving_edges, fixed_edges] = surfaces.map(|(_, triangles)| edges(&triangles));
     eye.draw(&mut page, &cast, [&moving_edges, &fixed_edges]);
     page.close_group();
-    Notes { cast: &cast, story: &story, layout: &layout, view: &view }.draw(&mut page, way);
-    page.finish(layout.size, layout.window, &story.headline)
+    Notes { cast: &cast, subject: &subject, layout: &layout, view: &view }.draw(&mut page, way);
+    page.finish(layout.size, layout.window, &subject.headline)
 }
 
 /// What the picture has to tell.
-fn story(shown: &Shown<'_>) -> Story {
+fn subject(shown: &Shown<'_>) -> Subject {
     let record = shown.record;
     let points = record.points.map(|points| points.map(DVec3::from));
     let middle = points.map(|[a, b]| a.midpoint(b));
@@ -60,7 +60,7 @@ fn story(shown: &Shown<'_>) -> Story {
     let apart = points.filter(|[a, b]| a != b && !meets);
     let length = record.upper.map_or(String::new(), short);
     let told = if record.lower.is_some() { "distance" } else { "at most" };
-    Story {
+    Subject {
         origin,
         stop,
         normal: record.normal.or(record.direction).map_or(DVec3::ZERO, DVec3::from),

@@ -19,7 +19,7 @@ use super::layout::Layout;
 use super::notes::Notes;
 use super::size::working_size;
 use super::solid::Solid;
-use super::story::{Story, components, quantity, short};
+use super::subject::{Subject, components, quantity, short};
 use super::{Cast, viewpoint};
 use crate::solid::{Answer, PartsQuery};
 
@@ -33,26 +33,26 @@ const MOVING_TONES: usize = SHADES + 1;
 /// The SVG file of an answer.
 pub(crate) fn draw_solids(question: &PartsQuery<'_>, answer: &Answer) -> String {
     let direction = question.direction;
-    let story = story(question, answer);
-    let (vertices, triangles) = question.moving.surface(&question.moving_pose, story.origin);
+    let subject = subject(question, answer);
+    let (vertices, triangles) = question.moving.surface(&question.moving_pose, subject.origin);
     let moving = Solid::of_triangles(vertices, &triangles);
-    let (vertices, fixed_triangles) = question.fixed.surface(&question.fixed_pose, story.origin);
+    let (vertices, fixed_triangles) = question.fixed.surface(&question.fixed_pose, subject.origin);
     let fixed = Solid::of_triangles(vertices, &fixed_triangles);
-    let cast = Cast::placed(&moving, fixed, direction, &story);
+    let cast = Cast::placed(&moving, fixed, direction, &subject);
     let unit = direction.normalize();
-    let view = viewpoint::choose([&cast.stop, &cast.fixed], unit, story.normal);
-    let layout = Layout::of(&cast, &story, &view);
+    let view = viewpoint::choose([&cast.stop, &cast.fixed], unit, subject.normal);
+    let layout = Layout::of(&cast, &subject, &view);
     let eye = Eye { view: &view, layout: &layout };
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
     eye.draw(&mut page, &cast, [&edges(&triangles), &edges(&fixed_triangles)]);
     page.close_group();
-    Notes { cast: &cast, story: &story, layout: &layout, view: &view }.draw(&mut page, unit);
-    page.finish(layout.size, layout.window, &story.headline)
+    Notes { cast: &cast, subject: &subject, layout: &layout, view: &view }.draw(&mut page, unit);
+    page.finish(layout.size, layout.window, &subject.headline)
 }
 
 /// What the picture has to tell.
-fn story(question: &PartsQuery<'_>, answer: &Answer) -> Story {
+fn subject(question: &PartsQuery<'_>, answer: &Answer) -> Subject {
     let length = question.direction.length();
     let record = &answer.record;
     let mut details = Vec::new();
@@ -74,7 +74,7 @@ fn story(question: &PartsQuery<'_>, answer: &Answer) -> Story {
     let exit =
         record.exit.map_or(String::new(), |exit| format!("; exit at {}", quantity(exit, length)));
     details.push(format!("tolerance {}{exit}", short(record.tolerance.unwrap_or_default())));
-    Story {
+    Subject {
         origin: record.point.map_or(question.fixed_pose.translation(), DVec3::from),
         stop: place.map_or(0.0, |place| place * length),
         normal: record.normal.map_or(DVec3::ZERO, DVec3::from),

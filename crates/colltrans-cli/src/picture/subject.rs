@@ -16,7 +16,7 @@ pub(super) struct Marks {
 }
 
 /// What is shown and said.
-pub(super) struct Story {
+pub(super) struct Subject {
     /// The point of the world that coordinates are relative to.
     pub(super) origin: DVec3,
     /// How far the moving body goes from its start until it stops, as a length.
@@ -40,7 +40,7 @@ pub(super) struct Story {
     pub(super) details: Vec<String>,
 }
 
-impl Story {
+impl Subject {
     pub(super) fn of(scene: &Scene<'_>) -> Self {
         match scene.answer {
             ContactRange::Contact { first, last } => {

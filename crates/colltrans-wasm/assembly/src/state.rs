@@ -67,7 +67,7 @@ impl State {
                 Fields::of(asked).map_err(Refusal::from).and_then(|f| self.answer(&f, file))
             }
         };
-        answer.unwrap_or_else(Refusal::told)
+        answer.unwrap_or_else(Refusal::answer)
     }
 
     fn answer(&mut self, asked: &Fields, file: Vec<u8>) -> Result<Answer, Refusal> {

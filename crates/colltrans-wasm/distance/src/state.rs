@@ -40,9 +40,9 @@ enum Part {
     Solid(Solid),
 }
 
-/// What is told of two bodies where they are.
+/// The answer about two bodies where they are.
 #[derive(Serialize)]
-struct Told {
+struct PairAnswer {
     /// How far they are apart.
     distance: Record,
     /// How deep they overlap, if they meet.
@@ -54,13 +54,13 @@ impl Part {
     /// As [`colltrans_mesh::body`] makes it for the page's library.
     fn of(mesh: &Mesh, take: &str) -> Result<Self, String> {
         let options = BodyOptions::default().with_hull(take == "hull").with_open(take == "open");
-        let told = |error: body::Refused| error.to_string();
+        let words = |error: body::Refused| error.to_string();
         match take {
             "convex" | "hull" => {
-                body::convex(mesh, &options).map(|made| Self::Convex(made.body)).map_err(told)
+                body::convex(mesh, &options).map(|made| Self::Convex(made.body)).map_err(words)
             }
             "solid" | "open" => {
-                body::solid(mesh, &options).map(|made| Self::Solid(made.body)).map_err(told)
+                body::solid(mesh, &options).map(|made| Self::Solid(made.body)).map_err(words)
             }
             other => Err(format!("a mesh cannot be taken as {other}")),
         }
@@ -85,7 +85,7 @@ impl State {
                 self.distance(moving_pose, fixed_pose)
             }
         };
-        answered.unwrap_or_else(|error| Refusal::from(error).told())
+        answered.unwrap_or_else(|error| Refusal::from(error).answer())
     }
 
     fn place(
@@ -109,7 +109,7 @@ impl State {
             return Err("two bodies are needed".into());
         };
         let poses = [pose(moving_pose, "moving")?, pose(fixed_pose, "fixed")?];
-        let told = match (moving, fixed) {
+        let answer = match (moving, fixed) {
             (Part::Convex(p), Part::Convex(q)) => {
                 Pair::new(p.at(poses[0]), q.at(poses[1])).and_then(|pair| convex(&pair))
             }
@@ -118,20 +118,20 @@ impl State {
                 .and_then(|p| Pair::new(p.at(poses[0]), fixed.solid()?.at(poses[1])))
                 .and_then(|pair| solids(&pair)),
         };
-        Ok(Answer::of(&told.map_err(|error| error.to_string())?))
+        Ok(Answer::of(&answer.map_err(|error| error.to_string())?))
     }
 }
 
-fn convex(pair: &Pair<'_>) -> Result<Told, QueryError> {
+fn convex(pair: &Pair<'_>) -> Result<PairAnswer, QueryError> {
     let distance = PairQuestion::Distance.ask(pair)?.record(pair);
     let meets = distance.outcome == Ending::Meeting;
     let depth = meets.then(|| PairQuestion::Depth.ask(pair)).transpose()?;
-    Ok(Told { distance, depth: depth.map(|depth| depth.record(pair)) })
+    Ok(PairAnswer { distance, depth: depth.map(|depth| depth.record(pair)) })
 }
 
-fn solids(pair: &Pair<'_, Solid>) -> Result<Told, QueryError> {
+fn solids(pair: &Pair<'_, Solid>) -> Result<PairAnswer, QueryError> {
     let distance = PairQuestion::Distance.ask_solids(pair)?.record(pair)?;
     let meets = distance.outcome == Ending::Meeting;
     let depth = meets.then(|| PairQuestion::Depth.ask_solids(pair)?.record(pair)).transpose()?;
-    Ok(Told { distance, depth })
+    Ok(PairAnswer { distance, depth })
 }

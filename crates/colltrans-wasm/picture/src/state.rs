@@ -23,7 +23,7 @@ impl State {
                 numbers: drawing(&scene).into_bytes(),
                 ..Answer::of(&json!({ "drawn": true }))
             },
-            Err(error) => Refusal::from(error).told(),
+            Err(error) => Refusal::from(error).answer(),
         }
     }
 }

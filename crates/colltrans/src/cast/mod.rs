@@ -23,7 +23,7 @@ use crate::answer::{
 use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::Setting;
 use crate::setting::error::QueryError;
-use crate::solve::observe::{Nobody, Observer};
+use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{WarmStart, search};
 pub use contact::WitnessPoints;
@@ -228,7 +228,7 @@ impl Cast<'_> {
     /// # Errors
     /// Only a search that ends without an answer: see [`QueryError::NotConverged`].
     pub fn first_contact(&self) -> Result<Outcome, QueryError> {
-        self.first_contact_observed(&mut Nobody)
+        self.first_contact_observed(&mut NoObserver)
     }
 
     /// The same, with an observer: a [`Clock`](crate::observe::Clock), a

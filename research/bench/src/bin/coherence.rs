@@ -186,7 +186,7 @@ impl Table<'_> {
             measured.times.sort();
         }
         print_row(name, self.n, &measured, &parry, differences);
-        let contestants: serde_json::Map<String, Value> = COMPARED
+        let solvers: serde_json::Map<String, Value> = COMPARED
             .iter()
             .zip(&measured)
             .map(|(compared, measured)| {
@@ -198,7 +198,7 @@ impl Table<'_> {
             "sequences": name,
             "vertices": self.n,
             "queries": measured[0].times.count(),
-            "contestants": contestants,
+            "solvers": solvers,
             "parry_8": parry.to_json(),
             "differences": differences,
         }));

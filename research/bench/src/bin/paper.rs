@@ -319,7 +319,7 @@ fn row(
     (unit, parry): (f64, &Times),
 ) -> Value {
     print!("{name:<28} {n:>7}");
-    let mut contestants = Map::new();
+    let mut solvers = Map::new();
     for (who, m) in names.iter().zip(measured) {
         let exchanges = m.average(m.steps.pivots);
         print!(
@@ -327,7 +327,7 @@ fn row(
             m.times.median() / unit,
             m.average(m.steps.planar_problems)
         );
-        contestants.insert((*who).into(), to_json(m, unit));
+        solvers.insert((*who).into(), to_json(m, unit));
     }
     let failures: u32 = measured.iter().map(|m| m.failures).sum();
     println!(" | {unit:>5.0} {:>5.0} {failures}", parry.median());
@@ -335,7 +335,7 @@ fn row(
         "settings": name,
         "vertices": n,
         "queries": measured[0].times.count(),
-        "contestants": contestants,
+        "solvers": solvers,
         "parry_8": parry.to_json(),
     })
 }

@@ -16,7 +16,7 @@ use crate::body::Pose;
 use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism, thin_ellipsoid};
 use crate::setting::Setting;
 use crate::setting::minkowski::MinkowskiDifference;
-use crate::solve::observe::{Nobody, Observer, Watch};
+use crate::solve::observe::{NoObserver, Observer, Watch};
 use crate::solve::portal;
 
 /// Exit tests, and how many of them ended a search.
@@ -35,8 +35,8 @@ impl Observer for Exits {
 
 /// The result of a minimisation, and the work it took.
 fn minimised(setting: &Setting, options: &CtaOptions) -> (Narrowed, Steps) {
-    let mut nobody = Nobody;
-    let mut watch = Watch::new(&mut nobody);
+    let mut none = NoObserver;
+    let mut watch = Watch::new(&mut none);
     let narrowed = minimise(setting, options, &mut watch);
     (narrowed, watch.steps)
 }

@@ -18,7 +18,7 @@ use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{Setting, TwoBodies, VertexPair};
 use crate::solve::WarmStart;
 use crate::solve::nearest::{Difference, NearestPairs, nearest};
-use crate::solve::observe::Nobody;
+use crate::solve::observe::NoObserver;
 use crate::solve::options::{Focus, Options};
 
 /// How far apart, in noises over `n.d`, the bounds of an answer may be.
@@ -191,7 +191,7 @@ impl<'s, 'a> Kept<'s, 'a> {
         let (last, mut next) = (WarmStart::Nothing, WarmStart::Nothing);
         let setting = self.bodies.setting;
         let outcome =
-            crate::solve::search(setting, &plain, &Focus::NONE, &last, &mut next, &mut Nobody);
+            crate::solve::search(setting, &plain, &Focus::NONE, &last, &mut next, &mut NoObserver);
         let Ok(Outcome::Grazing(of)) = outcome else { return None };
         Some(Grazing { overlap: of.overlap + keep, contact: self.grazed(found), ..of })
     }

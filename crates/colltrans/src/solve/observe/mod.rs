@@ -159,11 +159,11 @@ pub trait Observer {
     }
 }
 
-/// Nobody looks.
+/// Hears everything and does nothing.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Nobody;
+pub(crate) struct NoObserver;
 
-impl Observer for Nobody {}
+impl Observer for NoObserver {}
 
 impl Observer for Steps {
     #[inline]

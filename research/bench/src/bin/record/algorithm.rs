@@ -21,7 +21,7 @@ pub(super) fn write(page: &mut String, run: &Value) -> Result<(), Failure> {
          end | planar | left | of parry |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
-    let one_off = |row: &&Value| row["contestants"]["portal"].is_object();
+    let one_off = |row: &&Value| row["solvers"]["portal"].is_object();
     for row in rows(run).iter().filter(one_off) {
         casts(page, row)?;
     }
@@ -47,7 +47,7 @@ pub(super) fn write(page: &mut String, run: &Value) -> Result<(), Failure> {
     }
     let failures: f64 = rows(run)
         .iter()
-        .filter_map(|row| row["contestants"].as_object())
+        .filter_map(|row| row["solvers"].as_object())
         .flat_map(|all| all.values().filter_map(|one| one["failures"].as_f64()))
         .sum();
     writeln!(page, "\nQueries without an answer: {failures}.")?;
@@ -55,7 +55,7 @@ pub(super) fn write(page: &mut String, run: &Value) -> Result<(), Failure> {
 }
 
 fn of(row: &Value, who: &str, key: &str) -> f64 {
-    number(row, &["contestants", who, key])
+    number(row, &["solvers", who, key])
 }
 
 /// Ratio, planar problems and exchanges of one solver.
@@ -98,7 +98,7 @@ fn sequences(page: &mut String, row: &Value) -> Result<(), Failure> {
 
 fn phases(page: &mut String, row: &Value) -> Result<(), Failure> {
     let spent = |name: &str| number(row, &["phases", name]);
-    let focused = row["contestants"]["focus end"].is_object();
+    let focused = row["solvers"]["focus end"].is_object();
     let who = if focused { "focus end" } else { "centre end" };
     let problems = of(row, who, "planar_problems");
     write!(page, "| {} | {} |", text(row, "settings"), thousands(number(row, &["vertices"])))?;

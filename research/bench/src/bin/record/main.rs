@@ -307,7 +307,7 @@ fn coherence(page: &mut String, run: &Value) -> Result<(), Failure> {
          |---:|---|---:|---:|---:|---:|---:|---:|\n",
     );
     for row in rows(run) {
-        let of = |who: &str, key: &str| number(row, &["contestants", who, key]);
+        let of = |who: &str, key: &str| number(row, &["solvers", who, key]);
         let ratio = |key: &str| of("tracker", key) / of("scratch", key);
         writeln!(
             page,

@@ -189,8 +189,9 @@ fn bad_input_is_refused() {
     assert_eq!(asked.verify(&proof), Err(unknown));
 
     let point_id = scene.insert(point, Pose::IDENTITY);
-    let refused = Among::new(solid.at(Pose::IDENTITY), &scene);
-    assert!(matches!(refused, Err(QueryError::NoSolid(_))));
+    let refused = Among::new(solid.at(Pose::IDENTITY), &scene).expect_err("a point is no solid");
+    let QueryError::Obstacle { obstacle, reason } = refused else { panic!("{refused}") };
+    assert!(obstacle == point_id && matches!(*reason, QueryError::NoSolid(_)));
     assert!(scene.remove(point_id).is_some() && scene.remove(point_id).is_none());
     assert!(Among::new(solid.at(Pose::IDENTITY), &scene).is_ok());
     assert_eq!(scene.set_pose(point_id, Pose::IDENTITY).unwrap_err().id, point_id);

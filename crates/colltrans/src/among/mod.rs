@@ -107,7 +107,7 @@ impl<'a> Among<'a> {
     ///
     /// # Errors
     /// A point or a segment where a solid is asked about it: as the moving body among solids, or among the
-    /// obstacles of a moving solid.
+    /// obstacles of a moving solid, by its id ([`QueryError::Obstacle`]).
     pub fn new(
         moving: impl Into<AnyPlaced<'a>>,
         obstacles: &'a Obstacles,
@@ -211,9 +211,9 @@ impl<'a> Among<'a> {
 impl Obstacles {
     /// What a solid cannot be asked about.
     fn refuse_bare(&self) -> Result<(), QueryError> {
-        for (_, body, _) in self.iter() {
+        for (id, body, _) in self.iter() {
             if let AnyBody::Convex(body) = body {
-                body.as_solid()?;
+                body.as_solid().map_err(|error| QueryError::from(error).of_obstacle(id))?;
             }
         }
         Ok(())

@@ -3,7 +3,7 @@
 //! Bytes are read as for casts: how numbers are written, a byte of which the first two bits say which body is
 //! turned and the third whether they are solids, the bodies, their poses, and what is asked.
 
-use colltrans::{AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose};
+use colltrans::{Among, AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose};
 use glam::{DQuat, DVec3};
 
 use super::{MOST_JUDGED, Reader, read_setting, read_solid};
@@ -164,7 +164,9 @@ pub fn among(bytes: &[u8]) {
     let Some(pose) = read_pose(&mut reader, true) else { return };
     let (direction, length) = (reader.vector(), reader.number().abs());
     let is_asked = direction.is_finite() && direction != DVec3::ZERO && length.is_finite();
-    if is_asked && (1e-9..1e9).contains(&direction.length()) {
+    // Points and segments are no solids: mixed with them they are refused.
+    let refused = Among::new(moving.at(pose), &obstacles).is_err();
+    if is_asked && !refused && (1e-9..1e9).contains(&direction.length()) {
         among::Setting::of(obstacles, moving, pose, direction, length)
             .examine()
             .unwrap_or_else(|e| panic!("{e}"));

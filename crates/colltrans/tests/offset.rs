@@ -55,6 +55,25 @@ fn tight(body: &ConvexPolyhedron, vertex: u32) -> Option<DVec3> {
     (carried.min_element() > 1e-6).then_some(way)
 }
 
+/// Whether a facet at a corner, in any triangulation, may be too low to have a say in how a solid shrinks: less than
+/// a millionth of the body's size, with room for rounding.
+fn has_sliver(body: &ConvexPolyhedron, vertex: u32) -> bool {
+    let size = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let at = |v: u32| body.vertices()[v as usize];
+    let is_low = |f: u32| {
+        let corners: Vec<u32> = body.face_vertices(f).collect();
+        let others = corners.iter().flat_map(|&b| corners.iter().map(move |&c| [b, c]));
+        others.filter(|[b, c]| *b < *c && *b != vertex && *c != vertex).any(|[b, c]| {
+            let (ab, ac) = (at(b) - at(vertex), at(c) - at(vertex));
+            let longest = ab.length().max(ac.length()).max((ac - ab).length());
+            ab.cross(ac).length() < 4e-6 * size * longest
+        })
+    };
+    (0..body.face_count() as u32)
+        .filter(|&f| body.face_vertices(f).any(|v| v == vertex))
+        .any(is_low)
+}
+
 /// Whether moving has left every edge between the vertices that it was between.
 fn same_edges(body: &ConvexPolyhedron, made: &ConvexPolyhedron) -> bool {
     let edges = |of: &ConvexPolyhedron| -> BTreeSet<[InputVertex; 2]> {
@@ -261,6 +280,9 @@ proptest! {
         let mut compared = 0;
         for (v, &from) in made.vertices().iter().zip(made.input_indices()) {
             let Some(way) = tight(&body, from.0) else { continue };
+            if has_sliver(&body, from.0) {
+                continue;
+            }
             // Rounding of planes moves a corner the farther the sharper it is.
             let apart = v.distance(same.vertices()[from.index()]);
             let sharpness = way.length_squared();

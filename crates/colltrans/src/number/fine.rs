@@ -151,8 +151,8 @@ pub(crate) fn tracked_sign(ways: [Way; 3]) -> Option<Ordering> {
 
 fn tracked_determinant([x, y, z]: &[[Double; 3]; 3]) -> Double {
     let mut sum = Double::ZERO;
-    for k in 0..3 {
-        sum.add_double_product(&x[k], &tracked_minor(y, z, [(k + 1) % 3, (k + 2) % 3]), 1.0);
+    for (k, entry) in x.iter().enumerate() {
+        sum.add_double_product(entry, &tracked_minor(y, z, [(k + 1) % 3, (k + 2) % 3]), 1.0);
     }
     sum
 }

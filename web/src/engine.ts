@@ -66,6 +66,9 @@ export interface Pair {
   direction: Vec;
   graze?: number;
   solver?: "auto" | "cta" | "portal";
+  /** Of `cta`: where the minimisation starts and ends. */
+  start?: "center" | "ellipsoids";
+  until?: "exit" | number;
   tolerance?: number | null;
   ignore_overlaps?: boolean;
 }

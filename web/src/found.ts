@@ -111,8 +111,8 @@ export class Found {
     }
     try {
       const pair = this.pair();
-      const from_center = this.from.value === "guess" ? undefined : 1e-9;
-      const sections = await this.engine.ask({ do: "search", ...pair, solver: "cta", from_center, after: this.before() });
+      const from: Partial<Pair> = this.from.value === "guess" ? { start: "ellipsoids", until: 0.2 } : {};
+      const sections = await this.engine.ask({ do: "search", ...pair, solver: "cta", ...from, after: this.before() });
       const refined = await this.engine.ask({ do: "search", ...pair, solver: "portal", after: this.before() });
       if (turn !== this.asked) return;
       const [first, second] = [sections.facts, refined.facts];

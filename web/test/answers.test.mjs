@@ -105,7 +105,7 @@ test("how it was found: planar problems, portals, and what a tracker saves", asy
   const { least, t } = await page.evaluate(async () => {
     const { engine, answer, state } = window.colltrans.probe();
     const pair = { moving_pose: state.poses.moving, fixed_pose: state.poses.fixed, direction: state.direction };
-    const { events } = (await engine.ask({ do: "search", ...pair, solver: "cta", from_center: 1e-9 })).facts;
+    const { events } = (await engine.ask({ do: "search", ...pair, solver: "cta" })).facts;
     const { sections, ranges } = events.find((event) => event.sections);
     const levels = ([low, high]) => Array.from({ length: 60 }, (_, k) => low + ((k + 0.5) / 60) * (high - low));
     const { numbers } = await engine.ask({

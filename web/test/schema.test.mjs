@@ -33,7 +33,7 @@ test("convex bodies: contact, grazing, separated; proofs; how it was found", () 
   const { contact } = casts[0].proof;
   const lie = { contact: { ...contact, lower: contact.lower + 1 } };
   assert.equal(told("native", [...bodies, { do: "verify", ...asked[0], proof: lie }])[2].holds, false);
-  const search = { do: "search", ...asked[0], solver: "cta", from_center: 1e-9, after: pair([6, 1, 9], [-0.3, 0.101, -1]) };
+  const search = { do: "search", ...asked[0], solver: "cta", after: pair([6, 1, 9], [-0.3, 0.101, -1]) };
   const found = told("native", [...bodies, search, { ...search, solver: "portal" }, { ...search, solver: "portal", after: undefined }]).slice(2);
   assert.ok(found[0].region && found[1].tracked && !found[2].tracked);
   const { sections: [moving, fixed], ranges } = found[0].events.find((event) => event.sections);

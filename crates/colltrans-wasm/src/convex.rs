@@ -16,7 +16,10 @@ use crate::record::{CastAnswer, Lit, Proof, Touching};
 pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
     let moving = moving.body.at(pose(pair.moving_pose, "moving")?);
     let fixed = fixed.body.at(pose(pair.fixed_pose, "fixed")?);
-    let options = Options::default().with_solver(pair.solver).with_graze_tolerance(pair.graze);
+    let options = Options::default()
+        .with_solver(pair.solver)
+        .with_narrowing(pair.narrowing)
+        .with_graze_tolerance(pair.graze);
     let cast = Cast::new(moving, fixed, DVec3::from_array(pair.direction));
     Ok(cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())?)
 }

@@ -3,9 +3,9 @@
 //! Read by hand but for proofs, which the library reads: what derived readers of all of them would add is a
 //! third of the download.
 
-use colltrans::Solver;
+use colltrans::{Narrowing, Solver};
 use colltrans_mesh::body::Take;
-use serde::Deserialize as _;
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::fields::Fields;
@@ -53,6 +53,8 @@ pub(crate) struct Pair {
     pub(crate) graze: f64,
     /// Between convex bodies.
     pub(crate) solver: Solver,
+    /// Of `cta`: from `start`, `center` or `ellipsoids`, `until` it ends, `exit` or a gap.
+    pub(crate) narrowing: Narrowing,
     /// Between solids: by how much they are shrunk; what the files' precision asks for by default.
     pub(crate) tolerance: Option<f64>,
     /// Between solids: facets that cross at the start do not block.
@@ -63,9 +65,6 @@ pub(crate) struct Pair {
 #[derive(Debug)]
 pub(crate) struct Search {
     pub(crate) pair: Pair,
-    /// The minimisation starts at the centre of all levels, as in the paper, and ends when its bounds
-    /// are this close, as a share of the bodies' extent; else as the library does by default.
-    pub(crate) from_center: Option<f64>,
     /// A query asked before, whose answer a tracker starts from.
     pub(crate) after: Option<Pair>,
 }
@@ -104,6 +103,7 @@ impl Question {
 trait Read {
     fn load(&self) -> Result<Load, String>;
     fn pair(&self) -> Result<Pair, String>;
+    fn narrowing(&self) -> Result<Narrowing, String>;
     fn search(&self) -> Result<Search, String>;
     fn levels(&self) -> Result<Levels, String>;
 }
@@ -135,15 +135,29 @@ impl Read for Fields<'_> {
             direction: self.array("direction")?,
             graze: self.number("graze")?.unwrap_or(0.0),
             solver,
+            narrowing: self.narrowing()?,
             tolerance: self.number("tolerance")?,
             ignore_overlaps: self.flag("ignore_overlaps"),
         })
     }
 
+    fn narrowing(&self) -> Result<Narrowing, String> {
+        let Narrowing { start, until, .. } = Narrowing::default();
+        let start = match self.get("start") {
+            Some(name) => Deserialize::deserialize(name).map_err(|e| format!("start: {e}"))?,
+            None => start,
+        };
+        let until = match self.get("until") {
+            Some(end) => Deserialize::deserialize(end).map_err(|e| format!("until: {e}"))?,
+            None => until,
+        };
+        Ok(Narrowing::new(start, until))
+    }
+
     fn search(&self) -> Result<Search, String> {
         let after =
             self.get("after").is_some().then(|| self.object("after")?.pair()).transpose()?;
-        Ok(Search { pair: self.pair()?, from_center: self.number("from_center")?, after })
+        Ok(Search { pair: self.pair()?, after })
     }
 
     fn levels(&self) -> Result<Levels, String> {

@@ -1,9 +1,7 @@
 //! What a search did: the library's recording, as a page reads it.
 
 use colltrans::observe::{Event, Recording};
-use colltrans::{
-    Cast, Focus, NarrowFrom, Narrowing, Outcome, Pose, Region, Solver, Steps, Tracker,
-};
+use colltrans::{Cast, Focus, Outcome, Pose, Region, Solver, Steps, Tracker};
 use glam::DVec3;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -45,12 +43,7 @@ struct Tracked {
 }
 
 pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
-    let mut cast = query(bodies, &asked.pair)?;
-    if let Some(gap) = asked.from_center {
-        let narrowing = Narrowing::new(NarrowFrom::Center, gap);
-        let options = cast.options().with_narrowing(narrowing);
-        cast = cast.with_options(options).map_err(|error| error.to_string())?;
-    }
+    let cast = query(bodies, &asked.pair)?;
     let mut recording = Recording::default();
     let outcome = cast.first_contact_observed(&mut recording).map_err(|error| error.to_string())?;
     let events = told_of(&recording);

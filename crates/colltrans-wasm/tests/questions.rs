@@ -69,7 +69,6 @@ fn phi_is_what_the_minimisation_says() {
         let length = direction.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
         let mut question = pair("search", direction);
         question["solver"] = json!("cta");
-        question["from_center"] = json!(1e-9);
         let (answer, _) = ask(&mut state, &question, Vec::new());
         let events = answer["events"].as_array().unwrap();
         let sections = events.iter().find(|e| e.get("sections").is_some()).unwrap();
@@ -238,7 +237,6 @@ fn the_neighbourhood_of_the_last_solution_saves_planar_problems() {
     let direction = [-0.6, -0.1, -0.9];
     let mut question = pair("search", direction);
     question["solver"] = json!("cta");
-    question["from_center"] = json!(1e-9);
     question["after"] = pair("cast", [-0.6, -0.101, -0.9]);
     let (answer, _) = ask(&mut state, &question, Vec::new());
     let region = &answer["region"];

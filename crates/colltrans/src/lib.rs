@@ -191,9 +191,9 @@ pub use proof_file::{Contacts, DistanceStatement, ProofFile, Slide, Statement, S
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
-pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region};
+pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region, Until};
 pub use tracker::Tracker;
-pub use written::UnknownName;
+pub use written::{NoUntil, UnknownName};
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

@@ -32,7 +32,7 @@ use crate::solve::{WarmStart, search};
 ///
 /// A tracker is small (less than 450 bytes), allocates nothing and may be
 /// cloned, to follow several motions from one place. [`Focus`] says what it makes of its last
-/// answer. With [`Solver::Cta`](crate::Solver::Cta) a body's first query that solves a planar problem makes
+/// answer: with [`Solver::Cta`](crate::Solver::Cta) its region, as the paper, else its features. A body's first query that solves a planar problem makes
 /// its sections, tracked or not: see [`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections).
 ///
 /// ```
@@ -58,7 +58,8 @@ use crate::solve::{WarmStart, search};
 pub struct Tracker<'a> {
     /// The bodies of the last query.
     bodies: Option<[&'a ConvexPolyhedron; 2]>,
-    focus: Focus,
+    /// What was chosen; if nothing, the solver decides.
+    focus: Option<Focus>,
     /// The direction of the last query.
     direction: DVec3,
     /// What the last casts left: along the direction, against it, and between the centres.
@@ -77,7 +78,7 @@ impl<'a> Tracker<'a> {
         Self::default()
     }
 
-    /// With another [`Focus`].
+    /// With another [`Focus`] than the solver's own: [`Focus::of`].
     ///
     /// # Errors
     /// A half-side of the region that is negative or not a number.
@@ -86,7 +87,7 @@ impl<'a> Tracker<'a> {
             Region::Fixed(half_side) if half_side.is_nan() || half_side < 0.0 => {
                 Err(QueryError::RegionFocus { half_side })
             }
-            _ => Ok(Self { focus, ..self }),
+            _ => Ok(Self { focus: Some(focus), ..self }),
         }
     }
 
@@ -223,7 +224,8 @@ impl<'a> Tracker<'a> {
         let next = &mut self.warm_starts[which];
         let last = *next;
         // Matched in place: an outcome is large, and moving it costs a tenth of a coherent query.
-        let outcome = search(&cast.setting, &cast.options, &self.focus, &last, next, observer);
+        let focus = self.focus.unwrap_or_else(|| Focus::of(cast.options.solver));
+        let outcome = search(&cast.setting, &cast.options, &focus, &last, next, observer);
         if let Ok(outcome) = &outcome {
             self.steps += outcome.steps();
         }

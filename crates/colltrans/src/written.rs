@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::answer::{Solver, StartedFrom};
 use crate::cast::solid::StartOverlap;
-use crate::solve::options::NarrowFrom;
+use crate::solve::options::{NarrowFrom, Until};
 
 /// A text that names none of the choices.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -54,8 +54,37 @@ pub(crate) use named;
 
 named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
 named!("start", StartedFrom { Features: "features", Region: "region", Scratch: "scratch" });
-named!("start", NarrowFrom { Ellipsoids: "ellipsoids", Center: "center" });
+named!("start", NarrowFrom { Center: "center", Ellipsoids: "ellipsoids" });
 named!("meaning of an overlap", StartOverlap { Refuse: "refuse", Ignore: "ignore" });
+
+/// A text that says no end of a minimisation.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{text:?} is neither `exit` nor a number that is not negative")]
+pub struct NoUntil {
+    /// The text.
+    pub text: String,
+}
+
+impl std::fmt::Display for Until {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Exit => f.pad("exit"),
+            Self::Gap(gap) => gap.fmt(f),
+        }
+    }
+}
+
+impl std::str::FromStr for Until {
+    type Err = NoUntil;
+
+    fn from_str(text: &str) -> Result<Self, NoUntil> {
+        if text == "exit" {
+            return Ok(Self::Exit);
+        }
+        let gap = text.parse().ok().filter(|gap: &f64| *gap >= 0.0);
+        gap.map(Self::Gap).ok_or_else(|| NoUntil { text: text.into() })
+    }
+}
 
 /// A number that is infinite where nothing is known or nothing stops: JSON has no such number, so it
 /// is written as nothing (`null`), in every format.

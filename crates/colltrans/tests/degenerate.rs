@@ -1,5 +1,7 @@
 //! Bodies of lower dimension, and bodies that are almost so.
 
+use std::mem::discriminant;
+
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Outcome, Pose, Solver};
 use colltrans_testkit::oracle::check::Judge;
@@ -143,9 +145,11 @@ fn thin_slabs() {
 }
 
 /// Shadows about as wide as rounding errors: few portals have a plane, and exact sides of the line
-/// contradict rounded ones; still each cast has an answer, and the same from both solvers.
+/// contradict rounded ones; still each cast has an answer, and the same from both solvers, but where rounding
+/// can just not tell whether the bodies pass each other: then one may prove that they do.
 #[test]
 fn shadows_as_wide_as_rounding() {
+    let mut differ = 0;
     for seed in 0..30_000 {
         let mut rng = Random::new(seed);
         let mut needle = [0; 4].map(|_| rng.vector());
@@ -159,12 +163,22 @@ fn shadows_as_wide_as_rounding() {
         let (moving, fixed) = (body(&needle), body(&block));
         let pose = Pose::from_translation(offset).expect("a pose");
         let cast = Cast::new(moving.at(Pose::IDENTITY), fixed.at(pose), DVec3::Z).expect("a query");
-        let kinds = [Solver::Cta, Solver::Portal].map(|solver| {
+        let outcomes = [Solver::Cta, Solver::Portal].map(|solver| {
             let outcome = cast.with_solver(solver).first_contact();
-            std::mem::discriminant(&outcome.unwrap_or_else(|e| panic!("{seed}, {solver:?}: {e}")))
+            outcome.unwrap_or_else(|e| panic!("{seed}, {solver:?}: {e}"))
         });
-        assert_eq!(kinds[0], kinds[1], "{seed}");
+        match &outcomes {
+            [Outcome::Separated(passed), Outcome::Grazing(near)]
+            | [Outcome::Grazing(near), Outcome::Separated(passed)]
+                if near.overlap <= 0.0 =>
+            {
+                assert!(cast.verify(&passed.certificate).is_ok(), "{seed}");
+                differ += 1;
+            }
+            [a, b] => assert_eq!(discriminant(a), discriminant(b), "{seed}"),
+        }
     }
+    assert!(differ < 10, "{differ}");
 }
 
 /// Many points in one plane that contains the direction, and the line as near to it as rounding: exact

@@ -5,7 +5,7 @@ use colltrans::record::{Ending, Question};
 use colltrans::solid::{SolidCertificate, SolidOptions, StartOverlap};
 use colltrans::{
     Bounded, Cast, Clearance, ContactRange, FaceId, Feature, InputVertex, Intersection, NarrowFrom,
-    Options, Outcome, Pose, Solid, Solver, StartedFrom, VertexId,
+    Options, Outcome, Pose, Solid, Solver, StartedFrom, Until, VertexId,
 };
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};
@@ -107,6 +107,13 @@ fn names_are_those_that_serde_writes() {
     named(&[Solver::Auto, Solver::Cta, Solver::Portal]);
     named(&[StartedFrom::Features, StartedFrom::Region, StartedFrom::Scratch]);
     named(&[NarrowFrom::Ellipsoids, NarrowFrom::Center]);
+    for (until, text) in [(Until::Exit, "exit"), (Until::Gap(0.25), "0.25")] {
+        assert_eq!((until.to_string().as_str(), text.parse()), (text, Ok(until)));
+    }
+    for wrong in ["end", "-1", "NaN", ""] {
+        let error = wrong.parse::<Until>().expect_err(wrong).to_string();
+        assert_eq!(error, format!("{wrong:?} is neither `exit` nor a number that is not negative"));
+    }
     named(&[Question::Contact, Question::Clearance]);
     named(&[StartOverlap::Refuse, StartOverlap::Ignore]);
     named(&[Ending::Contact, Ending::Grazing, Ending::Separated, Ending::Free, Ending::Blocked]);

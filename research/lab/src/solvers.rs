@@ -37,7 +37,7 @@ pub(crate) enum Who {
 pub(crate) enum Until {
     /// Most of the way: down to [`PAPER_GAP`]. Portal refinement finds the last feature.
     Near,
-    /// All the way: down to [`END_GAP`]. Portal refinement has nothing left but to confirm.
+    /// All the way: to the exit test. Portal refinement has nothing left but to confirm.
     End,
     /// All the way, and not as published: where little is left of the region, the shift goes on from
     /// cell to cell, which takes fewer planar problems.
@@ -48,18 +48,15 @@ pub(crate) enum Until {
 /// as a share of the bodies' extent along the direction.
 pub(crate) const PAPER_GAP: f64 = 1e-2;
 
-/// Less than what tells the best features of large bodies apart, more than rounding.
-const END_GAP: f64 = 1e-9;
-
 impl Until {
     /// The paper's minimisation, down to here.
     pub(crate) fn options(self) -> Options {
-        let gap = match self {
-            Self::Near => PAPER_GAP,
-            Self::End | Self::EndAcrossCells => END_GAP,
+        let until = match self {
+            Self::Near => colltrans::Until::Gap(PAPER_GAP),
+            Self::End | Self::EndAcrossCells => colltrans::Until::Exit,
         };
         let keeps_to_cell = self != Self::EndAcrossCells;
-        let narrowing = Narrowing::new(NarrowFrom::Center, gap).with_keeps_to_cell(keeps_to_cell);
+        let narrowing = Narrowing::new(NarrowFrom::Center, until).with_keeps_to_cell(keeps_to_cell);
         Options::default().with_solver(Solver::Cta).with_narrowing(narrowing)
     }
 }

@@ -12,7 +12,10 @@ pub enum Solver {
     #[default]
     Auto,
     /// The collision translation algorithm (the paper, section III): convex minimisation over pairs
-    /// of planar sections, then portal refinement from the normal found. Bodies of lower dimension
+    /// of planar sections, from the centre of the levels, or in a [`Tracker`](crate::Tracker) from those around the last
+    /// solution, until the features that touch are seen to solve the problem. One portal, the face of `M` over
+    /// these, makes the certificate of it; where the exit is not seen, portal refinement finds the face.
+    /// [`Narrowing`](crate::Narrowing) is what can be chosen. Bodies of lower dimension
     /// have no sections to speak of: portal refinement does their work alone. A body's first cast
     /// that solves a planar problem makes its sections
     /// ([`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections)).
@@ -35,18 +38,23 @@ pub struct Steps {
     /// Iterations of the loops inside planar problems: vertices of sections computed, vertices of
     /// the bodies climbed over, halvings in searches.
     pub iterations: u32,
+    /// Sides that the region of section levels had at most, which the collision translation algorithm cuts down; 0 if
+    /// there was none, and missing as data.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_none"))]
+    pub region_sides: u32,
     /// What the search began with; as data it is missing where that was nothing but the bodies.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "StartedFrom::is_scratch"))]
     pub started_from: StartedFrom,
 }
 
-/// Counts another cast in; of both starts the one with more work stands.
+/// Counts another cast in; of both starts the one with more work stands, of both regions that with more sides.
 impl std::ops::AddAssign for Steps {
     fn add_assign(&mut self, other: Self) {
         self.planar_problems += other.planar_problems;
         self.supports += other.supports;
         self.pivots += other.pivots;
         self.iterations += other.iterations;
+        self.region_sides = self.region_sides.max(other.region_sides);
         self.started_from = self.started_from.max(other.started_from);
     }
 }
@@ -86,6 +94,12 @@ pub enum StartedFrom {
     /// Nothing but the bodies.
     #[default]
     Scratch,
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+fn is_none(count: &u32) -> bool {
+    *count == 0
 }
 
 #[cfg(feature = "serde")]

@@ -331,8 +331,8 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     /// By the collision translation algorithm.
     fn narrow(&mut self, ellipsoids: &FirstNormal, origin: Origin) -> Start {
         self.context.watch.ended(Phase::Setup);
-        let Narrowing { gap, keeps_to_cell, .. } = self.narrowing;
-        let options = CtaOptions { start: origin, gap, keeps_to_cell };
+        let Narrowing { until, keeps_to_cell, .. } = self.narrowing;
+        let options = CtaOptions { start: origin, gap: until.gap(), keeps_to_cell };
         let narrowed =
             cta::minimise(self.context.difference.setting, &options, &mut self.context.watch);
         let corners = narrowed.corners.as_ref();

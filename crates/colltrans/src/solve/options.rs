@@ -10,9 +10,9 @@ use crate::setting::error::QueryError;
 /// Choices of a query; the default is right for most. More may be added: begin with it.
 ///
 /// ```
-/// # use colltrans::{Narrowing, NarrowFrom, Options, Solver};
-/// let to_the_end = Narrowing::new(NarrowFrom::Center, 0.0);
-/// let options = Options::default().with_solver(Solver::Cta).with_narrowing(to_the_end);
+/// # use colltrans::{Narrowing, NarrowFrom, Options, Solver, Until};
+/// let nearly = Narrowing::new(NarrowFrom::Center, Until::Gap(0.01));
+/// let options = Options::default().with_solver(Solver::Cta).with_narrowing(nearly);
 /// assert_eq!(options.graze_tolerance, 0.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -79,28 +79,28 @@ impl Options {
         if !tolerance.is_finite() || tolerance < 0.0 {
             return Err(QueryError::GrazeTolerance { tolerance });
         }
-        let gap = self.narrowing.gap;
-        if gap.is_nan() || gap < 0.0 {
+        if let Until::Gap(gap) = self.narrowing.until
+            && (gap.is_nan() || gap < 0.0)
+        {
             return Err(QueryError::NarrowingGap { gap });
         }
         check_keep(self.keep)
     }
 }
 
-/// From where, and how far, the collision translation algorithm narrows the search before portal
-/// refinement takes over; the defaults do least work. Answers do not depend on it.
+/// From where, and how far, [`Solver::Cta`] narrows the search by planar problems. Answers do not depend on it.
 ///
-/// However wide the gap, planar problems end where the features that touch are seen to solve the
-/// problem (the paper's exit test); portal refinement then only proves them.
+/// The default is the paper's algorithm: from the centre of the levels, or in a tracker from `N(p)`, until the
+/// features that touch are seen to solve the problem. A certificate is made of its result by
+/// one portal, the face of `M` that the exit test has found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Narrowing {
     /// Where the minimisation starts, if not in the region of a [`Tracker`](crate::Tracker)'s last
     /// solution.
     pub start: NarrowFrom,
-    /// It ends at the latest when its upper and lower bound are apart by no more than this share of
-    /// the extent of both bodies along the direction; at `0` it goes on to the contact itself.
-    pub gap: f64,
+    /// Where it ends; portal refinement goes on from there.
+    pub until: Until,
     /// Whether a cell shift ends in its cell, as the paper's does, so that planar problems are the
     /// paper's steps. If not, it goes on from cell to cell where little of the region is left: fewer
     /// planar problems and less time.
@@ -108,9 +108,15 @@ pub struct Narrowing {
 }
 
 impl Narrowing {
-    /// From a start to a gap, and from cell to cell.
-    pub const fn new(start: NarrowFrom, gap: f64) -> Self {
-        Self { start, gap, keeps_to_cell: false }
+    /// A first guess and rough: from the ellipsoids to a fifth of the extent, from cell to cell. Portal refinement
+    /// does nearly all of the work; planar problems are solved only if the ellipsoids pass each other and the
+    /// bodies may not.
+    pub const ROUGH: Self =
+        Self { start: NarrowFrom::Ellipsoids, until: Until::Gap(0.2), keeps_to_cell: false };
+
+    /// From a start to an end, each shift within its cell.
+    pub const fn new(start: NarrowFrom, until: Until) -> Self {
+        Self { start, until, keeps_to_cell: true }
     }
 
     /// With cell shifts that end in their cells, or not.
@@ -121,9 +127,9 @@ impl Narrowing {
 }
 
 impl Default for Narrowing {
-    /// Ellipsoids, a fifth, and from cell to cell.
+    /// The paper: the centre, until the exit test, each shift within its cell.
     fn default() -> Self {
-        Self::new(NarrowFrom::Ellipsoids, 0.2)
+        Self::new(NarrowFrom::default(), Until::default())
     }
 }
 
@@ -135,12 +141,39 @@ impl Default for Narrowing {
     serde(rename_all = "snake_case")
 )]
 pub enum NarrowFrom {
+    /// At the centre of all section levels (the paper, section III-A).
+    #[default]
+    Center,
     /// Where the bodies would meet if they were ellipsoids: portal refinement begins there, and
     /// planar problems are solved only if the ellipsoids pass each other and the bodies may not.
-    #[default]
     Ellipsoids,
-    /// At the centre of all section levels (the paper, section III-A).
-    Center,
+}
+
+/// Where a minimisation ends. As text `exit`, or a number.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(into = "UntilRecord", try_from = "UntilRecord"))]
+pub enum Until {
+    /// Where the features that touch are seen to solve the problem (the paper, line 6 of its algorithm), or rounding
+    /// hides what is left.
+    #[default]
+    Exit,
+    /// There, or before: where its upper and lower bound are apart by no more than this share of the extent of both
+    /// bodies along the direction.
+    Gap(f64),
+}
+
+impl Until {
+    /// Less than what tells the best features of large bodies apart, more than the rounding of `phi`.
+    const ROUNDING: f64 = 1e-9;
+
+    /// The share at which it ends at the latest.
+    pub(crate) fn gap(self) -> f64 {
+        match self {
+            Self::Exit => Self::ROUNDING,
+            Self::Gap(gap) => gap.max(Self::ROUNDING),
+        }
+    }
 }
 
 /// What a [`Tracker`](crate::Tracker) makes of its last answer. Answers and certificates do not
@@ -161,6 +194,13 @@ impl Focus {
     /// Every query from scratch.
     pub const NONE: Self = Self { features: false, region: Region::Everywhere };
 
+    /// What a [`Tracker`](crate::Tracker) does unless it is told: with [`Solver::Cta`] the paper's, the region
+    /// alone; else the default.
+    pub const fn of(solver: Solver) -> Self {
+        let features = !matches!(solver, Solver::Cta);
+        Self { features, region: Region::Automatic }
+    }
+
     /// With feature focus, or without.
     #[must_use]
     pub const fn with_features(self, features: bool) -> Self {
@@ -177,7 +217,7 @@ impl Focus {
 impl Default for Focus {
     /// Features first, then the region.
     fn default() -> Self {
-        Self { features: true, region: Region::Automatic }
+        Self::of(Solver::Auto)
     }
 }
 
@@ -207,9 +247,10 @@ pub enum Region {
 pub(crate) struct OptionsRecord {
     solver: Solver,
     graze_tolerance: f64,
-    narrow_from: NarrowFrom,
-    #[serde(with = "crate::written::or_infinite")]
-    narrowing_gap: f64,
+    #[serde(alias = "narrow_from")]
+    start: NarrowFrom,
+    #[serde(alias = "narrowing_gap")]
+    until: Until,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     keeps_to_cell: bool,
     #[serde(default, skip_serializing_if = "crate::written::is_zero")]
@@ -219,8 +260,8 @@ pub(crate) struct OptionsRecord {
 #[cfg(feature = "serde")]
 impl From<Options> for OptionsRecord {
     fn from(Options { solver, graze_tolerance, narrowing, keep }: Options) -> Self {
-        let Narrowing { start: narrow_from, gap: narrowing_gap, keeps_to_cell } = narrowing;
-        Self { solver, graze_tolerance, narrow_from, narrowing_gap, keeps_to_cell, keep }
+        let Narrowing { start, until, keeps_to_cell } = narrowing;
+        Self { solver, graze_tolerance, start, until, keeps_to_cell, keep }
     }
 }
 
@@ -229,11 +270,41 @@ impl TryFrom<OptionsRecord> for Options {
     type Error = QueryError;
 
     fn try_from(record: OptionsRecord) -> Result<Self, QueryError> {
-        let OptionsRecord { solver, graze_tolerance, keep, .. } = record;
-        let OptionsRecord { narrow_from, narrowing_gap, keeps_to_cell, .. } = record;
-        let narrowing = Narrowing { start: narrow_from, gap: narrowing_gap, keeps_to_cell };
+        let OptionsRecord { solver, graze_tolerance, start, until, keeps_to_cell, keep } = record;
+        let narrowing = Narrowing { start, until, keeps_to_cell };
         let options = Self { solver, graze_tolerance, narrowing, keep };
         options.check()?;
         Ok(options)
+    }
+}
+
+/// A share as it is written, nothing if it is infinite; or `exit`.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(untagged)]
+pub(crate) enum UntilRecord {
+    Share(Option<f64>),
+    Name(String),
+}
+
+#[cfg(feature = "serde")]
+impl From<Until> for UntilRecord {
+    fn from(until: Until) -> Self {
+        match until {
+            Until::Exit => Self::Name(until.to_string()),
+            Until::Gap(gap) => Self::Share(Some(gap).filter(|gap| gap.is_finite())),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<UntilRecord> for Until {
+    type Error = crate::written::NoUntil;
+
+    fn try_from(record: UntilRecord) -> Result<Self, Self::Error> {
+        match record {
+            UntilRecord::Share(gap) => Ok(Self::Gap(gap.unwrap_or(f64::INFINITY))),
+            UntilRecord::Name(name) => name.parse(),
+        }
     }
 }

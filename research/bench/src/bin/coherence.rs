@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::{
-    Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Tracker,
+    Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Tracker, Until,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::Scale;
@@ -49,22 +49,29 @@ struct Compared {
 }
 
 const COMPARED: [Compared; 6] = [
-    Compared { name: "scratch", solver: Solver::Auto, focus: Focus::NONE, narrowing: SHIPPED },
-    Compared { name: "tracker", solver: Solver::Auto, focus: BOTH, narrowing: SHIPPED },
-    Compared { name: "cta", solver: Solver::Cta, focus: Focus::NONE, narrowing: SHIPPED },
-    Compared { name: "cta tracker", solver: Solver::Cta, focus: BOTH, narrowing: SHIPPED },
-    Compared { name: "paper", solver: Solver::Cta, focus: Focus::NONE, narrowing: PAPER },
-    Compared { name: "paper region", solver: Solver::Cta, focus: REGION, narrowing: PAPER },
+    Compared { name: "scratch", solver: Solver::Auto, focus: Focus::NONE, narrowing: PAPER },
+    Compared { name: "tracker", solver: Solver::Auto, focus: BOTH, narrowing: PAPER },
+    Compared { name: "cta", solver: Solver::Cta, focus: Focus::NONE, narrowing: PAPER },
+    Compared { name: "cta region", solver: Solver::Cta, focus: REGION, narrowing: PAPER },
+    Compared {
+        name: "rough",
+        solver: Solver::Cta,
+        focus: Focus::NONE,
+        narrowing: Narrowing::ROUGH,
+    },
+    Compared {
+        name: "rough tracker",
+        solver: Solver::Cta,
+        focus: BOTH,
+        narrowing: Narrowing::ROUGH,
+    },
 ];
 
 const REGION: Focus = Focus::NONE.with_region(Region::Automatic);
 const BOTH: Focus = Focus::NONE.with_features(true).with_region(Region::Automatic);
 
-/// What a user gets.
-const SHIPPED: Narrowing = Narrowing::new(NarrowFrom::Ellipsoids, 0.2);
-
-/// The paper's: from the centre of the levels, most of the way by planar problems.
-const PAPER: Narrowing = Narrowing::new(NarrowFrom::Center, 0.01);
+/// The paper's: from the centre of the levels until the exit test; of no effect on the others.
+const PAPER: Narrowing = Narrowing::new(NarrowFrom::Center, Until::Exit);
 
 fn main() -> ExitCode {
     let Command { arguments } = Command::parse();

@@ -11,7 +11,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::{
-    BuildError, Focus, NarrowFrom, Narrowing, Options, Region, Solver, Tracker, observe,
+    BuildError, Focus, NarrowFrom, Narrowing, Options, Region, Solver, Tracker, Until, observe,
 };
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::Scale;
@@ -47,10 +47,15 @@ const CHANGES: [f64; 3] = [0.01, 0.0025, 0.000_625];
 /// How a solver narrows the search: `None` is portal refinement alone.
 const COMPARED: [(&str, Option<Narrowing>); 4] = [
     ("portal", None),
-    ("cta", Some(Narrowing::new(NarrowFrom::Ellipsoids, 0.2))),
-    ("centre 1%", Some(Narrowing::new(NarrowFrom::Center, 0.01))),
-    ("centre end", Some(Narrowing::new(NarrowFrom::Center, 0.0))),
+    ("rough", Some(Narrowing::ROUGH)),
+    ("centre 1%", Some(to(Until::Gap(0.01)))),
+    ("centre end", Some(to(Until::Exit))),
 ];
+
+/// From the centre to here, across cells where little of the region is left.
+const fn to(until: Until) -> Narrowing {
+    Narrowing::new(NarrowFrom::Center, until).with_keeps_to_cell(false)
+}
 
 /// Bodies to measure on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -240,7 +245,7 @@ fn phases(blocks: &Blocks) -> Value {
 
 /// The same with region focus, in sequences.
 fn focused_phases(sequences: &Blocks) -> Value {
-    let options = options(Some(Narrowing::new(NarrowFrom::Center, 0.0)));
+    let options = options(Some(to(Until::Exit)));
     let mut spent = Spent::default();
     for (bodies, sequence) in sequences {
         let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");
@@ -282,14 +287,14 @@ impl Spent {
 /// Region focus to a gap of 1 % and to the end, and the same without focus.
 fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
     let stopwatch = Stopwatch::new();
-    let compared = [(0.01, REGION), (0.0, REGION), (0.0, Focus::NONE)];
+    let compared = [(Until::Gap(0.01), REGION), (Until::Exit, REGION), (Until::Exit, Focus::NONE)];
     let mut measured: Vec<Measured> = compared.iter().map(|_| Measured::default()).collect();
     let mut parry = Times::default();
     for (turn, (bodies, sequence)) in sequences.iter().enumerate() {
         for k in 0..compared.len() {
             let who = (turn + k) % compared.len();
-            let (gap, focus) = compared[who];
-            let options = options(Some(Narrowing::new(NarrowFrom::Center, gap)));
+            let (until, focus) = compared[who];
+            let options = options(Some(to(until)));
             let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
             for setting in sequence {
                 let (outcome, spent) =

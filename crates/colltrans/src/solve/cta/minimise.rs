@@ -210,6 +210,8 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             gradient: local.bound.gradient,
         };
         self.region.cut(bound.gradient, limit - bound.value);
+        let sides = &mut self.watch.steps.region_sides;
+        *sides = self.region.sides().max(*sides);
         self.watch.ended(Phase::Region);
         let progress = self.bound.add(Piece { bound, ..local });
         let constant = self.sections.constant;

@@ -48,6 +48,11 @@ impl Region {
         self.count -= old;
     }
 
+    /// How many sides there are.
+    pub(super) fn sides(&self) -> u32 {
+        self.count as u32
+    }
+
     fn push(&mut self, corner: DVec2) {
         self.corners[self.count] = corner;
         self.count += 1;

@@ -17,7 +17,7 @@ pub(super) fn write(page: &mut String, run: &Value) -> Result<(), Failure> {
          vertices in the same run. *planar* are planar problems and *left* portals exchanged after \
          them, on average; cells crossed where little of the region is left are not planar problems, and \
          their time is that of the cell shift.\n\n\
-         | bodies | vertices | portal, ns | `portal` | `cta` | centre, 1 % | planar | left | centre, \
+         | bodies | vertices | portal, ns | `portal` | `cta`, rough | centre, 1 % | planar | left | centre, \
          end | planar | left | of parry |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
@@ -74,7 +74,7 @@ fn casts(page: &mut String, row: &Value) -> Result<(), Failure> {
         thousands(number(row, &["vertices"])),
         thousands(unit),
         rounded(portal / unit),
-        rounded(of(row, "cta", "ratio")),
+        rounded(of(row, "rough", "ratio")),
         trio(row, "centre 1%"),
         trio(row, "centre end"),
         rounded(of(row, "centre end", "median_ns") / number(row, &["parry_8", "median_ns"])),

@@ -1,17 +1,16 @@
 //! Single settings: bodies held against their input points, cast with every solver, each answer checked
 //! exactly, a sample solved again.
 
-use colltrans::{NarrowFrom, Narrowing, Options, Outcome, QueryError, Solver};
+use colltrans::{Narrowing, Options, Outcome, QueryError, Solver};
 use colltrans_testkit::oracle::check::Proof;
 use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
 
 use crate::print;
 
-/// Who answers: every solver, and the collision translation algorithm from the centre to the end, since
-/// by default it seldom has to search.
+/// Who answers: every solver, and the collision translation algorithm as a first guess alone.
 const WHO: [(&str, Solver, Option<Narrowing>); 4] = [
     ("Cta", Solver::Cta, None),
-    ("Cta from the centre", Solver::Cta, Some(Narrowing::new(NarrowFrom::Center, 0.0))),
+    ("Cta, rough", Solver::Cta, Some(Narrowing::ROUGH)),
     ("Portal", Solver::Portal, None),
     ("Auto", Solver::Auto, None),
 ];

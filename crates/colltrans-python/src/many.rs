@@ -369,7 +369,12 @@ struct Work<'a> {
 
 /// What a question needs besides the bodies.
 enum With<'a> {
-    Direction { directions: Table<'a>, graze_tolerances: Table<'a>, options: Options },
+    Direction {
+        directions: Table<'a>,
+        graze_tolerances: Table<'a>,
+        keeps: Table<'a>,
+        options: Options,
+    },
     Length(Table<'a>),
 }
 
@@ -377,11 +382,12 @@ impl Work<'_> {
     fn answer(&self, row: usize) -> Result<Row, String> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
         let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
-        let With::Direction { directions, graze_tolerances, options } = &self.with else {
+        let With::Direction { directions, graze_tolerances, keeps, options } = &self.with else {
             return self.answer_placed([moving, fixed], [at, to], row);
         };
         let (moving, fixed) = (moving.convex()?, fixed.convex()?);
-        let options = options.with_graze_tolerance(graze_tolerances.row(row)[0]);
+        let options =
+            options.with_graze_tolerance(graze_tolerances.row(row)[0]).with_keep(keeps.row(row)[0]);
         Cast::new(moving.at(at), fixed.at(to), directions.vector(row))
             .and_then(|cast| cast.with_options(options))
             .and_then(|cast| self.question.ask(&cast))
@@ -552,12 +558,14 @@ pub(crate) fn ask_many<'py>(
     moving_pose: PyReadonlyArray2<'py, f64>,
     fixed_pose: PyReadonlyArray2<'py, f64>,
     graze_tolerance: PyReadonlyArray2<'py, f64>,
+    keep: PyReadonlyArray2<'py, f64>,
     solver: &Bound<'py, PyString>,
     threads: Option<usize>,
 ) -> PyResult<Answered<'py>> {
     let with = With::Direction {
         directions: table("direction", &direction, n)?,
         graze_tolerances: table("graze_tolerance", &graze_tolerance, n)?,
+        keeps: table("keep", &keep, n)?,
         options: Options::default().with_solver(solver_called(Some(solver))?),
     };
     let question = Question::called(question)?;
@@ -642,7 +650,7 @@ fn table<'a>(
     let (rows, width) = (of.shape()[0], of.shape()[1]);
     let widths: &[usize] = match name {
         "direction" => &[3],
-        "graze_tolerance" | "length" => &[1],
+        "graze_tolerance" | "keep" | "length" => &[1],
         _ => &[3, 7, 12, 16],
     };
     if (rows != n && rows != 1) || !widths.contains(&width) {

@@ -11,7 +11,10 @@ use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
-use colltrans::{Among, AnyBody, AnyPlaced, ByKind, Clearance, ClearanceAmong, ObstacleId};
+use colltrans::solid::SolidOptions;
+use colltrans::{
+    Among, AnyBody, AnyPlaced, ByKind, Clearance, ClearanceAmong, ObstacleId, Options, QueryError,
+};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -77,7 +80,7 @@ impl Obstacles {
         py: Python<'_>,
         (body, at): (&Piece, colltrans::Pose),
         ignore: &HashSet<u64>,
-        question: impl FnOnce(&Among<'_>) -> Result<T, colltrans::QueryError> + Send,
+        question: impl FnOnce(&Among<'_>) -> Result<T, QueryError> + Send,
     ) -> PyResult<T> {
         let asked = || {
             let kept = self.read();
@@ -95,7 +98,7 @@ impl Obstacles {
         (body, poses): (&Piece, &[colltrans::Pose]),
         ignore: &HashSet<u64>,
         threads: Option<usize>,
-        question: impl Fn(usize, &Among<'_>) -> Result<T, colltrans::QueryError> + Sync,
+        question: impl Fn(usize, &Among<'_>) -> Result<T, QueryError> + Sync,
     ) -> PyResult<Vec<T>> {
         py.detach(|| {
             let kept = self.read();
@@ -107,6 +110,18 @@ impl Obstacles {
             })
         })
     }
+}
+
+/// How far a body may move that is to keep a gap, past what is met before a translation.
+fn clearance_keeping(
+    among: &Among<'_>,
+    direction: DVec3,
+    before: f64,
+    keep: f64,
+) -> Result<ClearanceAmong, QueryError> {
+    let keeping = among.with_options(Options::default().with_keep(keep))?;
+    let keeping = keeping.with_solid_options(SolidOptions::default().with_keep(keep));
+    keeping.clearance_before(direction, before)
 }
 
 fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
@@ -387,12 +402,16 @@ impl Obstacles {
     ///     Of any length; translations count in multiples of it.
     /// before : float, optional
     ///     What is not met before this translation is of no interest.
+    /// keep : float
+    ///     A gap to be kept, a length: how far until an obstacle is as near as that.
     ///
     /// Returns
     /// -------
     /// ObstacleClearance
-    #[pyo3(signature = (body, direction, pose=None, *, before=None, ignore=HashSet::new()),
-        text_signature = "($self, body, direction, pose=None, *, before=None, ignore=())")]
+    #[pyo3(signature = (body, direction, pose=None, *, before=None, keep=0.0,
+        ignore=HashSet::new()), text_signature = "($self, body, direction, pose=None, *, \
+        before=None, keep=0.0, ignore=())")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance(
         &self,
         py: Python<'_>,
@@ -400,12 +419,13 @@ impl Obstacles {
         direction: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
         before: Option<f64>,
+        keep: f64,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
     ) -> PyResult<ObstacleClearance> {
         let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
-        let ask = |among: &Among<'_>| among.clearance_before(direction, before);
+        let ask = |among: &Among<'_>| clearance_keeping(among, direction, before, keep);
         self.ask(py, (&body, at), &ignore, ask).map(ObstacleClearance)
     }
 
@@ -458,7 +478,7 @@ impl Obstacles {
     ///
     /// Parameters
     /// ----------
-    /// body, before, ignore
+    /// body, before, keep, ignore
     ///     As for :meth:`clearance`.
     /// directions : array_like of shape (N, 3) or (3,)
     ///     One for each pose, or one for all.
@@ -470,9 +490,9 @@ impl Obstacles {
     /// dict of ndarray
     ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops it),
     ///     ``distance`` (NaN where bodies overlap) and ``upper``.
-    #[pyo3(signature = (body, directions, poses, *, before=None, ignore=HashSet::new(),
-        threads=None), text_signature = "($self, body, directions, poses, *, before=None, \
-        ignore=(), threads=None)")]
+    #[pyo3(signature = (body, directions, poses, *, before=None, keep=0.0,
+        ignore=HashSet::new(), threads=None), text_signature = "($self, body, directions, poses, \
+        *, before=None, keep=0.0, ignore=(), threads=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance_many<'py>(
         &self,
@@ -481,6 +501,7 @@ impl Obstacles {
         directions: &Bound<'py, PyAny>,
         poses: &Bound<'py, PyAny>,
         before: Option<f64>,
+        keep: f64,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -494,7 +515,7 @@ impl Obstacles {
         }
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |k: usize, among: &Among<'_>| {
-            among.clearance_before(directions[k.min(directions.len() - 1)], before)
+            clearance_keeping(among, directions[k.min(directions.len() - 1)], before, keep)
         };
         let found = self.ask_rows(py, (&body, &poses), &ignore, threads, ask)?;
         let found: Vec<_> = found.into_iter().map(ObstacleClearance).collect();

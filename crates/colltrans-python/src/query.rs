@@ -23,6 +23,7 @@ pub(crate) struct Arguments<'a, 'py> {
     pub(crate) direction: &'a Bound<'py, PyAny>,
     pub(crate) poses: [Option<&'a Bound<'py, PyAny>>; 2],
     pub(crate) graze_tolerance: f64,
+    pub(crate) keep: f64,
     pub(crate) solver: Option<&'a Bound<'py, PyString>>,
 }
 
@@ -48,6 +49,9 @@ pub(crate) fn solver_called_by(name: &str) -> PyResult<Solver> {
 ///     Where the bodies are; see :class:`Pose`.
 /// graze_tolerance : float
 ///     Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
+/// keep : float
+///     A gap to be kept, a length: all questions are then about where the bodies are as near as that, not
+///     about where they touch. Points of answers are those that are the gap apart.
 /// solver : {"auto", "cta", "portal"}
 ///     How the search is narrowed. Answers and certificates are the same. A body's first query with
 ///     "cta" that needs its sections makes them, and pays for it.
@@ -55,7 +59,7 @@ pub(crate) fn solver_called_by(name: &str) -> PyResult<Solver> {
 /// Raises
 /// ------
 /// QueryError
-///     A direction that is zero or out of range, a tolerance that is negative.
+///     A direction that is zero or out of range, a tolerance or a gap that is negative.
 /// PoseError
 ///     A pose that is none.
 ///
@@ -80,7 +84,8 @@ pub(crate) struct Cast {
 impl Cast {
     /// Not checked yet.
     pub(crate) fn of(arguments: Arguments<'_, '_>) -> PyResult<Self> {
-        let Arguments { moving, fixed, direction, poses, graze_tolerance, solver } = arguments;
+        let Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver } =
+            arguments;
         Ok(Self {
             moving: moving.clone().unbind(),
             fixed: fixed.clone().unbind(),
@@ -88,7 +93,8 @@ impl Cast {
             direction: vector(direction, "direction")?,
             options: Options::default()
                 .with_solver(solver_called(solver)?)
-                .with_graze_tolerance(graze_tolerance),
+                .with_graze_tolerance(graze_tolerance)
+                .with_keep(keep),
         })
     }
 
@@ -132,8 +138,9 @@ impl Cast {
 impl Cast {
     #[new]
     #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-        graze_tolerance=0.0, solver=None), text_signature = "(moving, fixed, direction, *, \
-        moving_pose=None, fixed_pose=None, graze_tolerance=0.0, solver='auto')")]
+        graze_tolerance=0.0, keep=0.0, solver=None), text_signature = "(moving, fixed, direction, \
+        *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, keep=0.0, solver='auto')")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn new(
         moving: &Bound<'_, ConvexPolyhedron>,
         fixed: &Bound<'_, ConvexPolyhedron>,
@@ -141,11 +148,12 @@ impl Cast {
         moving_pose: Option<&Bound<'_, PyAny>>,
         fixed_pose: Option<&Bound<'_, PyAny>>,
         graze_tolerance: f64,
+        keep: f64,
         solver: Option<&Bound<'_, PyString>>,
     ) -> PyResult<Self> {
         let poses = [moving_pose, fixed_pose];
         let query =
-            Self::of(Arguments { moving, fixed, direction, poses, graze_tolerance, solver })?;
+            Self::of(Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver })?;
         query.with(|_| ())?;
         Ok(query)
     }
@@ -212,6 +220,12 @@ impl Cast {
     #[getter]
     fn graze_tolerance(&self) -> f64 {
         self.options.graze_tolerance
+    }
+
+    /// float: The gap to be kept; 0 if there is none.
+    #[getter]
+    fn keep(&self) -> f64 {
+        self.options.keep
     }
 
     /// str: How the search is narrowed.

@@ -134,7 +134,8 @@ impl SolidCast {
         Self::ask(slf, move |cast| cast.verify(&proof.get().0))?.or_raise()
     }
 
-    /// Whether the bodies as they are, as closed sets, have a point in common.
+    /// Whether the bodies as they are, as closed sets, have a point in common. The gap to be kept plays no
+    /// part.
     fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
         Ok(Self::ask(slf, |cast| cast.intersects())?.or_raise()?.meets)
     }
@@ -182,6 +183,9 @@ impl SolidCast {
 }
 
 fn solids_meet<'py>(query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
+    if query.get().options.keep != 0.0 {
+        return Err(error("QueryError", "solids that keep a gap are asked by `within`"));
+    }
     Ok(PyBool::new(query.py(), SolidCast::intersects(query)?).to_owned().into_any())
 }
 
@@ -191,8 +195,9 @@ macro_rules! question {
         $(#[$doc])*
         #[pyfunction]
         #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-            graze_tolerance=0.0, solver=None), text_signature = "(moving, fixed, direction, *, \
-            moving_pose=None, fixed_pose=None, graze_tolerance=0.0, solver='auto')")]
+            graze_tolerance=0.0, keep=0.0, solver=None), text_signature = "(moving, fixed, \
+            direction, *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, keep=0.0, \
+            solver='auto')")]
         #[expect(clippy::too_many_arguments, reason = "they are keywords")]
         pub(crate) fn $name<'py>(
             py: Python<'py>,
@@ -202,10 +207,12 @@ macro_rules! question {
             moving_pose: Option<&Bound<'py, PyAny>>,
             fixed_pose: Option<&Bound<'py, PyAny>>,
             graze_tolerance: f64,
+            keep: f64,
             solver: Option<&Bound<'py, PyString>>,
         ) -> PyResult<Bound<'py, PyAny>> {
             let poses = [moving_pose, fixed_pose];
-            let asked = Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
+            let asked =
+                Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
             answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask())
         }
     };
@@ -217,9 +224,10 @@ macro_rules! question_of_any {
         $(#[$doc])*
         #[pyfunction]
         #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-            graze_tolerance=None, solver=None, tolerance=None, ignore_start_overlaps=false),
-            text_signature = "(moving, fixed, direction, *, moving_pose=None, fixed_pose=None, \
-            graze_tolerance=None, solver='auto', tolerance=None, ignore_start_overlaps=False)")]
+            graze_tolerance=None, keep=0.0, solver=None, tolerance=None,
+            ignore_start_overlaps=false), text_signature = "(moving, fixed, direction, *, \
+            moving_pose=None, fixed_pose=None, graze_tolerance=None, keep=0.0, solver='auto', \
+            tolerance=None, ignore_start_overlaps=False)")]
         #[expect(clippy::too_many_arguments, reason = "they are keywords")]
         pub(crate) fn $name<'py>(
             py: Python<'py>,
@@ -229,6 +237,7 @@ macro_rules! question_of_any {
             moving_pose: Option<&Bound<'py, PyAny>>,
             fixed_pose: Option<&Bound<'py, PyAny>>,
             graze_tolerance: Option<f64>,
+            keep: f64,
             solver: Option<&Bound<'py, PyString>>,
             tolerance: Option<f64>,
             ignore_start_overlaps: bool,
@@ -239,7 +248,8 @@ macro_rules! question_of_any {
                     return Err(error("QueryError", FOR_SOLIDS));
                 }
                 let graze_tolerance = graze_tolerance.unwrap_or_default();
-                let asked = Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
+                let asked =
+                    Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
                 return answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask());
             }
             if graze_tolerance.is_some() || solver_called(solver)? != Solver::Auto {
@@ -253,6 +263,7 @@ macro_rules! question_of_any {
                 moving_pose,
                 fixed_pose,
                 tolerance,
+                keep,
                 ignore_start_overlaps,
             )?;
             $ask_solids(&Bound::new(py, query)?)
@@ -277,6 +288,9 @@ question! {
     ///     Where the bodies are; see :class:`Pose`.
     /// graze_tolerance : float
     ///     Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
+    /// keep : float
+    ///     A gap to be kept, a length: asked is where the bodies are first as near as that, not where they
+    ///     touch.
     /// solver : {"auto", "cta", "portal"}
     ///     How the search is narrowed. Answers and certificates are the same.
     ///
@@ -308,7 +322,7 @@ question! {
     ///
     /// Parameters
     /// ----------
-    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, solver
+    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, keep, solver
     ///     As for :func:`cast`.
     ///
     /// Returns
@@ -336,6 +350,9 @@ question_of_any! {
     ///     The body that moves, and the one that does not.
     /// direction, moving_pose, fixed_pose
     ///     As for :func:`cast`.
+    /// keep : float
+    ///     A gap to be kept, a length: how far until the bodies are as near as that. Bodies that are nearer at
+    ///     the start overlap.
     /// graze_tolerance, solver
     ///     As for :func:`cast`; between convex bodies.
     /// tolerance, ignore_start_overlaps
@@ -358,6 +375,8 @@ question_of_any! {
     /// Blocked 0.0
     /// Slides inf
     /// Behind inf
+    /// >>> round(clearance(cube, cube, [0, 0, -1], moving_pose=[0, 0, 4], keep=0.25).distance, 9)
+    /// 2.75
     clearance => clearance, SolidCast::clearance
 }
 
@@ -366,7 +385,7 @@ question! {
     ///
     /// Parameters
     /// ----------
-    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, solver
+    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, keep, solver
     ///     As for :func:`cast`.
     ///
     /// Returns
@@ -390,6 +409,8 @@ question_of_any! {
     /// moving, fixed : ConvexPolyhedron or Solid
     /// direction, moving_pose, fixed_pose, graze_tolerance, solver, tolerance, ignore_start_overlaps
     ///     As for :func:`clearance`. The direction and the tolerances play no part.
+    /// keep : float
+    ///     Of convex bodies, a gap, a length: are they as near as that? For solids ask :func:`within`.
     ///
     /// Returns
     /// -------

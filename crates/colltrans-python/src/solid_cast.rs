@@ -34,6 +34,9 @@ use crate::solid::Piece;
 ///     as on the command line: twice what rounding may have made of the coordinates of both files
 ///     (:attr:`Solid.precision`), and no less than what turned poses need; 0 for bodies that are not of
 ///     files where both poses turn by quarter turns.
+/// keep : float
+///     A gap to be kept, a length: asked is where the bodies, shrunk by half the tolerance each, are as near
+///     as that, not where they touch.
 /// ignore_start_overlaps : bool
 ///     Whether facets that cross now do not block, but contacts that begin later do.
 ///
@@ -76,8 +79,9 @@ impl SolidCast {
         let solids = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
         let [moving, fixed] = [0, 1].map(|i| solids[i].at(self.poses[i]));
         let precisions = [0, 1].map(|i| self.bodies[i].precision());
-        let SolidOptions { tolerance, start_overlap, .. } = self.options;
+        let SolidOptions { tolerance, start_overlap, keep, .. } = self.options;
         between(moving, fixed, self.direction, precisions, tolerance, start_overlap)
+            .and_then(|cast| cast.keeping(keep))
             .map(|cast| question(&cast))
             .map_err(|what| error("QueryError", what))
     }
@@ -159,7 +163,7 @@ pub(crate) fn patiently<T: Send + 'static>(
 impl SolidCast {
     #[new]
     #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-        tolerance=None, ignore_start_overlaps=false))]
+        tolerance=None, keep=0.0, ignore_start_overlaps=false))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     pub(crate) fn new(
         py: Python<'_>,
@@ -169,6 +173,7 @@ impl SolidCast {
         moving_pose: Option<&Bound<'_, PyAny>>,
         fixed_pose: Option<&Bound<'_, PyAny>>,
         tolerance: Option<f64>,
+        keep: f64,
         ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
         let start_overlap =
@@ -179,6 +184,7 @@ impl SolidCast {
             direction: vector(direction, "direction")?,
             options: SolidOptions::default()
                 .with_tolerance(tolerance)
+                .with_keep(keep)
                 .with_start_overlap(start_overlap),
         };
         py.detach(|| cast.run(|_| ()))?;
@@ -189,6 +195,12 @@ impl SolidCast {
     #[getter]
     fn tolerance(&self, py: Python<'_>) -> PyResult<f64> {
         py.detach(|| self.run(|cast| cast.tolerance()))
+    }
+
+    /// float: The gap to be kept; 0 if there is none.
+    #[getter]
+    fn keep(&self) -> f64 {
+        self.options.keep
     }
 
     /// ndarray of shape (3,): The direction, as given.
@@ -218,6 +230,7 @@ impl SolidCast {
         named.set_item("moving_pose", self.moving_pose())?;
         named.set_item("fixed_pose", self.fixed_pose())?;
         named.set_item("tolerance", self.options.tolerance)?;
+        named.set_item("keep", self.options.keep)?;
         let ignores = self.options.start_overlap == StartOverlap::Ignore;
         named.set_item("ignore_start_overlaps", ignores)?;
         Ok(((self.moving(py), self.fixed(py), self.direction.to_array()), named))

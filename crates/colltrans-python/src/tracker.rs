@@ -103,9 +103,9 @@ macro_rules! questions {
             $(
                 $(#[$doc])*
                 #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-                    graze_tolerance=0.0, solver=None), text_signature = "($self, moving, fixed, \
-                    direction, *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, \
-                    solver='auto')")]
+                    graze_tolerance=0.0, keep=0.0, solver=None), text_signature = "($self, \
+                    moving, fixed, direction, *, moving_pose=None, fixed_pose=None, \
+                    graze_tolerance=0.0, keep=0.0, solver='auto')")]
                 #[expect(clippy::too_many_arguments, reason = "they are keywords")]
                 fn $name<'py>(
                     &mut self,
@@ -116,11 +116,19 @@ macro_rules! questions {
                     moving_pose: Option<&Bound<'py, PyAny>>,
                     fixed_pose: Option<&Bound<'py, PyAny>>,
                     graze_tolerance: f64,
+                    keep: f64,
                     solver: Option<&Bound<'py, PyString>>,
                 ) -> PyResult<Bound<'py, PyAny>> {
                     let poses = [moving_pose, fixed_pose];
-                    let arguments =
-                        Arguments { moving, fixed, direction, poses, graze_tolerance, solver };
+                    let arguments = Arguments {
+                        moving,
+                        fixed,
+                        direction,
+                        poses,
+                        graze_tolerance,
+                        keep,
+                        solver,
+                    };
                     let query = Bound::new(py, Cast::of(arguments)?)?;
                     self.ask(py, query.get(), |tracker, cast| tracker.$ask(cast))?.object(&query)
                 }

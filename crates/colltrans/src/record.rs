@@ -8,12 +8,13 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::among::{Among, AnyClearance, AnyNear, ByKind, ClearanceAmong, Nearby, Nearest};
 use crate::answer::{
     Bounded, Clearance, Contact, ContactRange, Depth, Distance, Grazing, Outcome, OverlapAhead,
     Separated, Solver, Steps, WhyFree, Within,
 };
 use crate::body::solid::Solid;
-use crate::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex};
+use crate::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex, ObstacleId};
 use crate::cast::Cast;
 use crate::pair::solid::OverlapDepth;
 use crate::pair::{Pair, points};
@@ -76,6 +77,18 @@ pub struct Record {
     /// The same of the fixed body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed: Option<String>,
+    /// One body among many: the number of the one that is told of, the nearest or the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<ObstacleId>,
+    /// One body among many: how many were asked about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub obstacles: Option<usize>,
+    /// One body among many: those that are at most the length away, in the order in which they came.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closer: Option<Vec<NearbyRecord>>,
+    /// One body among many: those of which rounding cannot tell.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub undecided: Vec<NearbyRecord>,
     /// Unit normal from the moving to the fixed body: of the contact plane, of the separating one, or along
     /// the shortest way.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -171,6 +184,24 @@ pub struct StartOverlapRecord {
     /// The least tolerance with which they would not overlap, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub least_tolerance: Option<f64>,
+}
+
+/// One of many bodies, and how far it is.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct NearbyRecord {
+    /// Its number.
+    pub obstacle: ObstacleId,
+    /// Its name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<String>,
+    /// A length that the distance is not below, where it was looked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    /// One that it is not above.
+    pub upper: f64,
+    /// Points of the moving and of this body that are so far apart, in the world, rounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<[[f64; 3]; 2]>,
 }
 
 /// The features of both bodies in the contact plane.
@@ -537,6 +568,65 @@ impl Record {
         })
     }
 
+    /// Of [`Among::nearest`]; `among` is what was asked.
+    pub fn of_nearest(nearest: &Nearest, among: &Among<'_>) -> Self {
+        let Nearest { obstacle, ref distance, lower, .. } = *nearest;
+        let record = match (among.pair_with(obstacle), distance) {
+            (Some(ByKind::Convex(pair)), ByKind::Convex(of)) => Self::of_distance(of, &pair),
+            (Some(ByKind::Solid(pair)), ByKind::Solid(of)) => Self::of_distance(of, &pair),
+            // It has gone since.
+            _ => Self { upper: Some(distance.upper()), ..Self::default() },
+        };
+        let outcome = if lower > 0.0 { Ending::Apart } else { Ending::Meeting };
+        Self { outcome, lower: Some(lower), ..record }.among(Some(obstacle), among)
+    }
+
+    /// Of [`Among::within`]: *closer* if one is, *undecided* if rounding cannot tell of one, else *farther*.
+    pub fn of_nearby(nearby: &Nearby, among: &Among<'_>) -> Self {
+        let outcome = match (nearby.closer.is_empty(), nearby.undecided.is_empty()) {
+            (false, _) => Ending::Closer,
+            (true, false) => Ending::Undecided,
+            (true, true) => Ending::Farther,
+        };
+        let closer = nearby.closer.iter().map(|(obstacle, near)| NearbyRecord {
+            obstacle: *obstacle,
+            upper: near.distance(),
+            points: points_of(*obstacle, near, among),
+            ..NearbyRecord::default()
+        });
+        let undecided = nearby.undecided.iter().map(|(obstacle, distance)| NearbyRecord {
+            obstacle: *obstacle,
+            lower: Some(distance.lower()),
+            upper: distance.upper(),
+            points: Some([distance.on_moving(), distance.on_fixed()].map(coordinates)),
+            ..NearbyRecord::default()
+        });
+        let (closer, undecided) = (Some(closer.collect()), undecided.collect());
+        Self { outcome, closer, undecided, ..Self::default() }.among(None, among)
+    }
+
+    /// Of [`Among::clearance`]; `among` is what was asked. The distance is that of all obstacles together, the
+    /// contact that of the one which stops the body.
+    pub fn of_clearance_among(found: &ClearanceAmong, among: &Among<'_>, direction: DVec3) -> Self {
+        let obstacle = found.stop.map(|(id, _)| id);
+        let record = found.stop.and_then(|(id, stop)| {
+            Some(match (among.cast_at(id, direction)?, stop) {
+                (ByKind::Convex(cast), AnyClearance::Convex(of)) => Self::of_clearance(&of, &cast),
+                (ByKind::Solid(cast), AnyClearance::Solid(of)) => Self::of_solids(&of, None, &cast),
+                _ => return None,
+            })
+        });
+        let keep = among.options().keep;
+        let free = || Self { outcome: Ending::Free, ..Self::default() }.keeping(keep);
+        let record = record.unwrap_or_else(free);
+        let distance = found.distance().filter(|distance| distance.is_finite());
+        Self { distance, ..record }.among(obstacle, among)
+    }
+
+    fn among(self, obstacle: Option<ObstacleId>, among: &Among<'_>) -> Self {
+        Self { obstacle, obstacles: Some(among.count()), ..self }
+    }
+
     fn closer(upper: f64, points: [DVec3; 2]) -> Self {
         let points = Some(points.map(coordinates));
         Self { outcome: Ending::Closer, upper: Some(upper), points, ..Self::default() }
@@ -603,6 +693,16 @@ impl FeatureRecord {
     pub fn of<B: Body>(feature: Feature, body: &B) -> Self {
         Self { kind: feature.kind(), vertices: feature.vertices(body) }
     }
+}
+
+/// Two points that are near, in the world; `None` if the obstacle has gone since.
+fn points_of(obstacle: ObstacleId, near: &AnyNear, among: &Among<'_>) -> Option<[[f64; 3]; 2]> {
+    let found = match (among.pair_with(obstacle)?, near) {
+        (ByKind::Convex(pair), ByKind::Convex(near)) => points(&pair.bodies, near),
+        (ByKind::Solid(pair), ByKind::Solid(near)) => pair.points(near).ok()?,
+        _ => return None,
+    };
+    Some(found.map(coordinates))
 }
 
 /// Which of two solids are open, at least in part.

@@ -3,9 +3,10 @@
 
 use colltrans::solid::StartOverlap;
 use colltrans::{
-    CaseError, Cast, CertificateError, ConvexPolyhedron, Pair, Pose, ProofFile, QueryError, Solid,
-    Statement,
+    Among, CaseError, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose,
+    ProofFile, QueryError, SceneProof, Solid, Statement,
 };
+use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, turned, washer};
 use glam::{DQuat, DVec3};
@@ -115,7 +116,106 @@ fn a_statement_fits_its_file() {
 }
 
 fn refused(file: &Value) -> bool {
-    ProofFile::from_json(&file.to_string()).map_or(true, |proof| proof.check().is_err())
+    let text = file.to_string();
+    if file.get("obstacles").is_some() {
+        return SceneProof::from_json(&text).map_or(true, |proof| proof.check().is_err());
+    }
+    ProofFile::from_json(&text).map_or(true, |proof| proof.check().is_err())
+}
+
+/// Of one body among many: written, read, checked.
+fn scene_holds(proof: &SceneProof, of: &str) -> Value {
+    let text = proof.to_json();
+    let read = SceneProof::from_json(&text).unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
+    read.check().unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
+    assert_eq!((read.to_json(), read.to_string()), (text.clone(), proof.to_string()));
+    serde_json::from_str(&text).expect("JSON")
+}
+
+#[test]
+fn scenes_of_every_family_have_proofs() {
+    let (mut nearest, mut shared) = (0, 0);
+    for family in among::FAMILIES {
+        for seed in 0..30 {
+            let setting = among::Setting::draw(family, seed).expect("a setting");
+            let (direction, length) = setting.questions();
+            let own = |id: ObstacleId| id.0 % 4 == 3;
+            for asked in
+                [setting.asked().expect("a scene")].map(|all| [all, all.ignoring(&own)]).concat()
+            {
+                let found = SceneProof::of_nearest(&asked).expect("an answer");
+                nearest += usize::from(found.is_some());
+                for proof in [
+                    found,
+                    Some(SceneProof::of_within(&asked, length).expect("an answer")),
+                    Some(SceneProof::of_clearance(&asked, direction).expect("an answer")),
+                ]
+                .into_iter()
+                .flatten()
+                {
+                    let file = scene_holds(&proof, family);
+                    let count = |name: &str| file[name].as_array().expect("a list").len();
+                    assert_eq!(proof.obstacles(), asked.count());
+                    assert_eq!(count("obstacles"), asked.count());
+                    shared += usize::from(count("bodies") < count("obstacles"));
+                }
+            }
+        }
+    }
+    assert!(nearest > 200 && shared > 200, "{nearest}, {shared}");
+}
+
+/// Cubes in a row, a washer in it, and a cube above the third: whatever number is changed for the worse.
+#[test]
+fn a_number_of_a_scene_that_is_changed_is_noticed() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    let mut row = Obstacles::new();
+    for k in 0..4 {
+        let place = DVec3::new(2.5 * f64::from(k), 0.1, 0.2);
+        row.insert(cube.clone(), Pose::new(DQuat::from_rotation_x(0.1), place).expect("a pose"));
+    }
+    row.insert(
+        solid(&washer([0.5, 1.0], [0.0, 0.5], 8)),
+        Pose::from_translation(DVec3::X * 30.0).expect("a pose"),
+    );
+    let start = Pose::from_translation(DVec3::new(5.25, 0.1, 4.0)).expect("a pose");
+    let asked = Among::new(cube.at(start), &row).expect("a scene");
+    let down = DVec3::new(0.0, 0.01, -1.0);
+    let [nearest, within, stop] = [
+        SceneProof::of_nearest(&asked).map(|found| found.expect("there are some")),
+        SceneProof::of_within(&asked, 3.5),
+        SceneProof::of_clearance(&asked, down),
+    ]
+    .map(|proof| scene_holds(&proof.expect("an answer"), "a row"));
+    let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
+    let down: [fn(f64) -> f64; 1] = [|x| x - 1e-9];
+    let far: [fn(f64) -> f64; 1] = [|x| x + 9.0];
+    assert_eq!(believed(&nearest, "/statement/nearest/lower", &up), [""; 0]);
+    assert_eq!(believed(&nearest, "/statement/nearest/near/convex/distance", &down), [""; 0]);
+    assert_eq!(believed(&nearest, "/statement/nearest/obstacle", &far), [""; 0]);
+    assert_eq!(believed(&within, "/statement/within/length", &far), [""; 0]);
+    assert_eq!(believed(&within, "/statement/within/closer/0/0", &far), [""; 0]);
+    assert_eq!(believed(&stop, "/statement/clearance/lower", &up), [""; 0]);
+    assert_eq!(believed(&stop, "/statement/clearance/stop", &far), [""; 0]);
+    for file in [&nearest, &within, &stop] {
+        // A cube that is elsewhere: the nearest one, or one that is now in the way.
+        let mut moved = file.clone();
+        moved["obstacles"][2] = file["obstacles"][0].clone();
+        assert!(refused(&moved));
+        let mut near = file.clone();
+        near["obstacles"][0]["pose"] = file["moving"]["pose"].clone();
+        assert!(refused(&near), "a cube where the moving one is");
+        let mut fewer = file.clone();
+        fewer["obstacles"] = json!([]);
+        assert!(refused(&fewer));
+        let mut other = file.clone();
+        other["statement"] = json!({"nearest": {}, "within": {}});
+        assert!(refused(&other));
+    }
+    let mut none = nearest;
+    none["obstacles"][0]["body"] = json!(7);
+    let error = SceneProof::from_json(&none.to_string()).expect_err("there is no such body");
+    assert_eq!(error.to_string(), "a place names the body 7, and there are 6, from 0 on");
 }
 
 /// Changes of every number below a pointer, one at a time; names of those that are still believed.

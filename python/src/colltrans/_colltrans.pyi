@@ -223,6 +223,7 @@ class Cast:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
+        keep: float = 0.0,
         solver: _Solver = "auto",
     ) -> Cast: ...
     def first_contact(self) -> _Outcome: ...
@@ -247,6 +248,8 @@ class Cast:
     def direction(self) -> _Floats: ...
     @property
     def graze_tolerance(self) -> float: ...
+    @property
+    def keep(self) -> float: ...
     @property
     def solver(self) -> _Solver: ...
     def __reduce__(self) -> tuple[Any, Any]: ...
@@ -505,6 +508,7 @@ class SolidCast:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         tolerance: float | None = None,
+        keep: float = 0.0,
         ignore_start_overlaps: bool = False,
     ) -> SolidCast: ...
     def clearance(self) -> _SolidClearance: ...
@@ -518,6 +522,8 @@ class SolidCast:
     def reversed(self) -> SolidCast: ...
     @property
     def tolerance(self) -> float: ...
+    @property
+    def keep(self) -> float: ...
     @property
     def moving(self) -> Solid | ConvexPolyhedron: ...
     @property
@@ -717,6 +723,7 @@ class Obstacles:
         pose: _Pose = None,
         *,
         before: float | None = None,
+        keep: float = 0.0,
         ignore: Iterable[int] = (),
     ) -> ObstacleClearance: ...
     def nearest_many(
@@ -734,6 +741,7 @@ class Obstacles:
         poses: ArrayLike | Sequence[Pose],
         *,
         before: float | None = None,
+        keep: float = 0.0,
         ignore: Iterable[int] = (),
         threads: int | None = None,
     ) -> dict[str, NDArray[Any]]: ...
@@ -781,6 +789,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
+        keep: float = 0.0,
         solver: _Solver = "auto",
     ) -> _Outcome: ...
     def contact_range(
@@ -792,6 +801,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
+        keep: float = 0.0,
         solver: _Solver = "auto",
     ) -> ContactRange | Separated: ...
     def clearance(
@@ -803,6 +813,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
+        keep: float = 0.0,
         solver: _Solver = "auto",
     ) -> _Clearance: ...
     def directional_depth(
@@ -814,6 +825,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
+        keep: float = 0.0,
         solver: _Solver = "auto",
     ) -> DirectionalDepth: ...
     def intersects(
@@ -825,6 +837,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
+        keep: float = 0.0,
         solver: _Solver = "auto",
     ) -> Intersection: ...
 
@@ -836,6 +849,7 @@ def cast(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float = 0.0,
+    keep: float = 0.0,
     solver: _Solver = "auto",
 ) -> _Outcome: ...
 def contact_range(
@@ -846,6 +860,7 @@ def contact_range(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float = 0.0,
+    keep: float = 0.0,
     solver: _Solver = "auto",
 ) -> ContactRange | Separated: ...
 @overload
@@ -857,6 +872,7 @@ def clearance(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float | None = None,
+    keep: float = 0.0,
     solver: _Solver = "auto",
     tolerance: None = None,
     ignore_start_overlaps: Literal[False] = False,
@@ -870,6 +886,7 @@ def clearance(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
+    keep: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -883,6 +900,7 @@ def clearance(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
+    keep: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -895,6 +913,7 @@ def directional_depth(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float = 0.0,
+    keep: float = 0.0,
     solver: _Solver = "auto",
 ) -> DirectionalDepth: ...
 @overload
@@ -906,6 +925,7 @@ def intersects(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float | None = None,
+    keep: float = 0.0,
     solver: _Solver = "auto",
     tolerance: None = None,
     ignore_start_overlaps: Literal[False] = False,
@@ -919,6 +939,7 @@ def intersects(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
+    keep: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -932,6 +953,7 @@ def intersects(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
+    keep: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -992,6 +1014,7 @@ def ask_many(
     moving_pose: _Floats,
     fixed_pose: _Floats,
     graze_tolerance: _Floats,
+    keep: _Floats,
     solver: _Solver,
     threads: int | None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...

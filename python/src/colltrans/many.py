@@ -37,6 +37,7 @@ def cast_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
+    keep: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
 ) -> ContactColumns:
@@ -56,6 +57,8 @@ def cast_many(
         Which of the bodies.
     graze_tolerance : float or array_like of shape (N,)
         Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
+    keep : float or array_like of shape (N,)
+        A gap to be kept, a length: asked is where the bodies are first as near as that.
     solver : {"auto", "cta", "portal"}
         How the search is narrowed. Answers are the same.
     threads : int, optional
@@ -86,7 +89,7 @@ def cast_many(
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
-    queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, solver)
+    queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
     return ContactColumns(**queries.ask_all("contact", checked_threads(threads)))
 
 
@@ -100,6 +103,7 @@ def contact_range_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
+    keep: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
 ) -> RangeColumns:
@@ -109,7 +113,7 @@ def contact_range_many(
     ----------
     moving, fixed, direction, moving_pose, fixed_pose, moving_index, fixed_index
         As for :func:`cast_many`.
-    graze_tolerance, solver, threads
+    graze_tolerance, keep, solver, threads
         As for :func:`cast_many`.
 
     Returns
@@ -126,7 +130,7 @@ def contact_range_many(
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
-    queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, solver)
+    queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
     return RangeColumns(**queries.ask_all("range", checked_threads(threads)))
 
 
@@ -141,6 +145,7 @@ def clearance_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
+    keep: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
 ) -> ClearanceColumns: ...
@@ -154,6 +159,7 @@ def clearance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
+    keep: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
@@ -169,6 +175,7 @@ def clearance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
+    keep: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
@@ -184,6 +191,7 @@ def clearance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
+    keep: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
@@ -199,6 +207,7 @@ def clearance_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
+    keep: ArrayLike = 0.0,
     solver: Solver = "auto",
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
@@ -212,7 +221,7 @@ def clearance_many(
         As for :func:`cast_many`. If one of them is a solid, all rows are asked as solids.
     direction, moving_pose, fixed_pose, moving_index, fixed_index
         As for :func:`cast_many`.
-    graze_tolerance, solver, threads
+    graze_tolerance, keep, solver, threads
         As for :func:`cast_many`.
     tolerance : float or array_like of shape (N,), optional
         Of solids, as for :class:`SolidCast`.
@@ -229,6 +238,8 @@ def clearance_many(
     >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     >>> clearance_many(cube, cube, [[0, 0, -1], [1, 0, 0]], moving_pose=[0, 0, 1]).distance
     array([ 0., inf])
+    >>> clearance_many(cube, cube, [0, 0, -1], moving_pose=[0, 0, 4], keep=[0, 0.25]).distance
+    array([3.  , 2.75])
     """
     bodies, indices = (moving, fixed), (moving_index, fixed_index)
     poses = (moving_pose, fixed_pose)
@@ -237,9 +248,9 @@ def clearance_many(
             told = "graze_tolerance, solver: are for convex bodies; solids have tolerance"
             raise InputError(told)
         tolerances = None if tolerance is None else column(tolerance, "tolerance")
-        asked = queries_of(bodies, direction, poses, indices, 0.0, solver, tolerances)
+        asked = queries_of(bodies, direction, poses, indices, 0.0, keep, solver, tolerances)
         return ask_solids(asked, tolerances, ignore_start_overlaps, checked_threads(threads))
     if tolerance is not None or ignore_start_overlaps:
         raise InputError("tolerance, ignore_start_overlaps: are for solids")
-    queries = queries_of(bodies, direction, poses, indices, graze_tolerance, solver)
+    queries = queries_of(bodies, direction, poses, indices, graze_tolerance, keep, solver)
     return ClearanceColumns(**queries.ask_all("clearance", checked_threads(threads)))

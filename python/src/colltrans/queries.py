@@ -33,6 +33,7 @@ class Queries:
     direction: Floats
     poses: tuple[Floats, Floats]
     graze_tolerance: Floats
+    keep: Floats
     solver: Solver
     count: int
 
@@ -46,6 +47,7 @@ class Queries:
             self.direction,
             *self.poses,
             self.graze_tolerance,
+            self.keep,
             self.solver,
             threads,
         )
@@ -68,6 +70,7 @@ class Queries:
             row_of(self.direction, i),
             moving_pose=row_of(self.poses[0], i),
             fixed_pose=row_of(self.poses[1], i),
+            keep=float(row_of(self.keep, i)[0]),
             **choices,
         )
 
@@ -93,6 +96,7 @@ def queries_of(
     poses: tuple[Poses, Poses],
     indices: tuple[ArrayLike | None, ArrayLike | None],
     graze_tolerance: ArrayLike,
+    keep: ArrayLike,
     solver: Solver,
     tolerance: Floats | None = None,
 ) -> Queries:
@@ -104,6 +108,7 @@ def queries_of(
         "moving_pose": pose_table(poses[0], "moving_pose"),
         "fixed_pose": pose_table(poses[1], "fixed_pose"),
         "graze_tolerance": column(graze_tolerance, "graze_tolerance"),
+        "keep": column(keep, "keep"),
         "tolerance": np.zeros((1, 1)) if tolerance is None else tolerance,
     }
     return Queries(
@@ -112,6 +117,7 @@ def queries_of(
         direction=tables["direction"],
         poses=(tables["moving_pose"], tables["fixed_pose"]),
         graze_tolerance=tables["graze_tolerance"],
+        keep=tables["keep"],
         solver=solver,
         count=count_of(tables, (moving_index, fixed_index)),
     )

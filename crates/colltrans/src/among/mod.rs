@@ -27,7 +27,7 @@ use std::fmt;
 use glam::DVec3;
 
 use crate::body::solid::AsSolid;
-use crate::body::{Aabb, ObstacleId};
+use crate::body::{Aabb, ObstacleId, Pose};
 use crate::cast::Cast;
 use crate::cast::solid::SolidOptions;
 use crate::pair::Pair;
@@ -97,10 +97,10 @@ pub struct AmongSteps {
 }
 
 /// Two bodies of the same kind.
-type AnyPair<'a> = ByKind<Pair<'a>, Pair<'a, Solid>>;
+pub(crate) type AnyPair<'a> = ByKind<Pair<'a>, Pair<'a, Solid>>;
 
 /// The same, and a direction.
-type AnyCast<'a> = ByKind<Cast<'a>, Cast<'a, Solid>>;
+pub(crate) type AnyCast<'a> = ByKind<Cast<'a>, Cast<'a, Solid>>;
 
 impl<'a> Among<'a> {
     /// A placed body among obstacles, with the default choices.
@@ -155,6 +155,24 @@ impl<'a> Among<'a> {
         self.moving
     }
 
+    /// Where the moving body is.
+    pub fn moving_pose(&self) -> Pose {
+        match self.moving {
+            ByKind::Convex(placed) => placed.pose,
+            ByKind::Solid(placed) => placed.pose,
+        }
+    }
+
+    /// The choices of casts at convex bodies.
+    pub fn options(&self) -> Options {
+        self.options
+    }
+
+    /// The choices of casts of solids.
+    pub fn solid_options(&self) -> SolidOptions {
+        self.solid_options
+    }
+
     /// All obstacles, those that are ignored as well.
     pub fn obstacles(&self) -> &'a Obstacles {
         self.obstacles
@@ -179,6 +197,33 @@ impl<'a> Among<'a> {
     /// Those that are asked about, in no order.
     fn asked(&self) -> impl Iterator<Item = &'a Obstacle> {
         self.obstacles.placed().iter().filter(|obstacle| !self.is_ignored(obstacle.id))
+    }
+
+    /// How many obstacles are asked about.
+    pub fn count(&self) -> usize {
+        if self.ignored.is_none() { self.obstacles.len() } else { self.asked().count() }
+    }
+
+    /// The moving body and an obstacle, if there is such a one.
+    #[cfg(feature = "serde")]
+    pub(crate) fn pair_with(&self, id: ObstacleId) -> Option<AnyPair<'a>> {
+        let item = self.obstacles.item(id).ok()?;
+        self.pair(self.obstacle(item)).ok()
+    }
+
+    /// The same, and a direction.
+    #[cfg(feature = "serde")]
+    pub(crate) fn cast_at(&self, id: ObstacleId, direction: DVec3) -> Option<AnyCast<'a>> {
+        let item = self.obstacles.item(id).ok()?;
+        self.cast(self.obstacle(item), direction).ok()
+    }
+
+    /// The same, in the order in which they came.
+    #[cfg(feature = "json")]
+    pub(crate) fn asked_in_order(&self) -> impl Iterator<Item = (&'a AnyBody, Pose)> {
+        let mut all: Vec<&Obstacle> = self.asked().collect();
+        all.sort_unstable_by_key(|one| one.id);
+        all.into_iter().map(|one| (&one.body, one.pose))
     }
 
     fn obstacle(&self, item: u32) -> &'a Obstacle {

@@ -66,6 +66,14 @@ pub enum CaseError {
          or a depth"
     )]
     Statement,
+    /// A place of a scene is that of a body that is not there.
+    #[error("a place names the body {body}, and there are {known}, from 0 on")]
+    NoBody {
+        /// The one that is named.
+        body: usize,
+        /// How many there are.
+        known: usize,
+    },
     /// A solid that its own facets do not make once more.
     #[error("{which} body: its facets alone do not say what it is")]
     Changed {

@@ -1,11 +1,14 @@
 //! The file: what it holds, written and read.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::statement::{Contacts, DistanceStatement, SolidStatement, Statement};
 use super::{Along, Bodies, ProofFile};
 use crate::answer::{Depth, Separation};
+use crate::body::ConvexPolyhedron;
 use crate::body::pose::PoseRecord;
 use crate::body::solid::{Solid, SolidError};
 use crate::cast::CaseError;
@@ -50,23 +53,12 @@ impl ProofFile {
     /// # Errors
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
-        #[derive(Deserialize)]
-        struct Named {
-            format: String,
-        }
-        // Some editors begin a file with a byte-order mark.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let Named { format } = serde_json::from_str(text).map_err(CaseError::Proof)?;
-        if format != FORMAT {
-            return Err(CaseError::Format { found: format, known: FORMAT });
-        }
+        let text = said(text, FORMAT)?;
         let file: File<StatementRecord> = serde_json::from_str(text).map_err(CaseError::Proof)?;
         let bodies = match (file.moving, file.fixed) {
             (BodyFile::Convex(moving), BodyFile::Convex(fixed)) => {
-                let body = |record: BodyRecord, which| {
-                    record.body().map_err(|error| CaseError::Body { which, error })
-                };
-                Bodies::Convex(Box::new([body(moving, "moving")?, body(fixed, "fixed")?]))
+                let moving = convex_body(&moving, "moving")?;
+                Bodies::Convex(Box::new([moving, convex_body(&fixed, "fixed")?]))
             }
             (BodyFile::Pieces(moving), BodyFile::Pieces(fixed)) => Bodies::Solids {
                 made: Box::new([union(&moving, "moving")?, union(&fixed, "fixed")?]),
@@ -139,9 +131,27 @@ impl StatementRecord {
     }
 }
 
+/// A file of this format, as it is read: some editors begin one with a byte-order mark.
+pub(super) fn said<'a>(text: &'a str, known: &'static str) -> Result<&'a str, CaseError> {
+    #[derive(Deserialize)]
+    struct Named {
+        format: String,
+    }
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let Named { format: found } = serde_json::from_str(text).map_err(CaseError::Proof)?;
+    if found == known { Ok(text) } else { Err(CaseError::Format { found, known }) }
+}
+
+pub(super) fn convex_body(
+    record: &BodyRecord,
+    which: &'static str,
+) -> Result<ConvexPolyhedron, CaseError> {
+    record.body().map_err(|error| CaseError::Body { which, error })
+}
+
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum BodyFile {
+pub(super) enum BodyFile {
     Convex(BodyRecord),
     Pieces(Vec<PieceRecord>),
 }
@@ -157,12 +167,39 @@ pub(super) struct PieceRecord {
 }
 
 impl PieceRecord {
-    fn of(solid: &Solid) -> Self {
+    pub(super) fn of(solid: &Solid) -> Self {
         Self {
             vertices: solid.vertices().iter().map(DVec3::to_array).collect(),
             triangles: solid.triangles().to_vec(),
             open: !solid.is_closed(),
         }
+    }
+
+    /// The parts of a solid that have no vertex in common, each by itself.
+    pub(super) fn parts(solid: &Solid) -> Vec<Self> {
+        // Every vertex leads to a lower one that it hangs together with, the lowest to itself.
+        let mut lower: Vec<u32> = (0..solid.vertices().len() as u32).collect();
+        for triangle in solid.triangles() {
+            let roots = triangle.map(|v| lowest(&lower, v));
+            let least = roots.into_iter().min().unwrap_or_default();
+            roots.into_iter().chain(*triangle).for_each(|v| lower[v as usize] = least);
+        }
+        let mut parts: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
+        for triangle in solid.triangles() {
+            parts.entry(lowest(&lower, triangle[0])).or_default().push(*triangle);
+        }
+        let part = |triangles: Vec<[u32; 3]>| {
+            let (mut vertices, mut numbers) = (Vec::new(), BTreeMap::new());
+            let mut number = |v: u32| {
+                *numbers.entry(v).or_insert_with(|| {
+                    vertices.push(solid.vertices()[v as usize].to_array());
+                    vertices.len() as u32 - 1
+                })
+            };
+            let triangles = triangles.into_iter().map(|t| t.map(&mut number)).collect();
+            Self { vertices, triangles, open: !solid.is_closed() }
+        };
+        parts.into_values().map(part).collect()
     }
 
     fn solid(&self) -> Result<Solid, SolidError> {
@@ -175,7 +212,15 @@ impl PieceRecord {
     }
 }
 
-fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError> {
+/// The lowest vertex that one leads to.
+fn lowest(lower: &[u32], mut v: u32) -> u32 {
+    while lower[v as usize] != v {
+        v = lower[v as usize];
+    }
+    v
+}
+
+pub(super) fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError> {
     let refused = |error| CaseError::Solid { which, error };
     let solids: Result<Vec<Solid>, SolidError> = pieces.iter().map(PieceRecord::solid).collect();
     let mut solids = solids.map_err(refused)?;
@@ -202,7 +247,7 @@ pub(super) fn again(
 }
 
 /// Whether two solids have the same facets, in whatever order.
-fn is_same(a: &Solid, b: &Solid) -> bool {
+pub(super) fn is_same(a: &Solid, b: &Solid) -> bool {
     let facets = |solid: &Solid| {
         // Without -0.
         let corner = |v: u32| (solid.vertices()[v as usize] + 0.0).to_array().map(f64::to_bits);

@@ -5,8 +5,10 @@
 //! in a tree, so it is made for the bodies as they are read back from the file.
 //!
 //! [`statement`] is what is said of bodies, and how it is checked; [`file`] writes and reads it; [`words`] tell it.
+//! [`scene`] is all of that of one body among many.
 
 mod file;
+mod scene;
 mod statement;
 mod words;
 
@@ -21,6 +23,7 @@ use crate::cast::{CaseError, Cast};
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use file::{Pieces, again};
+pub use scene::{SceneProof, SceneStatement};
 use statement::options;
 pub use statement::{Contacts, DistanceStatement, Slide, SolidStatement, Statement, Stop};
 

@@ -78,8 +78,8 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     ----------
     queries : pyarrow.Table or pyarrow.RecordBatch
         Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and, if there
-        are any, ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance`` and ``id``. A
-        distance, a depth and *within* have no ``direction``, the last has ``length``.
+        are any, ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``keep`` and
+        ``id``. A distance, a depth and *within* have no ``direction``, the last has ``length``.
     bodies : Bodies
     options : Options
 
@@ -106,8 +106,8 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     elif options.question not in PLACED:
         arguments["solver"] = options.solver
         sides.append(_vectors(queries, "direction", (3,)))
-        if "graze_tolerance" in queries.schema.names:
-            arguments["graze_tolerance"] = _numbers_of(queries, "graze_tolerance", 0.0)
+        for name in {"graze_tolerance", "keep"} & set(queries.schema.names):
+            arguments[name] = _numbers_of(queries, name, 0.0)
     columns: Table[Any] = QUESTIONS[options.question](*sides, **arguments)
     answers = columns.to_arrow()
     if REFUSED in queries.schema.names:
@@ -278,7 +278,7 @@ def _batches(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
 SIDES = ("moving", "fixed")
 #: Lists of numbers, and how many there may be.
 LISTS = {"direction": (3,), "moving_pose": (3, 7), "fixed_pose": (3, 7)}
-NUMBERS = ("graze_tolerance", "length")
+NUMBERS = ("graze_tolerance", "keep", "length")
 FIELDS = {"id", *SIDES, *LISTS, *NUMBERS}
 
 

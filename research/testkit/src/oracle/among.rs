@@ -120,12 +120,25 @@ impl Setting {
         Self { obstacles, moving, pose, direction, length, seed: 0 }
     }
 
+    /// The body among the obstacles.
+    ///
+    /// # Errors
+    /// As [`Among::new`].
+    pub fn asked(&self) -> Result<Among<'_>, QueryError> {
+        Among::new(self.moving.at(self.pose), &self.obstacles)
+    }
+
+    /// Along which direction, and within which length, it is asked.
+    pub const fn questions(&self) -> (DVec3, f64) {
+        (self.direction, self.length)
+    }
+
     /// Asks everything, and judges it.
     ///
     /// # Errors
     /// What is wrong.
     pub fn examine(&self) -> Result<Seen, String> {
-        let asked = Among::new(self.moving.at(self.pose), &self.obstacles).map_err(|e| text(&e))?;
+        let asked = self.asked().map_err(|e| text(&e))?;
         let mut seen = Seen { obstacles: self.obstacles.len(), ..Seen::default() };
         self.judge(&asked, &|_| false, &mut seen)?;
         let ignored = |id: ObstacleId| (id.0 ^ self.seed).is_multiple_of(3);

@@ -1,0 +1,131 @@
+"""A gap to be kept: as on the command line, alone, in bulk, among obstacles; what is refused."""
+
+import copy
+import math
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT, Batch, draw
+
+from colltrans import (
+    Cast,
+    ConvexPolyhedron,
+    Obstacles,
+    QueryError,
+    Solid,
+    SolidBlocked,
+    SolidCast,
+    Tracker,
+    cast,
+    cast_many,
+    check,
+    clearance,
+    clearance_many,
+    contact_range,
+    contact_range_many,
+    intersects,
+)
+
+CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+ABOVE = [0.0, 0, 4]
+DOWN = [0.0, 0, -1]
+
+
+def test_where_bodies_are_as_near_as_a_gap() -> None:
+    query = Cast(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
+    assert query.keep == 0.25
+    found: Any = query.first_contact()
+    assert found.certificate.lower <= 2.75 <= found.certificate.upper
+    assert found.certificate.verify() < 1e-12
+    assert found.to_dict()["keep"] == 0.25
+    assert contact_range(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25).interval == (2.75, 5.25)
+    assert bool(intersects(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5))
+    tracked: Any = Tracker().clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
+    assert tracked.distance == pytest.approx(2.75)
+    assert clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5).distance is None
+    for again in (copy.copy(query), pickle.loads(pickle.dumps(query))):
+        assert again.keep == 0.25
+        assert again.first_contact().translation == 2.75
+    with pytest.raises(check.NoProofError, match="keep a gap"):
+        check.check(found.proof_json())
+
+
+def test_solids_keep_gaps() -> None:
+    plate = Solid.read(ROOT / "data/plate.off")
+    for moving, fixed in ((CUBE, plate), (Solid.from_pieces([CUBE]), CUBE)):
+        bodies: Any = (moving, fixed)
+        touching: Any = clearance(*bodies, DOWN, moving_pose=[5, 0, 9], tolerance=0)
+        kept: Any = clearance(*bodies, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
+        if isinstance(touching, SolidBlocked):
+            assert kept.distance == pytest.approx(touching.distance - 0.5, abs=1e-10)
+        query = SolidCast(*bodies, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
+        again = pickle.loads(pickle.dumps(query))
+        assert (query.keep, again.keep) == (0.5, 0.5)
+        answer, proof = again.certified_clearance()
+        assert repr(answer) == repr(kept)
+        query.verify(proof)
+        with pytest.raises(QueryError, match="asked by `within`"):
+            intersects(*bodies, DOWN, keep=0.5)
+
+
+@pytest.mark.parametrize("gap", [-1.0, math.nan, math.inf, 1e70])
+def test_gaps_that_are_none_are_refused(gap: float) -> None:
+    solid = Solid.from_pieces([CUBE])
+    obstacles = Obstacles()
+    obstacles.add(CUBE)
+    for bodies in ((CUBE, CUBE), (solid, CUBE)):
+        asked: Any = bodies
+        with pytest.raises(QueryError, match="gap"):
+            clearance(*asked, DOWN, keep=gap)
+    with pytest.raises(QueryError, match="gap"):
+        cast(CUBE, CUBE, DOWN, keep=gap)
+    with pytest.raises(QueryError, match="gap"):
+        SolidCast(solid, CUBE, DOWN, keep=gap)
+    with pytest.raises(QueryError, match="gap"):
+        obstacles.clearance(CUBE, DOWN, keep=gap)
+    columns = cast_many(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=[gap, 0.0])
+    assert (list(columns.errors), columns.translation[1]) == ([0], 3)
+    assert "gap" in columns.errors[0]
+
+
+def test_rows_are_answered_as_alone_and_by_the_command_line(batch: Batch) -> None:
+    settings = draw(17, 300)
+    bodies = settings.bodies()
+    sides: Any = (bodies, bodies, settings.direction)
+    where: dict[str, Any] = {
+        "moving_pose": settings.moving_pose,
+        "fixed_pose": settings.fixed_pose,
+        "moving_index": settings.moving,
+        "fixed_index": settings.fixed,
+    }
+    told = batch(settings.lines(query="clearance", keep=0.125))
+    columns = clearance_many(*sides, **where, keep=0.125)
+    spans = contact_range_many(*sides, **where, keep=np.full(len(settings), 0.125))
+    for i, line in enumerate(told):
+        answer: Any = columns[i]
+        assert columns.outcomes[columns.outcome[i]] == line["outcome"]
+        if line["outcome"] == "blocked":
+            assert columns.distance[i] == line["distance"]
+            assert answer.to_dict()["translation_bounds"] == line["translation_bounds"]
+            assert answer.query.keep == 0.125
+            assert spans.translation[i] == line["translation"]
+    assert columns.counts()["blocked"] > 10
+
+
+def test_obstacles_are_kept_away() -> None:
+    obstacles = Obstacles()
+    obstacles.add_many(CUBE, [[2 * k, 0, 0] for k in range(50)])
+    obstacles.add(Solid.from_pieces([CUBE]), [200, 0, 0])
+    for x in (24.25, 200.25):
+        found = obstacles.clearance(CUBE, DOWN, [x, 0, 4], keep=0.5)
+        assert found.distance == pytest.approx(2.5, abs=1e-10)
+    # Between two of them, at half a unit from either.
+    aside = [25.0 - 0.2, 1.4, 4]
+    assert obstacles.clearance(CUBE, DOWN, aside).outcome == "free"
+    assert obstacles.clearance(CUBE, DOWN, aside, keep=0.5).outcome == "blocked"
+    many = obstacles.clearance_many(CUBE, DOWN, [[24.25, 0, 4], aside], keep=0.5)
+    assert many["outcome"].tolist() == [0, 0]
+    alone = obstacles.clearance(CUBE, DOWN, aside, keep=0.5)
+    assert many["distance"][1] == alone.distance

@@ -10,7 +10,7 @@ mod values;
 
 use clap::{Args, Parser, Subcommand};
 use colltrans::glam::DVec3;
-use colltrans::{Pose, Solver};
+use colltrans::{NarrowFrom, Narrowing, Pose, Solver, Until};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::failure::{Code, Failure};
@@ -21,7 +21,7 @@ use help::{
 };
 pub(crate) use placed::{PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction};
-use values::{angles, bytes, factor, length, picture, place, proof, solver, threads};
+use values::{angles, bytes, factor, length, picture, place, proof, solver, start, threads};
 
 /// How far can one body move along a direction before it touches another?
 ///
@@ -134,6 +134,18 @@ pub(crate) struct ClearanceArguments {
     pub(crate) pair: PairArguments,
 }
 
+/// From where, and how far, planar sections narrow the search.
+#[derive(Debug, Args)]
+pub(crate) struct NarrowingArguments {
+    /// Of --solver cta: where the minimisation starts [default: center]
+    #[arg(long, value_name = "WHERE", value_parser = start())]
+    start: Option<NarrowFrom>,
+    /// Of --solver cta: where it ends, at the `exit` test of the paper, or where its bounds are as near as this share
+    /// of the bodies' extent [default: exit]
+    #[arg(long, value_name = "exit|SHARE")]
+    until: Option<Until>,
+}
+
 /// What is asked of two bodies, and what becomes of the answer.
 #[derive(Debug, Args)]
 pub(crate) struct PairArguments {
@@ -142,6 +154,8 @@ pub(crate) struct PairArguments {
     /// Of convex bodies: how the search is narrowed; the answer is the same
     #[arg(long, value_parser = solver(), default_value_t = Solver::Auto)]
     pub(crate) solver: Solver,
+    #[command(flatten)]
+    narrowing: NarrowingArguments,
     /// Of convex bodies: sideways overlap up to which they slide along each other (grazing) instead of
     /// colliding
     ///
@@ -350,10 +364,21 @@ impl BodyArguments {
 }
 
 impl PairArguments {
+    /// How the solver narrows the search.
+    pub(crate) fn narrowing(&self) -> Result<Narrowing, Failure> {
+        let NarrowingArguments { start, until } = self.narrowing;
+        if self.solver != Solver::Cta && (start.is_some() || until.is_some()) {
+            return Err(Failure::new(Code::Usage, "--start and --until are of --solver cta"));
+        }
+        Ok(Narrowing::new(start.unwrap_or_default(), until.unwrap_or_default()))
+    }
+
     /// Whether something is asked that only convex bodies have.
     fn asks_convex(&self) -> bool {
         self.hulls.asks_convex(self.body)
             || self.solver != Solver::Auto
+            || self.narrowing.start.is_some()
+            || self.narrowing.until.is_some()
             || self.graze_tolerance != 0.0
     }
 

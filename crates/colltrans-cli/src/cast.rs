@@ -61,6 +61,7 @@ impl<'a> Request<'a> {
         let Self { arguments, poses, directions } = self;
         let options = Options::default()
             .with_solver(arguments.solver)
+            .with_narrowing(arguments.narrowing()?)
             .with_graze_tolerance(arguments.graze_tolerance)
             .with_keep(arguments.keep);
         let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));

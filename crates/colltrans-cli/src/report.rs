@@ -299,5 +299,13 @@ pub(crate) fn feature(feature: &FeatureRecord) -> String {
 fn work(solver: Solver, steps: Steps) -> String {
     // One-off queries start from scratch.
     let Steps { planar_problems, supports, pivots, .. } = steps;
-    format!("{solver}: {planar_problems} planar problems, {supports} supports, {pivots} pivots")
+    let sections = match steps {
+        Steps { planar_problems: 0, .. } => String::new(),
+        Steps { iterations, region_sides, .. } => {
+            format!(" ({iterations} iterations; a region of at most {region_sides} sides)")
+        }
+    };
+    format!(
+        "{solver}: {planar_problems} planar problems{sections}, {supports} supports, {pivots} pivots"
+    )
 }

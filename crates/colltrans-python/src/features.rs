@@ -42,6 +42,12 @@ impl Steps {
         self.0.iterations
     }
 
+    /// int: Sides that the region of section levels had at most; 0 if there was none.
+    #[getter]
+    fn region_sides(&self) -> u32 {
+        self.0.region_sides
+    }
+
     /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
     #[getter]
     fn started_from(&self) -> &'static str {

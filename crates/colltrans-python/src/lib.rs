@@ -35,6 +35,7 @@ mod questions;
 mod solid;
 mod solid_answer;
 mod solid_cast;
+mod solver;
 mod tracker;
 
 /// The module.
@@ -76,6 +77,8 @@ mod _colltrans {
     use crate::solid_answer::{SolidBlocked, SolidContact, SolidFree, SolidOverlapping};
     #[pymodule_export]
     use crate::solid_cast::SolidCast;
+    #[pymodule_export]
+    use crate::solver::Cta;
     #[pymodule_export]
     use crate::tracker::Tracker;
 }

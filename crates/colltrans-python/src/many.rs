@@ -25,12 +25,12 @@ use numpy::{
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::PyDict;
 
 use crate::arrays::coordinates;
 use crate::body;
-use crate::query::solver_called;
 use crate::solid::Solid;
+use crate::solver::options_of;
 
 /// Rows of a chunk: some hundred microseconds.
 const CHUNK: usize = 256;
@@ -559,14 +559,14 @@ pub(crate) fn ask_many<'py>(
     fixed_pose: PyReadonlyArray2<'py, f64>,
     graze_tolerance: PyReadonlyArray2<'py, f64>,
     keep: PyReadonlyArray2<'py, f64>,
-    solver: &Bound<'py, PyString>,
+    solver: &Bound<'py, PyAny>,
     threads: Option<usize>,
 ) -> PyResult<Answered<'py>> {
     let with = With::Direction {
         directions: table("direction", &direction, n)?,
         graze_tolerances: table("graze_tolerance", &graze_tolerance, n)?,
         keeps: table("keep", &keep, n)?,
-        options: Options::default().with_solver(solver_called(Some(solver))?),
+        options: options_of(Some(solver))?,
     };
     let question = Question::called(question)?;
     answered(py, n, question, [&moving, &fixed], [&moving_pose, &fixed_pose], with, threads)

@@ -5,16 +5,16 @@
 //! no time.
 
 use colltrans::glam::DVec3;
-use colltrans::{Options, QueryError, Solver};
+use colltrans::{Options, QueryError};
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
 
 use crate::arrays::{row, vector};
 use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, error, query_error};
 use crate::frozen::{Options as Shows, Shown, show};
 use crate::pose::{Pose, pose};
+use crate::solver::options_of;
 
 /// The arguments that all queries share.
 pub(crate) struct Arguments<'a, 'py> {
@@ -24,17 +24,7 @@ pub(crate) struct Arguments<'a, 'py> {
     pub(crate) poses: [Option<&'a Bound<'py, PyAny>>; 2],
     pub(crate) graze_tolerance: f64,
     pub(crate) keep: f64,
-    pub(crate) solver: Option<&'a Bound<'py, PyString>>,
-}
-
-/// A solver by its name; `auto` without.
-pub(crate) fn solver_called(name: Option<&Bound<'_, PyString>>) -> PyResult<Solver> {
-    name.map_or(Ok(Solver::Auto), |name| solver_called_by(name.to_str()?))
-}
-
-pub(crate) fn solver_called_by(name: &str) -> PyResult<Solver> {
-    let unknown = |_| error("QueryError", format_args!("no solver {name:?}: auto, cta or portal"));
-    name.parse().map_err(unknown)
+    pub(crate) solver: Option<&'a Bound<'py, PyAny>>,
 }
 
 /// A query as a value: two placed bodies and a direction, asked what one likes, saved and replayed.
@@ -52,7 +42,7 @@ pub(crate) fn solver_called_by(name: &str) -> PyResult<Solver> {
 /// keep : float
 ///     A gap to be kept, a length: all questions are then about where the bodies are as near as that, not
 ///     about where they touch. Points of answers are those that are the gap apart.
-/// solver : {"auto", "cta", "portal"}
+/// solver : {"auto", "cta", "portal"} or Cta
 ///     How the search is narrowed. Answers and certificates are the same. A body's first query with
 ///     "cta" that needs its sections makes them, and pays for it.
 ///
@@ -91,10 +81,7 @@ impl Cast {
             fixed: fixed.clone().unbind(),
             poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
             direction: vector(direction, "direction")?,
-            options: Options::default()
-                .with_solver(solver_called(solver)?)
-                .with_graze_tolerance(graze_tolerance)
-                .with_keep(keep),
+            options: options_of(solver)?.with_graze_tolerance(graze_tolerance).with_keep(keep),
         })
     }
 
@@ -149,7 +136,7 @@ impl Cast {
         fixed_pose: Option<&Bound<'_, PyAny>>,
         graze_tolerance: f64,
         keep: f64,
-        solver: Option<&Bound<'_, PyString>>,
+        solver: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let poses = [moving_pose, fixed_pose];
         let query =

@@ -2,7 +2,7 @@
 
 use colltrans::{QueryError, Solver};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyString};
+use pyo3::types::PyBool;
 
 use crate::answer::Answer;
 use crate::body::ConvexPolyhedron;
@@ -10,9 +10,10 @@ use crate::certificate::{Certificate, Separation, SolidCertificate};
 use crate::distance::{depth_of, distance_of, within_of};
 use crate::errors::{OrRaise, error};
 use crate::pair::Pair;
-use crate::query::{Arguments, Cast, solver_called};
+use crate::query::{Arguments, Cast};
 use crate::solid_answer::SolidOverlapping;
 use crate::solid_cast::SolidCast;
+use crate::solver::options_of;
 
 /// The answer as Python has it.
 fn answered<'py, A: Answer<Query = Cast>>(
@@ -208,7 +209,7 @@ macro_rules! question {
             fixed_pose: Option<&Bound<'py, PyAny>>,
             graze_tolerance: f64,
             keep: f64,
-            solver: Option<&Bound<'py, PyString>>,
+            solver: Option<&Bound<'py, PyAny>>,
         ) -> PyResult<Bound<'py, PyAny>> {
             let poses = [moving_pose, fixed_pose];
             let asked =
@@ -238,7 +239,7 @@ macro_rules! question_of_any {
             fixed_pose: Option<&Bound<'py, PyAny>>,
             graze_tolerance: Option<f64>,
             keep: f64,
-            solver: Option<&Bound<'py, PyString>>,
+            solver: Option<&Bound<'py, PyAny>>,
             tolerance: Option<f64>,
             ignore_start_overlaps: bool,
         ) -> PyResult<Bound<'py, PyAny>> {
@@ -252,7 +253,7 @@ macro_rules! question_of_any {
                     Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
                 return answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask());
             }
-            if graze_tolerance.is_some() || solver_called(solver)? != Solver::Auto {
+            if graze_tolerance.is_some() || options_of(solver)?.solver != Solver::Auto {
                 return Err(error("QueryError", FOR_CONVEX));
             }
             let query = SolidCast::new(
@@ -291,7 +292,7 @@ question! {
     /// keep : float
     ///     A gap to be kept, a length: asked is where the bodies are first as near as that, not where they
     ///     touch.
-    /// solver : {"auto", "cta", "portal"}
+    /// solver : {"auto", "cta", "portal"} or Cta
     ///     How the search is narrowed. Answers and certificates are the same.
     ///
     /// Returns

@@ -3,9 +3,8 @@
 //! The library's tracker borrows its bodies, so both live together in one cell, and other bodies get
 //! a new cell: a tracker makes nothing of its memory of others anyway.
 
-use colltrans::QueryError;
+use colltrans::{Focus, QueryError, Region};
 use pyo3::prelude::*;
-use pyo3::types::PyString;
 use self_cell::self_cell;
 
 use crate::answer::Answer;
@@ -30,6 +29,14 @@ self_cell!(
 /// Outcomes and certificates are those of the functions of the same names; poses, directions and
 /// bodies may jump: a poor beginning costs time, never the answer.
 ///
+/// Parameters
+/// ----------
+/// features : bool, optional
+///     Whether a query starts from the features that touched in the last answer. By default it does, unless its
+///     solver is "cta", which starts as in the paper: in the region around the last solution.
+/// region : "automatic", "everywhere" or float, optional
+///     That region, of "cta": the half-side of a square of section levels as a length, or by what has changed.
+///
 /// Examples
 /// --------
 /// >>> from colltrans import ConvexPolyhedron, Tracker
@@ -44,6 +51,7 @@ self_cell!(
 #[pyclass(module = "colltrans")]
 pub(crate) struct Tracker {
     tracked: Option<Tracked>,
+    focus: Option<Focus>,
     steps: colltrans::Steps,
 }
 
@@ -62,7 +70,13 @@ impl Tracker {
         };
         if !self.tracked.as_ref().is_some_and(same) {
             let owned = bodies.map(|body| body.clone_ref(py));
-            self.tracked = Some(Tracked::new(owned, |_| Borrowing::new()));
+            let begun = match self.focus {
+                None => Borrowing::new(),
+                Some(focus) => {
+                    Borrowing::new().with_focus(focus).map_err(|e| error("QueryError", &e))?
+                }
+            };
+            self.tracked = Some(Tracked::new(owned, |_| begun));
         }
         let Some(cell) = &mut self.tracked else {
             return Err(error("ColltransError", "no bodies"));
@@ -79,14 +93,39 @@ impl Tracker {
     }
 }
 
+/// What a tracker is told to make of its last answer; what it is not told is as by default.
+fn focus(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Focus>> {
+    if features.is_none() && region.is_none() {
+        return Ok(None);
+    }
+    let focus = Focus::default().with_features(features.unwrap_or(true));
+    let Some(region) = region else { return Ok(Some(focus)) };
+    let region = match region.extract::<f64>() {
+        Ok(half_side) => Region::Fixed(half_side),
+        Err(_) => match region.extract::<&str>()? {
+            "automatic" => Region::Automatic,
+            "everywhere" => Region::Everywhere,
+            other => {
+                let known = format_args!("no region {other:?}: automatic, everywhere or a length");
+                return Err(error("QueryError", known));
+            }
+        },
+    };
+    let focus = focus.with_region(region);
+    colltrans::Tracker::new().with_focus(focus).map_err(|e| error("QueryError", &e))?;
+    Ok(Some(focus))
+}
+
 /// A method that asks one question.
 macro_rules! questions {
     ($($(#[$doc:meta])* $name:ident => $ask:ident;)*) => {
         #[pymethods]
         impl Tracker {
             #[new]
-            fn new() -> Self {
-                Self { tracked: None, steps: colltrans::Steps::default() }
+            #[pyo3(signature = (*, features=None, region=None))]
+            fn new(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+                let focus = focus(features, region)?;
+                Ok(Self { tracked: None, focus, steps: colltrans::Steps::default() })
             }
 
             /// Forgets the last answer: the next query starts from scratch.
@@ -117,7 +156,7 @@ macro_rules! questions {
                     fixed_pose: Option<&Bound<'py, PyAny>>,
                     graze_tolerance: f64,
                     keep: f64,
-                    solver: Option<&Bound<'py, PyString>>,
+                    solver: Option<&Bound<'py, PyAny>>,
                 ) -> PyResult<Bound<'py, PyAny>> {
                     let poses = [moving_pose, fixed_pose];
                     let arguments = Arguments {

@@ -59,7 +59,7 @@ def cast_many(
         Sideways overlaps up to this length count as grazing. 0 stands for rounding error.
     keep : float or array_like of shape (N,)
         A gap to be kept, a length: asked is where the bodies are first as near as that.
-    solver : {"auto", "cta", "portal"}
+    solver : {"auto", "cta", "portal"} or Cta
         How the search is narrowed. Answers are the same.
     threads : int, optional
         By default all cores that this process may use. The bits do not depend on it.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _arrays, _colltrans
-from colltrans._colltrans import ConvexPolyhedron, Pose, Solid
+from colltrans._colltrans import ConvexPolyhedron, Cta, Pose, Solid
 from colltrans.errors import ColltransError, InputError
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ AnyBodies: TypeAlias = (
     "ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid | ColltransError]"
 )
 Poses: TypeAlias = "ArrayLike | Pose | HasMatrix | None"
-Solver: TypeAlias = Literal["auto", "cta", "portal"]
+Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
 Question: TypeAlias = Literal["contact", "range", "clearance"]
 
 

@@ -195,6 +195,7 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
    "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within",
    "length": L (of "within"),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
+   "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
    "tolerance": L, "ignore_start_overlaps": true|false (of solids), "keep": GAP}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
        or {"mesh": "path", "hull": true|false, "scale": FACTOR}

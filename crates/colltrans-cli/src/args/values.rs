@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::{Pose, Solver};
+use colltrans::{NarrowFrom, Pose, Solver};
 
 /// How far the length of a quaternion may be from 1 without a remark.
 const UNIT_LENGTH: f64 = 1e-6;
@@ -46,10 +46,20 @@ pub(crate) fn solver() -> impl TypedValueParser<Value = Solver> {
     let named = |solver: Solver, what| PossibleValue::new(solver.name()).help(what);
     PossibleValuesParser::new([
         named(Solver::Auto, "Whichever was measured to be fastest for bodies of these sizes"),
-        named(Solver::Cta, "The collision translation algorithm"),
+        named(Solver::Cta, "The collision translation algorithm, over planar sections (the paper)"),
         named(Solver::Portal, "Portal refinement"),
     ])
     .try_map(|name| name.parse::<Solver>())
+}
+
+/// Where a minimisation starts, by its name.
+pub(crate) fn start() -> impl TypedValueParser<Value = NarrowFrom> {
+    let named = |start: NarrowFrom, what| PossibleValue::new(start.name()).help(what);
+    PossibleValuesParser::new([
+        named(NarrowFrom::Center, "At the centre of all sections, as the paper"),
+        named(NarrowFrom::Ellipsoids, "Where ellipsoids would meet: often no section is needed"),
+    ])
+    .try_map(|name| name.parse::<NarrowFrom>())
 }
 
 /// A translation, and perhaps a rotation before it.

@@ -32,6 +32,8 @@ pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
         length: found.length,
         graze_tolerance: found.graze_tolerance,
         solver: found.solver,
+        start: None,
+        until: None,
         tolerance: None,
         ignore_start_overlaps: None,
         keep: found.keep,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::record::{PairQuestion, Question, Record};
-use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose};
+use colltrans::{Cast, ConvexPolyhedron, Narrowing, Options, Pair, Pose, Solver};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::{LoadError, Take};
 use serde::Deserialize;
@@ -231,9 +231,10 @@ impl<B> Query<'_, B> {
             ("direction", self.direction.is_some()),
             ("graze_tolerance", self.graze_tolerance.is_some()),
             ("solver", self.solver.is_some()),
+            ("start", self.start.is_some()),
+            ("until", self.until.is_some()),
             ("keep", self.keep.is_some()),
             ("tolerance", self.tolerance.is_some()),
-            ("keep", self.keep.is_some()),
             ("ignore_start_overlaps", self.ignore_start_overlaps.is_some()),
             ("length", self.length.is_some() && self.question != Some(Asked::Within)),
         ];
@@ -241,6 +242,14 @@ impl<B> Query<'_, B> {
             Some((field, _)) => Err(format!("`{field}` is not for this query")),
             None => Ok(Ask::Pair(question)),
         }
+    }
+
+    /// How the solver narrows the search.
+    fn narrowing(&self) -> Result<Narrowing, String> {
+        if self.solver != Some(Solver::Cta) && (self.start.is_some() || self.until.is_some()) {
+            return Err(r#"`start` and `until` are for "solver": "cta""#.into());
+        }
+        Ok(Narrowing::new(self.start.unwrap_or_default(), self.until.unwrap_or_default()))
     }
 
     fn of_convex(
@@ -255,6 +264,7 @@ impl<B> Query<'_, B> {
         }
         let options = Options::default()
             .with_solver(self.solver.unwrap_or_default())
+            .with_narrowing(self.narrowing()?)
             .with_graze_tolerance(self.graze_tolerance.unwrap_or_default())
             .with_keep(self.keep.unwrap_or_default());
         let (moving_at, fixed_at) = (moving.body.at(poses[0]), fixed.body.at(poses[1]));
@@ -283,8 +293,8 @@ impl<B> Query<'_, B> {
         if self.graze_tolerance.is_some() {
             return Err("`graze_tolerance` is for convex bodies; solids have `tolerance`".into());
         }
-        if self.solver.is_some() {
-            return Err("`solver` is for convex bodies".into());
+        if self.solver.is_some() || self.start.is_some() || self.until.is_some() {
+            return Err("`solver`, `start` and `until` are for convex bodies".into());
         }
         let [moving, fixed] = as_solids(shapes)?;
         let question = PartsQuery {

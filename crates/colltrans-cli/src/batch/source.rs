@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use colltrans::Solver;
+use colltrans::{NarrowFrom, Solver, Until};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -25,6 +25,9 @@ pub(super) struct Query<'a, Body> {
     pub(super) length: Option<f64>,
     pub(super) graze_tolerance: Option<f64>,
     pub(super) solver: Option<Solver>,
+    /// Of [`Solver::Cta`].
+    pub(super) start: Option<NarrowFrom>,
+    pub(super) until: Option<Until>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
     pub(super) keep: Option<f64>,

@@ -1,0 +1,96 @@
+//! How a search is narrowed: a solver by its name, or the paper's algorithm with its choices.
+
+use colltrans::{NarrowFrom, Narrowing, Options, Solver, Until};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::errors::error;
+
+/// The paper's algorithm with its choices, to be given as ``solver``.
+///
+/// Parameters
+/// ----------
+/// start : {"center", "ellipsoids"}
+///     Where the minimisation starts: at the centre of all sections, or where ellipsoids would meet.
+/// until : "exit" or float
+///     Where it ends: where the features that touch are seen to solve the problem, or before, where its bounds
+///     are as near as this share of the extent of both bodies along the direction.
+///
+/// Raises
+/// ------
+/// QueryError
+///     A start or an end that is none.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, Cta, cast
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> nearly = Cta(until=0.1)
+/// >>> nearly
+/// Cta(start='center', until=0.1)
+/// >>> cast(cube, cube, [1, 0, 0], moving_pose=[-3, 0.5, 0], solver=nearly).translation
+/// 2.0
+#[pyclass(frozen, eq, module = "colltrans")]
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Cta(Narrowing);
+
+#[pymethods]
+impl Cta {
+    #[new]
+    #[pyo3(signature = (*, start=None, until=None), text_signature = "(*, start='center', until='exit')")]
+    fn new(start: Option<&str>, until: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let Narrowing { start: default, .. } = Narrowing::default();
+        let start = start.map_or(Ok(default), |name| name.parse::<NarrowFrom>().map_err(refused));
+        let until = match until {
+            None => Ok(Until::default()),
+            Some(until) => until.str()?.to_str()?.parse::<Until>().map_err(refused),
+        };
+        Ok(Self(Narrowing::new(start?, until?)))
+    }
+
+    /// str: Where the minimisation starts.
+    #[getter]
+    fn start(&self) -> &'static str {
+        self.0.start.name()
+    }
+
+    /// str or float: Where it ends.
+    #[getter]
+    fn until<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(match self.0.until {
+            Until::Exit => "exit".into_pyobject(py)?.into_any(),
+            Until::Gap(gap) => gap.into_pyobject(py)?.into_any(),
+        })
+    }
+
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let named = PyDict::new(py);
+        named.set_item("start", self.start())?;
+        named.set_item("until", self.until(py)?)?;
+        Ok((PyTuple::empty(py), named))
+    }
+
+    fn __repr__(&self) -> String {
+        let quote = if self.0.until == Until::Exit { "'" } else { "" };
+        format!("Cta(start='{}', until={quote}{}{quote})", self.0.start, self.0.until)
+    }
+}
+
+fn refused(what: impl std::fmt::Display) -> PyErr {
+    error("QueryError", what)
+}
+
+/// Options with a solver; `auto` without.
+pub(crate) fn options_of(solver: Option<&Bound<'_, PyAny>>) -> PyResult<Options> {
+    let options = Options::default();
+    let Some(solver) = solver else { return Ok(options) };
+    if let Ok(cta) = solver.cast::<Cta>() {
+        return Ok(options.with_solver(Solver::Cta).with_narrowing(cta.get().0));
+    }
+    let name: &str = solver.extract()?;
+    let unknown = |_| error("QueryError", format_args!("no solver {name:?}: auto, cta or portal"));
+    Ok(options.with_solver(name.parse().map_err(unknown)?))
+}

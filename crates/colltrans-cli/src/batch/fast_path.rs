@@ -204,30 +204,41 @@ impl<'a> Reader<'a> {
         Some(numbers)
     }
 
-    /// A finite number.
+    /// A finite number, as JSON writes it: without a plus, with digits before and after the point, and no zero
+    /// before others.
     fn number(&mut self) -> Option<f64> {
         self.space();
-        let rest = self.text.get(self.at..)?;
-        let end = rest.bytes().position(|byte| !is_of_numbers(byte)).unwrap_or(rest.len());
-        self.at += end;
-        let written = rest.get(..end)?;
-        let number: f64 = written.parse().ok().filter(|_| is_json(written.as_bytes()))?;
+        let start = self.at;
+        self.skip(|byte| byte == b'-');
+        match self.peek()? {
+            b'0' => self.at += 1,
+            _ => self.digits()?,
+        }
+        if self.skip(|byte| byte == b'.') {
+            self.digits()?;
+        }
+        if self.skip(|byte| matches!(byte, b'e' | b'E')) {
+            self.skip(|byte| matches!(byte, b'-' | b'+'));
+            self.digits()?;
+        }
+        let number: f64 = self.text.get(start..self.at)?.parse().ok()?;
         Some(number).filter(|number| number.is_finite())
     }
-}
 
-fn is_of_numbers(byte: u8) -> bool {
-    matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+' | b'e' | b'E')
-}
+    /// Goes over a character, if it is such a one.
+    fn skip(&mut self, is_one: impl FnOnce(u8) -> bool) -> bool {
+        let found = self.peek().is_some_and(is_one);
+        self.at += usize::from(found);
+        found
+    }
 
-/// Whether a number that Rust reads is one of JSON too: without a plus, with digits before and after
-/// the point, and no zero before others.
-fn is_json(number: &[u8]) -> bool {
-    let number = number.strip_prefix(b"-").unwrap_or(number);
-    let is_digit = |at: usize| number.get(at).is_some_and(u8::is_ascii_digit);
-    let whole = number.iter().take_while(|byte| byte.is_ascii_digit()).count();
-    let plain = whole == 1 || whole > 1 && number[0] != b'0';
-    plain && (number.get(whole) != Some(&b'.') || is_digit(whole + 1))
+    /// One digit or more.
+    fn digits(&mut self) -> Option<()> {
+        let rest = self.text.as_bytes().get(self.at..)?;
+        let count = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        self.at += count;
+        (count > 0).then_some(())
+    }
 }
 
 #[cfg(test)]

@@ -63,6 +63,28 @@ fn who_cannot_be_asked_about_is_named() {
     assert!(stopped.lower > 1.9 && stopped.steps.bodies == 1);
 }
 
+/// Shrunk bodies meet later than they do as they are, and the later the more their facets are along the way.
+#[test]
+fn a_slanting_obstacle_stops_before_a_wall_behind_it() {
+    let solid = |body: &ConvexPolyhedron| Solid::from_convex(body).expect("a solid");
+    let cube = solid(&cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)));
+    let wall = solid(&cuboid(DVec3::new(3.5, -9.0, -9.0), DVec3::new(4.0, 9.0, 9.0)));
+    // Its upper side rises by one in ten: the lower edge of the cube in front, at z = -0.5, meets it at x = 3.45.
+    let corners = [[0.0, -0.845], [6.0, -0.245], [6.0, -2.0], [0.0, -2.0]];
+    let points: Vec<DVec3> =
+        corners.iter().flat_map(|[x, z]| [-1.0, 1.0].map(|y| DVec3::new(*x, y, *z))).collect();
+    let ramp = solid(&ConvexPolyhedron::from_points(&points).expect("a body"));
+    let mut scene = Obstacles::new();
+    let [_, ramp] = [wall, ramp].map(|body| scene.insert(body, Pose::IDENTITY));
+    let options = colltrans::solid::SolidOptions::default().with_tolerance(0.02);
+    let asked = Among::new(cube.at(Pose::IDENTITY), &scene).expect("solids");
+    let asked = asked.with_solid_options(options);
+    let found = asked.clearance(DVec3::X).expect("an answer");
+    assert_eq!(found.stop.map(|(id, _)| id), Some(ramp));
+    assert!((found.lower - 2.95).abs() < 1e-9, "{}", found.lower);
+    assert!((asked.clearance_before(DVec3::X, 2.97).expect("an answer").lower - 2.95).abs() < 1e-9);
+}
+
 #[test]
 fn few_boxes_are_looked_at() {
     let mut random = Random::new(11);

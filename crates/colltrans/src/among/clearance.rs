@@ -107,8 +107,11 @@ impl Among<'_> {
 }
 
 /// The clearance of two solids, or that they are free where it is clearly not below a limit.
+///
+/// Searches end by where shrunk bodies meet. Those that meet in their true place before the limit may do so, shrunk, any
+/// way behind it, if their facets are all but along the direction: the limit is of use without a tolerance only.
 fn clearance_below(cast: &Cast<'_, Solid>, limit: f64) -> Result<Clearance<Solid>, QueryError> {
-    if limit == f64::INFINITY {
+    if limit == f64::INFINITY || cast.tolerance() > 0.0 {
         return cast.clearance();
     }
     let beyond = BEYOND * cast.scene(0.0).noise / cast.setting.length;

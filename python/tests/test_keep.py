@@ -40,34 +40,38 @@ def test_where_bodies_are_as_near_as_a_gap() -> None:
     assert found.certificate.lower <= 2.75 <= found.certificate.upper
     assert found.certificate.verify() < 1e-12
     assert found.to_dict()["keep"] == 0.25
-    assert contact_range(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25).interval == (2.75, 5.25)
+    both: Any = contact_range(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
+    assert both.interval == (2.75, 5.25)
     assert bool(intersects(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5))
     tracked: Any = Tracker().clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
     assert tracked.distance == pytest.approx(2.75)
     assert clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5).distance is None
     for again in (copy.copy(query), pickle.loads(pickle.dumps(query))):
         assert again.keep == 0.25
-        assert again.first_contact().translation == 2.75
+        same: Any = again.first_contact()
+        assert same.translation == 2.75
     with pytest.raises(check.NoProofError, match="keep a gap"):
         check.check(found.proof_json())
 
 
 def test_solids_keep_gaps() -> None:
     plate = Solid.read(ROOT / "data/plate.off")
-    for moving, fixed in ((CUBE, plate), (Solid.from_pieces([CUBE]), CUBE)):
-        bodies: Any = (moving, fixed)
-        touching: Any = clearance(*bodies, DOWN, moving_pose=[5, 0, 9], tolerance=0)
-        kept: Any = clearance(*bodies, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
+    far: Any = clearance
+    meets: Any = intersects
+    pairs: list[tuple[Any, Any]] = [(CUBE, plate), (Solid.from_pieces([CUBE]), CUBE)]
+    for moving, fixed in pairs:
+        touching = far(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0)
+        kept = far(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
         if isinstance(touching, SolidBlocked):
             assert kept.distance == pytest.approx(touching.distance - 0.5, abs=1e-10)
-        query = SolidCast(*bodies, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
+        query = SolidCast(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
         again = pickle.loads(pickle.dumps(query))
         assert (query.keep, again.keep) == (0.5, 0.5)
         answer, proof = again.certified_clearance()
         assert repr(answer) == repr(kept)
         query.verify(proof)
         with pytest.raises(QueryError, match="asked by `within`"):
-            intersects(*bodies, DOWN, keep=0.5)
+            meets(moving, fixed, DOWN, keep=0.5)
 
 
 @pytest.mark.parametrize("gap", [-1.0, math.nan, math.inf, 1e70])
@@ -75,10 +79,10 @@ def test_gaps_that_are_none_are_refused(gap: float) -> None:
     solid = Solid.from_pieces([CUBE])
     obstacles = Obstacles()
     obstacles.add(CUBE)
-    for bodies in ((CUBE, CUBE), (solid, CUBE)):
-        asked: Any = bodies
+    for moving in (CUBE, solid):
+        far: Any = clearance
         with pytest.raises(QueryError, match="gap"):
-            clearance(*asked, DOWN, keep=gap)
+            far(moving, CUBE, DOWN, keep=gap)
     with pytest.raises(QueryError, match="gap"):
         cast(CUBE, CUBE, DOWN, keep=gap)
     with pytest.raises(QueryError, match="gap"):

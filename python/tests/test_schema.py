@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from conftest import ROOT, Batch, draw
 
-from colltrans import Cast, ConvexPolyhedron, Solid, SolidBlocked, SolidCast
+from colltrans import Cast, ConvexPolyhedron, Solid, SolidBlocked, SolidCast, check
 
 Draft202012Validator = pytest.importorskip("jsonschema").Draft202012Validator
 SCHEMA = json.loads((ROOT / "docs" / "answers.schema.json").read_text())
@@ -79,6 +79,47 @@ def test_answers_and_their_proofs(cli: Path, tmp_path: Path, words: list[str]) -
     file = json.loads(proof.read_text())
     conform("proof", file)
     conform("verified", ask(cli, ["verify", str(proof)]))
+
+
+SCENE = ["--among", "plate.off", "scene.jsonl", "--moving-pose"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["distance", "dodecahedron.off", *SCENE, "24.25,0,4"],
+        ["distance", "bolt.stl", *SCENE, "0,0,9"],
+        ["distance", "dodecahedron.off", *SCENE, "24.25,0,0"],
+        ["within", "dodecahedron.off", *SCENE, "24.25,0,4", "--length", "2.7"],
+        ["within", "dodecahedron.off", *SCENE, "24.25,0,4", "--length", "0.5"],
+        ["within", "box.off", *SCENE, "24,0,4", "--length", "3"],
+        ["clearance", "dodecahedron.off", *SCENE, "24.25,0,4", "--direction", "-z"],
+        ["clearance", "dodecahedron.off", *SCENE, "24.25,0,4", "--direction", "z"],
+        ["clearance", "dodecahedron.off", *SCENE, "24.25,0,0", "--direction", "z"],
+        ["clearance", "bolt.stl", *SCENE, "0,0,9", "--direction", "-z", "--keep", "0.25"],
+    ],
+)
+def test_one_body_among_many(cli: Path, tmp_path: Path, words: list[str]) -> None:
+    box = "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n"
+    box += "4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n"
+    (tmp_path / "box.off").write_text(box)
+    crate = {"mesh": "box.off"}
+    lines = [{"body": crate, "pose": {"translation": [2 * k, 0, 0]}} for k in range(5, 15)]
+    (tmp_path / "scene.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    here = {"scene.jsonl": tmp_path / "scene.jsonl", "box.off": tmp_path / "box.off"}
+    words = [str(here.get(word, word)) for word in words]
+    proof = tmp_path / "proof.json"
+    answer = ask(cli, [*words, "--save-proof", str(proof)])
+    conform("among", answer)
+    file = json.loads(proof.read_text())
+    conform("scene_proof", file)
+    conform("verified", ask(cli, ["verify", str(proof)]))
+    assert check.check(proof.read_text()).holds
+    # A body that has come nearer than what is claimed.
+    file["obstacles"][1]["pose"] = file["moving"]["pose"]
+    if answer["outcome"] not in ("meeting", "overlapping"):
+        with pytest.raises(check.RefusedError):
+            check.check(json.dumps(file))
 
 
 def plain(answer: Any) -> Any:

@@ -1,7 +1,7 @@
 //! The command line.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 mod assembly;
 mod help;
@@ -13,6 +13,7 @@ use colltrans::glam::DVec3;
 use colltrans::{NarrowFrom, Narrowing, Pose, Solver, Until};
 use colltrans_mesh::body::BodyOptions;
 
+use crate::among::is_list;
 use crate::failure::{Code, Failure};
 pub(crate) use assembly::AssemblyArguments;
 use help::{
@@ -112,6 +113,13 @@ pub(crate) struct ClearanceArguments {
     /// The meshes that stay, as one body: parts, that need not be convex
     #[arg(long, num_args = 1.., value_name = "FIXED")]
     from: Vec<PathBuf>,
+    /// The bodies that stay, of which the first one met is looked for: meshes, each in place, and files of
+    /// obstacles (.jsonl)
+    ///
+    /// A line of such a file is {"body": BODY, "pose": POSE, "name": "..."}, with a BODY and a POSE as in
+    /// `batch --help`; a body that occurs many times is kept once.
+    #[arg(long, num_args = 1.., value_name = "SCENE", conflicts_with_all = ["from", "picture", "fixed_pose", "fixed_rpy", "fixed_scale"])]
+    pub(crate) among: Vec<PathBuf>,
     /// Of parts: how deep bodies may enter each other [default: from the files' precision]
     ///
     /// In the unit of the meshes. Both bodies are shrunk by half of it. A curved fit of tessellated
@@ -205,40 +213,80 @@ pub(crate) enum Taken {
 }
 
 impl<'a> Sides<'a> {
-    /// Of the files of a command line that asks something that only convex bodies have, or only parts; what
-    /// to say of one that asks both.
-    fn of(
-        meshes: &'a [PathBuf],
-        from: &'a [PathBuf],
-        asks: [bool; 2],
-        clash: &str,
-    ) -> Result<Self, Failure> {
-        let usage = |message: &str| Err(Failure::new(Code::Usage, message));
+    /// Of the files of a command line.
+    fn of(meshes: &'a [PathBuf], from: &'a [PathBuf], taken: Taken) -> Result<Self, Failure> {
+        if let Some(list) = meshes.iter().chain(from).find(|file| is_list(file)) {
+            let list = list.display();
+            let message = format!(
+                "{list}: no mesh; obstacles in such a file stand behind --among, `colltrans batch` takes queries"
+            );
+            return Err(Failure::new(Code::Usage, message));
+        }
         let files = match (meshes, from) {
             ([_, _], []) => [&meshes[..1], &meshes[1..]],
-            (_, []) => return usage("give the mesh that moves and the one that stays, or --from"),
+            (_, []) => return Err(Failure::new(Code::Usage, not_two(meshes))),
             (moving, fixed) => [moving, fixed],
         };
-        let taken = match asks {
-            [false, false] => Taken::AsTheyAre,
-            [false, true] => Taken::Parts,
-            [true, false] => Taken::Convex,
-            [true, true] => return usage(clash),
-        };
         Ok(Self { files, taken })
+    }
+}
+
+/// What to do with fewer or more meshes than two.
+fn not_two(meshes: &[PathBuf]) -> String {
+    if meshes.len() < 2 {
+        return "give the mesh that moves and the one that stays, or --from, or --among".into();
+    }
+    let [first, rest] = [&meshes[..1], &meshes[1..]].map(|files| {
+        files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(" ")
+    });
+    format!(
+        "{} meshes, not two: `{first} --among {rest}` asks about one body among many, `{first} --from {rest}` \
+         about all of the others as one body",
+        meshes.len()
+    )
+}
+
+/// The one mesh before --among.
+fn one(meshes: &[PathBuf]) -> Result<&Path, Failure> {
+    match meshes {
+        [one] => Ok(one),
+        _ => Err(Failure::new(Code::Usage, "give one mesh before --among, the scene behind it")),
+    }
+}
+
+impl Taken {
+    /// Of a command line that asks something that only convex bodies have, or only parts; what to say of
+    /// one that asks both.
+    fn of(asks: [bool; 2], clash: &str) -> Result<Self, Failure> {
+        Ok(match asks {
+            [false, false] => Self::AsTheyAre,
+            [false, true] => Self::Parts,
+            [true, false] => Self::Convex,
+            [true, true] => return Err(Failure::new(Code::Usage, clash)),
+        })
     }
 }
 
 impl ClearanceArguments {
     /// Who moves, who stays, and as what.
     pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
+        Sides::of(&self.meshes, &self.from, self.taken()?)
+    }
+
+    /// As what meshes are taken.
+    pub(crate) fn taken(&self) -> Result<Taken, Failure> {
         let asks_parts = self.tolerance.is_some()
             || self.ignore_start_overlaps
             || self.open
             || !self.from.is_empty();
         let clash = "--solver, --graze-tolerance, --convex-tolerance and --hull are for two convex \
              meshes; --from, --tolerance, --ignore-start-overlaps and --open for parts";
-        Sides::of(&self.meshes, &self.from, [self.pair.asks_convex(), asks_parts], clash)
+        Taken::of([self.pair.asks_convex(), asks_parts], clash)
+    }
+
+    /// The one mesh before --among.
+    pub(crate) fn one(&self) -> Result<&Path, Failure> {
+        one(&self.meshes)
     }
 
     /// How the files of the moving and of the fixed body are read as parts.

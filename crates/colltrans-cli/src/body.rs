@@ -13,6 +13,8 @@ pub(crate) struct Part {
     /// What its hull has more than the mesh, where the hull was asked for and there is a
     /// difference.
     pub(crate) excess: Option<Excess>,
+    /// How far its file rounds coordinates, in the unit of the body.
+    pub(crate) precision: f64,
     /// What was mended when it was read.
     pub(crate) notes: Vec<String>,
 }
@@ -20,13 +22,13 @@ pub(crate) struct Part {
 impl Part {
     /// A body that is not of a file.
     pub(crate) const fn of(body: ConvexPolyhedron) -> Self {
-        Self { body, excess: None, notes: Vec::new() }
+        Self { body, excess: None, precision: 0.0, notes: Vec::new() }
     }
 }
 
 /// Reads a mesh file as a convex body.
 pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, LoadError> {
-    let Loaded { body, notes, .. } = colltrans_mesh::body::load_convex(path, options)?;
+    let Loaded { body, notes, precision } = colltrans_mesh::body::load_convex(path, options)?;
     let mut excess = None;
     let others = notes.iter().filter(|note| match note {
         // Said with the answer, because the answer means something else then.
@@ -37,7 +39,7 @@ pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, LoadError
         _ => true,
     });
     let notes = others.map(|note| of_file(path, note)).collect();
-    Ok(Part { body, excess, notes })
+    Ok(Part { body, excess, precision, notes })
 }
 
 /// A note with the name of its file.

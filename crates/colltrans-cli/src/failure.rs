@@ -91,11 +91,13 @@ impl Failure {
 
 impl From<colltrans::QueryError> for Failure {
     fn from(error: colltrans::QueryError) -> Self {
-        use colltrans::QueryError::{Direction, GrazeTolerance, Length, NothingLeft};
+        use colltrans::QueryError::{Direction, GrazeTolerance, Keep, Length, NothingLeft};
         let code = match error {
-            Direction { .. } | GrazeTolerance { .. } | Length { .. } | NothingLeft { .. } => {
-                Code::Usage
-            }
+            Direction { .. }
+            | GrazeTolerance { .. }
+            | Keep { .. }
+            | Length { .. }
+            | NothingLeft { .. } => Code::Usage,
             _ => Code::Query,
         };
         Self::new(code, error.to_string())

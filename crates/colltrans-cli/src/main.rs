@@ -5,10 +5,11 @@
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read, [`outputs`]
 //! writes files whole or not at all, [`terminal`] keeps names from steering it.
-//! [`distance`] asks two bodies where they are, in the same ways. [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
+//! [`distance`] asks two bodies where they are, in the same ways, [`among`] one body among many. [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
 //! others as parts, which [`solid`] makes of files; [`progress`] shows how far work is. [`proof`]
 //! saves proofs and checks saved ones.
 
+mod among;
 mod args;
 mod assembly;
 mod batch;
@@ -31,9 +32,11 @@ mod solid;
 mod terminal;
 
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, Parser};
 use colltrans::record::{PairQuestion, Question};
 
 use args::{Arguments, Command};
@@ -44,7 +47,7 @@ fn main() -> ExitCode {
     }));
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(told) => return told_by_the_parser(&told),
+        Err(told) => return told_by_the_parser(told),
     };
     let result = match arguments.command {
         Command::Cast(arguments) => cast::run(&arguments, Question::Contact),
@@ -68,12 +71,37 @@ fn main() -> ExitCode {
 
 /// Help, the version, or what is wrong with the arguments: these may be names of files, so they are
 /// written out where they would steer a terminal.
-fn told_by_the_parser(told: &clap::Error) -> ExitCode {
+fn told_by_the_parser(mut told: clap::Error) -> ExitCode {
     if !told.use_stderr() {
         let printed = told.print().and_then(|()| io::stdout().flush());
         return printed.map_or(ExitCode::FAILURE, |()| ExitCode::SUCCESS);
     }
+    if let Some(tip) = tip(&told) {
+        told.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
     let text = told.render().to_string();
     let _ = io::stderr().write_all(terminal::plain(&text).as_bytes());
     ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2))
+}
+
+/// Where what a command does not know belongs: an option of other commands, or one mesh more.
+fn tip(told: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(unknown)) = told.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    if told.kind() != ErrorKind::UnknownArgument {
+        return None;
+    }
+    let Some(long) = unknown.strip_prefix("--") else {
+        let is_mesh = colltrans_mesh::Format::of_path(Path::new(unknown)).is_ok();
+        let tip = "`colltrans clearance MOVING --among MESH...` asks about one body among many";
+        return is_mesh.then(|| tip.to_owned());
+    };
+    let has_it =
+        |command: &&clap::Command| command.get_arguments().any(|a| a.get_long() == Some(long));
+    let all = Arguments::command();
+    let known = all.get_subcommands().filter(has_it);
+    let names: Vec<_> =
+        known.map(|command| format!("`colltrans {}`", command.get_name())).collect();
+    (!names.is_empty()).then(|| format!("--{long} belongs to {}", names.join(", ")))
 }

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use colltrans::{DistanceStatement, ProofFile, Statement};
+use colltrans::{
+    CaseError, CertificateError, DistanceStatement, ProofFile, SceneProof, SceneStatement,
+    Statement,
+};
 use serde_json::{Map, Value, json};
 
 use crate::args::VerifyArguments;
@@ -24,7 +27,12 @@ pub(crate) fn refuse_proof(
 }
 
 pub(crate) fn save(path: &Path, proof: &ProofFile) -> Result<(), Failure> {
-    outputs::write(path, format!("{}\n", proof.to_json()).as_bytes())
+    save_text(path, &proof.to_json())
+}
+
+/// A proof as it is written.
+pub(crate) fn save_text(path: &Path, proof: &str) -> Result<(), Failure> {
+    outputs::write(path, format!("{proof}\n").as_bytes())
 }
 
 pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
@@ -32,10 +40,10 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     let input = |what: String| Failure::new(Code::Input, format!("{place}: {what}"));
     let text = colltrans_mesh::file::text(&arguments.proof)
         .map_err(|error| input(format!("cannot be read: {error}")))?;
-    let proof = ProofFile::from_json(&text).map_err(|error| input(error.to_string()))?;
+    let proof = Saved::read(&text).map_err(|error| input(error.to_string()))?;
     match proof.check() {
-        Ok(()) if arguments.json => print_json(&format!("{}\n", told(&proof))),
-        Ok(()) => print(&format!("holds: {proof}\n")),
+        Ok(()) if arguments.json => print_json(&format!("{}\n", proof.told())),
+        Ok(()) => print(&format!("holds: {}\n", proof.words())),
         Err(error) => {
             if arguments.json {
                 let told = json!({ "holds": false, "message": error.to_string() });
@@ -44,6 +52,80 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
             Err(Failure::new(Code::Refused, format!("{place}: the proof does not hold: {error}")))
         }
     }
+}
+
+/// A proof of either format.
+enum Saved {
+    OfTwo(Box<ProofFile>),
+    OfMany(Box<SceneProof>),
+}
+
+impl Saved {
+    fn read(text: &str) -> Result<Self, CaseError> {
+        match ProofFile::from_json(text) {
+            Err(CaseError::Format { found, known }) => match SceneProof::from_json(text) {
+                Err(CaseError::Format { .. }) => Err(CaseError::Format { found, known }),
+                proof => Ok(Self::OfMany(Box::new(proof?))),
+            },
+            proof => Ok(Self::OfTwo(Box::new(proof?))),
+        }
+    }
+
+    fn check(&self) -> Result<(), CertificateError> {
+        match self {
+            Self::OfTwo(proof) => proof.check(),
+            Self::OfMany(proof) => proof.check(),
+        }
+    }
+
+    fn words(&self) -> String {
+        match self {
+            Self::OfTwo(proof) => proof.to_string(),
+            Self::OfMany(proof) => proof.to_string(),
+        }
+    }
+
+    fn told(&self) -> Value {
+        match self {
+            Self::OfTwo(proof) => told(proof),
+            Self::OfMany(proof) => told_of_many(proof),
+        }
+    }
+}
+
+/// What is proven of one body among many, in the fields of answers.
+fn told_of_many(proof: &SceneProof) -> Value {
+    let mut told = json!({
+        "holds": true, "statement": proof.to_string(), "obstacles": proof.obstacles(),
+    });
+    match proof.statement() {
+        SceneStatement::Nearest(of) => {
+            told["obstacle"] = json!(of.obstacle);
+            told["lower"] = json!(of.lower);
+            told["upper"] = json!(of.near.distance());
+        }
+        SceneStatement::Within(of) => {
+            let closer = of
+                .closer
+                .iter()
+                .map(|(id, near)| json!({ "obstacle": id, "upper": near.distance() }));
+            told["length"] = json!(of.length);
+            told["closer"] = closer.collect();
+            if !of.undecided.is_empty() {
+                told["undecided"] =
+                    of.undecided.iter().map(|id| json!({ "obstacle": id })).collect();
+            }
+        }
+        SceneStatement::Clearance(of) => {
+            if let Some(stop) = of.stop {
+                told["obstacle"] = json!(stop);
+            }
+            if of.lower.is_finite() {
+                told["distance"] = json!(of.lower);
+            }
+        }
+    }
+    told
 }
 
 /// What is proven, in the fields of answers.

@@ -114,7 +114,7 @@ pub(crate) fn scan_line(record: &Record, question: Question, direction: DVec3) -
 }
 
 /// A distance that is safe, with all its digits, and a length that is, too.
-fn safe(distance: Option<f64>, direction: DVec3) -> [String; 2] {
+pub(crate) fn safe(distance: Option<f64>, direction: DVec3) -> [String; 2] {
     let Some(distance) = distance else { return ["-", "-"].map(str::to_owned) };
     // The direction's length and the product are rounded: three roundings down.
     let length = distance * direction.length();

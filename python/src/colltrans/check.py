@@ -27,6 +27,8 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
 - *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
   said of all other facets (the covers) is not checked here: ``colltrans verify`` does that. Of a
   distance of solids the two points are checked, not that no others are nearer.
+- *One body among many.* Every obstacle is looked at: by what is claimed of it, as above, or else by
+  the boxes of both bodies, how far they are apart or when one meets the other on its way.
 
 Exit codes: 0 the proof holds, 7 what was checked of it holds (of solids, never all), 6 something
 does not, 3 the file is no proof, 1 there is nothing in it that can be checked here, 2 usage.
@@ -45,6 +47,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 FORMAT = "colltrans proof 1"
+SCENE_FORMAT = "colltrans scene proof 1"
 Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
 Triangle: TypeAlias = tuple[Vector, Vector, Vector]
@@ -141,6 +144,11 @@ class Body:
 
     @classmethod
     def read(cls, shape: Any, pose: Any) -> Body:
+        return cls.placed(*cls.shape(shape), pose)
+
+    @staticmethod
+    def shape(shape: Any) -> tuple[list[Vector], list[tuple[int, int, int]]]:
+        """Points in their frame, and facets."""
         points, facets = [], []
         ((kind, content),) = shape.items()
         if kind == "convex":
@@ -157,6 +165,10 @@ class Body:
             raise NoProofError(f"a body is convex or made of pieces, not {kind!r}")
         if not points:
             raise NoProofError("a body without points")
+        return points, facets
+
+    @classmethod
+    def placed(cls, points: list[Vector], facets: list[tuple[int, int, int]], pose: Any) -> Body:
         columns = [number(x) for x in pose["matrix"]]
         if len(columns) != 9:
             raise NoProofError("a pose has nine entries")
@@ -575,6 +587,245 @@ def turns(corners: list[Vector], triangles: list[tuple[int, ...]]) -> int:
     raise RefusedError("no ray avoids all edges of the surface")
 
 
+Box: TypeAlias = tuple[list[Fraction], list[Fraction]]
+#: A bound that is not there: nothing ever stops the body.
+_NEVER = None
+
+
+def box(body: Body) -> Box:
+    """The least and the largest coordinates."""
+    axes = [tuple(Fraction(i == k) for k in range(3)) for i in range(3)]
+    all_heights = [list(body.heights((x, y, z))) for x, y, z in axes]
+    return [min(h) for h in all_heights], [max(h) for h in all_heights]
+
+
+def box_gap(p: Box, q: Box) -> Fraction:
+    """The square of the distance of two boxes."""
+    sides = zip(*p, *q, strict=True)
+    return sum((max(c - b, a - d, Fraction()) ** 2 for a, b, c, d in sides), Fraction())
+
+
+def box_entry(p: Box, q: Box, d: Vector, keep: Fraction) -> Fraction | None:
+    """When a box, grown by a gap, first meets another on its way from 0 on; None if never."""
+    first, last = Fraction(), None
+    for a, b, c, e, x in zip(*p, *q, d, strict=True):
+        near, far = c - b - keep, e - a + keep
+        if x == 0:
+            if near > 0 or far < 0:
+                return _NEVER
+            continue
+        begin, end = sorted((near / x, far / x))
+        first = max(first, begin)
+        last = end if last is None else min(last, end)
+    return _NEVER if last is not None and first > last else first
+
+
+def beyond(bound: Fraction | None, lower: Fraction | None) -> bool:
+    """Whether a bound is at least another one; None stands for infinity."""
+    return bound is None or (lower is not None and bound >= lower)
+
+
+class Scene:
+    """A proof about one body among many."""
+
+    def __init__(self, file: Any) -> None:
+        shapes = [Body.shape(shape) for shape in file["bodies"]]
+
+        def placed(place: Any) -> Body:
+            return Body.placed(*shapes[whole(place["body"], len(shapes))], place["pose"])
+
+        self.moving = placed(file["moving"])
+        self.obstacles = [placed(place) for place in file["obstacles"]]
+        self.choices, self.statement = file["choices"], file["statement"]
+        self.box = box(self.moving)
+        self.report = Report()
+
+    def check(self) -> Report:
+        if len(self.statement) != 1:
+            raise NoProofError(f"it has to say one thing, not {len(self.statement)}")
+        ((kind, claim),) = self.statement.items()
+        kinds = {"nearest": self.nearest, "within": self.within, "clearance": self.clearance}
+        if kind not in kinds:
+            raise NoProofError(f"{kind!r} is nothing that is claimed of many")
+        kinds[kind](claim)
+        return self.report
+
+    def named(self, claims: Any) -> dict[int, Any]:
+        """What is claimed of obstacles, each once and in order."""
+        found = {whole(k, len(self.obstacles)): claim for k, claim in claims}
+        if sorted(found) != [k for k, _ in claims]:
+            raise RefusedError("obstacles are not named once each, in order")
+        return found
+
+    def part(self, k: int, claim: Any, kinds: dict[str, Any]) -> Any:
+        """Checks what is claimed of one, by its kind; what it proves."""
+        ((kind, content),) = claim.items()
+        if kind not in kinds:
+            raise NoProofError(f"{kind!r} is no kind of bodies")
+        scratch = Report()
+        try:
+            found = kinds[kind](self.obstacles[k], content, scratch)
+        except RefusedError as error:
+            raise RefusedError(f"obstacle {k}: {error}") from error
+        if scratch.partly:
+            self.report.partly = True
+            self.report.unchecked += [f"obstacle {k}: {line}" for line in scratch.unchecked]
+        return found
+
+    def near(self, k: int, claim: Any) -> Fraction:
+        """The distance that an obstacle does not exceed."""
+
+        def convex(body: Body, near: Any, report: Report) -> Fraction:
+            distance(self.moving, body, {"near": near}, report)
+            return number(near["distance"])
+
+        def solid(body: Body, near: Any, report: Report) -> Fraction:
+            upper = number(near["points"]["distance"]) if "points" in near else Fraction()
+            if self.moving.facets and body.facets:
+                solid_distance(self.moving, body, {"near": near, "lower": 0.0}, report)
+            else:
+                # Facets of a convex body have no numbers in the file.
+                report.partly = True
+                report.unchecked.append(f"that it is at most {float(upper)!r} away")
+            return upper
+
+        found: Fraction = self.part(k, claim, {"convex": convex, "solid": solid})
+        return found
+
+    def is_apart(self, k: int, claim: Any, length: Fraction, strictly: bool) -> bool:
+        """Whether an obstacle is farther than a length, or as far, by its claim or its box."""
+
+        def convex(body: Body, gap: Any, report: Report) -> Fraction:
+            distance(self.moving, body, {"gap": gap}, report)
+            return number(gap["gap"])
+
+        def solid(_: Body, claim: Any, report: Report) -> Fraction:
+            report.partly = True
+            report.unchecked.append(f"that it is at least {claim['lower']!r} away")
+            return number(claim["lower"])
+
+        if claim is None:
+            proven, least = box_gap(self.box, box(self.obstacles[k])), length * length
+        else:
+            proven, least = self.part(k, claim, {"convex": convex, "solid": solid}), length
+        return bool(proven > least if strictly else proven >= least)
+
+    def nearest(self, claim: Any) -> None:
+        lower = number(claim["lower"])
+        nearest = whole(claim["obstacle"], len(self.obstacles))
+        upper, claims = self.near(nearest, claim["near"]), self.named(claim["apart"])
+        if not 0 <= lower <= upper:
+            raise RefusedError("the bounds are in the wrong order")
+        self.report.holds.append(f"obstacle {nearest} is at most {float(upper)!r} away")
+        if lower > 0:
+            for k in range(len(self.obstacles)):
+                if not self.is_apart(k, claims.get(k), lower, strictly=False):
+                    raise RefusedError(f"obstacle {k} is not proven to be so far away")
+            all_of = f"none of {len(self.obstacles)} obstacles"
+            self.report.holds.append(f"{all_of} is nearer than {float(lower)!r}")
+
+    def within(self, claim: Any) -> None:
+        length, closer = claim["length"], self.named(claim["closer"])
+        open_ones, claims = set(claim["undecided"]), self.named(claim["apart"])
+        for k, near in closer.items():
+            if self.near(k, near) > (number(length) if length is not None else math.inf):
+                raise RefusedError(f"obstacle {k} is not proven to be so near")
+        others = [k for k in range(len(self.obstacles)) if k not in closer and k not in open_ones]
+        for k in others:
+            if length is None or not self.is_apart(k, claims.get(k), number(length), strictly=True):
+                raise RefusedError(f"obstacle {k} is not proven to be so far away")
+        self.report.holds.append(f"{len(closer)} obstacles are at most {length!r} away")
+        self.report.holds.append(f"{len(others)} obstacles are farther")
+        if open_ones:
+            self.report.unchecked.append(f"{len(open_ones)} obstacles, of which nothing is claimed")
+
+    def clearance(self, claim: Any) -> None:
+        d = vector(claim["direction"])
+        lower = None if claim["lower"] is None else number(claim["lower"])
+        keep = number(self.choices.get("keep", 0.0))
+        if not any(d) or (lower is not None and lower < 0):
+            raise RefusedError("there is no direction, or a bound is negative")
+        claims, stop = self.named(claim["passed"]), claim["stop"]
+        if keep and any("convex" in of for of in claims.values()):
+            raise NoProofError("bodies are to keep a gap: `colltrans verify` checks such a proof")
+        bounds = {k: self.passed(k, of, d) for k, of in claims.items()}
+        if stop is not None:
+            upper = bounds[whole(stop, len(self.obstacles))][1]
+            if upper == -math.inf and lower == 0:
+                self.report.holds.append(f"obstacle {stop} overlaps the moving body")
+                return
+            if upper is None or lower is None or lower > max(upper, 0):
+                raise RefusedError(f"obstacle {stop} is not proven to stop the moving body")
+            self.report.holds.append(f"obstacle {stop} stops it by {float(upper)!r}")
+        for k, body in enumerate(self.obstacles):
+            bound = bounds[k][0] if k in bounds else box_entry(self.box, box(body), d, keep)
+            if not beyond(bound, lower) or (bound == 0 and k not in bounds):
+                raise RefusedError(f"obstacle {k} is not proven to stop nothing before")
+        never = "never" if lower is None else f"not before a translation of {float(lower)!r}"
+        self.report.holds.append(f"{len(self.obstacles)} obstacles stop the moving body {never}")
+
+    def passed(self, k: int, claim: Any, d: Vector) -> Any:
+        """Bounds of where an obstacle stops the moving body; None if it does not."""
+
+        def solid(_: Body, proof: Any, report: Report) -> Any:
+            report.partly = True
+            report.unchecked.append("when it stops the moving body")
+            stop, start = proof["stop"], proof["start"]
+            overlaps = start != "assumed" and "apart" not in start
+            if stop is None and overlaps and self.choices["start_overlap"] == "refuse":
+                return Fraction(), -math.inf
+            lower = None if proof["lower"] is None else number(proof["lower"])
+            return lower, None if stop is None else number(stop["distance"])
+
+        def convex(body: Body, answer: Any, report: Report) -> Any:
+            return self.convex_bounds(body, answer, d, report)
+
+        return self.part(k, claim, {"convex": convex, "solid": solid})
+
+    def convex_bounds(self, body: Body, answer: Any, d: Vector, report: Report) -> Any:
+        ((kind, of),) = answer.items()
+        back, never = scaled(d, Fraction(-1)), (_NEVER, _NEVER)
+        if kind == "blocked":
+            proof = of["contact"]["certificate"]
+            contact(self.moving, body, d, proof, report, "along the direction")
+            if number(of["distance"]) > max(number(proof["lower"]), Fraction()):
+                raise RefusedError("the distance is larger than what is proven")
+            upper = None if proof["upper"] is None else number(proof["upper"])
+            return number(of["distance"]), upper
+        if kind == "overlapping":
+            for end, way in ((of["first"], d), (of["last"], back)):
+                proof = end["certificate"]
+                contact(self.moving, body, way, proof, report, "of the overlap")
+                if proof["upper"] is None or number(proof["upper"]) >= 0:
+                    raise RefusedError("the bodies are not proven to overlap")
+            return Fraction(), -math.inf
+        if kind != "free":
+            raise NoProofError(f"{kind!r} is no clearance")
+        ((why, free),) = of.items()
+        if why == "separated":
+            separation(self.moving, body, d, free["certificate"], report)
+        elif why == "behind":
+            proof = free["certificate"]
+            contact(self.moving, body, back, proof, report, "against the direction")
+            if number(proof["lower"]) < -number(proof["rounding"]):
+                raise RefusedError("the bodies are not proven to meet behind only")
+        elif why == "slides":
+            self.slides(body, d, vector(free["separating_direction"]))
+        else:
+            raise NoProofError(f"{why!r} is no reason")
+        return never
+
+    def slides(self, body: Body, d: Vector, normal: Vector) -> None:
+        """That bodies overlap sideways by no more than is tolerated, to within rounding."""
+        unit(normal)
+        if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
+            raise RefusedError("the normal of the slide is not across the direction")
+        noise = _NOISE * Fraction(size(self.moving, body))
+        most = max(number(self.choices.get("graze_tolerance", 0.0)), 8 * noise) + 3 * noise
+        if -gaps(self.moving, body, d, normal)[0] > most:
+            raise RefusedError("the bodies overlap sideways by more than is tolerated")
+
+
 def check(text: str) -> Report:
     """Checks a proof as it was written.
 
@@ -587,6 +838,8 @@ def check(text: str) -> Report:
     """
     try:
         file = json.loads(text.removeprefix("\ufeff"), object_pairs_hook=_once)
+        if file["format"] == SCENE_FORMAT:
+            return Scene(file).check()
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
         if file.get("keep", 0) != 0:

@@ -155,7 +155,9 @@ Examples:
     colltrans clearance ring.stl balls.stl --from housing.stl shaft.stl --direction x --tolerance 0.1
   Parts that are pressed into each other at the start, with a picture:
     colltrans clearance pin.stl --from block.stl --direction z --ignore-start-overlaps \\
-      --picture pin.svg";
+      --picture pin.svg
+  Which of many bodies does it meet first?
+    colltrans clearance hand.stl --among table.stl scene.jsonl --direction -z";
 
 pub(super) const DISTANCE_ANSWERS: &str = "\
 Answers of distance:
@@ -188,7 +190,10 @@ Examples:
   Which way out, by the hull of both?
     colltrans depth peg.stl plate.stl --hull
   Does a part keep 0.5 from its housing?
-    colltrans within shaft.stl --from housing.stl --length 0.5";
+    colltrans within shaft.stl --from housing.stl --length 0.5
+  Which of many bodies is nearest, and which are closer than 0.1?
+    colltrans distance hand.stl --among table.stl scene.jsonl
+    colltrans within hand.stl --among scene.jsonl --length 0.1";
 
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,

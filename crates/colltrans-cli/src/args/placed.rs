@@ -1,11 +1,11 @@
 //! `colltrans distance`, `depth` and `within`: two bodies where they are.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use colltrans_mesh::body::BodyOptions;
 
-use super::{BodyArguments, HullArguments, PlaceArguments, Sides, UNCLEAN};
+use super::{BodyArguments, HullArguments, PlaceArguments, Sides, Taken, UNCLEAN, one};
 use super::{length, picture, proof};
 use crate::failure::Failure;
 
@@ -17,6 +17,13 @@ pub(crate) struct PlacedArguments {
     /// The meshes of the other body, in place: parts, that need not be convex
     #[arg(long, num_args = 1.., value_name = "FIXED")]
     from: Vec<PathBuf>,
+    /// The other bodies, of which the nearest is looked for, or all that are closer than a length: meshes, each
+    /// in place, and files of obstacles (.jsonl)
+    ///
+    /// A line of such a file is {"body": BODY, "pose": POSE, "name": "..."}, with a BODY and a POSE as in
+    /// `batch --help`; a body that occurs many times is kept once.
+    #[arg(long, num_args = 1.., value_name = "SCENE", conflicts_with_all = ["from", "picture", "fixed_pose", "fixed_rpy", "fixed_scale"])]
+    pub(crate) among: Vec<PathBuf>,
     /// Print the answer as one JSON object, as `batch` does (see `batch --help` for its fields)
     #[arg(long)]
     pub(crate) json: bool,
@@ -35,7 +42,7 @@ pub(crate) struct PlacedArguments {
     #[command(flatten)]
     hulls: HullArguments,
     #[command(flatten)]
-    body: BodyArguments,
+    pub(crate) body: BodyArguments,
 }
 
 #[derive(Debug, Args)]
@@ -50,11 +57,20 @@ pub(crate) struct WithinArguments {
 impl PlacedArguments {
     /// Who is called moving, who fixed, and as what they are taken.
     pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
+        Sides::of(&self.meshes, &self.from, self.taken()?)
+    }
+
+    /// The one mesh before --among.
+    pub(crate) fn one(&self) -> Result<&Path, Failure> {
+        one(&self.meshes)
+    }
+
+    /// As what meshes are taken.
+    pub(crate) fn taken(&self) -> Result<Taken, Failure> {
         let asks_parts = self.open || !self.from.is_empty();
         let clash =
             "--convex-tolerance and --hull are for two convex meshes; --from and --open for parts";
-        let asks = [self.hulls.asks_convex(self.body), asks_parts];
-        Sides::of(&self.meshes, &self.from, asks, clash)
+        Taken::of([self.hulls.asks_convex(self.body), asks_parts], clash)
     }
 
     /// How both files become convex bodies.

@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_body_that_has_grown_weighs_more_when_it_is_used_next() {
         let body = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
-        let shape = Arc::new(Shape::Convex(Part { body, excess: None, notes: Vec::new() }));
+        let shape = Arc::new(Shape::Convex(Part::of(body)));
         let cache = Cache::new(1 << 20);
         let total = || {
             let _ = cache.get(key(1.0), |_| Ok(Arc::clone(&shape)));

@@ -25,10 +25,11 @@ use crate::args::BatchArguments;
 use crate::failure::{Code, Failure};
 use crate::inputs::overwritten;
 use crate::progress;
-use cache::Cache;
+pub(crate) use cache::{Cache, Shape};
 use pipeline::{Line, Pipeline};
-use query::Batch;
+pub(crate) use query::{Batch, syntax_message};
 use recent::Recent;
+pub(crate) use source::{BodySource, PoseSource};
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     refuse_own_input(&arguments.queries, arguments.output.as_deref())?;

@@ -115,7 +115,8 @@ impl Batch {
         Some(built)
     }
 
-    fn body(&self, source: &BodySource) -> Built {
+    /// The body of a source; one that occurs again is made once.
+    pub(crate) fn body(&self, source: &BodySource) -> Built {
         let &BodySource { ref points, ref mesh, ref solid, open, hull, scale } = source;
         if open.is_some() && solid.is_none() {
             return Err("`open` is for a `solid`".into());
@@ -384,7 +385,7 @@ impl AsSolid<'_> {
 }
 
 impl PoseSource {
-    fn pose(&self) -> Result<Pose, String> {
+    pub(crate) fn pose(&self) -> Result<Pose, String> {
         let [x, y, z, w] = self.rotation;
         Pose::new(DQuat::from_xyzw(x, y, z, w), DVec3::from_array(self.translation))
             .map_err(|e| e.to_string())
@@ -392,7 +393,7 @@ impl PoseSource {
 }
 
 /// The parser sees one line and calls it line 1.
-fn syntax_message(number: u64, error: &serde_json::Error) -> String {
+pub(crate) fn syntax_message(number: u64, error: &serde_json::Error) -> String {
     let what = plain(error)
         .replace("the file ends inside", "the line ends inside")
         .replace("expected path string", "expected a path");

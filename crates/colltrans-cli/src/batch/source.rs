@@ -1,6 +1,6 @@
 //! What a line of a batch says, before anything is looked up.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use colltrans::{NarrowFrom, Solver, Until};
 use serde::Deserialize;
@@ -46,7 +46,7 @@ pub(super) enum Asked {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that holds a body")]
-pub(super) struct BodySource {
+pub(crate) struct BodySource {
     pub(super) points: Option<Vec<[f64; 3]>>,
     pub(super) mesh: Option<PathBuf>,
     pub(super) solid: Option<PathBuf>,
@@ -57,9 +57,16 @@ pub(super) struct BodySource {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "an object that holds a pose")]
-pub(super) struct PoseSource {
+pub(crate) struct PoseSource {
     pub(super) translation: [f64; 3],
     pub(super) rotation: [f64; 4],
+}
+
+impl BodySource {
+    /// The file that it is made of.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.mesh.as_deref().or(self.solid.as_deref())
+    }
 }
 
 impl Default for PoseSource {

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use colltrans::record::{Ending, Question, Record};
 use colltrans_mesh::body::BodyOptions;
 
+use crate::among;
 use crate::args::{ClearanceArguments, PairArguments, Sides, Taken};
 use crate::body::{is_part, refusal};
 use crate::cast::{self, Directions, Request, all_answered};
@@ -21,6 +22,9 @@ use crate::solid::{Body, PartsQuery};
 pub(crate) use words::overlaps;
 
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
+    if !arguments.among.is_empty() {
+        return among::clearance(arguments);
+    }
     let Sides { files, taken } = arguments.sides()?;
     let inputs: Vec<&Path> = files.into_iter().flatten().map(AsRef::as_ref).collect();
     let request = Request::of(&arguments.pair, &inputs)?;

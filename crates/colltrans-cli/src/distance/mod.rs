@@ -9,6 +9,7 @@ use colltrans::Pair;
 use colltrans::record::PairQuestion;
 use colltrans_mesh::body::BodyOptions;
 
+use crate::among;
 use crate::args::{PlacedArguments, Sides, Taken};
 use crate::body::{Part, is_part, refusal};
 use crate::cast;
@@ -20,8 +21,12 @@ use crate::picture::{Shown, draw_pair};
 use crate::proof::{self, refuse_proof};
 use crate::record::{Hulls, Line};
 use crate::solid::{PartsPair, surface_of};
+pub(crate) use words::answer;
 
 pub(crate) fn run(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
+    if !arguments.among.is_empty() {
+        return among::placed(arguments, question);
+    }
     let Sides { files, taken } = arguments.sides()?;
     let inputs: Vec<&Path> = files.into_iter().flatten().map(AsRef::as_ref).collect();
     let picture = arguments.picture.as_deref();

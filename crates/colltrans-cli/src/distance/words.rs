@@ -9,7 +9,7 @@ use crate::report::{feature, hulls, line};
 use crate::terminal::shown;
 
 /// The readable answer; lengths may be off by what the files' precision leaves.
-pub(super) fn answer(question: PairQuestion, told: &Line, error: f64) -> String {
+pub(crate) fn answer(question: PairQuestion, told: &Line, error: f64) -> String {
     let record = &told.record;
     let mut text = format!("{}\n", headline(question, record));
     if let (Some(lower), Some(upper)) = (record.lower, record.upper)

@@ -81,7 +81,7 @@ impl Body {
         Ok(Self { pieces, union, notes })
     }
 
-    fn solid(&self) -> &Solid {
+    pub(crate) fn solid(&self) -> &Solid {
         self.union.as_ref().unwrap_or_else(|| &self.pieces[0].solid)
     }
 
@@ -91,7 +91,7 @@ impl Body {
     }
 
     /// The coarsest of its files.
-    fn precision(&self) -> f64 {
+    pub(crate) fn precision(&self) -> f64 {
         self.pieces.iter().map(|piece| piece.precision).fold(0.0, f64::max)
     }
 

@@ -152,7 +152,7 @@ fn what_is_wrong_is_said() {
     refused(folder, &within("two"), 2, &["--length"]);
     refused(folder, &["within", "cube.off", "cube.off"], 2, &["--length <L>"]);
     refused(folder, &["distance", "cube.off"], 2, &["or --from"]);
-    refused(folder, &["distance", "cube.off", "cube.off", "cube.off"], 2, &["or --from"]);
+    refused(folder, &["distance", "cube.off", "cube.off", "cube.off"], 2, &["3 meshes, not two"]);
     refused(folder, &["distance", "cube.off", "none.off"], 3, &["none.off: cannot be read"]);
     refused(folder, &["distance", "cube.off", "broken.off"], 3, &["broken.off"]);
     refused(folder, &["distance", "cube.off", "open.off"], 3, &["open.off", "--open"]);

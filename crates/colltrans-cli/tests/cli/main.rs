@@ -1,5 +1,6 @@
 //! The real binary, run as a user runs it.
 
+mod among;
 mod assembly;
 mod batch;
 mod cast;

@@ -208,11 +208,12 @@ impl<'a> Among<'a> {
         Ok(match self.pair(one)? {
             ByKind::Convex(pair) => pair.distance()?.gap.map(ByKind::Convex),
             ByKind::Solid(pair) => {
-                if let (Within::Farther(_), Some(proof)) = pair.certified_within(length)? {
-                    return Ok(Some(ByKind::Solid(proof)));
-                }
-                let proof = pair.certified_distance()?.1;
-                (proof.lower > 0.0).then_some(ByKind::Solid(proof))
+                let proof = match pair.certified_within(length)? {
+                    // What is closer has a lower bound of its own.
+                    (Within::Closer(_), _) => Some(pair.certified_distance()?.1),
+                    (Within::Farther(_) | Within::Undecided(_), proof) => proof,
+                };
+                proof.filter(|proof| proof.lower > 0.0).map(ByKind::Solid)
             }
         })
     }

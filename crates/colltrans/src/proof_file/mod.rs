@@ -165,7 +165,8 @@ impl ProofFile {
             Some(length) => match again.certified_within(length)? {
                 (_, Some(proof)) => proof,
                 (Within::Closer(near), None) => DistanceCertificate::of_near(near),
-                (_, None) => again.certified_distance()?.1,
+                (Within::Undecided(distance), None) => DistanceCertificate::of_near(distance.near),
+                (Within::Farther(_), None) => again.certified_distance()?.1,
             },
         };
         let (bodies, statement) = (Bodies::Solids { made, of }, Statement::SolidDistance(proof));

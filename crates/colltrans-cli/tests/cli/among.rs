@@ -1,0 +1,169 @@
+//! `--among`: one body among many, its proofs, and what is wrong with scenes.
+
+use serde_json::{Value, json};
+
+use crate::proof::{checked_in_fractions, saved};
+use crate::support::{answered, folder, json as read, refused, run, stderr, stdout};
+
+/// A row of cubes, one in two units, a body that is not convex, and a cube of points without a name.
+fn scene(folder: &std::path::Path) {
+    let cube = |k: usize| {
+        format!(
+            r#"{{"body":{{"mesh":"cube.off"}},"pose":{{"translation":[{},0,0]}},"name":"cube {k}"}}"#,
+            2 * k
+        )
+    };
+    let mut lines: Vec<String> = (0..20).map(cube).collect();
+    lines.push(r#"{"body":{"solid":"dent.off"},"pose":{"translation":[0,40,0]}}"#.to_owned());
+    lines.push(String::new());
+    lines.push(r#"{"body":{"points":[[0,90,0],[1,90,0],[0,91,0],[0,90,1]]}}"#.to_owned());
+    std::fs::write(folder.join("scene.jsonl"), lines.join("\n")).unwrap();
+}
+
+const ABOVE: [&str; 5] = ["cube.off", "--among", "scene.jsonl", "--moving-pose", "24.25,0,4"];
+
+fn number(value: &Value, name: &str) -> f64 {
+    value[name].as_f64().unwrap_or_else(|| panic!("{name}: {value}"))
+}
+
+#[test]
+fn the_nearest_the_near_and_the_first() {
+    let folder = folder();
+    let folder = folder.path();
+    scene(folder);
+    let ask = |command: &str, more: &[&str]| {
+        read(&answered(folder, &[&[command], &ABOVE[..], more, &["--json"]].concat()))
+    };
+    let told = ask("distance", &[]);
+    assert_eq!((&told["obstacle"], &told["fixed"]), (&json!(12), &json!("cube 12")));
+    assert_eq!((&told["obstacles"], &told["outcome"]), (&json!(22), &json!("apart")));
+    assert!(number(&told, "lower") <= 3.0 && number(&told, "upper") >= 3.0, "{told}");
+    let told = ask("within", &["--length", "3.2"]);
+    let names = |list: &Value| -> Vec<Value> {
+        list.as_array().unwrap().iter().map(|one| one["fixed"].clone()).collect()
+    };
+    assert_eq!(names(&told["closer"]), ["cube 12", "cube 13"]);
+    assert_eq!(ask("within", &["--length", "3"])["undecided"][0]["obstacle"], 12);
+    assert_eq!(ask("within", &["--length", "1"])["outcome"], "farther");
+    let down = ask("clearance", &["--direction", "-z"]);
+    assert_eq!((&down["outcome"], &down["fixed"]), (&json!("blocked"), &json!("cube 12")));
+    assert!(number(&down, "distance") <= 3.0 && number(&down, "distance") > 2.999, "{down}");
+    let kept = ask("clearance", &["--direction", "-z", "--keep", "0.5"]);
+    assert!((number(&kept, "distance") - 2.5).abs() < 1e-9 && kept["keep"] == 0.5, "{kept}");
+    assert_eq!(ask("clearance", &["--direction", "z"])["outcome"], "free");
+    // The one that is not convex, and the one of points, by the line of its file.
+    let place = |pose: &str| {
+        let asked = ["distance", "cube.off", "--among", "scene.jsonl", "--json", "--moving-pose"];
+        read(&answered(folder, &[&asked[..], &[pose]].concat()))
+    };
+    assert_eq!(place("0,40,5")["fixed"], "dent.off");
+    assert_eq!(place("0,95,0")["fixed"], "line 23");
+    // Meshes in place, and a scene beside them.
+    let meshes =
+        ["distance", "cube.off", "--among", "cube.off", "dent.off", "scene.jsonl", "--json"];
+    let told = read(&answered(folder, &[&meshes[..], &["--moving-pose", "2.2,0,3"]].concat()));
+    assert_eq!((&told["fixed"], &told["obstacle"]), (&json!("cube 1"), &json!(3)));
+    assert_eq!(told["obstacles"], 24);
+}
+
+#[test]
+fn answers_are_told_in_words() {
+    let folder = folder();
+    let folder = folder.path();
+    scene(folder);
+    for (command, more, said) in [
+        ("distance", &[][..], "apart\n  nearest      cube 12, number 12 of 22, from 0 on\n"),
+        ("within", &["--length", "3.2"], "closer: 2 of 22 are no farther away than 3.2\n"),
+        ("within", &["--length", "1"], "farther: all of 22 are farther away than 1\n"),
+        ("clearance", &["--direction", "-z"], "blocked\n  by           cube 12, number 12 of 22"),
+        ("clearance", &["--direction", "z"], "free: none of 22 stops it"),
+        ("clearance", &["--direction", "-z", "--tolerance", "0.01"], "0.01 (as asked"),
+    ] {
+        let text = answered(folder, &[&[command], &ABOVE[..], more].concat());
+        assert!(text.contains(said), "{said:?} is not in {text}");
+    }
+    let inside = ["clearance", "cube.off", "--among", "scene.jsonl", "--direction", "x"];
+    let text = answered(folder, &[&inside[..], &["--moving-pose", "4.5,0,0"]].concat());
+    assert!(text.starts_with("overlapping") && text.contains("cube 2, number 2"), "{text}");
+}
+
+#[test]
+fn proofs_hold_here_and_in_fractions() {
+    let folder = folder();
+    let folder = folder.path();
+    scene(folder);
+    let near_dent = ["cube.off", "--among", "scene.jsonl", "--moving-pose", "0.1,40,5"];
+    for (command, bodies, more, said, code) in [
+        ("distance", &ABOVE, &[][..], "of 22 obstacles, obstacle 12 is between 2.99", 0),
+        ("within", &ABOVE, &["--length", "3.2"], "2 (12, 13) are at most 3.2 away", 0),
+        ("within", &ABOVE, &["--length", "1"], "none is at most 1.0 away, all others", 0),
+        ("clearance", &ABOVE, &["--direction", "-z"], "obstacle 12 does then", 0),
+        ("clearance", &ABOVE, &["--direction", "z"], "none ever stops the moving body", 0),
+        ("clearance", &ABOVE, &["--direction", "x"], "none ever stops the moving body", 0),
+        ("distance", &near_dent, &[], "obstacle 20 is between 3.99", 7),
+        ("clearance", &near_dent, &["--direction", "-z"], "obstacle 20 does then", 7),
+    ] {
+        let file = saved(folder, &[&[command], &bodies[..], more].concat());
+        assert_eq!(file["obstacles"].as_array().unwrap().len(), 22);
+        assert_eq!(file["bodies"].as_array().unwrap().len(), 4, "a body is written once");
+        let text = answered(folder, &["verify", "proof.json"]);
+        assert!(text.starts_with("holds: ") && text.contains(said), "{said:?} is not in {text}");
+        let told = read(&answered(folder, &["verify", "proof.json", "--json"]));
+        assert_eq!((&told["holds"], &told["obstacles"]), (&json!(true), &json!(22)));
+        checked_in_fractions(folder, code);
+        // A cube where the moving one is.
+        let mut changed = file;
+        changed["obstacles"][1]["pose"] = changed["moving"]["pose"].clone();
+        std::fs::write(folder.join("proof.json"), changed.to_string()).unwrap();
+        let output = run(folder, &["verify", "proof.json"]);
+        assert_eq!(output.status.code(), Some(6), "{}", stdout(&output));
+    }
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let folder = folder();
+    let folder = folder.path();
+    scene(folder);
+    let among = |command: &'static str, more: &[&'static str]| {
+        [&[command, "cube.off", "--among", "scene.jsonl"], more].concat()
+    };
+    refused(folder, &among("depth", &[]), 2, &["a depth is of two bodies"]);
+    refused(folder, &among("distance", &["--from", "cube.off"]), 2, &["--from"]);
+    refused(folder, &among("distance", &["--picture", "a.svg"]), 2, &["--picture"]);
+    refused(folder, &among("distance", &["--fixed-pose", "1,0,0"]), 2, &["--fixed-pose"]);
+    refused(folder, &among("clearance", &["--directions", "-"]), 2, &["one --direction"]);
+    let three = ["distance", "cube.off", "dent.off", "open.off"];
+    refused(folder, &three, 2, &["3 meshes", "cube.off --among dent.off open.off", "--from"]);
+    let two = ["distance", "cube.off", "dent.off", "--among", "scene.jsonl"];
+    refused(folder, &two, 2, &["one mesh before --among"]);
+    refused(folder, &["distance", "cube.off", "scene.jsonl"], 2, &["behind --among"]);
+    let over = among("distance", &["--save-proof", "scene.jsonl"]);
+    refused(folder, &over, 3, &["is the same file"]);
+    for (line, said) in [
+        ("", "holds no obstacles"),
+        ("{", "line 1, column"),
+        (r#"{"mesh":"cube.off"}"#, "unknown field `mesh`"),
+        (r#"{"body":{"mesh":"dent.off"}}"#, r#""solid" in the place of "mesh""#),
+        (r#"{"body":{"mesh":"none.off"}}"#, "none.off: cannot be read"),
+        (r#"{"body":{"mesh":"cube.off"},"pose":{"rotation":[1,1,1,1]}}"#, "line 1: pose: "),
+    ] {
+        std::fs::write(folder.join("bad.jsonl"), line).unwrap();
+        refused(folder, &["distance", "cube.off", "--among", "bad.jsonl"], 3, &["bad.jsonl", said]);
+    }
+}
+
+#[test]
+fn options_of_other_commands_are_told() {
+    let folder = folder();
+    let folder = folder.path();
+    let two = |command, more: &[&'static str]| [&[command, "cube.off", "cube.off"], more].concat();
+    let keep = ["--keep belongs to `colltrans cast`, `colltrans clearance`"];
+    refused(folder, &two("distance", &["--keep", "0.5"]), 2, &keep);
+    refused(folder, &two("cast", &["--length=3"]), 2, &["--length belongs to `colltrans within`"]);
+    let third = two("cast", &["dent.off", "--direction", "x"]);
+    refused(folder, &third, 2, &["colltrans clearance MOVING --among"]);
+    let unknown = stderr(&run(folder, &two("distance", &["--frm", "a"])));
+    assert!(unknown.contains("similar argument exists: '--from'"), "{unknown}");
+    refused(folder, &two("cast", &["--direction", "x", "--keep", "1e70"]), 2, &["to be kept"]);
+}

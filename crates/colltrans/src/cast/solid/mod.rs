@@ -61,8 +61,8 @@ pub struct SolidOptions {
     /// Both bodies are shrunk by half of this length. `None` stands for 0 where both poses turn by
     /// quarter turns, and else for what rounding can do to a fit, `256 u S`.
     pub tolerance: Option<f64>,
-    /// Contacts at this translation or beyond are of no interest: the best answer so far, where one
-    /// body is asked against many.
+    /// Contacts at this translation or beyond, of the shrunk bodies, are of no interest: the least `shrunk_distance` so
+    /// far, where one body is asked against many. As they are, bodies may meet long before they do shrunk.
     pub before: Option<f64>,
     /// Whether the bodies overlap where they are: what [`Cast::overlaps`] has said of the same
     /// bodies, poses and tolerance. Whoever asks one pair along many directions asks once. `None`:

@@ -2,10 +2,13 @@
 
 use std::path::Path;
 
-use colltrans::{DistanceStatement, ProofFile, Statement};
+use colltrans::free::FreeDirections;
+use colltrans::record::FreeRecord;
+use colltrans::{CertificateError, DistanceStatement, ProofFile, Statement};
 use serde_json::{Map, Value, json};
 
 use crate::args::VerifyArguments;
+use crate::directions;
 use crate::failure::{Code, Failure, print, print_json};
 use crate::inputs::refuse_overwriting;
 use crate::outputs;
@@ -33,9 +36,10 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     let text = colltrans_mesh::file::text(&arguments.proof)
         .map_err(|error| input(format!("cannot be read: {error}")))?;
     let proof = ProofFile::from_json(&text).map_err(|error| input(error.to_string()))?;
-    match proof.check() {
-        Ok(()) if arguments.json => print_json(&format!("{}\n", told(&proof))),
-        Ok(()) => print(&format!("holds: {proof}\n")),
+    match checked(&proof) {
+        Ok(free) if arguments.json => print_json(&format!("{}\n", told(&proof, free.as_ref()))),
+        Ok(None) => print(&format!("holds: {proof}\n")),
+        Ok(Some(free)) => print(&format!("holds: {proof}: {}\n", directions::verified(&free))),
         Err(error) => {
             if arguments.json {
                 let told = json!({ "holds": false, "message": error.to_string() });
@@ -46,8 +50,17 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     }
 }
 
+/// Checks it; what it says of all directions, if that is what it is about.
+fn checked(proof: &ProofFile) -> Result<Option<FreeRecord>, CertificateError> {
+    let record = |free: FreeDirections<'_>| FreeRecord::of(&free, |_| [None, None]);
+    match proof.free_directions() {
+        Some(free) => Ok(Some(record(free?))),
+        None => proof.check().map(|()| None),
+    }
+}
+
 /// What is proven, in the fields of answers.
-fn told(proof: &ProofFile) -> Value {
+fn told(proof: &ProofFile, free: Option<&FreeRecord>) -> Value {
     let mut fields = Map::new();
     let mut say = |name: &str, value: Value| fields.insert(name.into(), value);
     say("holds", json!(true));
@@ -82,6 +95,12 @@ fn told(proof: &ProofFile) -> Value {
         Statement::SolidDistance(proof) => {
             say("lower", json!(proof.lower));
             say("upper", json!(proof.near.distance()));
+        }
+        Statement::FreeDirections(of) => {
+            say("tolerance", json!(of.tolerance));
+            free.map(|free| say("outcome", json!(free.outcome)));
+            free.map(|free| say("free_share", json!(free.free_share)));
+            free.map(|free| say("undecided_share", json!(free.undecided_share)));
         }
     }
     say("statement", json!(proof.to_string()));

@@ -187,7 +187,9 @@ pub use glam;
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairProof};
 #[cfg(feature = "json")]
-pub use proof_file::{Contacts, DistanceStatement, ProofFile, Slide, Statement, Stop};
+pub use proof_file::{
+    Contacts, DistanceStatement, FreeStatement, ProofFile, Slide, Statement, Stop,
+};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;

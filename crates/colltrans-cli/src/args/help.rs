@@ -157,6 +157,34 @@ Examples:
     colltrans clearance pin.stl --from block.stl --direction z --ignore-start-overlaps \\
       --picture pin.svg";
 
+pub(super) const DIRECTIONS_ANSWERS: &str = "\
+Answers:
+  free         some directions are free: nothing stops the moving body along them, ever
+  blocked      none is, which is proven: pairs of faces block cells that cover the sphere
+  undecided    none is known to be free, and not all are known: --depth and --looks do more
+  overlapping  the bodies overlap now, by more than the tolerance
+
+With --json one object:
+  outcome          one of these
+  free_share       [at least, at most]: the share of all directions that is free, from 0 to 1
+  undecided_share  at most that share is not known
+  regions          [{\"share\", \"center\": [x,y,z], \"corners\": [[x,y,z],...], \"pieces\"}]: connected
+                   regions, the largest first; pieces are convex polygons that together are it
+  arcs points      directions with no region beside them: [[from, to],...], [[x,y,z],...]
+  blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: what was found to block, at least
+  tolerance        the one that was used, a length
+  cells            how many cells of the sphere the proof has
+  start_overlaps   of bodies that overlap: as of `clearance`
+
+A direction is free where `clearance` along it, with the same tolerance, says so.
+
+Examples:
+  Along which directions does a bolt leave its plate?
+    colltrans directions bolt.stl plate.stl --tolerance 0.1
+  A ring among several parts, with a proof for somebody else:
+    colltrans directions ring.stl --from housing.stl shaft.stl --save-proof ring.json
+    colltrans verify ring.json";
+
 pub(super) const DISTANCE_ANSWERS: &str = "\
 Answers of distance:
   apart        so far, between two bounds that are proven, with the points that are nearest, the
@@ -303,6 +331,7 @@ mod tests {
             &formats(),
             CAST_EXAMPLES,
             CLEARANCE_ANSWERS,
+            DIRECTIONS_ANSWERS,
             DISTANCE_ANSWERS,
             BATCH_FORMAT,
             ASSEMBLY_FORMAT,

@@ -11,6 +11,7 @@ use super::cone::Cone;
 use super::error::FreeError;
 use super::options::FreeOptions;
 use super::proof::{Fate, FreeProof, cells, fates, holds, rest_of};
+use super::region::{FreeRegion, regions};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
 use crate::answer::{CertificateError, SolidSteps};
@@ -38,10 +39,10 @@ pub enum Verdict {
     Undecided,
 }
 
-/// A convex region of free directions, borders included.
+/// A convex piece of the free directions, borders included.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct FreeRegion {
+pub struct FreePiece {
     /// Its corners in order, directions with a largest component of 1 (or -1), exact but for their last roundings.
     pub corners: Vec<DVec3>,
     /// Its solid angle.
@@ -72,6 +73,11 @@ pub struct FreeCell {
     pub corners: [DVec3; 4],
     /// What is known of it.
     pub kind: CellKind,
+    /// If one pair of facets blocks all of it: these, positions in [`Solid::triangles`] of the moving and of the fixed
+    /// body.
+    pub blocked_by: Option<[u32; 2]>,
+    /// Its solid angle.
+    pub area: f64,
 }
 
 /// What is known of a cell.
@@ -231,14 +237,19 @@ impl<'a> FreeDirections<'a> {
         self.leaves().all(|(_, fate)| !matches!(fate, Fate::Undecided(_)))
     }
 
-    /// Convex regions that together are all that is free with an area, by cells: neighbours share borders.
-    pub fn regions(&self) -> Vec<FreeRegion> {
-        let region = |(cell, piece): (Cell, Piece)| {
+    /// Convex pieces that together are all that is free with an area, by cells: neighbours share borders.
+    pub fn pieces(&self) -> Vec<FreePiece> {
+        let piece = |(cell, piece): (Cell, Piece)| {
             piece
                 .is_region()
-                .then(|| FreeRegion { corners: directions(&cell, &piece), area: piece.area() })
+                .then(|| FreePiece { corners: directions(&cell, &piece), area: piece.area() })
         };
-        self.pieces().filter_map(region).collect()
+        self.parts().filter_map(piece).collect()
+    }
+
+    /// The connected regions of what is free with an area, the largest first.
+    pub fn regions(&self) -> Vec<FreeRegion> {
+        regions(self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
     }
 
     /// Arcs of free directions beside which there is no region, by cells.
@@ -250,6 +261,12 @@ impl<'a> FreeDirections<'a> {
     /// Free directions with no other beside them.
     pub fn points(&self) -> Vec<FreePoint> {
         self.alone(1).into_iter().map(|ends| FreePoint { direction: ends[0] }).collect()
+    }
+
+    /// The bodies, with a direction that plays no part.
+    #[cfg(feature = "json")]
+    pub(crate) fn cast(&self) -> &Cast<'a, Solid> {
+        &self.cast
     }
 
     /// The choices.
@@ -290,12 +307,14 @@ impl<'a> FreeDirections<'a> {
                 Fate::Open(_) => CellKind::Both,
                 Fate::Cut(_) | Fate::Undecided(_) => CellKind::Undecided,
             },
+            blocked_by: if let Fate::Blocked(pair) = fate { Some(*pair) } else { None },
+            area: cell.area(),
         })
     }
 
     /// Pieces of so many corners that are not part of larger ones, by their corners.
     fn alone(&self, count: usize) -> Vec<Vec<DVec3>> {
-        let all: Vec<(Cell, Piece)> = self.pieces().collect();
+        let all: Vec<(Cell, Piece)> = self.parts().collect();
         let mut found: Vec<&(Cell, Piece)> = Vec::new();
         for one in all.iter().filter(|(_, piece)| piece.len() == count) {
             let middle = one.0.side.direction(one.1.center());
@@ -360,7 +379,7 @@ impl<'a> FreeDirections<'a> {
     }
 
     /// All that is free, in pieces of cells.
-    fn pieces(&self) -> impl Iterator<Item = (Cell, Piece)> {
+    fn parts(&self) -> impl Iterator<Item = (Cell, Piece)> {
         let rest = |(cell, fate): (Cell, &Fate)| {
             let rest = match fate {
                 Fate::Open(pairs) => rest_of(&self.bodies, cell, pairs).ok(),

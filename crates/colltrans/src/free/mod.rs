@@ -7,7 +7,7 @@
 //!
 //! Data flow: [`bodies`] (vertices, and trees down to single facets) -> [`line`] (great circles and exact signs) ->
 //! [`cone`], [`window`] (which pairs of nodes miss a rectangle of directions), [`rest`] -> [`proof`] (what is said of a
-//! cell, and its check) -> [`search`] -> [`FreeDirections`].
+//! cell, and its check) -> [`search`] -> [`FreeDirections`]; [`region`] joins what is free in pieces.
 
 mod answer;
 mod bodies;
@@ -17,11 +17,13 @@ mod error;
 mod line;
 mod options;
 mod proof;
+mod region;
 mod rest;
 mod search;
 mod window;
 
-pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePoint, FreeRegion, Verdict};
+pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePiece, FreePoint, Verdict};
 pub use error::FreeError;
 pub use options::FreeOptions;
 pub use proof::{CellProof, FreeProof};
+pub use region::FreeRegion;

@@ -171,9 +171,10 @@ With --json one object:
   regions          [{\"share\", \"center\": [x,y,z], \"corners\": [[x,y,z],...], \"pieces\"}]: connected
                    regions, the largest first; pieces are convex polygons that together are it
   arcs points      directions with no region beside them: [[from, to],...], [[x,y,z],...]
+  also_free        free directions among what is undecided, found by casts: [[x,y,z],...]
   blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: what was found to block, at least
   tolerance        the one that was used, a length
-  cells            how many cells of the sphere the proof has
+  cells            how many cells of the sphere the proof has, and undecided_cells of them
   start_overlaps   of bodies that overlap: as of `clearance`
 
 A direction is free where `clearance` along it, with the same tolerance, says so.
@@ -310,7 +311,7 @@ With --json:
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
      "within", "ignored", "surfaces"}],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
-   "maps": [...]}
+   "maps": [...], "free": [...] (of --free: as of `directions --help`, with "parts")}
   Directions have length 1, so distances are lengths; distance is safe to move by, proven: what stops
   the part has not met in its true place (translation), and the parts, shrunk by half the tolerance
   each or grown by half the length to keep, do not overlap, which they do from grown_ or
@@ -318,7 +319,7 @@ With --json:
   "overlapping". A step with "within" takes apart the group that step (from 0) took out.
 
 With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each
-map a .svg, .png and .json."#;
+map a .svg, .png and .json, for each part of --free the proof."#;
 
 #[cfg(test)]
 mod tests {

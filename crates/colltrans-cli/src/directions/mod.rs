@@ -11,7 +11,7 @@ use crate::clearance;
 use crate::failure::{Failure, note, print, print_json};
 use crate::proof::{self, refuse_proof};
 use crate::solid::{FreeAnswer, PartsFree};
-pub(crate) use words::verified;
+pub(crate) use words::{told, verified};
 
 pub(crate) fn run(arguments: &DirectionsArguments) -> Result<(), Failure> {
     let files = arguments.sides()?.files;

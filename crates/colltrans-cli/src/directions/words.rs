@@ -42,11 +42,20 @@ pub(crate) fn told(text: &mut String, record: &FreeRecord) {
     let (Some(free), Some(undecided)) = (record.free_share, record.undecided_share) else { return };
     let mut say = |name: &str, value: String| line(text, name, &value);
     if record.outcome != Ending::Blocked {
-        say("free", shares(free));
+        let none = free[1] == 0.0 && record.undecided_cells == Some(0);
+        say("free", if none { "no region of directions".into() } else { shares(free) });
     }
-    say("undecided", if undecided > 0.0 { at_most(undecided) } else { "nothing".into() });
-    let cells = counted(record.cells.unwrap_or_default() as usize, "cell", "cells");
-    say("proof", format!("{cells} of the sphere of directions"));
+    let count = |cells: Option<u64>| counted(cells.unwrap_or_default() as usize, "cell", "cells");
+    say(
+        "undecided",
+        match record.undecided_cells {
+            Some(0) | None => "nothing".into(),
+            cells => {
+                format!("{}, {}; --depth and --looks do more", at_most(undecided), count(cells))
+            }
+        },
+    );
+    say("proof", format!("{} of the sphere of directions", count(record.cells)));
     for region in record.regions.iter().take(MOST) {
         say("region", self::region(region));
     }
@@ -58,6 +67,9 @@ pub(crate) fn told(text: &mut String, record: &FreeRecord) {
     }
     for point in record.points.iter().take(MOST).copied() {
         say("point", format!("{}, alone", direction(point)));
+    }
+    for also in record.also_free.iter().take(MOST).copied() {
+        say("also free", format!("{}, among what is undecided", direction(also)));
     }
     for by in record.blocked_by.iter().filter(|by| by.moving.is_some() || by.fixed.is_some()) {
         say("blocked by", blocker(by));
@@ -90,7 +102,7 @@ pub(crate) fn verified(record: &FreeRecord) -> String {
     for (count, one, many) in kinds.into_iter().filter(|(count, ..)| *count > 0) {
         let _ = write!(text, ", {}", counted(count, one, many));
     }
-    if let Some(undecided) = record.undecided_share.filter(|share| *share > 0.0) {
+    if let Some(undecided) = record.undecided_share.filter(|_| record.undecided_cells > Some(0)) {
         let _ = write!(text, "; undecided are {}", at_most(undecided));
     }
     text
@@ -126,7 +138,7 @@ fn blocker(by: &BlockedByRecord) -> String {
 /// Between two bounds.
 fn shares([low, high]: [f64; 2]) -> String {
     if high == 0.0 {
-        return "no region of directions".into();
+        return "no region of directions is known to be".into();
     }
     format!(
         "{} of all directions (at least {}, at most {})",

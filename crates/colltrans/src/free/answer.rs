@@ -101,6 +101,9 @@ pub enum CellKind {
 /// Directions on a side of the cube that differ by less are taken for one where arcs and points are listed.
 const BESIDE: f64 = 1e-12;
 
+/// Directions in undecided cells that are asked one by one, at most.
+const MOST_ASKED: usize = 64;
+
 /// Solid angles, each enclosed: `[at least, at most]`, in steradians.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Areas {
@@ -267,6 +270,37 @@ impl<'a> FreeDirections<'a> {
     #[cfg(feature = "json")]
     pub(crate) fn cast(&self) -> &Cast<'a, Solid> {
         &self.cast
+    }
+
+    /// Free directions in cells that are undecided: corners and middles of these, each asked by an ordinary cast, some
+    /// of them if there are many.
+    pub fn free_among_undecided(&self) -> Vec<DVec3> {
+        let undecided = |(cell, fate): (Cell, &Fate)| match fate {
+            Fate::Undecided(_) => {
+                let middle = cell.side.direction(cell.center());
+                Some(cell.corners().into_iter().chain([middle]))
+            }
+            _ => None,
+        };
+        let mut asked: Vec<DVec3> = Vec::new();
+        for d in self.leaves().filter_map(undecided).flatten() {
+            // Of two sides of the cube the same direction.
+            if !asked.contains(&d) {
+                asked.push(d);
+            }
+            if asked.len() == MOST_ASKED {
+                break;
+            }
+        }
+        asked.retain(|&d| {
+            let (moving, fixed) = (self.cast.moving(), self.cast.fixed());
+            let (p, q) = (self.cast.moving_pose(), self.cast.fixed_pose());
+            let options = self.options.with_tolerance(self.tolerance()).of_cast();
+            let cast = Cast::<Solid>::new(moving.at(p), fixed.at(q), d);
+            let answer = cast.and_then(|cast| cast.with_options(options)?.clearance());
+            answer.is_ok_and(|answer| answer.is_free())
+        });
+        asked
     }
 
     /// The choices.

@@ -76,16 +76,12 @@ impl fmt::Display for FreeStatement {
         let cells = count(|cell| !matches!(cell, CellProof::Cut));
         let blocked = count(|cell| matches!(cell, CellProof::Blocked(_)));
         let undecided = count(|cell| matches!(cell, CellProof::Undecided(_)));
-        write!(f, "of {cells} cells of the sphere of directions ")?;
-        if blocked == cells {
-            return f.write_str(
-                "one pair of facets each blocks all: the moving body cannot leave along any",
-            );
-        }
-        write!(f, "one pair of facets each blocks {blocked} wholly")?;
         let exactly = cells - blocked - undecided;
-        write!(f, ", in {exactly} it is told exactly along which the moving body can leave")?;
-        if undecided > 0 { write!(f, ", {undecided} are undecided") } else { Ok(()) }
+        write!(
+            f,
+            "of {cells} cells of the sphere of directions {blocked} are blocked by a pair of facets each, \
+             {exactly} are told exactly, {undecided} are undecided"
+        )
     }
 }
 

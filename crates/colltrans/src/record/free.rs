@@ -7,7 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::{Ending, StartOverlapRecord, coordinates};
-use crate::free::{FreeDirections, FreeRegion};
+use crate::free::{CellKind, FreeDirections, FreeRegion};
 
 /// All directions along which a body leaves another one; directions as fractions of the sphere are *shares*, from 0
 /// to 1. Fields that do not apply are left out.
@@ -32,6 +32,9 @@ pub struct FreeRecord {
     /// Free directions with no other beside them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<[f64; 3]>,
+    /// Free directions in cells that are undecided, found by ordinary casts: there may be more around them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub also_free: Vec<[f64; 3]>,
     /// What blocks, the largest share first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub blocked_by: Vec<BlockedByRecord>,
@@ -41,6 +44,9 @@ pub struct FreeRecord {
     /// Cells of the sphere in the proof.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cells: Option<u64>,
+    /// How many of them are undecided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided_cells: Option<u64>,
     /// What overlaps now.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub start_overlaps: Vec<StartOverlapRecord>,
@@ -81,11 +87,13 @@ impl FreeRecord {
     pub fn of(free: &FreeDirections<'_>, names: impl Fn([u32; 2]) -> [Option<String>; 2]) -> Self {
         let [arcs, points] = [free.arcs().len(), free.points().len()];
         let regions = free.regions();
-        let some = !regions.is_empty() || arcs + points > 0;
-        let outcome = match (some, free.is_complete()) {
+        let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided).count();
+        let also_free = free.free_among_undecided();
+        let some = !regions.is_empty() || !also_free.is_empty() || arcs + points > 0;
+        let outcome = match (some, undecided) {
             (true, _) => Ending::Free,
-            (false, true) => Ending::Blocked,
-            (false, false) => Ending::Undecided,
+            (false, 0) => Ending::Blocked,
+            (false, _) => Ending::Undecided,
         };
         let [low, high] = free.free_area();
         // Both are rounded outwards.
@@ -97,9 +105,11 @@ impl FreeRecord {
             regions: regions.iter().map(FreeRegionRecord::of).collect(),
             arcs: free.arcs().iter().map(|arc| arc.ends.map(coordinates)).collect(),
             points: free.points().iter().map(|point| coordinates(point.direction)).collect(),
+            also_free: also_free.into_iter().map(coordinates).collect(),
             blocked_by: blocked_by(free, names),
             tolerance: Some(free.tolerance()),
             cells: Some(free.work()[0]),
+            undecided_cells: Some(undecided as u64),
             ..Self::default()
         }
     }

@@ -144,6 +144,10 @@ fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
         "parts": assembly.names(&stuck.parts),
         "because": stuck.because(bodies),
         "directions": stuck.directions,
+        "proof": match stuck.proven {
+            Some(cells) => json!({ "proven": cells }),
+            None => json!({ "asked": stuck.directions }),
+        },
         "holds": holds.collect::<Vec<_>>(),
     })
 }

@@ -14,7 +14,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidat
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::plan::{PlanOptions, disassemble, disassemble_proving};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
@@ -70,7 +70,8 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let more = more_rooms(&bodies, &given, overlap, watch)?;
     let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
     let options = PlanOptions::default().with_start(overlap).with_samples(samples);
-    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
+    let plan = if arguments.prove { disassemble_proving } else { disassemble };
+    let plan = plan(&bodies, &matrix, &found.finer, options, watch)?;
     let maps = maps(&bodies, &groups, &found, overlap, watch)?;
     let with_proofs = arguments.output.is_some();
     let free = free::all(&bodies, leaving, arguments.work.options(), with_proofs)?;

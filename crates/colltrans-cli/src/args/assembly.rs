@@ -44,6 +44,10 @@ pub(crate) struct AssemblyArguments {
     pub(crate) free: Vec<String>,
     #[command(flatten)]
     pub(crate) work: WorkArguments,
+    /// Prove of what is stuck that no single motion takes it apart, whatever the direction, where there is a
+    /// proof; where there is none, ask more directions
+    #[arg(long, conflicts_with = "only")]
+    pub(crate) prove: bool,
     /// Parts that overlap at the start do not block each other until contacts that begin later
     #[arg(long)]
     pub(crate) ignore_overlaps: bool,

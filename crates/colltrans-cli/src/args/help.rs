@@ -310,7 +310,8 @@ With --json:
      "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
      "within", "ignored", "surfaces"}],
-   "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
+   "left": [...], "stuck": [{"parts": [...], "because", "directions", "proof": {"proven": cells} or
+     {"asked": directions}, "holds"}],
    "maps": [...], "free": [...] (of --free: as of `directions --help`, with "parts")}
   Directions have length 1, so distances are lengths; distance is safe to move by, proven: what stops
   the part has not met in its true place (translation), and the parts, shrunk by half the tolerance

@@ -139,11 +139,12 @@ fn summary(f: &Findings) -> String {
     }
     for stuck in &f.plan.stuck {
         let because = shown(stuck.because(f.bodies));
-        let _ = writeln!(
-            text,
-            "stuck along the directions asked\n  {}: {because}",
-            names(&stuck.parts)
-        );
+        let head = if stuck.proven.is_some() {
+            "stuck along all directions, proven"
+        } else {
+            "stuck along the directions asked"
+        };
+        let _ = writeln!(text, "{head}\n  {}: {because}", names(&stuck.parts));
     }
     for (name, map) in f.maps {
         let share = 100.0 * map.free_share();

@@ -10,7 +10,7 @@ use super::cell::Cell;
 use super::cone::Cone;
 use super::error::FreeError;
 use super::options::FreeOptions;
-use super::proof::{Fate, FreeProof, cells, fates, holds, rest_of};
+use super::proof::{Fate, FreeProof, cells, fates, holds, name_facets, rest_of};
 use super::region::{FreeRegion, regions};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
@@ -386,13 +386,50 @@ impl<'a> FreeDirections<'a> {
         let options = FreeOptions::DEFAULT
             .with_tolerance(proof.tolerance)
             .with_start_overlap(proof.start_overlap);
-        let (cast, bodies) = setting(moving, fixed, &options)?;
-        let misfit = CertificateError::Cover { entry: proof.cells.len() };
-        let fates = fates(&proof.cells).ok_or(misfit)?;
-        let mut all = Self { cast, bodies, options, fates, looks: 0, areas: Areas::default() };
+        let mut all = Self::with_cells(moving, fixed, proof, options)?;
         all.verify()?;
         all.areas = all.measure();
         Ok(all)
+    }
+
+    /// The same without a check, for who has made the proof: areas are told to be 0.
+    ///
+    /// # Errors
+    /// As [`Self::of`]; cells that are not those of a sphere, facets that do not exist.
+    pub fn believing<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        proof: &FreeProof,
+    ) -> Result<Self, FreeError> {
+        let options = FreeOptions::DEFAULT
+            .with_tolerance(proof.tolerance)
+            .with_start_overlap(proof.start_overlap);
+        Self::with_cells(moving, fixed, proof, options)
+    }
+
+    fn with_cells<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        proof: &FreeProof,
+        options: FreeOptions,
+    ) -> Result<Self, FreeError> {
+        let (cast, bodies) = setting(moving, fixed, &options)?;
+        let misfit = CertificateError::Cover { entry: proof.cells.len() };
+        let fates = fates(&proof.cells).ok_or(misfit)?;
+        let all = Self { cast, bodies, options, fates, looks: 0, areas: Areas::default() };
+        let strange = all.leaves().position(|(_, fate)| !name_facets(&all.bodies, fate));
+        match strange {
+            Some(entry) => Err(CertificateError::Cover { entry }.into()),
+            None => Ok(all),
+        }
+    }
+
+    /// The same with other choices for when it is asked once more; the tolerance and the meaning of an overlap stay.
+    #[must_use]
+    pub fn with_options(self, options: FreeOptions) -> Self {
+        let FreeOptions { tolerance, start_overlap, .. } = self.options;
+        let options = options.with_tolerance(tolerance).with_start_overlap(start_overlap);
+        Self { options, ..self }
     }
 
     /// The cells that are not cut, in order.
@@ -475,7 +512,7 @@ fn directions(cell: &Cell, piece: &Piece) -> Vec<DVec3> {
 }
 
 /// The bodies, checked.
-fn setting<'a, A: AsSolid, B: AsSolid>(
+pub(super) fn setting<'a, A: AsSolid, B: AsSolid>(
     moving: &Placed<'a, A>,
     fixed: &Placed<'a, B>,
     options: &FreeOptions,

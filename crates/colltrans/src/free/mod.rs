@@ -7,9 +7,11 @@
 //!
 //! Data flow: [`bodies`] (vertices, and trees down to single facets) -> [`line`] (great circles and exact signs) ->
 //! [`cone`], [`window`] (which pairs of nodes miss a rectangle of directions), [`rest`] -> [`proof`] (what is said of a
-//! cell, and its check) -> [`search`] -> [`FreeDirections`]; [`region`] joins what is free in pieces.
+//! cell, and its check) -> [`search`] -> [`FreeDirections`]; [`region`] joins what is free in
+//! pieces; [`blocker`] tells of single cells.
 
 mod answer;
+mod blocker;
 mod bodies;
 mod cell;
 mod cone;
@@ -23,6 +25,7 @@ mod search;
 mod window;
 
 pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePiece, FreePoint, Verdict};
+pub use blocker::{CellBlocker, DirectionCell};
 pub use error::FreeError;
 pub use options::FreeOptions;
 pub use proof::{CellProof, FreeProof};

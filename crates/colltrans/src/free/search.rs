@@ -125,6 +125,17 @@ impl<'s, 'a> Search<'s, 'a> {
         cones.iter().map(|k| self.cones[*k as usize].pair).collect()
     }
 
+    /// A pair of facets that blocks all of a cell, if one is found soon.
+    pub(super) fn covering_pair(mut self, cell: &Cell) -> Option<Pair> {
+        let mut pairs = vec![[0, 0]];
+        self.refine(&mut pairs, cell);
+        if pairs.is_empty() {
+            return None;
+        }
+        let found = [false, true].into_iter().find_map(|aside| self.covering(&pairs, cell, aside));
+        found.map(|k| self.cones[k as usize].pair)
+    }
+
     fn decide(&mut self, task: &mut Task) -> Decided {
         let (cell, corners) = (task.cell, task.cell.corners());
         let covers = |k: &&u32| self.cones[**k as usize].covers(self.bodies, &corners);

@@ -84,7 +84,9 @@ pub(super) fn certify(
         return Ok(Proof::Open(Vec::new()));
     }
     let mut among = vec![false; bodies.len()];
-    parts.iter().for_each(|&part| among[part] = true);
+    for &part in parts {
+        among[part] = true;
+    }
     let mut certifier = Certifier { bodies, parts, among, blockers: HashMap::new() };
     // Along -d all arcs are turned round, which leaves one component one.
     let sides = if certifier.is_any_fixed(parts) { 6 } else { 3 };

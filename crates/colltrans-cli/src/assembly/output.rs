@@ -34,7 +34,9 @@ pub(super) fn write(
         return print_json(&format!("{json}\n"));
     }
     let mut text = summary(f);
-    free.iter().for_each(|leaving| leaving.tell(&mut text));
+    for leaving in free {
+        leaving.tell(&mut text);
+    }
     print(&text)
 }
 

@@ -29,11 +29,14 @@ pub(crate) fn run(arguments: &DirectionsArguments) -> Result<(), Failure> {
         options: arguments.work.options(),
     };
     let FreeAnswer { record, notes, proof } = asked.ask(arguments.save_proof.is_some())?;
-    notes.iter().for_each(|text| note(text));
+    for text in &notes {
+        note(text);
+    }
+    let text = if arguments.json { json(&record)? } else { words::answer(&record) };
     if arguments.json {
-        print_json(&json(&record)?)?
+        print_json(&text)?;
     } else {
-        print(&words::answer(&record))?
+        print(&text)?;
     }
     match (&arguments.save_proof, proof) {
         (Some(path), Some(proof)) => proof::save(path, &proof),

@@ -88,12 +88,11 @@ pub(crate) fn told(text: &mut String, record: &FreeRecord) {
 
 /// What a proof says that was checked, in one line.
 pub(crate) fn verified(record: &FreeRecord) -> String {
-    let mut text = match record.outcome {
-        Ending::Blocked => "the moving body cannot leave along any direction".to_owned(),
-        _ => {
-            let free = record.free_share.unwrap_or_default();
-            format!("the moving body can leave along {}", shares(free))
-        }
+    let mut text = if record.outcome == Ending::Blocked {
+        "the moving body cannot leave along any direction".to_owned()
+    } else {
+        let free = record.free_share.unwrap_or_default();
+        format!("the moving body can leave along {}", shares(free))
     };
     let kinds = [
         (record.arcs.len(), "arc", "arcs"),

@@ -64,7 +64,7 @@ fn what_cannot_be_asked_is_refused_with_a_reason() {
     refused(folder, &["directions", "cube.off", "open.off"], 3, &["open.off"]);
     refused(folder, &[&LID[..], &["--tolerance", "-1"]].concat(), 2, &["negative"]);
     refused(folder, &[&LID[..], &["--depth", "51"]].concat(), 2, &["51"]);
-    refused(folder, &[&LID[..], &["--save-proof", "cube.off"]].concat(), 2, &["cube.off"]);
+    refused(folder, &[&LID[..], &["--save-proof", "cube.off"]].concat(), 3, &["cube.off"]);
 }
 
 #[test]

@@ -252,7 +252,7 @@ impl<'a> FreeDirections<'a> {
 
     /// The connected regions of what is free with an area, the largest first.
     pub fn regions(&self) -> Vec<FreeRegion> {
-        regions(self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
+        regions(&self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
     }
 
     /// Arcs of free directions beside which there is no region, by cells.

@@ -121,9 +121,8 @@ pub(super) fn rest_of(bodies: &Bodies, cell: Cell, pairs: &[[u32; 2]]) -> Result
 /// Whether what is said of a cell holds; its facets [exist](name_facets).
 pub(super) fn holds(bodies: &Bodies, cell: &Cell, fate: &Fate) -> bool {
     match fate {
-        Fate::Cut(_) => true,
+        Fate::Cut(_) | Fate::Undecided(_) => true,
         Fate::Blocked(pair) => Cone::new(bodies, *pair).covers(bodies, &cell.corners()),
-        Fate::Undecided(_) => true,
         Fate::Open(pairs) => rest_of(bodies, *cell, pairs)
             .is_ok_and(|rest| rest.pieces.iter().all(|piece| is_free(bodies, &rest, piece))),
     }

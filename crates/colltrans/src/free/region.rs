@@ -30,8 +30,8 @@ pub struct FreeRegion {
 }
 
 /// Pieces joined where they touch, the largest region first; `is_free` tells of a direction.
-pub(super) fn regions(pieces: Vec<FreePiece>, is_free: impl Fn(DVec3) -> bool) -> Vec<FreeRegion> {
-    let touching = touching(&pieces);
+pub(super) fn regions(pieces: &[FreePiece], is_free: impl Fn(DVec3) -> bool) -> Vec<FreeRegion> {
+    let touching = touching(pieces);
     let mut group = vec![usize::MAX; pieces.len()];
     let mut regions: Vec<FreeRegion> = Vec::new();
     for first in 0..pieces.len() {
@@ -50,7 +50,7 @@ pub(super) fn regions(pieces: Vec<FreePiece>, is_free: impl Fn(DVec3) -> bool) -
                 }
             }
         }
-        regions.push(region(&pieces, &members, &touching, &is_free));
+        regions.push(region(pieces, &members, &touching, &is_free));
     }
     regions.sort_by(|a, b| b.area.total_cmp(&a.area));
     regions

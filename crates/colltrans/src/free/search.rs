@@ -249,6 +249,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// A pair that blocks a direction, if there is one; nothing if that is not known soon.
+    #[expect(clippy::option_option, reason = "none at all, or none so far")]
     fn blocking(&mut self, pairs: &[Pair], cell: &Cell, place: [f64; 2]) -> Option<Option<u32>> {
         let (window, d) = (Window::at(cell.side, place), cell.side.direction(place));
         let hits = |search: &mut Self, pair| !search.misses(pair, &window);

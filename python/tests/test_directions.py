@@ -50,7 +50,9 @@ def test_casts_say_the_same() -> None:
 
 def test_the_command_line_has_the_same_bits(cli: Path, tmp_path: Path) -> None:
     found = free_directions(Solid.read(BOLT), Solid.read(PLATE))
-    told = subprocess.run([cli, "directions", BOLT, PLATE, "--json"], capture_output=True, text=True)
+    told = subprocess.run(
+        [cli, "directions", BOLT, PLATE, "--json"], capture_output=True, text=True
+    )
     assert json.loads(told.stdout) == found.to_dict()
     proof = tmp_path / "proof.json"
     found.save_proof(proof)

@@ -237,8 +237,8 @@ impl FreeDirections {
 /// >>> low, high = lid.free_share
 /// >>> low <= 0.5 <= high
 /// True
-/// >>> lid.says([[1, 2, 0], [1, 2, -1e-300]])
-/// ['free', 'blocked']
+/// >>> " ".join(lid.says([[1, 2, 0], [1, 2, -1e-200]]))
+/// 'free blocked'
 /// >>> lid.verify()
 #[pyfunction]
 #[pyo3(signature = (moving, fixed, *, moving_pose=None, fixed_pose=None, tolerance=None,

@@ -977,6 +977,7 @@ def within(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
 ) -> Within: ...
+
 @final
 class FreeDirections:
     @property

@@ -80,12 +80,13 @@ def believed(file: Any, under: tuple[Any, ...], by: Callable[[Any], Any]) -> lis
         ("separation", "the bodies never meet: a gap of"),
         ("solids", "first meet at"),
         ("beside", "the bodies never meet: a gap of"),
+        ("directions", "about 1.15048e-05 % of all directions are free"),
     ],
 )
 def test_a_proof_holds(name: str, holds: str) -> None:
     report = check.check((PROOFS / f"{name}.json").read_text())
     assert any(holds in line for line in report.holds)
-    solid = name in {"solids", "beside"}
+    solid = name in {"solids", "beside", "directions"}
     assert any("overlap where they are" in line for line in report.unchecked) == solid
 
 
@@ -140,6 +141,50 @@ def test_the_stop_of_solids_counts() -> None:
     assert not refused(changed(file, (*way, "translation", "lower"), lambda _: None))
     beside = proof("beside")
     assert refused(changed(beside, ("statement", "clearance", "separation", "normal", 0), more))
+
+
+def said(file: Any) -> str:
+    (line,) = check.check(json.dumps(file)).holds
+    return line.partition("about")[2]
+
+
+def test_every_facet_of_a_cell_counts() -> None:
+    file = proof("directions")
+    way = ("statement", "free_directions", "cells")
+    at = list(places(file["statement"]["free_directions"]["cells"]))
+    counts = [
+        sum(len(piece["triangles"]) for piece in file[k]["pieces"]) for k in ("moving", "fixed")
+    ]
+    tried = held = 0
+    for k, place in enumerate(at[::4]):
+        for facet in (k % counts[place[-1]], counts[place[-1]]):
+            other = changed(file, (*way, *place), lambda _, facet=facet: facet)
+            tried += 1
+            if not refused(other):
+                # Another facet of the same plane may block as much.
+                held += 1
+                assert said(other) == said(file)
+    assert tried > 20 and held < tried / 2
+
+
+def test_cells_are_the_sphere_and_nothing_free_is_blocked() -> None:
+    file = proof("directions")
+    way = ("statement", "free_directions")
+    cells = file["statement"]["free_directions"]["cells"]
+    assert refused(changed(file, (*way, "cells"), lambda all_of: all_of[:-1]))
+    assert refused(changed(file, (*way, "cells"), lambda all_of: [*all_of, {"open": []}]))
+    blocked = next(k for k, cell in enumerate(cells) if "blocked" in cell)
+    assert refused(changed(file, (*way, "cells", blocked), lambda _: {"open": []}))
+    some = next(
+        k for k, cell in enumerate(cells) if cell != "cut" and len(cell.get("open", [])) > 1
+    )
+    assert refused(changed(file, (*way, "cells", some), lambda cell: {"open": cell["open"][:1]}))
+    nothing = check.check(
+        json.dumps(changed(file, (*way, "cells", some), lambda _: {"undecided": []}))
+    )
+    assert any("cells are undecided" in line for line in nothing.unchecked)
+    assert refused(changed(file, (*way, "tolerance"), lambda _: 0.0))
+    assert refused(changed(file, (*way, "shrunk", 0, 0, 2), lambda z: z - 5.0))
 
 
 def test_what_is_missing_claims_nothing() -> None:

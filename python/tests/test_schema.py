@@ -52,6 +52,22 @@ def test_answers_of_convex_bodies(batch: Batch, query: str) -> None:
     conform("answer", wrong)
 
 
+@pytest.mark.parametrize("pose", ["0,0,0", "0,0,9", "0.5,0,0", "0,40,0"])
+def test_all_directions_and_their_proofs(cli: Path, tmp_path: Path, pose: str) -> None:
+    proof = tmp_path / "proof.json"
+    words = ["directions", "bolt.stl", "--from", "plate.off", "--moving-pose", pose]
+    answer = ask(cli, [*words, "--save-proof", str(proof)])
+    conform("directions", answer)
+    if answer["outcome"] != "overlapping":
+        conform("proof", json.loads(proof.read_text()))
+        conform("verified", ask(cli, ["verify", str(proof)]))
+
+
+def test_free_directions_and_proofs_of_an_assembly(cli: Path) -> None:
+    words = ["assembly", "gearbox_small", "--free", "bolt_0", "--free", "cover", "--prove"]
+    conform("assembly", ask(cli, words))
+
+
 CLEAR = ["clear", "bolt.stl", "--from", "plate.off", "--moving-pose"]
 CAST = ["ellipsoid_a.obj", "ellipsoid_b.off", "--direction", "1,0.1,0.2", "--moving-pose"]
 HULL = ["cast", "bolt.stl", "plate.off", "--hull", "--direction", "-z", "--moving-pose"]

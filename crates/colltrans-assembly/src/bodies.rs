@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use colltrans::free::FreeError;
+use colltrans::free::{CellBlocker, FreeError, FreeOptions};
 use colltrans::solid::{
     ShrinkReport, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
@@ -346,6 +346,12 @@ impl<'a> Bodies<'a> {
         let solid = Solid::from_pieces(parts.iter().map(|&part| &self.solids[part]));
         let refused = |e| AssemblyError::Free(FreeError::Query(QueryError::NoSolid(e)));
         Ok((solid.map_err(refused)?, begins))
+    }
+
+    /// What blocks whole cells of directions of one part against another; `None` where they overlap.
+    pub(crate) fn cell_blocker(&self, [a, b]: [usize; 2]) -> Option<CellBlocker<'_>> {
+        let [moving, fixed] = [a, b].map(|part| self.solids[part].at(Pose::IDENTITY));
+        CellBlocker::new(&moving, &fixed, FreeOptions::DEFAULT.with_no_tolerance()).ok()
     }
 
     /// # Errors

@@ -54,6 +54,16 @@ impl Removal {
         })
     }
 
+    /// How many parts there are of the group, 0, or of the others, 1.
+    pub(crate) fn count(&self, side: usize) -> usize {
+        self.parts[side].len()
+    }
+
+    /// Both as solids, as they are asked: shrunk by half the tolerance of the bodies.
+    pub const fn solids(&self) -> &[Solid; 2] {
+        &self.solids
+    }
+
     /// The parts that two triangles of an answer belong to.
     pub fn parts(&self, triangles: [u32; 2]) -> [usize; 2] {
         [0, 1].map(|k| {

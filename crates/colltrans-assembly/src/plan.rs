@@ -10,6 +10,7 @@
 //! Every step is replayed before it is reported: asked again, pair by pair, against what is left, and
 //! looked at in a few places on its way for overlaps.
 
+mod certify;
 mod hold;
 mod loose;
 mod replay;
@@ -32,6 +33,7 @@ use crate::part::Assembly;
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
+use certify::{Proof, Prover};
 pub use hold::Hold;
 use single::Single;
 
@@ -69,8 +71,8 @@ impl Step {
     }
 }
 
-/// Parts of which no group leaves along any of the directions asked. That no other single motion
-/// parts them, or several, is not said.
+/// Parts of which no group leaves along any of the directions asked, or along any at all where that is
+/// [proven](Self::proven). That several motions part them is not excluded.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stuck {
@@ -78,6 +80,9 @@ pub struct Stuck {
     pub parts: Vec<usize>,
     /// How many different directions were asked of them.
     pub directions: usize,
+    /// If it is proven that no direction at all takes any group of them from the others: the cells of the sphere that
+    /// prove it. Else nothing is said of directions that were not asked.
+    pub proven: Option<usize>,
     /// For each part, the least sets of others that hold it.
     pub holds: Vec<Hold>,
     /// Pairs that overlap with this fit, and so never move apart.
@@ -140,10 +145,36 @@ pub fn disassemble(
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Plan, AssemblyError> {
+    planned(bodies, matrix, finer, options, None, watch)
+}
+
+/// The same, with a proof for what is stuck, if there is one ([`Stuck::proven`]); where there is none, directions
+/// without a proof are asked too. Parts that are open, ignored or kept apart are not proven to be stuck.
+///
+/// # Errors
+/// As [`disassemble`].
+pub fn disassemble_proving(
+    bodies: &Bodies,
+    matrix: &Matrix,
+    finer: &[Finer],
+    options: PlanOptions,
+    watch: Watch,
+) -> Result<Plan, AssemblyError> {
+    planned(bodies, matrix, finer, options, Some(certify::certify), watch)
+}
+
+fn planned(
+    bodies: &Bodies,
+    matrix: &Matrix,
+    finer: &[Finer],
+    options: PlanOptions,
+    prover: Option<Prover>,
+    watch: Watch,
+) -> Result<Plan, AssemblyError> {
     let tally = watch.stage(Stage::Plan, bodies.len());
     let (plan, base) = (Plan::default(), base(bodies));
     let known = loose::Known::default();
-    let mut planner = Planner { bodies, finer, options, watch, tally, plan, base, known };
+    let mut planner = Planner { bodies, finer, options, prover, watch, tally, plan, base, known };
     let all: Vec<usize> = (0..bodies.len()).collect();
     planner.plan.left = planner.take_apart(&all, matrix, None)?;
     Ok(planner.plan)
@@ -179,6 +210,7 @@ struct Planner<'a> {
     bodies: &'a Bodies<'a>,
     finer: &'a [Finer],
     options: PlanOptions,
+    prover: Option<Prover>,
     watch: Watch<'a>,
     tally: Tally<'a>,
     plan: Plan,
@@ -225,8 +257,12 @@ impl Planner<'_> {
             if way.is_none() {
                 way = self.search_finer(&left, &alive, matrix, &mut asked)?;
             }
+            let mut proven = None;
+            if way.is_none() {
+                (way, proven) = self.prove(&left, &alive, &mut asked)?;
+            }
             let Some(way) = way else {
-                self.explain(&left, matrix, asked.len());
+                self.explain(&left, matrix, asked.len(), proven);
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.fixed(k)) {
                     // All others are gone: what is left comes out, as one.
@@ -420,13 +456,37 @@ impl Planner<'_> {
         groups.into_values().collect()
     }
 
-    fn explain(&mut self, left: &[usize], matrix: &Matrix, asked: usize) {
+    /// A way along a direction that a proof leaves open, or the cells of a proof that there is none.
+    fn prove(
+        &mut self,
+        left: &[usize],
+        alive: &[bool],
+        asked: &mut HashSet<[u64; 3]>,
+    ) -> Result<(Option<Way>, Option<usize>), AssemblyError> {
+        let Some(prover) = self.prover else { return Ok((None, None)) };
+        let start = self.options.start;
+        let directions = match prover(self.bodies, left, start, self.watch)? {
+            Proof::Proven(cells) => return Ok((None, Some(cells))),
+            Proof::Open(directions) => directions,
+        };
+        asked.extend(directions.iter().copied().map(bits));
+        let (bodies, base) = (self.bodies, &self.base);
+        let allowed = |group: &[usize]| {
+            let movable = !group.iter().any(|&k| bodies.assembly().parts()[k].fixed());
+            movable.then(|| group.iter().any(|&k| base[k]))
+        };
+        let known = &mut self.known;
+        let way = loose::smallest(bodies, &directions, alive, start, allowed, known, self.watch)?;
+        Ok((way, None))
+    }
+
+    fn explain(&mut self, left: &[usize], matrix: &Matrix, asked: usize, proven: Option<usize>) {
         let movable = left.iter().any(|&k| !self.fixed(k));
         if !movable {
             return;
         }
         let fixed = left.iter().any(|&k| self.fixed(k));
-        self.plan.stuck.push(hold::explain(self.bodies, left, matrix, asked, fixed));
+        self.plan.stuck.push(hold::explain(self.bodies, left, matrix, asked, fixed, proven));
     }
 
     fn fixed(&self, part: usize) -> bool {

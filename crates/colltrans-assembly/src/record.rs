@@ -3,11 +3,14 @@
 //! Parts are told by their names, directions have length 1; `docs/assemblies.md` describes the fields,
 //! `docs/answers.schema.json` holds them.
 
+use colltrans::free::FreeDirections;
+use colltrans::record::FreeRecord;
 use colltrans::solid::ShellKind;
 use glam::DVec3;
 use serde_json::{Value, json};
 
 use crate::bodies::{Bodies, Fit};
+use crate::free::Removal;
 use crate::liaisons::Liaison;
 use crate::map::{Region, RemovalMap};
 use crate::matrix::{Matrix, Meeting};
@@ -141,8 +144,25 @@ fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
         "parts": assembly.names(&stuck.parts),
         "because": stuck.because(bodies),
         "directions": stuck.directions,
+        "proof": match stuck.proven {
+            Some(cells) => json!({ "proven": cells }),
+            None => json!({ "asked": stuck.directions }),
+        },
         "holds": holds.collect::<Vec<_>>(),
     })
+}
+
+/// All directions along which a group can leave the others; of several parts on a side with their names.
+pub fn free(bodies: &Bodies, removal: &Removal, free: &FreeDirections) -> FreeRecord {
+    let several = [0, 1].map(|k| removal.count(k) > 1);
+    let name = |part: usize| bodies.assembly().parts()[part].name().to_owned();
+    let names = |triangles: [u32; 2]| {
+        let parts = removal.parts(triangles);
+        [0, 1].map(|k| several[k].then(|| name(parts[k])))
+    };
+    let mut record = FreeRecord::of(free, names);
+    record.tolerance = Some(bodies.fit().tolerance());
+    record
 }
 
 /// A removal map without its samples: free regions with points of their borders, isolated directions.

@@ -15,7 +15,7 @@ use colltrans_assembly::candidates::{Choice, Finer, Origin, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::plan::{Plan, PlanOptions, disassemble, disassemble_proving};
 use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
@@ -26,13 +26,25 @@ use common::*;
 use glam::{DAffine3, DVec3};
 
 fn planned(assembly: &Assembly) -> Plan {
+    plan_by(assembly, disassemble)
+}
+
+/// With proofs of what is stuck.
+fn proven(assembly: &Assembly) -> Plan {
+    plan_by(assembly, disassemble_proving)
+}
+
+fn plan_by(
+    assembly: &Assembly,
+    plan: impl Fn(&Bodies, &Matrix, &[Finer], PlanOptions, Watch) -> Result<Plan, AssemblyError>,
+) -> Plan {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
     let touching = liaisons(&bodies, Watch::default()).unwrap();
     let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
     let all = vec![true; bodies.len()];
     let start = StartOverlap::Refuse;
     let matrix = Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
-    disassemble(&bodies, &matrix, &found.finer, Default::default(), Watch::default()).unwrap()
+    plan(&bodies, &matrix, &found.finer, Default::default(), Watch::default()).unwrap()
 }
 
 fn steps<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
@@ -55,6 +67,32 @@ fn linked_rings_do_not_come_apart() {
     assert_eq!(plan.stuck.len(), 1);
     assert_eq!(plan.stuck[0].parts, [0, 1]);
     assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
+}
+
+#[test]
+fn that_linked_rings_are_stuck_is_proven_in_few_cells() {
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let plan = proven(&assembly);
+    let [stuck] = &plan.stuck[..] else { panic!("one group: {:?}", plan.stuck) };
+    let cells = stuck.proven.expect("a proof");
+    assert!((3..1_000).contains(&cells), "{cells}");
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    assert!(stuck.because(&bodies).contains(&format!("proven in {cells} cells")));
+    // The plan is the same but for the proof.
+    let asked = planned(&assembly);
+    assert_eq!((asked.stuck[0].proven, &asked.left), (None, &plan.left));
+    assert!(asked.stuck[0].because(&bodies).contains("directions asked"));
+}
+
+#[test]
+fn what_is_ignored_is_not_proven_to_be_stuck() {
+    let [a, b] = links();
+    let names = [a.name().to_owned(), b.name().to_owned()];
+    let pair = [[names[0].as_str(), names[1].as_str()]];
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let assembly = assembly.with_ignored(&pair, Ignored::Overlap).unwrap();
+    let plan = proven(&assembly);
+    assert_eq!(plan.stuck.iter().map(|stuck| stuck.proven).collect::<Vec<_>>(), [None]);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 mod assembly;
+mod directions;
 mod help;
 mod placed;
 mod values;
@@ -16,9 +17,10 @@ use colltrans_mesh::body::BodyOptions;
 use crate::among::is_list;
 use crate::failure::{Code, Failure};
 pub(crate) use assembly::AssemblyArguments;
+pub(crate) use directions::DirectionsArguments;
 use help::{
-    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, DISTANCE_ANSWERS, EXIT_CODES,
-    fitted, formats,
+    ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, DIRECTIONS_ANSWERS,
+    DISTANCE_ANSWERS, EXIT_CODES, fitted, formats,
 };
 pub(crate) use placed::{PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction};
@@ -51,6 +53,13 @@ pub(crate) enum Command {
     /// hollows, several files on a side being one body, in place. Contacts behind do not block.
     #[command(visible_alias = "clear", after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CLEARANCE_ANSWERS, &formats(), EXIT_CODES]))]
     Clearance(Box<ClearanceArguments>),
+    /// Say along which directions a mesh can leave another one: all of them, proven
+    ///
+    /// The whole set: regions of directions with their borders, arcs and single directions, and that all
+    /// others are blocked. Meshes are parts, closed surfaces with their holes and hollows, as those of
+    /// `clearance --from`.
+    #[command(visible_alias = "free", after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[DIRECTIONS_ANSWERS, &formats(), EXIT_CODES]))]
+    Directions(Box<DirectionsArguments>),
     /// Say how far apart two meshes are where they are, and where they are nearest
     ///
     /// With proven bounds, however near they are: the true distance lies between them. Meshes are taken as

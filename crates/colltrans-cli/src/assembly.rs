@@ -1,8 +1,9 @@
 //! `assembly`: which parts come out.
 //!
 //! Data flow: source -> parts -> overlaps, contacts, directions, matrix, plan, maps (all of them
-//! `colltrans_assembly`'s) -> text, JSON or files ([`output`]).
+//! `colltrans_assembly`'s), all directions ([`free`]) -> text, JSON or files ([`output`]).
 
+mod free;
 mod output;
 
 use std::path::Path;
@@ -13,7 +14,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidat
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::plan::{PlanOptions, disassemble, disassemble_proving};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
@@ -35,7 +36,8 @@ pub(crate) fn run(arguments: &AssemblyArguments) -> Result<(), Failure> {
 fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let given = given_directions(arguments)?;
     let assembly = assembly(arguments)?;
-    let groups = groups(arguments, &assembly)?;
+    let groups = groups(&arguments.map, &assembly)?;
+    let leaving = self::groups(&arguments.free, &assembly)?;
     output::refuse_inputs(arguments, &assembly)?;
     let fit = match (arguments.tolerance, arguments.keep_apart) {
         (Some(tolerance), _) => Fit::Tolerance(tolerance),
@@ -68,8 +70,11 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let more = more_rooms(&bodies, &given, overlap, watch)?;
     let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
     let options = PlanOptions::default().with_start(overlap).with_samples(samples);
-    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
+    let plan = if arguments.prove { disassemble_proving } else { disassemble };
+    let plan = plan(&bodies, &matrix, &found.finer, options, watch)?;
     let maps = maps(&bodies, &groups, &found, overlap, watch)?;
+    let with_proofs = arguments.output.is_some();
+    let free = free::all(&bodies, leaving, arguments.work.options(), with_proofs)?;
     bar.finish_and_clear();
     let findings = Findings {
         bodies: &bodies,
@@ -81,7 +86,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         plan: &plan,
         maps: &maps,
     };
-    output::write(&findings, arguments)
+    output::write(&findings, &free, arguments)
 }
 
 fn overlap(arguments: &AssemblyArguments) -> StartOverlap {
@@ -165,15 +170,12 @@ fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure
     Ok(all)
 }
 
-/// The groups to be mapped, with their names.
-fn groups(
-    arguments: &AssemblyArguments,
-    assembly: &Assembly,
-) -> Result<Vec<(String, Vec<usize>)>, Failure> {
+/// The groups that are asked about, with their names.
+fn groups(asked: &[String], assembly: &Assembly) -> Result<Vec<(String, Vec<usize>)>, Failure> {
     let mut groups = Vec::new();
-    for map in &arguments.map {
+    for names in asked {
         let mut group = Vec::new();
-        for name in map.split(',').map(str::trim) {
+        for name in names.split(',').map(str::trim) {
             match name.strip_suffix('*') {
                 Some(prefix) if assembly.index(name).is_err() => {
                     let parts = assembly.parts().iter().enumerate();
@@ -189,7 +191,7 @@ fn groups(
         }
         group.sort_unstable();
         group.dedup();
-        groups.push((map.clone(), group));
+        groups.push((names.clone(), group));
     }
     Ok(groups)
 }

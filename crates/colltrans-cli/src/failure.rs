@@ -89,6 +89,17 @@ impl Failure {
     }
 }
 
+impl From<colltrans::free::FreeError> for Failure {
+    fn from(error: colltrans::free::FreeError) -> Self {
+        use colltrans::free::FreeError::{Open, Query};
+        match error {
+            Query(error) => error.into(),
+            Open { .. } => Self::new(Code::Input, error.to_string()),
+            _ => Self::new(Code::Query, error.to_string()),
+        }
+    }
+}
+
 impl From<colltrans::QueryError> for Failure {
     fn from(error: colltrans::QueryError) -> Self {
         use colltrans::QueryError::{Direction, GrazeTolerance, Keep, Length, NothingLeft};

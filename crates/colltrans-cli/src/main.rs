@@ -5,7 +5,8 @@
 //! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
 //! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read, [`outputs`]
 //! writes files whole or not at all, [`terminal`] keeps names from steering it.
-//! [`distance`] asks two bodies where they are, in the same ways, [`among`] one body among many. [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
+//! [`directions`] asks for all directions at once, [`distance`] two bodies where they are, in the same ways, [`among`] one
+//! body among many. [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
 //! others as parts, which [`solid`] makes of files; [`progress`] shows how far work is. [`proof`]
 //! saves proofs and checks saved ones.
 
@@ -16,6 +17,7 @@ mod batch;
 mod body;
 mod cast;
 mod clearance;
+mod directions;
 mod distance;
 mod failure;
 mod info;
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Cast(arguments) => cast::run(&arguments, Question::Contact),
         Command::Clearance(arguments) => clearance::run(&arguments),
+        Command::Directions(arguments) => directions::run(&arguments),
         Command::Distance(arguments) => distance::run(&arguments, PairQuestion::Distance),
         Command::Depth(arguments) => distance::run(&arguments, PairQuestion::Depth),
         Command::Within(arguments) => {

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use colltrans::free::FreeDirections;
+use colltrans::record::FreeRecord;
 use colltrans::{
     CaseError, CertificateError, DistanceStatement, ProofFile, SceneProof, SceneStatement,
     Statement,
@@ -9,6 +11,7 @@ use colltrans::{
 use serde_json::{Map, Value, json};
 
 use crate::args::VerifyArguments;
+use crate::directions;
 use crate::failure::{Code, Failure, print, print_json};
 use crate::inputs::refuse_overwriting;
 use crate::outputs;
@@ -42,8 +45,11 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         .map_err(|error| input(format!("cannot be read: {error}")))?;
     let proof = Saved::read(&text).map_err(|error| input(error.to_string()))?;
     match proof.check() {
-        Ok(()) if arguments.json => print_json(&format!("{}\n", proof.told())),
-        Ok(()) => print(&format!("holds: {}\n", proof.words())),
+        Ok(free) if arguments.json => print_json(&format!("{}\n", proof.told(free.as_ref()))),
+        Ok(None) => print(&format!("holds: {}\n", proof.words())),
+        Ok(Some(free)) => {
+            print(&format!("holds: {}: {}\n", proof.words(), directions::verified(&free)))
+        }
         Err(error) => {
             if arguments.json {
                 let told = json!({ "holds": false, "message": error.to_string() });
@@ -71,10 +77,11 @@ impl Saved {
         }
     }
 
-    fn check(&self) -> Result<(), CertificateError> {
+    /// Checks it; what it says of all directions, if that is what it is about.
+    fn check(&self) -> Result<Option<FreeRecord>, CertificateError> {
         match self {
-            Self::OfTwo(proof) => proof.check(),
-            Self::OfMany(proof) => proof.check(),
+            Self::OfTwo(proof) => checked(proof),
+            Self::OfMany(proof) => proof.check().map(|()| None),
         }
     }
 
@@ -85,9 +92,9 @@ impl Saved {
         }
     }
 
-    fn told(&self) -> Value {
+    fn told(&self, free: Option<&FreeRecord>) -> Value {
         match self {
-            Self::OfTwo(proof) => told(proof),
+            Self::OfTwo(proof) => told(proof, free),
             Self::OfMany(proof) => told_of_many(proof),
         }
     }
@@ -128,8 +135,17 @@ fn told_of_many(proof: &SceneProof) -> Value {
     told
 }
 
+/// Checks it; what it says of all directions, if that is what it is about.
+fn checked(proof: &ProofFile) -> Result<Option<FreeRecord>, CertificateError> {
+    let record = |free: FreeDirections<'_>| FreeRecord::of(&free, |_| [None, None]);
+    match proof.free_directions() {
+        Some(free) => Ok(Some(record(free?))),
+        None => proof.check().map(|()| None),
+    }
+}
+
 /// What is proven, in the fields of answers.
-fn told(proof: &ProofFile) -> Value {
+fn told(proof: &ProofFile, free: Option<&FreeRecord>) -> Value {
     let mut fields = Map::new();
     let mut say = |name: &str, value: Value| fields.insert(name.into(), value);
     say("holds", json!(true));
@@ -164,6 +180,12 @@ fn told(proof: &ProofFile) -> Value {
         Statement::SolidDistance(proof) => {
             say("lower", json!(proof.lower));
             say("upper", json!(proof.near.distance()));
+        }
+        Statement::FreeDirections(of) => {
+            say("tolerance", json!(of.tolerance));
+            free.map(|free| say("outcome", json!(free.outcome)));
+            free.map(|free| say("free_share", json!(free.free_share)));
+            free.map(|free| say("undecided_share", json!(free.undecided_share)));
         }
     }
     say("statement", json!(proof.to_string()));

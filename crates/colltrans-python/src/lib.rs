@@ -8,7 +8,7 @@
 //! 3. queries as values: `query` between convex bodies, `solid_cast` between solids, `pair` without a
 //!    direction;
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
-//!    `solid_answer`, `distance`;
+//!    `solid_answer`, `distance`, `directions`;
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
 //!    bulk), `obstacles` (one body among many), `assembly` (many parts).
 //!
@@ -20,6 +20,7 @@ mod assembly;
 mod body;
 mod certificate;
 mod clearance;
+mod directions;
 mod distance;
 mod errors;
 mod features;
@@ -49,6 +50,8 @@ mod _colltrans {
     use crate::certificate::{Certificate, Separation, SolidCertificate};
     #[pymodule_export]
     use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapping, Slides};
+    #[pymodule_export]
+    use crate::directions::{FreeDirections, free_directions};
     #[pymodule_export]
     use crate::distance::{Depth, Distance, OverlapDepth, Within};
     #[pymodule_export]

@@ -142,7 +142,7 @@
 //! The modules, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `among` (many fixed bodies), `proof_file` and `tracker`. `written` and `record` say how
+//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), `proof_file` and `tracker`. `written` and `record` say how
 //! all of them are written. [`solid`] holds what is of solids alone.
 
 mod among;
@@ -188,7 +188,8 @@ pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairProof};
 #[cfg(feature = "json")]
 pub use proof_file::{
-    Contacts, DistanceStatement, ProofFile, SceneProof, SceneStatement, Slide, Statement, Stop,
+    Contacts, DistanceStatement, FreeStatement, ProofFile, SceneProof, SceneStatement, Slide,
+    Statement, Stop,
 };
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
@@ -211,6 +212,11 @@ pub struct Distances;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/solids.md")]
 pub struct Solids;
+
+/// The examples of `docs/directions.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/directions.md")]
+pub struct Directions;
 
 /// The examples of `docs/among.md`, compiled and run as tests.
 #[cfg(doctest)]

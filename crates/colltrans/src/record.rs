@@ -5,6 +5,8 @@
 //! and normals in the world, features by the numbers of the input. What checks a proof is not in it: for
 //! that there are the answers themselves, which the feature `serde` writes whole, and `ProofFile`.
 
+mod free;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +23,7 @@ use crate::pair::{Pair, points};
 use crate::setting::error::QueryError;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::written::{UnknownName, named};
+pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
 ///

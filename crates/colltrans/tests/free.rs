@@ -6,9 +6,10 @@ use std::f64::consts::{PI, TAU};
 use colltrans::free::{FreeDirections, FreeError, FreeOptions, Verdict};
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::solid::StartOverlap;
-use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
 use colltrans_testkit::oracle::solids::free::{Judged, examine};
 use colltrans_testkit::oracle::solids::settings::FAMILIES;
+use colltrans_testkit::random::Random;
 
 const EXACT: FreeOptions = FreeOptions::DEFAULT.with_no_tolerance();
 
@@ -178,4 +179,96 @@ fn bodies_turned_together_say_the_same() {
     let [low, high] = all.free_area();
     assert!((low - plain.free_area()[0]).abs() < 1e-9 && high >= plain.free_area()[0], "{low}");
     assert!(all.undecided_area() < 1e-9);
+}
+
+/// A bar in a tube with some play, and the tube.
+fn bar_in_tube() -> [Solid; 2] {
+    let bar = cuboid([0.0, 0.0, 0.0], [4.0, 1.0, 1.0]);
+    let tube = joined(&[
+        cuboid([-1.0, -1.0, -1.0], [7.0, 2.0, 0.0]),
+        cuboid([-1.0, -1.0, 1.0], [7.0, 2.0, 2.0]),
+        cuboid([-1.0, -1.0, 0.0], [7.0, 0.0, 1.0]),
+        cuboid([-1.0, 1.0, 0.0], [7.0, 2.0, 1.0]),
+    ]);
+    [bar, tube]
+}
+
+#[test]
+fn a_larger_tolerance_frees_more_and_nothing_less() {
+    let [bar, tube] = bar_in_tube();
+    let all = [0.0, 0.001, 0.01, 0.1].map(|length| free(&bar, &tube, EXACT.with_tolerance(length)));
+    for pair in all.windows(2) {
+        assert!(pair[0].free_area()[1] <= pair[1].free_area()[0]);
+        for cell in pair[0].cells() {
+            for d in cell.corners {
+                let [tight, loose] = [0, 1].map(|k| pair[k].says(d).unwrap());
+                assert!(tight != Verdict::Free || loose == Verdict::Free, "{d}");
+            }
+        }
+    }
+}
+
+#[test]
+fn regions_have_the_corners_that_one_sees() {
+    let [bar, tube] = bar_in_tube();
+    let all = free(&bar, &tube, EXACT.with_tolerance(0.1));
+    let regions = all.regions();
+    assert_eq!(regions.len(), 2, "one at each end of the tube");
+    for (region, sign) in regions.iter().zip([-1.0, 1.0]) {
+        assert_eq!(region.corners.len(), 4, "{region:?}");
+        assert!((region.center.x - sign).abs() < 1e-6);
+        assert_eq!(all.says(region.center), Ok(Verdict::Free));
+        // The bar, shrunk, has a play of 0.1 on each side in all, and leaves by 4.9 or 6.9.
+        let slope = if sign < 0.0 { 0.1 / 4.9 } else { 0.1 / 6.9 };
+        for corner in &region.corners {
+            assert!((corner.y.abs() - slope).abs() < 0.01, "{corner}");
+        }
+    }
+    let area: f64 = regions.iter().map(|region| region.area).sum();
+    assert!((area - all.free_area()[0]).abs() < 1e-12);
+    assert!(all.pieces().len() >= regions.len());
+}
+
+#[test]
+fn little_is_looked_at_where_little_blocks() {
+    let [bar, tube] = bar_in_tube();
+    let [cells, looks] = free(&bar, &tube, EXACT).work();
+    assert!(cells <= 6 && looks < 20_000, "{cells} {looks}");
+    let [cells, looks] = free(&bar, &tube, EXACT.with_tolerance(0.01)).work();
+    assert!(cells <= 24 && looks < 60_000, "{cells} {looks}");
+    let none =
+        FreeDirections::of(&bar.at(Pose::IDENTITY), &tube.at(Pose::IDENTITY), EXACT.with_looks(0));
+    let none = none.unwrap();
+    assert!(!none.is_complete() && !none.is_blocked());
+    assert!((none.undecided_area() - 2.0 * TAU).abs() < 1e-12);
+    assert_eq!(none.free_among_undecided(), [DVec3::X, DVec3::NEG_X]);
+}
+
+#[test]
+fn tetrahedra_in_any_place_say_what_casts_say() {
+    let mut rng = Random::new(29);
+    let mut judged = [0_u32; 2];
+    for _ in 0..60 {
+        let mut tetrahedron = |by: f64| {
+            let corners = [0; 4].map(|_| DVec3::from([0; 3].map(|_| rng.range(-1.0, 1.0))) * by);
+            ConvexPolyhedron::from_points(&corners).ok().map(|body| Solid::from_convex(&body))
+        };
+        let (Some(Ok(a)), Some(Ok(b))) = (tetrahedron(1.0), tetrahedron(2.0)) else { continue };
+        let place = Pose::from_translation(DVec3::new(1.5, 0.5, 0.25)).unwrap();
+        let (a, b) = (a.at(place), b.at(Pose::IDENTITY));
+        let Ok(all) = FreeDirections::of(&a, &b, EXACT) else { continue };
+        all.verify().unwrap();
+        assert!(all.is_complete());
+        let cells: Vec<_> = all.cells().collect();
+        for cell in &cells {
+            let [p, q, r, _] = cell.corners;
+            for d in [p, p + (q - p) * rng.range(0.0, 1.0) + (r - q) * rng.range(0.0, 1.0)] {
+                let cast = Cast::<Solid>::new(a, b, d).unwrap().with_tolerance(0.0).unwrap();
+                let free = cast.clearance().unwrap().is_free();
+                assert_eq!(all.says(d).unwrap() == Verdict::Free, free, "{d}");
+                judged[usize::from(free)] += 1;
+            }
+        }
+    }
+    assert!(judged[0] > 100 && judged[1] > 100, "{judged:?}");
 }

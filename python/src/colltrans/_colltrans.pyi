@@ -29,6 +29,7 @@ __all__ = [
     "Distance",
     "Feature",
     "Features",
+    "FreeDirections",
     "Grazing",
     "Intersection",
     "NearestObstacle",
@@ -61,6 +62,7 @@ __all__ = [
     "depth",
     "directional_depth",
     "distance",
+    "free_directions",
     "intersects",
     "read",
     "within",
@@ -1019,6 +1021,48 @@ def within(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
 ) -> Within: ...
+
+@final
+class FreeDirections:
+    @property
+    def moving(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def fixed(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def moving_pose(self) -> Pose: ...
+    @property
+    def fixed_pose(self) -> Pose: ...
+    @property
+    def outcome(self) -> Literal["free", "blocked", "undecided"]: ...
+    @property
+    def free_share(self) -> tuple[float, float]: ...
+    @property
+    def undecided_share(self) -> float: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def regions(self) -> list[dict[str, Any]]: ...
+    @property
+    def arcs(self) -> list[list[list[float]]]: ...
+    @property
+    def points(self) -> list[list[float]]: ...
+    def says(self, directions: ArrayLike) -> list[Literal["free", "blocked", "undecided"]]: ...
+    def verify(self) -> None: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def proof_json(self) -> str: ...
+    def save_proof(self, path: str | PathLike[str]) -> None: ...
+
+def free_directions(
+    moving: ConvexPolyhedron | Solid,
+    fixed: ConvexPolyhedron | Solid,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    tolerance: float | None = None,
+    ignore_start_overlaps: bool = False,
+    depth: int = 26,
+    looks: int = 20_000_000,
+) -> FreeDirections: ...
 def read(
     path: str | PathLike[str],
     *,

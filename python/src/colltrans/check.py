@@ -29,6 +29,11 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   distance of solids the two points are checked, not that no others are nearer.
 - *One body among many.* Every obstacle is looked at: by what is claimed of it, as above, or else by
   the boxes of both bodies, how far they are apart or when one meets the other on its way.
+- *All directions.* Two facets ``f`` and ``g`` block an open cone: ``n_f.d > 0``, ``n_g.d < 0``, and
+  ``d`` inside the cone of the nine differences ``g - f``. A cell that they block has its four
+  corners in it. What cones leave of any other cell is convex pieces, whose corners are vector
+  products; nothing else blocks them, as pairs of boxes and then of facets show. Not checked is that
+  the bodies do not overlap where they are, and how they were shrunk.
 
 Exit codes: 0 the proof holds, 7 what was checked of it holds (of solids, never all), 6 something
 does not, 3 the file is no proof, 1 there is nothing in it that can be checked here, 2 usage.
@@ -587,25 +592,25 @@ def turns(corners: list[Vector], triangles: list[tuple[int, ...]]) -> int:
     raise RefusedError("no ray avoids all edges of the surface")
 
 
-Box: TypeAlias = tuple[list[Fraction], list[Fraction]]
+Bounds: TypeAlias = tuple[list[Fraction], list[Fraction]]
 #: A bound that is not there: nothing ever stops the body.
 _NEVER = None
 
 
-def box(body: Body) -> Box:
+def box(body: Body) -> Bounds:
     """The least and the largest coordinates."""
     axes = [tuple(Fraction(i == k) for k in range(3)) for i in range(3)]
     all_heights = [list(body.heights((x, y, z))) for x, y, z in axes]
     return [min(h) for h in all_heights], [max(h) for h in all_heights]
 
 
-def box_gap(p: Box, q: Box) -> Fraction:
+def box_gap(p: Bounds, q: Bounds) -> Fraction:
     """The square of the distance of two boxes."""
     sides = zip(*p, *q, strict=True)
     return sum((max(c - b, a - d, Fraction()) ** 2 for a, b, c, d in sides), Fraction())
 
 
-def box_entry(p: Box, q: Box, d: Vector, keep: Fraction) -> Fraction | None:
+def box_entry(p: Bounds, q: Bounds, d: Vector, keep: Fraction) -> Fraction | None:
     """When a box, grown by a gap, first meets another on its way from 0 on; None if never."""
     first, last = Fraction(), None
     for a, b, c, e, x in zip(*p, *q, d, strict=True):
@@ -825,6 +830,397 @@ class Scene:
         if -gaps(self.moving, body, d, normal)[0] > most:
             raise RefusedError("the bodies overlap sideways by more than is tolerated")
 
+Whole: TypeAlias = tuple[int, int, int]
+
+#: Pairs of boxes that are looked at in one file, at most: nothing else blocks what is free.
+MOST_LOOKS = 5_000_000
+#: How often the sides of the cube of directions are halved, at most, and parts of their unit.
+_DEEPEST = 50
+_PARTS = 1 << 60
+
+
+@dataclass
+class Box:
+    """A box of facets: a single one, or two boxes. Coordinates are whole numbers."""
+
+    low: Whole
+    high: Whole
+    facet: int | None
+    parts: tuple[Box, ...] = ()
+
+
+def boxes(triangles: Sequence[tuple[Whole, Whole, Whole]]) -> Box:
+    """A tree of boxes, halved along the longest side."""
+
+    def around(t: tuple[Whole, Whole, Whole], of: Any) -> Whole:
+        return of(c[0] for c in t), of(c[1] for c in t), of(c[2] for c in t)
+
+    def build(all_of: list[Box]) -> Box:
+        if len(all_of) == 1:
+            return all_of[0]
+        low = tuple(min(b.low[k] for b in all_of) for k in range(3))
+        high = tuple(max(b.high[k] for b in all_of) for k in range(3))
+        axis = max(range(3), key=lambda k: high[k] - low[k])
+        all_of.sort(key=lambda b: b.low[axis] + b.high[axis])
+        half = len(all_of) // 2
+        parts = build(all_of[:half]), build(all_of[half:])
+        return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]), None, parts)
+
+    return build([Box(around(t, min), around(t, max), k) for k, t in enumerate(triangles)])
+
+
+def _dot(a: Whole, b: Whole) -> int:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Whole, b: Whole) -> Whole:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def _minus(a: Whole, b: Whole) -> Whole:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _negative(a: Whole) -> Whole:
+    return -a[0], -a[1], -a[2]
+
+
+@dataclass
+class Polygon:
+    """A convex set of directions on a side of the cube, borders included; also an arc, a point."""
+
+    corners: list[Whole]
+    #: The planes from each corner to the next, with the polygon on their positive side.
+    edges: list[Whole]
+
+    def clipped(self, form: Whole, axis: int, sign: int) -> Polygon:
+        """What of it has a form that is not negative."""
+        sides = [_dot(form, c) for c in self.corners]
+        kept = Polygon([], [])
+        for k, (corner, edge) in enumerate(zip(self.corners, self.edges, strict=True)):
+            here, there = sides[k], sides[(k + 1) % len(sides)]
+            if here >= 0:
+                kept.corners.append(corner)
+                kept.edges.append(form if here == 0 and there < 0 else edge)
+            if (here > 0 and there < 0) or (here < 0 and there > 0):
+                at = _cross(edge, form)
+                kept.corners.append(at if at[axis] * sign > 0 else _negative(at))
+                kept.edges.append(form if here > 0 else edge)
+        return kept
+
+    def is_region(self) -> bool:
+        first = self.corners[0]
+        for other in self.corners[1:]:
+            normal = _cross(first, other)
+            if any(normal):
+                return any(_dot(normal, c) for c in self.corners)
+        return False
+
+    def holds(self, other: Polygon) -> bool:
+        return all(_dot(e, c) >= 0 for e in self.edges for c in other.corners)
+
+
+@dataclass
+class Sphere:
+    """What two bodies of whole coordinates block."""
+
+    bodies: tuple[list[tuple[Whole, Whole, Whole]], list[tuple[Whole, Whole, Whole]]]
+    trees: tuple[Box, Box]
+    cones: dict[tuple[int, int], list[Whole]] = field(default_factory=dict)
+    looks: int = 0
+
+    def cone(self, pair: tuple[int, int]) -> list[Whole]:
+        """Forms that are positive on all directions that two facets block, and on no others."""
+        if pair not in self.cones:
+            self.cones[pair] = blocking(self.bodies[0][pair[0]], self.bodies[1][pair[1]])
+        return self.cones[pair]
+
+
+def blocking(f: tuple[Whole, Whole, Whole], g: tuple[Whole, Whole, Whole]) -> list[Whole]:
+    """Of the moving facet ``f`` and the fixed one ``g``; no forms if they block nothing.
+
+    A side of the cone over the differences is the plane of a vertex of one and an edge of the
+    other that has all nine differences on one side.
+    """
+    ahead = _cross(_minus(f[1], f[0]), _minus(f[2], f[0]))
+    back = _negative(_cross(_minus(g[1], g[0]), _minus(g[2], g[0])))
+    between = [_minus(q, p) for p in f for q in g]
+    if not any(_dot(ahead, m) or _dot(back, m) for m in between):
+        return [ahead] if faces(f, g, ahead, back) else []
+    spanned = [(_minus(g[a], p), _minus(g[a - 1], p)) for p in f for a in range(3)]
+    spanned += [(_minus(q, f[a]), _minus(q, f[a - 1])) for q in g for a in range(3)]
+    sides: list[Whole] = []
+    for u, v in spanned:
+        form = _cross(u, v)
+        heights = [_dot(form, m) for m in between]
+        if any(heights) and min(heights) >= 0:
+            sides.append(form)
+        elif any(heights) and max(heights) <= 0:
+            sides.append(_negative(form))
+    return [ahead, back, *sides] if sides else []
+
+
+def faces(
+    f: tuple[Whole, Whole, Whole], g: tuple[Whole, Whole, Whole], ahead: Whole, back: Whole
+) -> bool:
+    """Whether two facets of one plane look at each other, and their interiors overlap."""
+    if _dot(ahead, back) <= 0:
+        return False
+    for one, other in ((f, g), (g, f)):
+        for k in range(3):
+            across = _cross(ahead, _minus(one[k], one[k - 1]))
+            inner = _dot(across, _minus(one[k - 2], one[k]))
+            if all(_dot(across, _minus(c, one[k])) * inner <= 0 for c in other):
+                return False
+    return True
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A square on a side of the cube: of ``2 ** depth`` by as many, the one of these numbers."""
+
+    side: int
+    depth: int
+    at: tuple[int, int]
+
+    @property
+    def axes(self) -> tuple[int, int, int]:
+        k = self.side // 2
+        return k, (k + 1) % 3, (k + 2) % 3
+
+    @property
+    def sign(self) -> int:
+        return -1 if self.side % 2 else 1
+
+    def corner(self, across: int, up: int) -> Whole:
+        one = 1 << self.depth
+        d = [0, 0, 0]
+        k, i, j = self.axes
+        d[k], d[i], d[j] = (
+            self.sign * one,
+            2 * (self.at[0] + across) - one,
+            2 * (self.at[1] + up) - one,
+        )
+        return d[0], d[1], d[2]
+
+    def polygon(self) -> Polygon:
+        corners = [self.corner(*at) for at in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        middle = tuple(sum(c[k] for c in corners) for k in range(3))
+        edges = [_cross(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+        inner = (middle[0], middle[1], middle[2])
+        return Polygon(corners, [e if _dot(e, inner) > 0 else _negative(e) for e in edges])
+
+    def quarters(self) -> list[Cell]:
+        u, v = self.at
+        places = ((2 * u + a, 2 * v + b) for b in (0, 1) for a in (0, 1))
+        return [Cell(self.side, self.depth + 1, place) for place in places]
+
+
+def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """Which directions are free: cell by cell, in whole numbers."""
+    sphere = whole_bodies(moving, fixed, claim, report)
+    stack = [Cell(side, 0, (0, 0)) for side in range(5, -1, -1)]
+    count = {"blocked": 0, "open": 0, "undecided": 0}
+    free, undecided, skipped = 0.0, 0.0, 0
+    for said in claim["cells"]:
+        if not stack:
+            raise RefusedError("there are more cells than the sphere has")
+        cell = stack.pop()
+        if said == "cut":
+            if cell.depth == _DEEPEST:
+                raise RefusedError("a cell is cut too often")
+            stack += reversed(cell.quarters())
+            continue
+        ((kind, content),) = said.items()
+        if kind not in count:
+            raise NoProofError(f"a cell is not {kind!r}")
+        count[kind] += 1
+        pairs = [pair_of(p, sphere) for p in ([content] if kind == "blocked" else content)]
+        if kind == "blocked":
+            corners = cell.polygon().corners
+            cone = sphere.cone(pairs[0])
+            if not cone or any(_dot(form, c) <= 0 for form in cone for c in corners):
+                raise RefusedError(f"facets {content} do not block all of a cell")
+            continue
+        left = rest(sphere, cell, pairs)
+        around = sum(solid_angle(p.corners) for p in left if p.is_region())
+        if kind == "undecided":
+            undecided += around
+            continue
+        free += around
+        if sphere.looks > MOST_LOOKS:
+            skipped += 1
+            continue
+        for polygon in left:
+            met = first_met(sphere, cell, polygon)
+            if met is not None:
+                raise RefusedError(f"facets {list(met)} block what is said to be free")
+    if stack:
+        raise RefusedError("the cells do not cover the sphere")
+    summary(report, count, [free, undecided], skipped)
+    report.partly = True
+    if claim["start_overlap"] == "refuse":
+        report.unchecked.append("that the bodies do not overlap where they are")
+
+
+def summary(report: Report, count: dict[str, int], areas: list[float], skipped: int) -> None:
+    free, undecided = (f"{100 * area / (4 * math.pi):.6g} %" for area in areas)
+    told = f"{sum(count.values())} cells are the sphere"
+    told += f", {count['blocked']} are blocked by two facets each"
+    if count["open"]:
+        told += f", {count['open'] - skipped} are told exactly"
+    report.holds.append(f"{told}: about {free} of all directions are free")
+    if count["undecided"]:
+        report.unchecked.append(f"{count['undecided']} cells are undecided: about {undecided}")
+    if skipped:
+        report.unchecked.append(
+            f"that nothing else blocks what is free in {skipped} cells: too many"
+        )
+
+
+def pair_of(value: Any, sphere: Sphere) -> tuple[int, int]:
+    f, g = value
+    return whole(f, len(sphere.bodies[0])), whole(g, len(sphere.bodies[1]))
+
+
+def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Sphere:
+    """Both bodies, shrunk as the file says, with coordinates that are whole numbers."""
+    tolerance, shrunk = number(claim["tolerance"]), claim.get("shrunk")
+    if tolerance < 0 or (tolerance > 0) != (shrunk is not None):
+        raise RefusedError("bodies are shrunk if there is a tolerance, and only then")
+    bodies = [moving, fixed]
+    if shrunk is not None:
+        farthest = 0.0
+        for k, points in enumerate([[vector(v) for v in side] for side in shrunk]):
+            if len(points) != len(bodies[k].points):
+                raise RefusedError("the shrunk bodies have other vertices")
+            ways = [minus(a, b) for a, b in zip(points, bodies[k].points, strict=True)]
+            farthest = max(farthest, *(math.sqrt(float(dot(w, w))) for w in ways))
+            bodies[k] = Body(points, bodies[k].rows, bodies[k].offset, bodies[k].facets)
+        report.unchecked.append(
+            f"what shrinking by {float(tolerance / 2)!r} makes of the bodies: vertices are moved "
+            f"by up to {farthest:.3e}"
+        )
+    placed = [[body.at(k) for k in range(len(body.points))] for body in bodies]
+    unit_of = math.lcm(*(x.denominator for points in placed for v in points for x in v))
+    sides = []
+    for body, points in zip(bodies, placed, strict=True):
+        at = [(int(x * unit_of), int(y * unit_of), int(z * unit_of)) for x, y, z in points]
+        sides.append([(at[a], at[b], at[c]) for a, b, c in body.facets])
+    return Sphere((sides[0], sides[1]), (boxes(sides[0]), boxes(sides[1])))
+
+
+def is_met(cone: list[Whole], polygon: Polygon, cell: Cell) -> bool:
+    """Whether a cone has a direction of a polygon."""
+    if not cone or any(all(_dot(form, c) <= 0 for c in polygon.corners) for form in cone):
+        return False
+    for form in cone:
+        polygon = polygon.clipped(form, cell.axes[0], cell.sign)
+        if not polygon.corners:
+            return False
+    # The mean of the corners is inside if some corner is, for each side.
+    return all(any(_dot(form, c) > 0 for c in polygon.corners) for form in cone)
+
+
+def rest(sphere: Sphere, cell: Cell, pairs: list[tuple[int, int]]) -> list[Polygon]:
+    """What some pairs leave of a cell."""
+    left = [cell.polygon()]
+    for pair in pairs:
+        cone, after = sphere.cone(pair), []
+        for polygon in left:
+            if not is_met(cone, polygon, cell):
+                after.append(polygon)
+                continue
+            inner = polygon
+            for form in cone:
+                outer = inner.clipped(_negative(form), cell.axes[0], cell.sign)
+                if outer.corners:
+                    after.append(outer)
+                inner = inner.clipped(form, cell.axes[0], cell.sign)
+                if not inner.corners:
+                    break
+        regions = [p for p in after if p.is_region()]
+        alone = [p for p in after if not p.is_region() and not any(r.holds(p) for r in regions)]
+        left = regions + alone
+    return left
+
+
+def first_met(sphere: Sphere, cell: Cell, polygon: Polygon) -> tuple[int, int] | None:
+    """A pair of facets that blocks a direction of a polygon."""
+    k, i, j = cell.axes
+    ends = []
+    for axis in (i, j):
+        below = [c[axis] * _PARTS // (c[k] * cell.sign) for c in polygon.corners]
+        ends.append((min(below), max(below) + 1))
+    stack = [sphere.trees]
+    while stack:
+        a, b = stack.pop()
+        sphere.looks += 1
+        low, high = _minus(b.low, a.high), _minus(b.high, a.low)
+        if is_beside(cell, ends, low, high):
+            continue
+        if a.facet is None and (b.facet is not None or _extent(a) >= _extent(b)):
+            stack += [(part, b) for part in a.parts]
+        elif b.facet is None:
+            stack += [(a, part) for part in b.parts]
+        elif a.facet is not None:
+            pair = a.facet, b.facet
+            if not away(sphere, pair, polygon) and is_met(sphere.cone(pair), polygon, cell):
+                return pair
+    return None
+
+
+def away(sphere: Sphere, pair: tuple[int, int], polygon: Polygon) -> bool:
+    """Whether one of two facets looks away from all directions of a polygon."""
+    for facet, sign in ((sphere.bodies[0][pair[0]], 1), (sphere.bodies[1][pair[1]], -1)):
+        normal = _cross(_minus(facet[1], facet[0]), _minus(facet[2], facet[0]))
+        if all(sign * _dot(normal, c) <= 0 for c in polygon.corners):
+            return True
+    return False
+
+
+def _extent(box: Box) -> int:
+    return max(_minus(box.high, box.low))
+
+
+def is_beside(cell: Cell, ends: list[tuple[int, int]], low: Whole, high: Whole) -> bool:
+    """Whether no ``t d``, ``t >= 0``, is in a box, for all ``d`` between the ends."""
+    k, i, j = cell.axes
+    near, far = (low[k], high[k]) if cell.sign > 0 else (-high[k], -low[k])
+    near = max(near, 0)
+    for (least, most), axis in zip(ends, (i, j), strict=True):
+        for slope, limit in ((most, low[axis]), (-least, -high[axis])):
+            # t slope >= limit.
+            if slope > 0:
+                near = max(near, limit * _PARTS // slope)
+            elif slope < 0:
+                far = min(far, -(limit * _PARTS // -slope) + 1)
+            elif limit > 0:
+                return True
+    return near > far
+
+
+def solid_angle(corners: list[Whole]) -> float:
+    """Of a convex polygon of directions, nearly."""
+    largest = max(abs(x) for c in corners for x in c)
+    ways = [tuple(float(Fraction(x, largest)) for x in c) for c in corners]
+    ways = [tuple(x / math.hypot(*c) for x in c) for c in ways]
+    total = 0.0
+    a = ways[0]
+    for b, c in pairwise(ways[1:]):
+        edge, other = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
+        normal = [edge[k - 2] * other[k - 1] - edge[k - 1] * other[k - 2] for k in range(3)]
+        volume = abs(sum(a[k] * normal[k] for k in range(3)))
+        ab, bc, ca = (
+            sum(x * y for x, y in zip(p, q, strict=True)) for p, q in ((a, b), (b, c), (c, a))
+        )
+        total += 2 * math.atan2(volume, 1 + ab + bc + ca)
+    return total
+
 
 def check(text: str) -> Report:
     """Checks a proof as it was written.
@@ -860,7 +1256,8 @@ def check(text: str) -> Report:
             raise NoProofError(f"it has to say one thing, not {len(claims)}")
         ((kind, claim),) = claims.items()
         if kind in PLACED:
-            if d is not None or bool(moving.facets) != (kind == "solid_distance"):
+            of_solids = kind in ("solid_distance", "free_directions")
+            if d is not None or bool(moving.facets) != of_solids:
                 raise NoProofError(f"{kind!r} is not claimed of such bodies, or of a direction")
             PLACED[kind](moving, fixed, claim, report)
         elif d is None:
@@ -883,7 +1280,12 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 #: What is claimed of bodies where they are.
-PLACED = {"distance": distance, "depth": depth, "solid_distance": solid_distance}
+PLACED = {
+    "distance": distance,
+    "depth": depth,
+    "solid_distance": solid_distance,
+    "free_directions": free_directions,
+}
 
 
 def _claim(kind: str, claim: Any, moving: Body, fixed: Body, d: Vector, report: Report) -> None:

@@ -29,6 +29,7 @@ pub(super) fn explain(
     matrix: &Matrix,
     directions: usize,
     fixed: bool,
+    proven: Option<usize>,
 ) -> Stuck {
     let mut among = vec![false; bodies.len()];
     for &k in left {
@@ -52,7 +53,7 @@ pub(super) fn explain(
     }
     overlapping.sort_unstable();
     overlapping.dedup();
-    Stuck { parts: left.to_vec(), directions, holds, overlapping, fixed }
+    Stuck { parts: left.to_vec(), directions, proven, holds, overlapping, fixed }
 }
 
 fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
@@ -69,18 +70,20 @@ impl Stuck {
     /// The reason in words.
     pub fn because(&self, bodies: &Bodies) -> String {
         let name = |k: usize| bodies.assembly().parts()[k].name();
-        let directions = self.directions;
+        let directions = match self.proven {
+            Some(cells) => {
+                format!("in any direction, which is proven in {cells} cells of the sphere,")
+            }
+            None => format!("along the {} directions asked", self.directions),
+        };
         let mut text = match (&self.overlapping[..], self.fixed) {
             ([], false) => {
-                format!(
-                    "no single straight motion along the {directions} directions asked takes them \
-                     apart"
-                )
+                format!("no single straight motion {directions} takes them apart")
             }
             ([], true) => {
                 format!(
-                    "no single straight motion along the {directions} directions asked takes any of \
-                     them from what is fixed or from each other"
+                    "no single straight motion {directions} takes any of them from what is fixed or \
+                     from each other"
                 )
             }
             ([[a, b], rest @ ..], _) => {

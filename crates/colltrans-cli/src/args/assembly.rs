@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use colltrans::glam::DVec3;
 
+use super::directions::WorkArguments;
 use super::values::{direction, length, samples, threads};
 
 #[derive(Debug, Args)]
@@ -38,6 +39,15 @@ pub(crate) struct AssemblyArguments {
     /// name that ends with `*`, are one group
     #[arg(long, value_name = "PART")]
     pub(crate) map: Vec<String>,
+    /// Say along which directions a part can leave all others: all of them, proven; groups as of --map
+    #[arg(long, value_name = "PART", conflicts_with_all = ["keep_apart", "ignore_overlaps"])]
+    pub(crate) free: Vec<String>,
+    #[command(flatten)]
+    pub(crate) work: WorkArguments,
+    /// Prove of what is stuck that no single motion takes it apart, whatever the direction, where there is a
+    /// proof; where there is none, ask more directions
+    #[arg(long, conflicts_with = "only")]
+    pub(crate) prove: bool,
     /// Parts that overlap at the start do not block each other until contacts that begin later
     #[arg(long)]
     pub(crate) ignore_overlaps: bool,
@@ -70,7 +80,7 @@ pub(crate) struct AssemblyArguments {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    /// A folder for report.html, disassembly.glb, assembly.json, matrix.csv and maps
+    /// A folder for report.html, disassembly.glb, assembly.json, matrix.csv, maps, and proofs of --free
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Number of threads [default: all cores]; the answer is the same

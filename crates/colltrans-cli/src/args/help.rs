@@ -159,6 +159,35 @@ Examples:
   Which of many bodies does it meet first?
     colltrans clearance hand.stl --among table.stl scene.jsonl --direction -z";
 
+pub(super) const DIRECTIONS_ANSWERS: &str = "\
+Answers:
+  free         some directions are free: nothing stops the moving body along them, ever
+  blocked      none is, which is proven: pairs of faces block cells that cover the sphere
+  undecided    none is known to be free, and not all are known: --depth and --looks do more
+  overlapping  the bodies overlap now, by more than the tolerance
+
+With --json one object:
+  outcome          one of these
+  free_share       [at least, at most]: the share of all directions that is free, from 0 to 1
+  undecided_share  at most that share is not known
+  regions          [{\"share\", \"center\": [x,y,z], \"corners\": [[x,y,z],...], \"pieces\"}]: connected
+                   regions, the largest first; pieces are convex polygons that together are it
+  arcs points      directions with no region beside them: [[from, to],...], [[x,y,z],...]
+  also_free        free directions among what is undecided, found by casts: [[x,y,z],...]
+  blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: what was found to block, at least
+  tolerance        the one that was used, a length
+  cells            how many cells of the sphere the proof has, and undecided_cells of them
+  start_overlaps   of bodies that overlap: as of `clearance`
+
+A direction is free where `clearance` along it, with the same tolerance, says so.
+
+Examples:
+  Along which directions does a bolt leave its plate?
+    colltrans directions bolt.stl plate.stl --tolerance 0.1
+  A ring among several parts, with a proof for somebody else:
+    colltrans directions ring.stl --from housing.stl shaft.stl --save-proof ring.json
+    colltrans verify ring.json";
+
 pub(super) const DISTANCE_ANSWERS: &str = "\
 Answers of distance:
   apart        so far, between two bounds that are proven, with the points that are nearest, the
@@ -287,8 +316,9 @@ With --json:
      "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
      "within", "ignored", "surfaces"}],
-   "left": [...], "stuck": [{"parts": [...], "because", "directions", "holds"}],
-   "maps": [...]}
+   "left": [...], "stuck": [{"parts": [...], "because", "directions", "proof": {"proven": cells} or
+     {"asked": directions}, "holds"}],
+   "maps": [...], "free": [...] (of --free: as of `directions --help`, with "parts")}
   Directions have length 1, so distances are lengths; distance is safe to move by, proven: what stops
   the part has not met in its true place (translation), and the parts, shrunk by half the tolerance
   each or grown by half the length to keep, do not overlap, which they do from grown_ or
@@ -296,7 +326,7 @@ With --json:
   "overlapping". A step with "within" takes apart the group that step (from 0) took out.
 
 With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each
-map a .svg, .png and .json."#;
+map a .svg, .png and .json, for each part of --free the proof."#;
 
 #[cfg(test)]
 mod tests {
@@ -309,6 +339,7 @@ mod tests {
             &formats(),
             CAST_EXAMPLES,
             CLEARANCE_ANSWERS,
+            DIRECTIONS_ANSWERS,
             DISTANCE_ANSWERS,
             BATCH_FORMAT,
             ASSEMBLY_FORMAT,

@@ -7,6 +7,7 @@ use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::{Assembly, Fit};
 use colltrans_assembly::{map, record};
 
+use super::free::Leaving;
 use crate::args::AssemblyArguments;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::refuse_overwriting;
@@ -14,19 +15,34 @@ use crate::numbers::counted;
 use crate::outputs::{FileNames, Outputs};
 use crate::terminal::{plain_json, shown};
 
-pub(super) fn write(f: &Findings, arguments: &AssemblyArguments) -> Result<(), Failure> {
+pub(super) fn write(
+    f: &Findings,
+    free: &[Leaving],
+    arguments: &AssemblyArguments,
+) -> Result<(), Failure> {
     for text in f.bodies.assembly().notes() {
         note(text);
     }
-    let json = facts::json(f);
-    if let Some(folder) = &arguments.output {
-        files(f, arguments, folder, &json)?;
+    let mut json = facts::json(f);
+    if !free.is_empty() {
+        json["free"] = free.iter().map(Leaving::json).collect();
     }
-    if arguments.json { print_json(&format!("{json}\n")) } else { print(&summary(f)) }
+    if let Some(folder) = &arguments.output {
+        files(f, free, arguments, folder, &json)?;
+    }
+    if arguments.json {
+        return print_json(&format!("{json}\n"));
+    }
+    let mut text = summary(f);
+    for leaving in free {
+        leaving.tell(&mut text);
+    }
+    print(&text)
 }
 
 fn files(
     f: &Findings,
+    free: &[Leaving],
     arguments: &AssemblyArguments,
     folder: &Path,
     json: &serde_json::Value,
@@ -47,6 +63,12 @@ fn files(
         put(&png, &map::png(map, 1_200))?;
         put(&json, plain_json(&record::map(f.bodies, map).to_string()).as_bytes())?;
     }
+    let names = free_names(free.iter().map(|leaving| &leaving.name));
+    for (leaving, name) in free.iter().zip(names) {
+        if let Some(proof) = &leaving.proof {
+            put(&name, format!("{}\n", proof.to_json()).as_bytes())?;
+        }
+    }
     outputs.finish()
 }
 
@@ -60,7 +82,8 @@ pub(super) fn refuse_inputs(
     let inputs: Vec<&Path> = files.map(PathBuf::as_path).collect();
     let fixed = ["report.html", "disassembly.glb", "assembly.json", "matrix.csv"];
     let maps = map_names(&arguments.map).into_iter().flatten();
-    for name in fixed.into_iter().map(str::to_owned).chain(maps) {
+    let all = maps.chain(free_names(&arguments.free));
+    for name in fixed.into_iter().map(str::to_owned).chain(all) {
         refuse_overwriting(&folder.join(name), &inputs, "give another folder")?;
     }
     Ok(())
@@ -74,6 +97,12 @@ fn map_names<'a>(maps: impl IntoIterator<Item = &'a String>) -> Vec<[String; 3]>
         ["svg", "png", "json"].map(|extension| format!("map-{name}.{extension}"))
     };
     maps.into_iter().map(files).collect()
+}
+
+/// The files of the proofs of free directions.
+fn free_names<'a>(parts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
+    let mut names = FileNames::default();
+    parts.into_iter().map(|name| format!("free-{}.json", names.of(name))).collect()
 }
 
 /// A few lines for people.
@@ -112,11 +141,12 @@ fn summary(f: &Findings) -> String {
     }
     for stuck in &f.plan.stuck {
         let because = shown(stuck.because(f.bodies));
-        let _ = writeln!(
-            text,
-            "stuck along the directions asked\n  {}: {because}",
-            names(&stuck.parts)
-        );
+        let head = if stuck.proven.is_some() {
+            "stuck along all directions, proven"
+        } else {
+            "stuck along the directions asked"
+        };
+        let _ = writeln!(text, "{head}\n  {}: {because}", names(&stuck.parts));
     }
     for (name, map) in f.maps {
         let share = 100.0 * map.free_share();

@@ -47,9 +47,7 @@ impl PartsQuery<'_> {
 
     /// The answer; `done` is called after each pair of files that was looked at.
     pub(crate) fn ask(&self, done: impl FnMut()) -> Result<Answer, QueryError> {
-        let precisions = [self.moving.precision(), self.fixed.precision()];
-        let cast =
-            self.cast(self.moving.solid(), self.fixed.solid(), precisions, self.tolerance)?;
+        let cast = self.of_bodies()?;
         let tolerance = cast.tolerance();
         let clearance = cast.clearance()?;
         let mut record = Record::of_solids(&clearance, cast.exit(), &cast);
@@ -79,6 +77,12 @@ impl PartsQuery<'_> {
         let [moving, fixed] = [self.moving, self.fixed].map(Body::solids);
         ProofFile::of_solids(&cast, [&moving, &fixed])
             .map_err(|error| Failure::new(Code::Query, error.to_string()))
+    }
+
+    /// The query as the library has it.
+    pub(super) fn of_bodies(&self) -> Result<Cast<'_, Solid>, QueryError> {
+        let precisions = [self.moving.precision(), self.fixed.precision()];
+        self.cast(self.moving.solid(), self.fixed.solid(), precisions, self.tolerance)
     }
 
     fn cast<'s>(
@@ -122,7 +126,7 @@ impl PartsQuery<'_> {
     }
 
     /// What shrinking by half the tolerance cannot do as it should, file by file.
-    fn unshrunk(&self, tolerance: f64) -> Vec<String> {
+    pub(super) fn unshrunk(&self, tolerance: f64) -> Vec<String> {
         if tolerance == 0.0 {
             return Vec::new();
         }
@@ -163,7 +167,7 @@ impl Body {
 }
 
 impl Piece {
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         self.file.display().to_string()
     }
 

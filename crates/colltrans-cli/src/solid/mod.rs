@@ -3,9 +3,10 @@
 //! A body is made of one file or of several; each is a *piece* and keeps its name, so that an
 //! answer can say which files are involved. This is the only module that knows the library's
 //! solids: [`load`](Body::load) makes them of files, [`ask`] asks them for a clearance, [`pair`] where they
-//! are.
+//! are, [`free`] for all directions.
 
 mod ask;
+mod free;
 mod pair;
 
 use std::fmt::Write as _;
@@ -20,6 +21,7 @@ use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid}
 use crate::body::{hint, of_file, refusal};
 use crate::numbers::counted;
 pub(crate) use ask::{Answer, PartsQuery};
+pub(crate) use free::{FreeAnswer, PartsFree};
 pub(crate) use pair::PartsPair;
 
 /// A body of one piece or several.

@@ -5,6 +5,7 @@ mod assembly;
 mod batch;
 mod cast;
 mod clearance;
+mod directions;
 mod distance;
 mod example_parts;
 mod keep;

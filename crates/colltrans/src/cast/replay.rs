@@ -62,8 +62,8 @@ pub enum CaseError {
     /// Nothing is said, or more than one thing, or what is said is not of such bodies.
     #[error(
         "it has to say one thing, and one of such bodies: contacts, a separation, a distance or a depth of \
-         convex ones, a clearance or a solid_distance of pieces; with a direction unless it is of a distance \
-         or a depth"
+         convex ones, a clearance, a solid_distance or free_directions of pieces; with a direction if it is of a \
+         contact, a separation or a clearance"
     )]
     Statement,
     /// A place of a scene is that of a body that is not there.

@@ -10,7 +10,8 @@ use super::cell::Cell;
 use super::cone::Cone;
 use super::error::FreeError;
 use super::options::FreeOptions;
-use super::proof::{Fate, FreeProof, cells, fates, holds, rest_of};
+use super::proof::{Fate, FreeProof, cells, fates, holds, name_facets, rest_of};
+use super::region::{FreeRegion, regions};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
 use crate::answer::{CertificateError, SolidSteps};
@@ -38,10 +39,10 @@ pub enum Verdict {
     Undecided,
 }
 
-/// A convex region of free directions, borders included.
+/// A convex piece of the free directions, borders included.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct FreeRegion {
+pub struct FreePiece {
     /// Its corners in order, directions with a largest component of 1 (or -1), exact but for their last roundings.
     pub corners: Vec<DVec3>,
     /// Its solid angle.
@@ -72,6 +73,11 @@ pub struct FreeCell {
     pub corners: [DVec3; 4],
     /// What is known of it.
     pub kind: CellKind,
+    /// If one pair of facets blocks all of it: these, positions in [`Solid::triangles`] of the moving and of the fixed
+    /// body.
+    pub blocked_by: Option<[u32; 2]>,
+    /// Its solid angle.
+    pub area: f64,
 }
 
 /// What is known of a cell.
@@ -94,6 +100,9 @@ pub enum CellKind {
 
 /// Directions on a side of the cube that differ by less are taken for one where arcs and points are listed.
 const BESIDE: f64 = 1e-12;
+
+/// Directions in undecided cells that are asked one by one, at most.
+const MOST_ASKED: usize = 64;
 
 /// Solid angles, each enclosed: `[at least, at most]`, in steradians.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -231,14 +240,19 @@ impl<'a> FreeDirections<'a> {
         self.leaves().all(|(_, fate)| !matches!(fate, Fate::Undecided(_)))
     }
 
-    /// Convex regions that together are all that is free with an area, by cells: neighbours share borders.
-    pub fn regions(&self) -> Vec<FreeRegion> {
-        let region = |(cell, piece): (Cell, Piece)| {
+    /// Convex pieces that together are all that is free with an area, by cells: neighbours share borders.
+    pub fn pieces(&self) -> Vec<FreePiece> {
+        let piece = |(cell, piece): (Cell, Piece)| {
             piece
                 .is_region()
-                .then(|| FreeRegion { corners: directions(&cell, &piece), area: piece.area() })
+                .then(|| FreePiece { corners: directions(&cell, &piece), area: piece.area() })
         };
-        self.pieces().filter_map(region).collect()
+        self.parts().filter_map(piece).collect()
+    }
+
+    /// The connected regions of what is free with an area, the largest first.
+    pub fn regions(&self) -> Vec<FreeRegion> {
+        regions(&self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
     }
 
     /// Arcs of free directions beside which there is no region, by cells.
@@ -250,6 +264,43 @@ impl<'a> FreeDirections<'a> {
     /// Free directions with no other beside them.
     pub fn points(&self) -> Vec<FreePoint> {
         self.alone(1).into_iter().map(|ends| FreePoint { direction: ends[0] }).collect()
+    }
+
+    /// The bodies, with a direction that plays no part.
+    #[cfg(feature = "json")]
+    pub(crate) fn cast(&self) -> &Cast<'a, Solid> {
+        &self.cast
+    }
+
+    /// Free directions in cells that are undecided: corners and middles of these, each asked by an ordinary cast, some
+    /// of them if there are many.
+    pub fn free_among_undecided(&self) -> Vec<DVec3> {
+        let undecided = |(cell, fate): (Cell, &Fate)| match fate {
+            Fate::Undecided(_) => {
+                let middle = cell.side.direction(cell.center());
+                Some(cell.corners().into_iter().chain([middle]))
+            }
+            _ => None,
+        };
+        let mut asked: Vec<DVec3> = Vec::new();
+        for d in self.leaves().filter_map(undecided).flatten() {
+            // Of two sides of the cube the same direction.
+            if !asked.contains(&d) {
+                asked.push(d);
+            }
+            if asked.len() == MOST_ASKED {
+                break;
+            }
+        }
+        asked.retain(|&d| {
+            let (moving, fixed) = (self.cast.moving(), self.cast.fixed());
+            let (p, q) = (self.cast.moving_pose(), self.cast.fixed_pose());
+            let options = self.options.with_tolerance(self.tolerance()).of_cast();
+            let cast = Cast::<Solid>::new(moving.at(p), fixed.at(q), d);
+            let answer = cast.and_then(|cast| cast.with_options(options)?.clearance());
+            answer.is_ok_and(|answer| answer.is_free())
+        });
+        asked
     }
 
     /// The choices.
@@ -290,12 +341,14 @@ impl<'a> FreeDirections<'a> {
                 Fate::Open(_) => CellKind::Both,
                 Fate::Cut(_) | Fate::Undecided(_) => CellKind::Undecided,
             },
+            blocked_by: if let Fate::Blocked(pair) = fate { Some(*pair) } else { None },
+            area: cell.area(),
         })
     }
 
     /// Pieces of so many corners that are not part of larger ones, by their corners.
     fn alone(&self, count: usize) -> Vec<Vec<DVec3>> {
-        let all: Vec<(Cell, Piece)> = self.pieces().collect();
+        let all: Vec<(Cell, Piece)> = self.parts().collect();
         let mut found: Vec<&(Cell, Piece)> = Vec::new();
         for one in all.iter().filter(|(_, piece)| piece.len() == count) {
             let middle = one.0.side.direction(one.1.center());
@@ -333,13 +386,50 @@ impl<'a> FreeDirections<'a> {
         let options = FreeOptions::DEFAULT
             .with_tolerance(proof.tolerance)
             .with_start_overlap(proof.start_overlap);
-        let (cast, bodies) = setting(moving, fixed, &options)?;
-        let misfit = CertificateError::Cover { entry: proof.cells.len() };
-        let fates = fates(&proof.cells).ok_or(misfit)?;
-        let mut all = Self { cast, bodies, options, fates, looks: 0, areas: Areas::default() };
+        let mut all = Self::with_cells(moving, fixed, proof, options)?;
         all.verify()?;
         all.areas = all.measure();
         Ok(all)
+    }
+
+    /// The same without a check, for who has made the proof: areas are told to be 0.
+    ///
+    /// # Errors
+    /// As [`Self::of`]; cells that are not those of a sphere, facets that do not exist.
+    pub fn believing<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        proof: &FreeProof,
+    ) -> Result<Self, FreeError> {
+        let options = FreeOptions::DEFAULT
+            .with_tolerance(proof.tolerance)
+            .with_start_overlap(proof.start_overlap);
+        Self::with_cells(moving, fixed, proof, options)
+    }
+
+    fn with_cells<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'a, A>,
+        fixed: &Placed<'a, B>,
+        proof: &FreeProof,
+        options: FreeOptions,
+    ) -> Result<Self, FreeError> {
+        let (cast, bodies) = setting(moving, fixed, &options)?;
+        let misfit = CertificateError::Cover { entry: proof.cells.len() };
+        let fates = fates(&proof.cells).ok_or(misfit)?;
+        let all = Self { cast, bodies, options, fates, looks: 0, areas: Areas::default() };
+        let strange = all.leaves().position(|(_, fate)| !name_facets(&all.bodies, fate));
+        match strange {
+            Some(entry) => Err(CertificateError::Cover { entry }.into()),
+            None => Ok(all),
+        }
+    }
+
+    /// The same with other choices for when it is asked once more; the tolerance and the meaning of an overlap stay.
+    #[must_use]
+    pub fn with_options(self, options: FreeOptions) -> Self {
+        let FreeOptions { tolerance, start_overlap, .. } = self.options;
+        let options = options.with_tolerance(tolerance).with_start_overlap(start_overlap);
+        Self { options, ..self }
     }
 
     /// The cells that are not cut, in order.
@@ -360,7 +450,7 @@ impl<'a> FreeDirections<'a> {
     }
 
     /// All that is free, in pieces of cells.
-    fn pieces(&self) -> impl Iterator<Item = (Cell, Piece)> {
+    fn parts(&self) -> impl Iterator<Item = (Cell, Piece)> {
         let rest = |(cell, fate): (Cell, &Fate)| {
             let rest = match fate {
                 Fate::Open(pairs) => rest_of(&self.bodies, cell, pairs).ok(),
@@ -422,7 +512,7 @@ fn directions(cell: &Cell, piece: &Piece) -> Vec<DVec3> {
 }
 
 /// The bodies, checked.
-fn setting<'a, A: AsSolid, B: AsSolid>(
+pub(super) fn setting<'a, A: AsSolid, B: AsSolid>(
     moving: &Placed<'a, A>,
     fixed: &Placed<'a, B>,
     options: &FreeOptions,

@@ -103,8 +103,7 @@ impl Cell {
     }
 
     /// The solid angle.
-    #[cfg(test)]
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         solid_angle(&self.places())
     }
 }

@@ -138,9 +138,10 @@ pub(super) fn orientation(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering
     if value.abs() > 6.06 * (most - least) + 64.0 * U * most + f64::MIN_POSITIVE {
         return Some(sign(value));
     }
-    fn wide<const N: usize>(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering> {
-        let [a, b, c] = lines.map(|line| line.wide::<N>(bodies));
-        determinant(&a, &b, &c).sign()
-    }
-    wide::<SMALL>(bodies, lines).or_else(|| wide::<LARGE>(bodies, lines))
+    wide_orientation::<SMALL>(bodies, lines).or_else(|| wide_orientation::<LARGE>(bodies, lines))
+}
+
+fn wide_orientation<const N: usize>(bodies: &Bodies, lines: [&Line; 3]) -> Option<Ordering> {
+    let [a, b, c] = lines.map(|line| line.wide::<N>(bodies));
+    determinant(&a, &b, &c).sign()
 }

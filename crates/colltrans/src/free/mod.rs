@@ -1,15 +1,17 @@
 //! All directions along which a solid can leave another one, proven.
 //!
 //! `A` moves, `B` is fixed. What [`Cast::clearance`](crate::Cast::clearance) calls blocked is a union of open convex
-//! cones, one for each pair of facets ([`cone`]). So four directions that one pair blocks block all between them, and
-//! six pairs may prove that no direction is free. The sphere is cut into [`cell`]s until each is blocked, free, or cut
-//! by few cones into exact convex pieces ([`rest`]).
+//! cones, one for each pair of facets (`cone`). So four directions that one pair blocks block all between them, and
+//! six pairs may prove that no direction is free. The sphere is cut into `cell`s until each is blocked, free, or cut
+//! by few cones into exact convex pieces (`rest`).
 //!
-//! Data flow: [`bodies`] (vertices, and trees down to single facets) -> [`line`] (great circles and exact signs) ->
-//! [`cone`], [`window`] (which pairs of nodes miss a rectangle of directions), [`rest`] -> [`proof`] (what is said of a
-//! cell, and its check) -> [`search`] -> [`FreeDirections`].
+//! Data flow: `bodies` (vertices, and trees down to single facets) -> `line` (great circles and exact signs) ->
+//! `cone`, `window` (which pairs of nodes miss a rectangle of directions), `rest` -> `proof` (what is said of a
+//! cell, and its check) -> `search` -> [`FreeDirections`]; `region` joins what is free in
+//! pieces; `blocker` tells of single cells.
 
 mod answer;
+mod blocker;
 mod bodies;
 mod cell;
 mod cone;
@@ -17,11 +19,14 @@ mod error;
 mod line;
 mod options;
 mod proof;
+mod region;
 mod rest;
 mod search;
 mod window;
 
-pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePoint, FreeRegion, Verdict};
+pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePiece, FreePoint, Verdict};
+pub use blocker::{CellBlocker, DirectionCell};
 pub use error::FreeError;
 pub use options::FreeOptions;
 pub use proof::{CellProof, FreeProof};
+pub use region::FreeRegion;

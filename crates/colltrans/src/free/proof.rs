@@ -118,18 +118,23 @@ pub(super) fn rest_of(bodies: &Bodies, cell: Cell, pairs: &[[u32; 2]]) -> Result
     Ok(rest)
 }
 
-/// Whether what is said of a cell holds.
+/// Whether what is said of a cell holds; its facets [exist](name_facets).
 pub(super) fn holds(bodies: &Bodies, cell: &Cell, fate: &Fate) -> bool {
     match fate {
+        Fate::Cut(_) | Fate::Undecided(_) => true,
+        Fate::Blocked(pair) => Cone::new(bodies, *pair).covers(bodies, &cell.corners()),
+        Fate::Open(pairs) => rest_of(bodies, *cell, pairs)
+            .is_ok_and(|rest| rest.pieces.iter().all(|piece| is_free(bodies, &rest, piece))),
+    }
+}
+
+/// Whether all facets that are named exist.
+pub(super) fn name_facets(bodies: &Bodies, fate: &Fate) -> bool {
+    match fate {
         Fate::Cut(_) => true,
-        Fate::Blocked(pair) => {
-            exists(bodies, *pair) && Cone::new(bodies, *pair).covers(bodies, &cell.corners())
-        }
-        Fate::Undecided(pairs) => pairs.iter().all(|pair| exists(bodies, *pair)),
-        Fate::Open(pairs) => {
+        Fate::Blocked(pair) => exists(bodies, *pair),
+        Fate::Undecided(pairs) | Fate::Open(pairs) => {
             pairs.iter().all(|pair| exists(bodies, *pair))
-                && rest_of(bodies, *cell, pairs)
-                    .is_ok_and(|rest| rest.pieces.iter().all(|piece| is_free(bodies, &rest, piece)))
         }
     }
 }

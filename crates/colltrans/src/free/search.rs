@@ -125,6 +125,17 @@ impl<'s, 'a> Search<'s, 'a> {
         cones.iter().map(|k| self.cones[*k as usize].pair).collect()
     }
 
+    /// A pair of facets that blocks all of a cell, if one is found soon.
+    pub(super) fn covering_pair(mut self, cell: &Cell) -> Option<Pair> {
+        let mut pairs = vec![[0, 0]];
+        self.refine(&mut pairs, cell);
+        if pairs.is_empty() {
+            return None;
+        }
+        let found = [false, true].into_iter().find_map(|aside| self.covering(&pairs, cell, aside));
+        found.map(|k| self.cones[k as usize].pair)
+    }
+
     fn decide(&mut self, task: &mut Task) -> Decided {
         let (cell, corners) = (task.cell, task.cell.corners());
         let covers = |k: &&u32| self.cones[**k as usize].covers(self.bodies, &corners);
@@ -238,6 +249,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// A pair that blocks a direction, if there is one; nothing if that is not known soon.
+    #[expect(clippy::option_option, reason = "none at all, or none so far")]
     fn blocking(&mut self, pairs: &[Pair], cell: &Cell, place: [f64; 2]) -> Option<Option<u32>> {
         let (window, d) = (Window::at(cell.side, place), cell.side.direction(place));
         let hits = |search: &mut Self, pair| !search.misses(pair, &window);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::statement::{Contacts, DistanceStatement, SolidStatement, Statement};
+use super::statement::{Contacts, DistanceStatement, FreeStatement, SolidStatement, Statement};
 use super::{Along, Bodies, ProofFile};
 use crate::answer::{Depth, Separation};
 use crate::body::ConvexPolyhedron;
@@ -105,12 +105,14 @@ struct StatementRecord {
     distance: Option<DistanceStatement>,
     depth: Option<Depth>,
     solid_distance: Option<DistanceCertificate>,
+    free_directions: Option<FreeStatement>,
 }
 
 impl StatementRecord {
     /// The one thing that is said of such bodies.
     fn of(self, solids: bool) -> Result<Statement, CaseError> {
-        let Self { contacts, separation, clearance, distance, depth, solid_distance } = self;
+        let Self { contacts, separation, clearance, .. } = self;
+        let Self { distance, depth, solid_distance, free_directions, .. } = self;
         let contacts =
             contacts.map(|of| (of.first.is_some() || of.last.is_some(), Statement::Contacts(of)));
         let distance =
@@ -122,6 +124,7 @@ impl StatementRecord {
             depth.map(|of| (!solids, Statement::Depth(of))),
             clearance.map(|of| (solids, Statement::Clearance(of))),
             solid_distance.map(|of| (solids, Statement::SolidDistance(of))),
+            free_directions.map(|of| (solids, Statement::FreeDirections(of))),
         ];
         let mut said = said.into_iter().flatten();
         match (said.next(), said.next()) {

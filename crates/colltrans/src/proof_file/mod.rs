@@ -20,12 +20,15 @@ use crate::answer::{
 use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Pose};
 use crate::cast::{CaseError, Cast};
+use crate::free::{FreeDirections, FreeError};
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use file::{Pieces, again};
 pub use scene::{SceneProof, SceneStatement};
 use statement::options;
-pub use statement::{Contacts, DistanceStatement, Slide, SolidStatement, Statement, Stop};
+pub use statement::{
+    Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,
+};
 
 /// What a cast asks, besides bodies: the direction, and the gap that is kept.
 #[derive(Debug, Clone, Copy)]
@@ -173,6 +176,42 @@ impl ProofFile {
         Ok(Self { bodies, poses, along: None, statement })
     }
 
+    /// Of all free directions, asked once more of the bodies as a file has them. `pieces` as in [`Self::of_solids`].
+    ///
+    /// # Errors
+    /// A body that its own facets do not make once more.
+    pub fn of_free_directions(
+        free: &FreeDirections<'_>,
+        pieces: [&[&Solid]; 2],
+    ) -> Result<Self, CaseError> {
+        let cast = free.cast();
+        let (made, of) = again(pieces, [cast.moving(), cast.fixed()])?;
+        let poses = [cast.moving_pose(), cast.fixed_pose()];
+        let options = free.options().with_tolerance(free.tolerance());
+        let again = FreeDirections::of(&made[0].at(poses[0]), &made[1].at(poses[1]), options);
+        let statement = match again {
+            Ok(again) => FreeStatement::of(&again, &made),
+            Err(FreeError::Query(error)) => return Err(error.into()),
+            Err(_) => Err(CertificateError::Start),
+        };
+        let statement = statement.map_err(|_| CaseError::Changed { which: "moving" })?;
+        let bodies = Bodies::Solids { made, of };
+        Ok(Self { bodies, poses, along: None, statement: Statement::FreeDirections(statement) })
+    }
+
+    /// What it says of all directions, if that is what it is about: checked, as by [`Self::check`].
+    ///
+    /// # Errors
+    /// The first thing that is not proven.
+    pub fn free_directions(&self) -> Option<Result<FreeDirections<'_>, CertificateError>> {
+        match (&self.bodies, &self.statement) {
+            (Bodies::Solids { made, .. }, Statement::FreeDirections(of)) => {
+                Some(of.checked([made[0].at(self.poses[0]), made[1].at(self.poses[1])]))
+            }
+            _ => None,
+        }
+    }
+
     /// What it says; true if [`Self::check`] does not object.
     pub const fn statement(&self) -> &Statement {
         &self.statement
@@ -182,12 +221,14 @@ impl ProofFile {
     /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](crate::solid::ShrinkReport::inverted)):
     /// what is said of shrunk bodies says little there.
     pub fn inverted(&self) -> [usize; 2] {
-        match (&self.bodies, &self.statement) {
-            (Bodies::Solids { made, .. }, Statement::Clearance(of))
-                if of.certificate.tolerance > 0.0 =>
-            {
-                let amount = of.certificate.tolerance / 2.0;
-                made.each_ref().map(|body| body.shrink_report(amount).inverted.len())
+        let tolerance = match &self.statement {
+            Statement::Clearance(of) => of.certificate.tolerance,
+            Statement::FreeDirections(of) => of.tolerance,
+            _ => 0.0,
+        };
+        match &self.bodies {
+            Bodies::Solids { made, .. } if tolerance > 0.0 => {
+                made.each_ref().map(|body| body.shrink_report(tolerance / 2.0).inverted.len())
             }
             _ => [0; 2],
         }

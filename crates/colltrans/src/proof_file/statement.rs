@@ -13,6 +13,7 @@ use crate::body::{InputFacet, Placed};
 use crate::cast::Cast;
 use crate::cast::sideways::{proven_overlap, verified_overlap};
 use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use crate::free::{CellProof, FreeDirections, FreeError, FreeProof};
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
@@ -33,6 +34,24 @@ pub enum Statement {
     Depth(Depth),
     /// How far solids are apart where they are.
     SolidDistance(DistanceCertificate),
+    /// Along which directions a solid can leave.
+    FreeDirections(FreeStatement),
+}
+
+/// Along which directions a solid can leave another one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FreeStatement {
+    /// Both bodies are shrunk by half of this length.
+    pub tolerance: f64,
+    /// Whether facets that cross now count.
+    pub start_overlap: StartOverlap,
+    /// With a tolerance: the vertices of the shrunk bodies, in the order of the file, pieces run through.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shrunk: Option<[Vec<DVec3>; 2]>,
+    /// What is said of each cell of the sphere, as in [`FreeProof`]; pairs are facets by their numbers in the file,
+    /// of the moving and of the fixed body, those of pieces run through.
+    pub cells: Vec<CellProof>,
 }
 
 /// How far two convex bodies are apart: at least, or at most, or both.
@@ -203,13 +222,94 @@ impl Statement {
                 of.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)
             }
             (Self::SolidDistance(of), None) => Pair::new(moving, fixed)?.verify(of).map(|_| ()),
+            (Self::FreeDirections(of), None) => of.checked([moving, fixed]).map(|_| ()),
             _ => Err(CertificateError::Start),
         }
     }
 
     /// Whether it is of bodies where they are, without a direction.
     pub(super) const fn is_of_pair(&self) -> bool {
-        matches!(self, Self::Distance(_) | Self::Depth(_) | Self::SolidDistance(_))
+        matches!(
+            self,
+            Self::Distance(_) | Self::Depth(_) | Self::SolidDistance(_) | Self::FreeDirections(_)
+        )
+    }
+}
+
+impl FreeStatement {
+    /// Of an answer about these bodies, which are those of a file.
+    pub(super) fn of(
+        free: &FreeDirections<'_>,
+        made: &[Solid; 2],
+    ) -> Result<Self, CertificateError> {
+        let FreeProof { tolerance, start_overlap, cells } = free.proof();
+        let number = |k: usize, triangle: u32| made[k].facet_indices()[triangle as usize].0;
+        let in_file = |pair: [u32; 2]| Some([number(0, pair[0]), number(1, pair[1])]);
+        let cells = renamed(&cells, in_file).ok_or(CertificateError::Start)?;
+        Ok(Self { tolerance, start_overlap, shrunk: shrunk(made.each_ref(), tolerance)?, cells })
+    }
+
+    /// What it says of two bodies, if it holds.
+    pub(super) fn checked<'a>(
+        &self,
+        [moving, fixed]: [Placed<'a, Solid>; 2],
+    ) -> Result<FreeDirections<'a>, CertificateError> {
+        let bodies = [moving.body, fixed.body];
+        if self.shrunk != shrunk(bodies, self.tolerance)? {
+            return Err(CertificateError::Start);
+        }
+        let places = bodies.map(|body| {
+            let mut places = vec![None; body.input_counts()[1] as usize];
+            for (at, facet) in body.facet_indices().iter().enumerate() {
+                places[facet.index()] = Some(at as u32);
+            }
+            places
+        });
+        let place = |k: usize, facet: u32| *places[k].get(facet as usize)?;
+        let to_place = |pair: [u32; 2]| Some([place(0, pair[0])?, place(1, pair[1])?]);
+        let cells = renamed(&self.cells, to_place).ok_or(CertificateError::Start)?;
+        let Self { tolerance, start_overlap, .. } = *self;
+        let proof = FreeProof { tolerance, start_overlap, cells };
+        FreeDirections::from_proof(&moving, &fixed, &proof).map_err(|error| match error {
+            FreeError::Query(error) => error.into(),
+            FreeError::NotProven(error) => error,
+            _ => CertificateError::Start,
+        })
+    }
+}
+
+/// Cells with other names of facets; `None` if one has none.
+fn renamed(
+    cells: &[CellProof],
+    name: impl Fn([u32; 2]) -> Option<[u32; 2]>,
+) -> Option<Vec<CellProof>> {
+    let all = |pairs: &[[u32; 2]]| -> Option<Vec<[u32; 2]>> {
+        pairs.iter().map(|pair| name(*pair)).collect()
+    };
+    let of = |cell: &CellProof| {
+        Some(match cell {
+            CellProof::Cut => CellProof::Cut,
+            CellProof::Blocked(pair) => CellProof::Blocked(name(*pair)?),
+            CellProof::Open(pairs) => CellProof::Open(all(pairs)?),
+            CellProof::Undecided(pairs) => CellProof::Undecided(all(pairs)?),
+        })
+    };
+    cells.iter().map(of).collect()
+}
+
+/// The vertices of bodies shrunk by half a tolerance, if there is one.
+fn shrunk(
+    bodies: [&Solid; 2],
+    tolerance: f64,
+) -> Result<Option<[Vec<DVec3>; 2]>, CertificateError> {
+    if tolerance == 0.0 {
+        return Ok(None);
+    }
+    // The vertices of what is read from a file have the numbers of the file.
+    let vertices = |body: &Solid| body.shrunk(tolerance / 2.0).map(|of| of.0.vertices().to_vec());
+    match bodies.map(vertices) {
+        [Ok(moving), Ok(fixed)] => Ok(Some([moving, fixed])),
+        _ => Err(CertificateError::Start),
     }
 }
 

@@ -2,10 +2,13 @@
 
 use std::fmt;
 
-use super::statement::{Contacts, DistanceStatement, Slide, SolidStatement, Statement, Stop};
+use super::statement::{
+    Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,
+};
 use super::{Bodies, ProofFile};
 use crate::answer::{Bounded, Depth, Separation};
 use crate::cast::solid::{SolidCertificate, StartOverlap, StartProof};
+use crate::free::CellProof;
 use crate::pair::solid::DistanceCertificate;
 
 impl fmt::Display for ProofFile {
@@ -59,7 +62,26 @@ impl fmt::Display for Statement {
                 let lower = Some(*lower).filter(|lower| *lower > 0.0);
                 f.write_str(&apart(lower, Some(near.distance())))
             }
+            Self::FreeDirections(statement) => statement.fmt(f),
         }
+    }
+}
+
+impl fmt::Display for FreeStatement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.tolerance > 0.0 {
+            write!(f, "shrunk by {:?} each, ", self.tolerance / 2.0)?;
+        }
+        let count = |of: fn(&CellProof) -> bool| self.cells.iter().filter(|cell| of(cell)).count();
+        let cells = count(|cell| !matches!(cell, CellProof::Cut));
+        let blocked = count(|cell| matches!(cell, CellProof::Blocked(_)));
+        let undecided = count(|cell| matches!(cell, CellProof::Undecided(_)));
+        let exactly = cells - blocked - undecided;
+        write!(
+            f,
+            "of {cells} cells of the sphere of directions {blocked} are blocked by a pair of facets each, \
+             {exactly} are told exactly, {undecided} are undecided"
+        )
     }
 }
 

@@ -1,0 +1,109 @@
+//! `colltrans directions` and `colltrans assembly --free`.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::proof::{checked_in_fractions, saved};
+use crate::support::{answered, data, folder, json as read, refused, run, stderr};
+
+const LID: [&str; 5] = ["directions", "cube.off", "cube.off", "--moving-pose", "0,0,1"];
+
+fn facts(folder: &Path, arguments: &[&str]) -> Value {
+    read(&answered(folder, &[arguments, &["--json"]].concat()))
+}
+
+#[test]
+fn a_lid_can_leave_along_half_of_all_directions() {
+    let folder = folder();
+    let told = facts(folder.path(), &[&LID[..], &["--tolerance", "0"]].concat());
+    let share = |k: usize| told["free_share"][k].as_f64().unwrap();
+    assert!(share(0) <= 0.5 && 0.5 <= share(1) && share(1) - share(0) < 1e-13, "{told}");
+    assert_eq!((&told["outcome"], &told["undecided_cells"]), (&json!("free"), &json!(0)));
+    let regions = told["regions"].as_array().unwrap();
+    assert_eq!(regions.len(), 1);
+    assert_eq!(regions[0]["corners"], json!([]));
+    let center = regions[0]["center"][2].as_f64().unwrap();
+    assert!((center - 1.0).abs() < 1e-12, "{told}");
+    let text = answered(folder.path(), &[&LID[..], &["--tolerance", "0"]].concat());
+    assert!(text.starts_with("free along some directions\n  free         50 % of all"), "{text}");
+    assert!(text.contains("undecided    nothing\n"), "{text}");
+}
+
+#[test]
+fn a_bolt_leaves_its_plate_and_the_proof_holds_elsewhere() {
+    let folder = folder();
+    let [bolt, plate] = ["bolt.stl", "plate.off"].map(|name| data().join(name));
+    let [bolt, plate] = [&bolt, &plate].map(|path| path.to_str().unwrap());
+    let mut proof = saved(folder.path(), &["directions", bolt, plate]);
+    let text = answered(folder.path(), &["verify", "proof.json"]);
+    assert!(text.starts_with("holds: shrunk by 1.19209"), "{text}");
+    assert!(text.contains("can leave along 0.00996897 % of all directions"), "{text}");
+    let told = read(&answered(folder.path(), &["verify", "proof.json", "--json"]));
+    assert_eq!(told["outcome"], "free");
+    checked_in_fractions(folder.path(), 7);
+    // Another facet blocks elsewhere.
+    let cells = proof["statement"]["free_directions"]["cells"].as_array_mut().unwrap();
+    let cell = cells.iter_mut().find(|cell| cell.get("blocked").is_some()).unwrap();
+    let facet = cell["blocked"][0].as_u64().unwrap();
+    cell["blocked"][0] = json!(if facet > 0 { facet - 1 } else { 1 });
+    fs::write(folder.path().join("proof.json"), proof.to_string()).unwrap();
+    let output = run(folder.path(), &["verify", "proof.json"]);
+    assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused_with_a_reason() {
+    let folder = folder();
+    let folder = folder.path();
+    let told = facts(folder, &["directions", "cube.off", "cube.off", "--moving-pose", "0.5,0,0"]);
+    assert_eq!(told["outcome"], "overlapping");
+    assert_eq!(told["start_overlaps"].as_array().unwrap().len(), 1);
+    refused(folder, &["directions", "cube.off"], 2, &["--from"]);
+    refused(folder, &["directions", "cube.off", "open.off"], 3, &["open.off"]);
+    refused(folder, &[&LID[..], &["--tolerance", "-1"]].concat(), 2, &["negative"]);
+    refused(folder, &[&LID[..], &["--depth", "51"]].concat(), 2, &["51"]);
+    refused(folder, &[&LID[..], &["--save-proof", "cube.off"]].concat(), 3, &["cube.off"]);
+}
+
+#[test]
+fn little_work_leaves_directions_undecided_and_says_so() {
+    let folder = folder();
+    let told = facts(folder.path(), &[&LID[..], &["--looks", "0"]].concat());
+    assert_eq!(told["outcome"], "free", "along directions that casts find");
+    assert!(told["undecided_share"].as_f64().unwrap() > 0.999, "{told}");
+    assert!(!told["also_free"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn parts_of_an_assembly_are_told_with_what_blocks_them() {
+    let output = folder();
+    let output = output.path().to_str().unwrap();
+    let asked = ["--free", "bolt_0", "--free", "cover", "-o", output];
+    let told = facts(&data(), &[&["assembly", "gearbox_small"][..], &asked].concat());
+    let [bolt, cover] = [&told["free"][0], &told["free"][1]];
+    assert_eq!((&bolt["outcome"], &cover["outcome"]), (&json!("free"), &json!("blocked")));
+    assert_eq!(cover["cells"], 6, "six pairs of facets");
+    assert_eq!(cover["blocked_by"][0]["fixed"], "shaft");
+    assert_eq!(bolt["parts"], json!(["bolt_0"]));
+    assert!(bolt["free_share"][0].as_f64() > Some(3.9e-13), "{bolt}");
+    let proof = Path::new(output).join("free-cover.json");
+    let text = answered(&data(), &["verify", proof.to_str().unwrap()]);
+    assert!(text.contains("the moving body cannot leave along any direction"), "{text}");
+    refused(&data(), &["assembly", "gearbox_small", "--free", "x"], 2, &["no part is named x"]);
+}
+
+#[test]
+fn what_is_stuck_is_proven_or_says_what_was_asked() {
+    let asked = facts(&data(), &["assembly", "gearbox_small"]);
+    let proven = facts(&data(), &["assembly", "gearbox_small", "--prove"]);
+    let proof = |told: &Value| told["stuck"][0]["proof"].clone();
+    assert_eq!(proof(&asked), json!({ "asked": asked["stuck"][0]["directions"] }));
+    let cells = proof(&proven)["proven"].as_u64().unwrap();
+    assert!(cells < 400, "{cells}");
+    assert_eq!(asked["plan"], proven["plan"]);
+    let text = answered(&data(), &["assembly", "gearbox_small", "--prove"]);
+    assert!(text.contains("stuck along all directions, proven\n"), "{text}");
+    refused(&data(), &["assembly", "gearbox_small", "--prove", "--only"], 2, &["--only"]);
+}

@@ -1,0 +1,268 @@
+//! All directions along which a body leaves another one.
+
+use std::path::PathBuf;
+
+use colltrans::free::{FreeError, FreeOptions, FreeProof, Verdict};
+use colltrans::glam::DVec3;
+use colltrans::record::FreeRecord;
+use colltrans::solid::StartOverlap;
+use colltrans::{Placed, ProofFile};
+use colltrans_mesh::body::between;
+use pyo3::prelude::*;
+
+use crate::answer::save;
+use crate::arrays::points;
+use crate::errors::{OrRaise, error};
+use crate::frozen::plain;
+use crate::pose::{Pose, pose};
+use crate::solid::Piece;
+use crate::solid_cast::{patiently, placed_bodies};
+
+/// All directions along which a body can leave another one, proven: see :func:`free_directions`.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct FreeDirections {
+    bodies: [Piece; 2],
+    poses: [colltrans::Pose; 2],
+    options: FreeOptions,
+    proof: FreeProof,
+    record: FreeRecord,
+}
+
+/// What was asked, without the answer.
+struct Question {
+    bodies: [Piece; 2],
+    poses: [colltrans::Pose; 2],
+    options: FreeOptions,
+}
+
+type Placing<'a> = [Placed<'a, colltrans::Solid>; 2];
+
+fn placed<'a>(bodies: &'a [Piece; 2], poses: &[colltrans::Pose; 2]) -> PyResult<Placing<'a>> {
+    let [moving, fixed] = [bodies[0].solid().or_raise()?, bodies[1].solid().or_raise()?];
+    Ok([moving.at(poses[0]), fixed.at(poses[1])])
+}
+
+fn raised(what: FreeError) -> PyErr {
+    match what {
+        FreeError::NotProven(what) => error("CertificateError", what),
+        what => error("QueryError", what),
+    }
+}
+
+impl Question {
+    /// With the tolerance that the files ask for, if none is given.
+    fn settled(mut self) -> PyResult<Self> {
+        let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+        let precisions = [0, 1].map(|k| self.bodies[k].precision());
+        let FreeOptions { tolerance, start_overlap, .. } = self.options;
+        let cast = between(moving, fixed, DVec3::Z, precisions, tolerance, start_overlap);
+        self.options = self.options.with_tolerance(cast.or_raise()?.tolerance());
+        Ok(self)
+    }
+
+    fn answer(self) -> PyResult<FreeDirections> {
+        let asked = self.settled()?;
+        let [moving, fixed] = placed(&asked.bodies, &asked.poses)?;
+        let free = colltrans::free::FreeDirections::of(&moving, &fixed, asked.options);
+        let free = free.map_err(raised)?;
+        let (proof, record) = (free.proof(), FreeRecord::of(&free, |_| [None, None]));
+        let Self { bodies, poses, options } = asked;
+        Ok(FreeDirections { bodies, poses, options, proof, record })
+    }
+}
+
+placed_bodies!(FreeDirections);
+
+#[pymethods]
+impl FreeDirections {
+    /// str: ``"free"`` if some directions are, ``"blocked"`` if none is, which is proven, ``"undecided"`` if
+    /// none is known to be and not all are known.
+    #[getter]
+    fn outcome(&self) -> &'static str {
+        self.record.outcome.name()
+    }
+
+    /// tuple of (float, float): The share of all directions that is free, at least and at most, without
+    /// what is undecided.
+    #[getter]
+    fn free_share(&self) -> (f64, f64) {
+        self.record.free_share.unwrap_or_default().into()
+    }
+
+    /// float: At most this share of all directions is not known.
+    #[getter]
+    fn undecided_share(&self) -> f64 {
+        self.record.undecided_share.unwrap_or_default()
+    }
+
+    /// float: The tolerance that was used, a length: both bodies are shrunk by half of it.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.proof.tolerance
+    }
+
+    /// list of dict: Connected regions, the largest first: ``share``, ``center``, ``corners`` and the convex
+    /// ``pieces`` that together are it.
+    #[getter]
+    fn regions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.record.regions)
+    }
+
+    /// list: Arcs of free directions beside which there is no region, by their ends.
+    #[getter]
+    fn arcs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.record.arcs)
+    }
+
+    /// list: Free directions with no other beside them.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.record.points)
+    }
+
+    /// What is said of directions.
+    ///
+    /// Parameters
+    /// ----------
+    /// directions : array_like of shape (N, 3)
+    ///     Of any length.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///     ``"free"``, ``"blocked"`` or ``"undecided"`` of each.
+    fn says(&self, py: Python<'_>, directions: &Bound<'_, PyAny>) -> PyResult<Vec<&'static str>> {
+        let directions = points(directions, "directions")?;
+        py.detach(|| {
+            let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+            let proof = &self.proof;
+            let free = colltrans::free::FreeDirections::believing(&moving, &fixed, proof);
+            let free = free.map_err(raised)?;
+            let word = |d: DVec3| {
+                Ok(match free.says(d).or_raise()? {
+                    Verdict::Free => "free",
+                    Verdict::Blocked(_) => "blocked",
+                    Verdict::Undecided => "undecided",
+                })
+            };
+            directions.into_iter().map(word).collect()
+        })
+    }
+
+    /// Checks what is said of every cell of the sphere, without a search.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| {
+            let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+            let checked = colltrans::free::FreeDirections::from_proof(&moving, &fixed, &self.proof);
+            checked.map(|_| ()).map_err(raised)
+        })
+    }
+
+    /// What it says, as plain Python: the fields of ``colltrans directions --json``, with the same bits.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.record)
+    }
+
+    /// The proof, with all that it is about, as text: the file of ``--save-proof``, which ``colltrans
+    /// verify`` and ``python -m colltrans.check`` check. The question is asked once more for it.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| {
+            let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+            let free = colltrans::free::FreeDirections::believing(&moving, &fixed, &self.proof);
+            let free = free.map_err(raised)?.with_options(self.options);
+            let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
+            let file = ProofFile::of_free_directions(&free, [&pieces[0], &pieces[1]]);
+            Ok(file.or_raise()?.to_json())
+        })
+    }
+
+    /// Writes :meth:`proof_json` as a file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    fn save_proof(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        save(&path, self.proof_json(py)?)
+    }
+
+    fn __repr__(&self) -> String {
+        let [low, high] = self.record.free_share.unwrap_or_default();
+        let outcome = self.record.outcome.name();
+        format!("FreeDirections({outcome:?}, free_share=({low:?}, {high:?}))")
+    }
+}
+
+/// Along which directions can a body leave another one? All of them, proven.
+///
+/// Parameters
+/// ----------
+/// moving, fixed : Solid or ConvexPolyhedron
+///     The body that moves, and the one that does not; closed.
+/// moving_pose, fixed_pose : array_like or Pose, optional
+///     Where the bodies are; see :class:`Pose`.
+/// tolerance, ignore_start_overlaps
+///     As of :class:`SolidCast`: a direction is free exactly where its clearance says so.
+/// depth : int
+///     How often the sides of a cube of directions are halved, at most; no more than 50.
+/// looks : int
+///     How many pairs of boxes are looked at, at most; what is not decided by then stays undecided.
+///
+/// Returns
+/// -------
+/// FreeDirections
+///
+/// Raises
+/// ------
+/// QueryError
+///     Bodies that are open, or overlap where they are.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, free_directions
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> lid = free_directions(cube, cube, moving_pose=[0, 0, 1])
+/// >>> low, high = lid.free_share
+/// >>> low <= 0.5 <= high
+/// True
+/// >>> " ".join(lid.says([[1, 2, 0], [1, 2, -1e-200]]))
+/// 'free blocked'
+/// >>> lid.verify()
+#[pyfunction]
+#[pyo3(signature = (moving, fixed, *, moving_pose=None, fixed_pose=None, tolerance=None,
+    ignore_start_overlaps=false, depth=26, looks=20_000_000))]
+#[expect(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn free_directions(
+    py: Python<'_>,
+    moving: &Bound<'_, PyAny>,
+    fixed: &Bound<'_, PyAny>,
+    moving_pose: Option<&Bound<'_, PyAny>>,
+    fixed_pose: Option<&Bound<'_, PyAny>>,
+    tolerance: Option<f64>,
+    ignore_start_overlaps: bool,
+    depth: u32,
+    looks: u64,
+) -> PyResult<FreeDirections> {
+    let bodies = [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?];
+    let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
+    let start = if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+    let options = FreeOptions::DEFAULT
+        .with_tolerance(tolerance)
+        .with_start_overlap(start)
+        .with_depth(depth)
+        .with_looks(looks);
+    let copies = [bodies[0].copy(py), bodies[1].copy(py)];
+    patiently(py, &copies, move || Question { bodies, poses, options }.answer())
+}

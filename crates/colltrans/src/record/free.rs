@@ -1,0 +1,155 @@
+//! All directions along which a body leaves, as front ends write them.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::{Ending, StartOverlapRecord, coordinates};
+use crate::free::{CellKind, FreeDirections, FreeRegion};
+
+/// All directions along which a body leaves another one; directions as fractions of the sphere are *shares*, from 0
+/// to 1. Fields that do not apply are left out.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
+pub struct FreeRecord {
+    /// `free`: some directions are; `blocked`: none is, which is proven; `undecided`: none is known to be, and not
+    /// all is known; `overlapping`: nothing is told, as the bodies overlap where they are.
+    pub outcome: Ending,
+    /// The share that is free, at least and at most, without what is undecided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub free_share: Option<[f64; 2]>,
+    /// The share of which nothing is known, at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided_share: Option<f64>,
+    /// Connected regions of free directions, the largest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<FreeRegionRecord>,
+    /// Arcs of free directions beside which there is no region, by their ends.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub arcs: Vec<[[f64; 3]; 2]>,
+    /// Free directions with no other beside them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<[f64; 3]>,
+    /// Free directions in cells that are undecided, found by ordinary casts: there may be more around them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub also_free: Vec<[f64; 3]>,
+    /// What blocks, the largest share first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub blocked_by: Vec<BlockedByRecord>,
+    /// The one that was used, a length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Cells of the sphere in the proof.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<u64>,
+    /// How many of them are undecided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided_cells: Option<u64>,
+    /// What overlaps now.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub start_overlaps: Vec<StartOverlapRecord>,
+    /// For people: what is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub message: Option<String>,
+}
+
+/// A connected region of free directions. All directions but the center have a largest component of 1 (or -1).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FreeRegionRecord {
+    /// Its share of the sphere.
+    pub share: f64,
+    /// A free direction of it, of length 1, away from its borders where it is convex.
+    pub center: [f64; 3],
+    /// Where its border turns, in no order.
+    pub corners: Vec<[f64; 3]>,
+    /// Convex pieces that together are it, each by its corners in order.
+    pub pieces: Vec<Vec<[f64; 3]>>,
+}
+
+/// What blocks a share of the sphere.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BlockedByRecord {
+    /// The name of what is stopped, of a moving body that has several parts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moving: Option<String>,
+    /// The name of what stops it, of a fixed body that has several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<String>,
+    /// The share of the sphere in the cells that pairs of their facets were found to block wholly: they block at least
+    /// that, and may block more.
+    pub share: f64,
+}
+
+impl FreeRecord {
+    /// Of an answer; `names` are those of the parts of the moving and of the fixed body that two triangles belong to.
+    pub fn of(free: &FreeDirections<'_>, names: impl Fn([u32; 2]) -> [Option<String>; 2]) -> Self {
+        let [arcs, points] = [free.arcs().len(), free.points().len()];
+        let regions = free.regions();
+        let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided).count();
+        let also_free = free.free_among_undecided();
+        let some = !regions.is_empty() || !also_free.is_empty() || arcs + points > 0;
+        let outcome = match (some, undecided) {
+            (true, _) => Ending::Free,
+            (false, 0) => Ending::Blocked,
+            (false, _) => Ending::Undecided,
+        };
+        let [low, high] = free.free_area();
+        // Both are rounded outwards.
+        let free_share = [share(low) * (1.0 - f64::EPSILON), share(high) * (1.0 + f64::EPSILON)];
+        Self {
+            outcome,
+            free_share: Some([free_share[0], free_share[1].min(1.0)]),
+            undecided_share: Some(share(free.undecided_area()).min(1.0)),
+            regions: regions.iter().map(FreeRegionRecord::of).collect(),
+            arcs: free.arcs().iter().map(|arc| arc.ends.map(coordinates)).collect(),
+            points: free.points().iter().map(|point| coordinates(point.direction)).collect(),
+            also_free: also_free.into_iter().map(coordinates).collect(),
+            blocked_by: blocked_by(free, names),
+            tolerance: Some(free.tolerance()),
+            cells: Some(free.work()[0]),
+            undecided_cells: Some(undecided as u64),
+            ..Self::default()
+        }
+    }
+
+    /// Of bodies that overlap where they are, with a tolerance.
+    pub fn overlapping(tolerance: f64, start_overlaps: Vec<StartOverlapRecord>) -> Self {
+        let outcome = Ending::Overlapping;
+        Self { outcome, tolerance: Some(tolerance), start_overlaps, ..Self::default() }
+    }
+}
+
+impl FreeRegionRecord {
+    fn of(region: &FreeRegion) -> Self {
+        let all = |corners: &[DVec3]| corners.iter().copied().map(coordinates).collect();
+        Self {
+            share: share(region.area),
+            center: coordinates(region.center),
+            corners: all(&region.corners),
+            pieces: region.pieces.iter().map(|piece| all(&piece.corners)).collect(),
+        }
+    }
+}
+
+/// Of the sphere.
+fn share(area: f64) -> f64 {
+    area / (4.0 * PI)
+}
+
+fn blocked_by(
+    free: &FreeDirections<'_>,
+    names: impl Fn([u32; 2]) -> [Option<String>; 2],
+) -> Vec<BlockedByRecord> {
+    let mut by_name = BTreeMap::<[Option<String>; 2], f64>::new();
+    for cell in free.cells() {
+        if let Some(pair) = cell.blocked_by {
+            *by_name.entry(names(pair)).or_default() += share(cell.area);
+        }
+    }
+    let told = |([moving, fixed], share): ([_; 2], f64)| BlockedByRecord { moving, fixed, share };
+    let mut all: Vec<BlockedByRecord> = by_name.into_iter().map(told).collect();
+    all.sort_by(|a, b| b.share.total_cmp(&a.share));
+    all
+}

@@ -1,0 +1,68 @@
+"""All free directions: closed forms, casts, proofs and the command line's bits."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+from colltrans import (
+    ConvexPolyhedron,
+    FreeDirections,
+    QueryError,
+    Solid,
+    SolidCast,
+    SolidFree,
+    free_directions,
+)
+
+CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+BOLT, PLATE = ROOT / "data" / "bolt.stl", ROOT / "data" / "plate.off"
+
+
+def lid() -> FreeDirections:
+    return free_directions(CUBE, CUBE, moving_pose=[0, 0, 1])
+
+
+def test_a_lid_is_free_along_half_of_all_directions() -> None:
+    found = lid()
+    low, high = found.free_share
+    assert low <= 0.5 <= high and high - low < 1e-12
+    assert (found.outcome, found.undecided_share, found.tolerance) == ("free", 0.0, 0.0)
+    (region,) = found.regions
+    assert region["corners"] == [] and np.allclose(region["center"], [0, 0, 1])
+    assert found.says([[0, 1, 0], [0, 1, -1e-200], [3, 4, 5]]) == ["free", "blocked", "free"]
+    found.verify()
+    assert repr(found).startswith("FreeDirections(")
+
+
+def test_casts_say_the_same() -> None:
+    bolt, plate = Solid.read(BOLT), Solid.read(PLATE)
+    found = free_directions(bolt, plate, tolerance=0.1)
+    rng = np.random.default_rng(29)
+    near = np.array([0, 0, 1]) + rng.uniform(-0.05, 0.05, (100, 3))
+    for d, word in zip(near, found.says(near), strict=True):
+        answer = SolidCast(bolt, plate, d, tolerance=0.1).clearance()
+        assert isinstance(answer, SolidFree) == (word == "free")
+
+
+def test_the_command_line_has_the_same_bits(cli: Path, tmp_path: Path) -> None:
+    found = free_directions(Solid.read(BOLT), Solid.read(PLATE))
+    told = subprocess.run(
+        [cli, "directions", BOLT, PLATE, "--json"], capture_output=True, text=True
+    )
+    assert json.loads(told.stdout) == found.to_dict()
+    proof = tmp_path / "proof.json"
+    found.save_proof(proof)
+    assert subprocess.run([cli, "verify", proof], capture_output=True).returncode == 0
+
+
+def test_bodies_that_overlap_are_refused() -> None:
+    with pytest.raises(QueryError, match="overlap where they are"):
+        free_directions(CUBE, CUBE, moving_pose=[0.5, 0, 0])
+    through = free_directions(CUBE, CUBE, moving_pose=[0.5, 0, 0], ignore_start_overlaps=True)
+    assert through.outcome in {"free", "blocked"}
+    little = free_directions(CUBE, CUBE, moving_pose=[0, 0, 1], looks=0)
+    assert little.undecided_share > 0.99 and little.says([[0, 0, 1]]) == ["undecided"]

@@ -251,9 +251,9 @@ mod tests {
             let fine = corners.map(|v| Fine::placed(&m, offset, &[(1.0, v)]));
             let right = corners.map(|v| exact(&m, offset, v));
             for (x, y) in fine.iter().zip(&right) {
-                for k in 0..3 {
+                for (k, exact) in y.iter().enumerate() {
                     let found = Fine::ORIGIN.to(x).sign_along(k);
-                    prop_assert!(found.is_none_or(|s| s == y[k].cmp(&RBig::ZERO)), "{x:?} {}", y[k]);
+                    prop_assert!(found.is_none_or(|s| s == exact.cmp(&RBig::ZERO)), "{x:?} {exact}");
                 }
             }
             let ways = [1, 2, 3].map(|k| fine[0].to(&fine[k]));

@@ -830,6 +830,7 @@ class Scene:
         if -gaps(self.moving, body, d, normal)[0] > most:
             raise RefusedError("the bodies overlap sideways by more than is tolerated")
 
+
 Whole: TypeAlias = tuple[int, int, int]
 
 #: Pairs of boxes that are looked at in one file, at most: nothing else blocks what is free.

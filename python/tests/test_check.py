@@ -143,9 +143,14 @@ def test_the_stop_of_solids_counts() -> None:
     assert refused(changed(beside, ("statement", "clearance", "separation", "normal", 0), more))
 
 
+def replaced_by(value: Any) -> Callable[[Any], Any]:
+    return lambda _: value
+
+
 def said(file: Any) -> str:
     (line,) = check.check(json.dumps(file)).holds
-    return line.partition("about")[2]
+    told: str = line.partition("about")[2]
+    return told
 
 
 def test_every_facet_of_a_cell_counts() -> None:
@@ -158,7 +163,7 @@ def test_every_facet_of_a_cell_counts() -> None:
     tried = held = 0
     for k, place in enumerate(at[::4]):
         for facet in (k % counts[place[-1]], counts[place[-1]]):
-            other = changed(file, (*way, *place), lambda _, facet=facet: facet)
+            other = changed(file, (*way, *place), replaced_by(facet))
             tried += 1
             if not refused(other):
                 # Another facet of the same plane may block as much.

@@ -1,33 +1,39 @@
 """The paper's algorithm: who asks for it gets it, and can say where it starts and ends."""
 
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
 
-from colltrans import ConvexPolyhedron, Cta, QueryError, Tracker, cast, cast_many
+from colltrans import Contact, ConvexPolyhedron, Cta, QueryError, Tracker, cast, cast_many
 
 RANDOM = np.random.default_rng(3)
-BALL = ConvexPolyhedron.from_points(
-    [point / np.linalg.norm(point) for point in RANDOM.normal(size=(400, 3))]
-)
+BALL = ConvexPolyhedron([point / np.linalg.norm(point) for point in RANDOM.normal(size=(400, 3))])
 ABOVE = [0.2, 0.1, 5.0]
 DOWN = [0.0, 0.0, -1.0]
 
 
+def contact(direction: Any = DOWN, solver: Any = "cta") -> Contact:
+    found = cast(BALL, BALL, direction, moving_pose=ABOVE, solver=solver)
+    assert isinstance(found, Contact)
+    return found
+
+
 def test_planar_problems_are_solved_to_the_exit() -> None:
-    whole = cast(BALL, BALL, DOWN, moving_pose=ABOVE, solver="cta").steps
-    part = cast(BALL, BALL, DOWN, moving_pose=ABOVE, solver=Cta(until=0.3)).steps
-    rough = cast(BALL, BALL, DOWN, moving_pose=ABOVE, solver=Cta(start="ellipsoids")).steps
+    whole = contact().steps
+    part = contact(solver=Cta(until=0.3)).steps
+    rough = contact(solver=Cta(start="ellipsoids")).steps
     assert whole.planar_problems > part.planar_problems > rough.planar_problems == 0
     assert 3 <= whole.region_sides <= 8 and rough.region_sides == 0
 
 
 def test_many_rows_have_the_choices_of_one() -> None:
     directions = RANDOM.normal(size=(20, 3)) * 0.1 + DOWN
-    for solver in (Cta(), Cta(until=0.1), "portal"):
-        rows = cast_many(BALL, BALL, directions, moving_pose=ABOVE, solver=solver)  # type: ignore[arg-type]
-        ones = [cast(BALL, BALL, d, moving_pose=ABOVE, solver=solver) for d in directions]  # type: ignore[arg-type]
+    solvers: list[Any] = [Cta(), Cta(until=0.1), "portal"]
+    for solver in solvers:
+        rows = cast_many(BALL, BALL, directions, moving_pose=ABOVE, solver=solver)
+        ones = [contact(d, solver) for d in directions]
         assert rows.translation.tolist() == [one.translation for one in ones]
 
 
@@ -42,6 +48,7 @@ def test_a_tracker_starts_in_the_region_or_from_features() -> None:
         for step in range(3):
             start = np.add(ABOVE, [1e-3 * step, 0, 0])
             found = tracker.cast(BALL, BALL, DOWN, moving_pose=start, solver=solver)  # type: ignore[arg-type]
+            assert isinstance(found, Contact)
             assert found.steps.started_from == (expected if step else "scratch")
 
 

@@ -33,7 +33,11 @@ def test_a_lid_is_free_along_half_of_all_directions() -> None:
     assert (found.outcome, found.undecided_share, found.tolerance) == ("free", 0.0, 0.0)
     (region,) = found.regions
     assert region["corners"] == [] and np.allclose(region["center"], [0, 0, 1])
-    assert found.says([[0, 1, 0], [0, 1, -1e-200], [3, 4, 5]]) == ["free", "blocked", "free"]
+    assert found.says(np.array([[0, 1, 0], [0, 1, -1e-50], [3, 4, 5]])) == [
+        "free",
+        "blocked",
+        "free",
+    ]
     found.verify()
     assert repr(found).startswith("FreeDirections(")
 

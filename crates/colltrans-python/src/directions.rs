@@ -237,7 +237,7 @@ impl FreeDirections {
 /// >>> low, high = lid.free_share
 /// >>> low <= 0.5 <= high
 /// True
-/// >>> " ".join(lid.says([[1, 2, 0], [1, 2, -1e-200]]))
+/// >>> " ".join(lid.says([[1, 2, 0], [1, 2, -1e-50]]))
 /// 'free blocked'
 /// >>> lid.verify()
 #[pyfunction]

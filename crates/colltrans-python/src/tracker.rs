@@ -33,7 +33,7 @@ self_cell!(
 /// ----------
 /// features : bool, optional
 ///     Whether a query starts from the features that touched in the last answer. By default it does, unless its
-///     solver is "cta", which starts as in the paper: in the region around the last solution.
+///     solver is "cta", which starts as in the paper, in the region around the last solution, or a region is given.
 /// region : "automatic", "everywhere" or float, optional
 ///     That region, of "cta": the half-side of a square of section levels as a length, or by what has changed.
 ///
@@ -98,7 +98,7 @@ fn focus(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<
     if features.is_none() && region.is_none() {
         return Ok(None);
     }
-    let focus = Focus::default().with_features(features.unwrap_or(true));
+    let focus = Focus::default().with_features(features.unwrap_or(false));
     let Some(region) = region else { return Ok(Some(focus)) };
     let region = match region.extract::<f64>() {
         Ok(half_side) => Region::Fixed(half_side),

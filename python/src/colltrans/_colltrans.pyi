@@ -24,6 +24,7 @@ __all__ = [
     "Contact",
     "ContactRange",
     "ConvexPolyhedron",
+    "Cta",
     "Depth",
     "DirectionalDepth",
     "Distance",

@@ -17,6 +17,39 @@ fn assert_error(output: &Output, code: i32, words: &[&str]) {
 }
 
 #[test]
+fn the_papers_algorithm_starts_and_ends_where_it_is_told() {
+    let folder = folder();
+    let asked = |more: &[&str]| {
+        colltrans(folder.path()).args(CAST).args(["--json"]).args(more).output().unwrap()
+    };
+    let problems = |more: &[&str]| {
+        let output = asked(more);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        json(&stdout(&output))["steps"]["planar_problems"].as_u64().unwrap()
+    };
+    assert!(problems(&["--solver", "cta"]) >= 1);
+    assert!(problems(&["--solver", "cta", "--start", "center", "--until", "0.5"]) >= 1);
+    assert_eq!(problems(&["--solver", "cta", "--start", "ellipsoids"]), 0);
+    assert_error(&asked(&["--until", "exit"]), 2, &["--start and --until are of --solver cta"]);
+    let wrong = asked(&["--solver", "cta", "--until", "soon"]);
+    assert_error(&wrong, 2, &["neither `exit` nor a number"]);
+    let lines = r#"{"id":1,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta"}
+{"id":2,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta","start":"ellipsoids","until":0.2}
+{"id":3,"moving":M,"fixed":M,"direction":[0,0,-1],"until":0.2}
+{"id":4,"moving":M,"fixed":M,"direction":[0,0,-1],"solver":"cta","until":-1}
+"#;
+    let tetrahedron = r#"{"points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}"#;
+    std::fs::write(folder.path().join("cta.jsonl"), lines.replace('M', tetrahedron)).unwrap();
+    let output = colltrans(folder.path()).args(["batch", "cta.jsonl"]).output().unwrap();
+    let results: Vec<_> = stdout(&output).lines().map(json).collect();
+    let problems = |k: usize| results[k]["steps"]["planar_problems"].as_u64();
+    assert!(problems(0).unwrap() >= 1 && problems(1) == Some(0), "{results:?}");
+    for (k, words) in [(2, "`start` and `until` are for"), (3, "gap -1 at which narrowing ends")] {
+        assert!(results[k]["message"].as_str().unwrap().contains(words), "{}", results[k]);
+    }
+}
+
+#[test]
 fn a_contact_in_words() {
     let folder = folder();
     let output = colltrans(folder.path()).args(CAST).output().unwrap();

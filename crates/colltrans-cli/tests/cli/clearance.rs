@@ -449,7 +449,7 @@ fn batches_take_solids() {
         "are for solids",
         "not closed",
         "`hull` is for a `mesh`",
-        "`solver` is for convex bodies",
+        "`solver`, `start` and `until` are for convex bodies",
         "fixed: without an area",
     ]) {
         assert_eq!(result["outcome"], "error");

@@ -70,5 +70,5 @@ test("assemblies", () => {
   ];
   const all = told("native_assembly", questions);
   assert.ok(all.every(({ error }) => error === undefined), JSON.stringify(all.find(({ error }) => error)));
-  assert.ok(all.at(-1).steps.length > 0);
+  assert.ok(all.at(-1).plan.length > 0);
 });

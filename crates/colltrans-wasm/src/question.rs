@@ -3,7 +3,7 @@
 //! Read by hand but for proofs, which the library reads: what derived readers of all of them would add is a
 //! third of the download.
 
-use colltrans::{Narrowing, Solver};
+use colltrans::{Narrowing, Solver, Until};
 use colltrans_mesh::body::Take;
 use serde::Deserialize;
 use serde_json::Value;
@@ -143,13 +143,12 @@ impl Read for Fields<'_> {
 
     fn narrowing(&self) -> Result<Narrowing, String> {
         let Narrowing { start, until, .. } = Narrowing::default();
-        let start = match self.get("start") {
-            Some(name) => Deserialize::deserialize(name).map_err(|e| format!("start: {e}"))?,
-            None => start,
-        };
-        let until = match self.get("until") {
-            Some(end) => Deserialize::deserialize(end).map_err(|e| format!("until: {e}"))?,
-            None => until,
+        let text = |name| self.get(name).and_then(Value::as_str);
+        let start = text("start").map_or(Ok(start), str::parse).map_err(|e| e.to_string())?;
+        let until = match self.number("until") {
+            Ok(gap) => gap.map_or(until, Until::Gap),
+            Err(_) if text("until") == Some("exit") => Until::Exit,
+            Err(error) => return Err(error),
         };
         Ok(Narrowing::new(start, until))
     }

@@ -85,7 +85,9 @@ fn what_is_no_pose_or_choice_is_refused() {
     let text = again(&turned);
     assert!(serde_json::from_str::<Pose>(&text.replace("matrix\":[1.0", "matrix\":[2.0")).is_err());
     let text = again(&Options::default());
-    for (from, to) in [("e\":0.0", "e\":-1.0"), ("gap\":0.2", "gap\":-0.2"), ("auto", "best")] {
+    for (from, to) in
+        [("e\":0.0", "e\":-1.0"), ("\"exit\"", "-0.2"), ("exit", "soon"), ("auto", "best")]
+    {
         let wrong = text.replace(from, to);
         assert_ne!(wrong, text, "{from}");
         assert!(serde_json::from_str::<Options>(&wrong).is_err(), "{wrong}");

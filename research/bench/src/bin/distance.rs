@@ -1,10 +1,12 @@
 //! `distance`: distances and depths beside `parry3d-f64`, in the same run on the same settings.
 //!
 //! Bodies at random orientations, brought to a gap or a depth along the normal of their distance. A query
-//! is timed alone; both answer each setting, in turns, and the figures are medians of times and of the
-//! settings' ratios. *Wrong* are answers of parry's that differ from our bounds by more than a share of the
+//! is timed alone, so that it finds in the caches what the other library has left there, and no branch
+//! foretold; or several times in a row. Both answer each setting, in turns, and the figures are medians of
+//! times and of the settings' ratios. *Wrong* are answers of parry's that differ from our bounds by more than a share of the
 //! gap.
 
+use std::hint::black_box;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -23,6 +25,9 @@ use serde_json::{Value, json};
 struct Command {
     #[command(flatten)]
     arguments: Arguments,
+    /// Times each query so many times in a row, and takes the mean
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    repeat: u32,
 }
 
 const SIZES: [usize; 5] = [8, 32, 128, 2_000, 20_000];
@@ -37,7 +42,8 @@ const SHARE: f64 = 1e-2;
 const STEP: f64 = 0.01;
 
 fn main() -> ExitCode {
-    let Command { arguments } = Command::parse();
+    let Command { arguments, repeat } = Command::parse();
+    let clock = Clock { stopwatch: Stopwatch::new(), repeat: repeat.max(1) };
     let count = if arguments.quick { 200 } else { 1_000 };
     let mut rows = Vec::new();
     println!(
@@ -46,14 +52,14 @@ fn main() -> ExitCode {
     );
     for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
         for gap in GAPS {
-            rows.push(row(n, gap, count, arguments.seed));
+            rows.push(row(n, gap, count, arguments.seed, clock));
         }
     }
     report::write("distance", &arguments, &rows)
 }
 
 /// Two bodies of a size at a gap, so many times.
-fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
+fn row(n: usize, gap: f64, count: usize, seed: u64, clock: Clock) -> Value {
     let mut random = Random::stream(seed, &[n as u64]);
     let pairs: Vec<[ConvexPolyhedron; 2]> = (0..if n > 1_000 { 2 } else { 8 })
         .map(|_| [(); 2].map(|()| Shape::Ellipsoid.draw(n, &mut random).expect("a body")))
@@ -62,7 +68,6 @@ fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
         .iter()
         .map(|pair| pair.each_ref().map(|one| parry::body(one).expect("a body of parry's")))
         .collect();
-    let stopwatch = Stopwatch::new();
     let [mut ours, mut parrys, mut ratios, mut coherent] = [(); 4].map(|()| Times::default());
     let (mut wrong, mut widest) = (0_u32, 0.0_f64);
     for index in 0..count {
@@ -78,11 +83,11 @@ fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
             if gap > 0.0 { pair.distance().map(bounds) } else { pair.depth().map(|d| d.bounds()) }
         };
         let ((mine, spent), (other, theirs)) = if index % 2 == 0 {
-            let first = stopwatch.time(us);
-            (first, stopwatch.time(parry))
+            let first = clock.time(us);
+            (first, clock.time(parry))
         } else {
-            let first = stopwatch.time(parry);
-            (stopwatch.time(us), first)
+            let first = clock.time(parry);
+            (clock.time(us), first)
         };
         let [lower, upper] = mine.expect("an answer");
         wrong += u32::from(other.is_none_or(|other| (other - lower).abs() > SHARE * gap.abs()));
@@ -91,7 +96,7 @@ fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
         parrys.add(theirs);
         ratios.add(theirs / spent);
         if gap > 0.0 {
-            coherent.add(followed(&pair, stopwatch, &mut random) / spent);
+            coherent.add(followed(&pair, clock, &mut random));
         }
     }
     for times in [&mut ours, &mut parrys, &mut ratios, &mut coherent] {
@@ -109,8 +114,27 @@ fn row(n: usize, gap: f64, count: usize, seed: u64) -> Value {
     })
 }
 
-/// The time of a tracked distance after a small change.
-fn followed(pair: &Pair, stopwatch: Stopwatch, random: &mut Random) -> f64 {
+/// Times queries.
+#[derive(Debug, Clone, Copy)]
+struct Clock {
+    stopwatch: Stopwatch,
+    /// Times in a row.
+    repeat: u32,
+}
+
+impl Clock {
+    fn time<T>(self, mut query: impl FnMut() -> T) -> (T, f64) {
+        let all = || {
+            (1..self.repeat).for_each(|_| drop(black_box(query())));
+            query()
+        };
+        let (answer, spent) = self.stopwatch.time(all);
+        (answer, spent / f64::from(self.repeat))
+    }
+}
+
+/// The time of a tracked distance after a small change, beside that of the same one from scratch.
+fn followed(pair: &Pair, clock: Clock, random: &mut Random) -> f64 {
     let mut tracker = Tracker::new();
     tracker.distance(pair).expect("an answer");
     let turn = DQuat::from_axis_angle(random.direction(), STEP) * pair.moving_pose().rotation();
@@ -118,7 +142,11 @@ fn followed(pair: &Pair, stopwatch: Stopwatch, random: &mut Random) -> f64 {
     let moved = Pose::new(turn.normalize(), at).expect("a pose");
     let next = Pair::new(pair.moving().at(moved), pair.fixed().at(pair.fixed_pose()));
     let next = next.expect("a pair");
-    stopwatch.time(|| tracker.distance(&next)).1
+    // Of each repetition its own, made before the clock starts.
+    let mut trackers = vec![tracker; clock.repeat as usize];
+    let mut last = trackers.iter_mut();
+    let (_, tracked) = clock.time(|| last.next().map(|tracker| tracker.distance(&next)));
+    clock.time(|| next.distance()).1.recip() * tracked
 }
 
 /// Poses at random orientations in which the bodies have a gap.

@@ -2,6 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::{PairAnswer, PairQuestion, Record};
+use colltrans::solid::SolidSteps;
 use colltrans::{ProofFile, Solid};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{coordinates, row};
 use crate::errors::{OrRaise, error};
-use crate::features::{Feature, Features};
+use crate::features::{Feature, Features, Steps};
 use crate::pair::{Of, Pair};
 
 type DistanceOf = Of<colltrans::Distance, colltrans::Distance<Solid>>;
@@ -19,7 +20,7 @@ type DistanceOf = Of<colltrans::Distance, colltrans::Distance<Solid>>;
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct WithinOf {
     length: f64,
-    found: Of<colltrans::Within, colltrans::Within<Solid>>,
+    found: Of<(colltrans::Within, colltrans::Steps), (colltrans::Within<Solid>, SolidSteps)>,
 }
 
 /// How far two bodies are apart, and where they are nearest: ``lower <= true distance <= upper``.
@@ -88,6 +89,15 @@ impl Distance {
         })))
     }
 
+    /// Steps or None: Work done; None of solids.
+    #[getter]
+    fn steps(&self) -> Option<Steps> {
+        match self.found {
+            Of::Convex(found) => Some(Steps(found.steps)),
+            Of::Solids(_) => None,
+        }
+    }
+
     /// Checks the proof against the bodies alone; between solids they are asked once more for it.
     ///
     /// Raises
@@ -137,6 +147,12 @@ impl Depth {
     #[getter]
     fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.depth.translation())
+    }
+
+    /// Steps: Work done.
+    #[getter]
+    fn steps(&self) -> Steps {
+        Steps(self.depth.steps)
     }
 
     /// Checks the proof against the bodies alone.
@@ -219,7 +235,7 @@ impl Within {
     #[getter]
     fn closer(&self) -> Option<bool> {
         use colltrans::Within::{Closer, Farther};
-        either!(self.found.found, found => match found {
+        either!(self.found.found, found => match found.0 {
             Closer(_) => Some(true),
             Farther(_) => Some(false),
             _ => None,
@@ -244,6 +260,15 @@ impl Within {
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray1<f64>>; 2]>> {
         let points = self.record(py)?.points;
         Ok(points.map(|points| points.map(|point| row(py, DVec3::from_array(point)))))
+    }
+
+    /// Steps or None: Work done; None of solids.
+    #[getter]
+    fn steps(&self) -> Option<Steps> {
+        match self.found.found {
+            Of::Convex((_, steps)) => Some(Steps(steps)),
+            Of::Solids(_) => None,
+        }
     }
 
     /// Checks the proof against the bodies alone; between solids they are asked once more for it.
@@ -275,7 +300,7 @@ fn proof_of(found: &DistanceOf, query: &Bound<'_, Pair>) -> PyResult<ProofFile> 
 
 fn within_proof(of: &WithinOf, query: &Bound<'_, Pair>) -> PyResult<ProofFile> {
     match (&of.found, query.get().asked()?) {
-        (Of::Convex(within), Of::Convex(pair)) => Ok(ProofFile::of_distance(&pair, within)),
+        (Of::Convex((within, _)), Of::Convex(pair)) => Ok(ProofFile::of_distance(&pair, within)),
         _ => query.get().solid_proof(PairQuestion::Within(of.length)),
     }
 }
@@ -318,9 +343,11 @@ impl Answer for WithinOf {
 
     fn record(&self, query: &Bound<'_, Pair>) -> PyResult<Record> {
         match (&self.found, query.get().asked()?) {
-            (Of::Convex(found), Of::Convex(pair)) => Ok(PairAnswer::Within(*found).record(&pair)),
-            (Of::Solids(found), Of::Solids(pair)) => {
-                PairAnswer::<Solid>::Within(*found).record(&pair).or_raise()
+            (&Of::Convex((answer, steps)), Of::Convex(pair)) => {
+                Ok(PairAnswer::Within { answer, steps }.record(&pair))
+            }
+            (&Of::Solids((answer, steps)), Of::Solids(pair)) => {
+                PairAnswer::<Solid>::Within { answer, steps }.record(&pair).or_raise()
             }
             _ => Err(other_bodies()),
         }
@@ -341,7 +368,7 @@ impl Answer for PairAnswer {
             Self::Depth(depth) => object(py, Depth { depth, query: asked }),
             Self::OverlapDepth(depth) => object(py, OverlapDepth { depth, query: asked }),
             Self::Distance(found) => DistanceOf::Convex(found).object(query),
-            Self::Within(_) => Err(other_bodies()),
+            Self::Within { .. } => Err(other_bodies()),
         }
     }
 
@@ -390,8 +417,8 @@ pub(crate) fn depth_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyA
 pub(crate) fn within_of<'py>(query: &Bound<'py, Pair>, length: f64) -> PyResult<Bound<'py, PyAny>> {
     let found = Pair::ask(query, move |pair| {
         Ok(match pair {
-            Of::Convex(pair) => Of::Convex(pair.within(length)?),
-            Of::Solids(pair) => Of::Solids(pair.within(length)?),
+            Of::Convex(pair) => Of::Convex(pair.within_counted(length)?),
+            Of::Solids(pair) => Of::Solids(pair.within_counted(length)?),
         })
     })?;
     WithinOf { length, found }.object(query)

@@ -7,6 +7,7 @@
 
 mod free;
 
+use derive_where::derive_where;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -257,7 +258,8 @@ pub enum PairQuestion {
 }
 
 /// The answer of a [`PairQuestion`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
+#[derive_where(Clone, PartialEq)]
 #[serde(rename_all = "snake_case", bound = "")]
 pub enum PairAnswer<B: Body = ConvexPolyhedron> {
     /// How far they are apart.
@@ -267,7 +269,12 @@ pub enum PairAnswer<B: Body = ConvexPolyhedron> {
     /// How deep solids overlap.
     OverlapDepth(OverlapDepth),
     /// Whether they are closer than a length.
-    Within(Within<B>),
+    Within {
+        /// What [`Pair::within`] says.
+        answer: Within<B>,
+        /// How much work it was.
+        steps: B::Steps,
+    },
 }
 
 named!("query", Question { Contact: "contact", Clearance: "clearance" });
@@ -345,7 +352,7 @@ impl PairQuestion {
         Ok(match self {
             Self::Distance => PairAnswer::Distance(pair.distance()?),
             Self::Depth => PairAnswer::Depth(pair.depth()?),
-            Self::Within(length) => PairAnswer::Within(pair.within(length)?),
+            Self::Within(length) => PairAnswer::within(pair.within_counted(length)?),
         })
     }
 
@@ -357,8 +364,39 @@ impl PairQuestion {
         Ok(match self {
             Self::Distance => PairAnswer::Distance(pair.distance()?),
             Self::Depth => PairAnswer::OverlapDepth(pair.overlap_depth()?),
-            Self::Within(length) => PairAnswer::Within(pair.within(length)?),
+            Self::Within(length) => PairAnswer::within(pair.within_counted(length)?),
         })
+    }
+
+    /// The answer of solids and its proof as a file, if it has one: see
+    /// [`ProofFile::with_solid_distance`](crate::ProofFile::with_solid_distance).
+    ///
+    /// # Errors
+    /// As the question itself; a body that its own facets do not make once more.
+    #[cfg(feature = "json")]
+    pub fn prove_solids(
+        self,
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+    ) -> Result<(PairAnswer<Solid>, Option<crate::ProofFile>), crate::CaseError> {
+        use crate::ProofFile;
+        Ok(match self {
+            Self::Distance => {
+                let (distance, proof) = ProofFile::with_solid_distance(pair, pieces)?;
+                (PairAnswer::Distance(distance), Some(proof))
+            }
+            Self::Depth => (PairAnswer::OverlapDepth(pair.overlap_depth()?), None),
+            Self::Within(length) => {
+                let (within, proof) = ProofFile::with_solid_within(pair, pieces, length)?;
+                (PairAnswer::within(within), Some(proof))
+            }
+        })
+    }
+}
+
+impl<B: Body> PairAnswer<B> {
+    fn within((answer, steps): (Within<B>, B::Steps)) -> Self {
+        Self::Within { answer, steps }
     }
 }
 
@@ -366,10 +404,12 @@ impl PairAnswer {
     /// As front ends write it; `pair` is the one that was asked.
     pub fn record(&self, pair: &Pair) -> Record {
         match self {
-            Self::Distance(distance) => Record::of_distance(distance, pair),
+            Self::Distance(distance) => Record::of_convex_distance(distance, pair),
             Self::Depth(depth) => Record::of_depth(depth),
             Self::OverlapDepth(depth) => Record::of_overlap_depth(*depth),
-            Self::Within(within) => Record::of_within(within, pair),
+            Self::Within { answer, steps } => {
+                Record { steps: Some(*steps), ..Record::of_within(answer, pair) }
+            }
         }
     }
 
@@ -380,7 +420,7 @@ impl PairAnswer {
             Self::Distance(distance) => Some(crate::ProofFile::of_distance(pair, distance)),
             Self::Depth(depth) => Some(crate::ProofFile::of_depth(pair, depth)),
             Self::OverlapDepth(_) => None,
-            Self::Within(within) => Some(crate::ProofFile::of_distance(pair, within)),
+            Self::Within { answer, .. } => Some(crate::ProofFile::of_distance(pair, answer)),
         }
     }
 }
@@ -395,7 +435,7 @@ impl PairAnswer<Solid> {
             Self::Distance(distance) => Record::of_distance(distance, pair),
             Self::Depth(depth) => Record::of_depth(depth),
             Self::OverlapDepth(depth) => Record::of_overlap_depth(*depth),
-            Self::Within(within) => Record::of_solids_within(within, pair)?,
+            Self::Within { answer, .. } => Record::of_solids_within(answer, pair)?,
         };
         Ok(Record { surfaces: open_ones(pair.moving(), pair.fixed()), ..record })
     }
@@ -509,6 +549,10 @@ impl Record {
         }
     }
 
+    fn of_convex_distance(distance: &Distance, pair: &Pair<'_>) -> Self {
+        Self { steps: Some(distance.steps), ..Self::of_distance(distance, pair) }
+    }
+
     /// Of [`Pair::depth`].
     pub fn of_depth(depth: &Depth) -> Self {
         let outcome = match (depth.lower > 0.0, depth.upper > 0.0) {
@@ -522,13 +566,14 @@ impl Record {
             direction: direction.then(|| coordinates(depth.direction)),
             lower: Some(depth.lower),
             upper: Some(depth.upper),
+            steps: Some(depth.steps),
             ..Self::default()
         }
     }
 
     /// Of [`Pair::overlap_depth`].
     pub fn of_overlap_depth(depth: OverlapDepth) -> Self {
-        let OverlapDepth { meets, least_tolerance } = depth;
+        let OverlapDepth { meets, least_tolerance, .. } = depth;
         let outcome = match (least_tolerance, meets) {
             (Some(0.0), false) => Ending::Apart,
             (Some(0.0), true) => Ending::Touching,
@@ -575,7 +620,7 @@ impl Record {
     pub fn of_nearest(nearest: &Nearest, among: &Among<'_>) -> Self {
         let Nearest { obstacle, ref distance, lower, .. } = *nearest;
         let record = match (among.pair_with(obstacle), distance) {
-            (Some(ByKind::Convex(pair)), ByKind::Convex(of)) => Self::of_distance(of, &pair),
+            (Some(ByKind::Convex(pair)), ByKind::Convex(of)) => Self::of_convex_distance(of, &pair),
             (Some(ByKind::Solid(pair)), ByKind::Solid(of)) => Self::of_distance(of, &pair),
             // It has gone since.
             _ => Self { upper: Some(distance.upper()), ..Self::default() },

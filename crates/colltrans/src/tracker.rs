@@ -161,7 +161,7 @@ impl<'a> Tracker<'a> {
     }
 
     /// [`Pair::distance`], starting from the last answer to the same question: the pairs of vertices that
-    /// the nearest points were made of. [`Self::steps`] says nothing of it.
+    /// the nearest points were made of.
     ///
     /// # Errors
     /// As [`Pair::distance`].
@@ -181,7 +181,10 @@ impl<'a> Tracker<'a> {
     /// ```
     pub fn distance(&mut self, pair: &Pair<'a>) -> Result<Distance, QueryError> {
         self.follow([pair.moving(), pair.fixed()]);
-        distance_from(pair, &mut self.nearest)
+        self.steps = Steps::default();
+        let distance = distance_from(pair, &mut self.nearest)?;
+        self.steps = distance.steps;
+        Ok(distance)
     }
 
     /// Forgets what was found of other bodies.

@@ -18,7 +18,7 @@ mod tests {
 
     use colltrans_testkit::random::Random;
     use colltrans_testkit::shapes::{Mesh, even_rings, extruded, random_hull, ring, ring_points};
-    use colltrans_testkit::solids::{slab, washer};
+    use colltrans_testkit::solids::{bumpy_ball, slab, washer};
     use glam::{DQuat, DVec3};
 
     use crate::{Cast, ConvexPolyhedron, Pose, Solid};
@@ -105,6 +105,32 @@ mod tests {
                     let points: Vec<DVec3> = points.map(|p| turn * p).collect();
                     assert_eq!(hull(&points).vertices().len(), points.len());
                 });
+            }
+        }
+    }
+
+    /// An answer and its proof are of one search, where the file's bodies have the same trees.
+    #[cfg(feature = "json")]
+    #[test]
+    fn a_saved_proof_takes_no_second_search() {
+        use crate::Pair;
+        use crate::record::PairQuestion;
+        let made = |Mesh { vertices, faces }: Mesh| Solid::from_mesh(&vertices, &faces).unwrap();
+        let ball = made(bumpy_ball(1_000));
+        let plate = made(slab(DVec3::ZERO, DVec3::ONE, [5, 5, 1]));
+        for far in [0.0, 1.0, 3.0] {
+            let pose = Pose::new(rotation(), DVec3::splat(far)).expect("a pose");
+            let pair = Pair::new(ball.at(pose), plate.at(Pose::IDENTITY)).expect("a pair");
+            let length = 0.999 * pair.distance().expect("an answer").lower;
+            for question in [PairQuestion::Distance, PairQuestion::Within(length)] {
+                let (mut plain, mut proven) = (None, None);
+                let without = looks(|| plain = question.ask_solids(&pair).ok());
+                let with =
+                    looks(|| proven = question.prove_solids(&pair, [&[&ball], &[&plate]]).ok());
+                let (answer, proof) = proven.expect("an answer");
+                assert_eq!((Some(answer), with), (plain, without), "{question:?}, {far}");
+                proof.expect("a proof").check().expect("a proof that holds");
+                assert!(without > 0, "no pair of nodes is counted");
             }
         }
     }

@@ -76,10 +76,13 @@ fn solids(
     let bodies = clearance::load(files, options)?;
     tell(arguments, bodies.iter().flat_map(|body| &body.notes));
     let asked = PartsPair { bodies: [&bodies[0], &bodies[1]], poses };
-    let record = asked.ask(question)?;
+    let (record, proof) = match &arguments.save_proof {
+        Some(_) => asked.prove(question)?,
+        None => (asked.ask(question)?, Ok(None)),
+    };
     say(arguments, question, &record.clone().into(), asked.error())?;
-    if let Some(path) = &arguments.save_proof {
-        proof::save(path, &asked.prove(question)?)?;
+    if let (Some(path), Some(proof)) = (&arguments.save_proof, proof?) {
+        proof::save(path, &proof)?;
     }
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
     draw(arguments, Shown { question, record: &record, surface: &surface })

@@ -2,10 +2,13 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeaturesRecord, PairQuestion, Record};
-use colltrans::{Pair, Pose, ProofFile, QueryError, Solid};
+use colltrans::{CaseError, Pair, Pose, ProofFile, QueryError, Solid};
 
 use super::{Body, PartsQuery};
 use crate::failure::{Code, Failure};
+
+/// A proof, where there is one; or why none could be made.
+type Proven = Result<Option<ProofFile>, Failure>;
 
 /// Two bodies where they are.
 #[derive(Clone, Copy)]
@@ -18,7 +21,24 @@ impl<'a> PartsPair<'a> {
     /// The answer, with the names of files.
     pub(crate) fn ask(&self, question: PairQuestion) -> Result<Record, QueryError> {
         let pair = self.pair()?;
-        let mut record = question.ask_solids(&pair)?.record(&pair)?;
+        self.named(question.ask_solids(&pair)?.record(&pair)?)
+    }
+
+    /// The same by the same search, and the proof of a distance, or of its comparison with a length.
+    pub(crate) fn prove(&self, question: PairQuestion) -> Result<(Record, Proven), QueryError> {
+        let [moving, fixed] = self.bodies.map(Body::solids);
+        let pair = self.pair()?;
+        match question.prove_solids(&pair, [&moving, &fixed]) {
+            Ok((answer, proof)) => Ok((self.named(answer.record(&pair)?)?, Ok(proof))),
+            Err(CaseError::Query(error)) => Err(error),
+            Err(error) => {
+                let failed = Failure::new(Code::Query, error.to_string());
+                Ok((self.ask(question)?, Err(failed)))
+            }
+        }
+    }
+
+    fn named(&self, mut record: Record) -> Result<Record, QueryError> {
         if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
             record.moving = Some(self.bodies[0].renumber(moving));
             record.fixed = Some(self.bodies[1].renumber(fixed));
@@ -30,17 +50,6 @@ impl<'a> PartsPair<'a> {
                 deepest.map_or((None, None), |of| (of.moving.clone(), of.fixed.clone()));
         }
         Ok(record)
-    }
-
-    /// The proof of a distance, or of its comparison with a length.
-    pub(crate) fn prove(&self, question: PairQuestion) -> Result<ProofFile, Failure> {
-        let [moving, fixed] = self.bodies.map(Body::solids);
-        let within = match question {
-            PairQuestion::Within(length) => Some(length),
-            PairQuestion::Distance | PairQuestion::Depth => None,
-        };
-        ProofFile::of_solid_distance(&self.pair()?, [&moving, &fixed], within)
-            .map_err(|error| Failure::new(Code::Query, error.to_string()))
     }
 
     /// How far lengths may be off by the precision of the files and by rounding.

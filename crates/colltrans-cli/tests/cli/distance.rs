@@ -1,5 +1,7 @@
 //! `colltrans distance`, `depth` and `within`, their proofs and pictures, and the lines of a batch.
 
+use std::path::Path;
+
 use serde_json::{Value, json};
 
 use crate::proof::{checked_in_fractions, saved};
@@ -15,7 +17,11 @@ const DEEP: [&str; 4] = ["cube.off", "cube.off", "--moving-pose", "-0.75,0.25,-0
 const PARTS: [&str; 4] = ["cube.off", "dent.off", "--moving-pose", "0,0,3"];
 
 fn ask(command: &str, bodies: &[&str], more: &[&str]) -> Value {
-    read(&answered(folder().path(), &[&[command], bodies, more, &["--json"]].concat()))
+    ask_in(folder().path(), command, bodies, more)
+}
+
+fn ask_in(folder: &Path, command: &str, bodies: &[&str], more: &[&str]) -> Value {
+    read(&answered(folder, &[&[command], bodies, more, &["--json"]].concat()))
 }
 
 fn number(value: &Value, name: &str) -> f64 {
@@ -31,8 +37,11 @@ fn distances_have_bounds_points_and_features() {
     assert_eq!(told["normal"], json!([1.0, 0.0, 0.0]));
     assert_eq!((&told["points"][0][0], &told["points"][1][0]), (&json!(-2.0), &json!(0.0)));
     assert_eq!(told["features"]["moving"]["kind"], "face");
+    assert!(number(&told["steps"], "supports") > 0.0, "{told}");
     let told = ask("distance", &PARTS, &[]);
     assert!(number(&told, "lower") <= 2.0 && number(&told, "upper") >= 2.0, "{told}");
+    // As of their clearances.
+    assert!(told.get("steps").is_none(), "{told}");
     assert_eq!((&told["moving"], &told["fixed"]), (&json!("cube.off"), &json!("dent.off")));
     let told = ask("distance", &DEEP, &[]);
     assert!(told["outcome"] == "meeting" && number(&told, "upper") < 1e-13, "{told}");
@@ -48,7 +57,9 @@ fn depths_say_which_way_out() {
     assert_eq!(told["outcome"], "overlapping");
     assert!(number(&told, "lower") <= 0.25 && number(&told, "upper") >= 0.25, "{told}");
     assert_eq!(told["direction"], json!([-1.0, 0.0, 0.0]));
-    assert_eq!(ask("depth", &APART, &[]), json!({"outcome": "apart", "lower": 0.0, "upper": 0.0}));
+    let mut apart = ask("depth", &APART, &[]);
+    assert!(number(&apart["steps"].take(), "supports") > 0.0, "{apart}");
+    assert_eq!(apart, json!({"outcome": "apart", "lower": 0.0, "upper": 0.0, "steps": null}));
     // Of parts another measure, under the name that a clearance has for it.
     let told = ask("depth", &["cube.off", "dent.off", "--moving-pose", "0.9,0,0"], &[]);
     let depth = number(&told["start_overlaps"][0], "least_tolerance");
@@ -63,6 +74,7 @@ fn a_length_is_compared_with() {
     for bodies in [APART, PARTS] {
         let told = ask("within", &bodies, &["--length", "2.5"]);
         assert!(told["outcome"] == "closer" && number(&told, "upper") <= 2.5, "{told}");
+        assert_eq!(told.get("steps").is_some(), bodies == APART, "{told}");
         let told = ask("within", &bodies, &["--length", "1.5"]);
         assert!(told["outcome"] == "farther" && number(&told, "lower") > 1.5, "{told}");
         let told = ask("within", &bodies, &["--length", "2"]);
@@ -114,6 +126,13 @@ fn proofs_hold_here_and_in_fractions() {
         // That no two points of parts are nearer is not checked there.
         let is_part = bodies == &PARTS && said.contains("between");
         checked_in_fractions(folder, if is_part { 7 } else { 0 });
+    }
+    // The answer is the same to the bit.
+    for (bodies, more) in [(&PARTS, &[][..]), (&PARTS, &within("1")), (&DEEP, &[])] {
+        let command = if more.is_empty() { "distance" } else { "within" };
+        let with =
+            ask_in(folder, command, bodies, &[more, &["--save-proof", "proof.json"]].concat());
+        assert_eq!(ask(command, bodies, more), with);
     }
     let parts = ["depth", "cube.off", "dent.off", "--save-proof", "proof.json"];
     refused(folder, &parts, 2, &["the depth of parts has no proof"]);

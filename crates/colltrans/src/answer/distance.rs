@@ -13,6 +13,7 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
+use crate::answer::Steps;
 use crate::body::{Body, ConvexPolyhedron, Features};
 use crate::setting::VertexPair;
 
@@ -42,6 +43,9 @@ pub struct Distance<B: Body = ConvexPolyhedron> {
     pub near: B::Near,
     /// What proves the lower bound, where that is not 0.
     pub gap: Option<B::Gap>,
+    /// How much work it was.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub steps: B::Steps,
 }
 
 impl<B: Body> Distance<B> {
@@ -109,6 +113,9 @@ pub struct Depth {
     pub direction: DVec3,
     /// What proves the lower bound; what proves the upper one is the direction.
     pub enclosure: Enclosure,
+    /// How much work it was. A proof as a file does not say.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Steps::is_nothing"))]
+    pub steps: Steps,
 }
 
 impl Depth {

@@ -47,6 +47,13 @@ pub struct Steps {
     pub started_from: StartedFrom,
 }
 
+#[cfg(feature = "serde")]
+impl Steps {
+    pub(crate) fn is_nothing(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Counts another cast in; of both starts the one with more work stands, of both regions that with more sides.
 impl std::ops::AddAssign for Steps {
     fn add_assign(&mut self, other: Self) {

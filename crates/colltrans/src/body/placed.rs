@@ -26,6 +26,8 @@ pub trait Body: sealed::Sealed + Clone + Debug {
     type Near: sealed::Told;
     /// What proves that they are not nearer to each other.
     type Gap: sealed::Told;
+    /// How much work an answer was.
+    type Steps: sealed::Told + Default;
 }
 
 impl Feature {

@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::{PairProof, verify};
-use crate::answer::{CertificateError, Depth, Distance, Enclosure, NearPoints, Within};
+use crate::answer::{
+    CertificateError, Depth, Distance, Enclosure, NearPoints, StartedFrom, Steps, Within,
+};
 use crate::body::{Features, feature};
 use crate::pair::Pair;
 use crate::setting::error::{QueryError, Stalled};
@@ -68,17 +70,27 @@ impl Pair<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn within(&self, length: f64) -> Result<Within, QueryError> {
+        Ok(self.within_counted(length)?.0)
+    }
+
+    /// The same, and how much work it was.
+    ///
+    /// # Errors
+    /// As [`Self::within`].
+    pub fn within_counted(&self, length: f64) -> Result<(Within, Steps), QueryError> {
         check_length(length)?;
         let difference = Difference::new(&self.bodies);
-        let found = nearest(&difference, &NearestPairs::default(), Some(length));
-        if let Some(decided) = decide(&difference, &found, length) {
-            return Ok(decided);
+        let mut found = nearest(&difference, &NearestPairs::default(), Some(length));
+        let mut decided = decide(&difference, &found, length);
+        if decided.is_none() {
+            found = nearest(&difference, &found.pairs(), None);
+            decided = decide(&difference, &found, length);
         }
-        let found = nearest(&difference, &found.pairs(), None);
-        match decide(&difference, &found, length) {
-            Some(decided) => Ok(decided),
-            None => answer(&difference, &found).map(Within::Undecided),
-        }
+        let answer = match decided {
+            Some(decided) => decided,
+            None => Within::Undecided(answer(&difference, &found)?),
+        };
+        Ok((answer, difference.steps()))
     }
 
     /// How deep do the bodies overlap: by which least translation, in any direction, are they parted?
@@ -106,7 +118,8 @@ impl Pair<'_> {
         let found = nearest(&difference, &NearestPairs::default(), None);
         if let Some(plane) = found.plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
             let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
-            return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure });
+            let steps = difference.steps();
+            return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, steps });
         }
         let best = deepest(&difference, &found);
         let (lower, upper) = (best.lower, best.upper);
@@ -115,7 +128,8 @@ impl Pair<'_> {
             let reason = Stalled::Distance { lower, upper, tolerance };
             return Err(QueryError::NotConverged { reason });
         }
-        Ok(Depth { lower, upper, direction: best.outward, enclosure: best.enclosure })
+        let (direction, enclosure) = (best.outward, best.enclosure);
+        Ok(Depth { lower, upper, direction, enclosure, steps: difference.steps() })
     }
 
     /// The vertex, edge or face of each body that faces the other one: what lies in the planes across the
@@ -159,8 +173,13 @@ fn decide(difference: &Difference, found: &Found, length: f64) -> Option<Within>
 pub(crate) fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, QueryError> {
     let difference = Difference::new(&pair.bodies);
     let found = nearest(&difference, pairs, None);
+    let is_new = pairs.is_empty();
     *pairs = found.pairs();
-    answer(&difference, &found)
+    let mut distance = answer(&difference, &found)?;
+    if !is_new {
+        distance.steps.started_from = StartedFrom::Features;
+    }
+    Ok(distance)
 }
 
 /// The distance, by what a search has found.
@@ -186,6 +205,7 @@ fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError
         features: plane.map(|plane| facing(bodies, &plane, difference.noise.point())),
         near,
         gap: plane.map(|plane| plane.gap),
+        steps: difference.steps(),
     })
 }
 

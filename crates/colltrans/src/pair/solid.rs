@@ -69,6 +69,9 @@ pub struct OverlapDepth {
     /// As [`Cast::least_tolerance`](crate::Cast::least_tolerance) says: 0 if the bodies do not overlap, `None` if
     /// there is none.
     pub least_tolerance: Option<f64>,
+    /// How much work it was.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub steps: SolidSteps,
 }
 
 impl Cover<Apart> {
@@ -84,6 +87,14 @@ struct Said {
     /// No two facets are nearer.
     lower: f64,
     /// If it was asked for.
+    cover: Option<Cover<Apart>>,
+    steps: SolidSteps,
+}
+
+/// What a search leaves of which a proof is made: points of the bodies, and what covers all pairs of facets, where
+/// they are apart.
+pub(crate) struct Unproven {
+    near: SolidNear,
     cover: Option<Cover<Apart>>,
 }
 
@@ -137,21 +148,34 @@ impl<'a> Pair<'a, Solid> {
     /// # Errors
     /// As [`Self::distance`].
     pub fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
-        let (distance, proof) = self.ask(true)?;
-        Ok((distance, proof.unwrap_or(DistanceCertificate::of_near(distance.near))))
+        let (mut distance, found) = self.distance_unproven()?;
+        let proof = self.prove(found)?;
+        distance.lower = proof.lower;
+        distance.gap = distance.gap.map(|_| SolidGap { gap: proof.lower });
+        Ok((distance, proof))
     }
 
-    /// The distance, and the proof where that is asked for and the bodies are apart.
-    fn ask(
-        &self,
-        prove: bool,
-    ) -> Result<(Distance<Solid>, Option<DistanceCertificate>), QueryError> {
+    /// The distance to the bit, and what a proof is made of.
+    pub(crate) fn distance_unproven(&self) -> Result<(Distance<Solid>, Unproven), QueryError> {
+        self.ask(true)
+    }
+
+    fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
         let scene = self.scene()?;
         let said = self.search(&scene, Until::LEAST, prove);
         let distance = self.answer(&scene, &said);
-        let (lower, near) = (distance.lower, distance.near);
-        let cover = said.cover.filter(|_| lower > 0.0);
-        Ok((distance, cover.map(|cover| DistanceCertificate { lower, near, cover })))
+        let cover = said.cover.filter(|_| distance.lower > 0.0);
+        Ok((distance, Unproven { near: distance.near, cover }))
+    }
+
+    /// The proof by what was found: its lower bound is what the cover proves, at least that of the search.
+    pub(crate) fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError> {
+        let Unproven { near, cover } = found;
+        let Some(cover) = cover else { return Ok(DistanceCertificate::of_near(near)) };
+        Ok(match least_proven(&self.scene()?, &cover) {
+            Ok(lower) if lower > 0.0 => DistanceCertificate { lower, near, cover },
+            _ => DistanceCertificate::of_near(near),
+        })
     }
 
     /// Are the bodies closer than a length, in world units? Ended as soon as that is known.
@@ -171,6 +195,14 @@ impl<'a> Pair<'a, Solid> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn within(&self, length: f64) -> Result<Within<Solid>, QueryError> {
+        Ok(self.within_counted(length)?.0)
+    }
+
+    /// The same, and how much work it was.
+    ///
+    /// # Errors
+    /// As [`Self::within`].
+    pub fn within_counted(&self, length: f64) -> Result<(Within<Solid>, SolidSteps), QueryError> {
         Ok(self.decide(length, false)?.0)
     }
 
@@ -183,6 +215,29 @@ impl<'a> Pair<'a, Solid> {
         &self,
         length: f64,
     ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
+        let ((answer, _), found) = self.decide(length, true)?;
+        if found.cover.is_none() {
+            return Ok((answer, None));
+        }
+        let proof = self.prove(found)?;
+        let gap = proof.lower;
+        let answer = match answer {
+            Within::Closer(near) => Within::Closer(near),
+            Within::Undecided(distance) if gap <= length => {
+                let (lower, gap) = (gap, distance.gap.map(|_| SolidGap { gap }));
+                Within::Undecided(Distance { lower, gap, ..distance })
+            }
+            Within::Farther(_) | Within::Undecided(_) => Within::Farther(SolidGap { gap }),
+        };
+        Ok((answer, Some(proof)))
+    }
+
+    /// [`Self::within_counted`], and what a proof is made of.
+    #[cfg(feature = "json")]
+    pub(crate) fn within_unproven(
+        &self,
+        length: f64,
+    ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError> {
         self.decide(length, true)
     }
 
@@ -190,7 +245,7 @@ impl<'a> Pair<'a, Solid> {
         &self,
         length: f64,
         prove: bool,
-    ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
+    ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError> {
         check_length(length)?;
         let scene = self.scene()?;
         let until = Until {
@@ -198,29 +253,30 @@ impl<'a> Pair<'a, Solid> {
             beyond: length + 0.125 * scene.noise,
             enough: length - triangle::LENGTH * scene.noise,
         };
-        let said = self.search(&scene, until, prove && until.beyond.is_finite());
-        if let Some(spot) = &said.spot {
-            let near = spot.near(&scene);
-            if near.distance() <= length {
-                return Ok((Within::Closer(near), None));
-            }
-        } else if let Some(place) = nested(&scene) {
-            return Ok((Within::Closer(SolidNear::Meeting(place)), None));
+        let Said { spot, lower, cover, mut steps } =
+            self.search(&scene, until, prove && until.beyond.is_finite());
+        let near = spot.map(|spot| spot.near(&scene));
+        let meeting = || nested(&scene).map(SolidNear::Meeting);
+        let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
+        if let Some(near) = closer {
+            return Ok(((Within::Closer(near), steps), Unproven { near, cover: None }));
         }
-        if said.lower > length {
-            let near = said.spot.unwrap_or_else(|| Spot::of(&scene, [0, 0])).near(&scene);
-            let lower = said.lower;
-            let proof = said.cover.map(|cover| DistanceCertificate { lower, near, cover });
-            return Ok((Within::Farther(SolidGap { gap: lower }), proof));
+        if lower > length {
+            let near = near.unwrap_or_else(|| Spot::of(&scene, [0, 0]).near(&scene));
+            let answer = Within::Farther(SolidGap { gap: lower });
+            return Ok(((answer, steps), Unproven { near, cover }));
         }
-        let (distance, proof) = self.ask(prove)?;
-        Ok(if distance.upper <= length {
-            (Within::Closer(distance.near), None)
+        let (distance, found) = self.ask(prove)?;
+        steps += distance.steps;
+        let answer = if distance.upper <= length {
+            let near = distance.near;
+            return Ok(((Within::Closer(near), steps), Unproven { near, cover: None }));
         } else if distance.lower > length {
-            (Within::Farther(SolidGap { gap: distance.lower }), proof)
+            Within::Farther(SolidGap { gap: distance.lower })
         } else {
-            (Within::Undecided(distance), proof)
-        })
+            Within::Undecided(distance)
+        };
+        Ok(((answer, steps), found))
     }
 
     /// What of each body is nearest to the other one: the vertices, edges or faces that the nearest points are of.
@@ -251,9 +307,11 @@ impl<'a> Pair<'a, Solid> {
         let bodies = [self.bodies.moving_placed(), self.bodies.fixed_placed()];
         // Neither question knows of a direction.
         let cast = Cast::new(bodies[0], bodies[1], DVec3::Z)?;
-        let meets = cast.intersects()?.meets;
-        let least_tolerance = if meets { cast.least_tolerance() } else { Some(0.0) };
-        Ok(OverlapDepth { meets, least_tolerance })
+        let found = cast.intersects()?;
+        let (meets, mut steps) = (found.meets, found.evidence.steps);
+        let least_tolerance =
+            if meets { cast.least_tolerance_counting(&mut steps) } else { Some(0.0) };
+        Ok(OverlapDepth { meets, least_tolerance, steps })
     }
 
     /// Points of the moving and of the fixed body, in the world, rounded, that are as near to each other as is
@@ -293,14 +351,6 @@ impl<'a> Pair<'a, Solid> {
         }
     }
 
-    /// The work that [`Self::distance`] does, done for its count.
-    pub fn distance_steps(&self) -> SolidSteps {
-        let Ok(scene) = self.scene() else { return SolidSteps::default() };
-        let mut search = Search::new(&scene, Until::LEAST, |_, _| ());
-        search.run();
-        search.steps
-    }
-
     fn scene(&self) -> Result<Scene<'a>, QueryError> {
         let setting = Setting::of(self.bodies, DVec3::Z)?;
         Ok(Scene::new(&setting, [0.0; 2], 0.0))
@@ -313,20 +363,17 @@ impl<'a> Pair<'a, Solid> {
                 cuts.insert(nodes, reason);
             }
         });
-        let (found, mut lower) = search.run();
-        let mut cover = None;
+        let ((found, lower), steps) = (search.run(), search.steps);
         // An early end leaves pairs that nothing was said of, and no bound.
-        if prove && lower > 0.0 {
-            let made = Cover::new([self.moving(), self.fixed()], &cuts);
-            lower = least_proven(scene, &made).unwrap_or(0.0);
-            cover = Some(made);
-        }
-        Said { spot: found.map(Spot::from), lower, cover }
+        let cover =
+            (prove && lower > 0.0).then(|| Cover::new([self.moving(), self.fixed()], &cuts));
+        Said { spot: found.map(Spot::from), lower, cover, steps }
     }
 
     fn answer(&self, scene: &Scene, said: &Said) -> Distance<Solid> {
         let origin = self.bodies.translations[0];
-        let place = meeting(scene, said.lower);
+        let mut steps = said.steps;
+        let place = meeting(scene, said.lower, &mut steps);
         let spot = said.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
         let (near, points) = match place {
             Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
@@ -344,6 +391,7 @@ impl<'a> Pair<'a, Solid> {
             features: features.map(|[moving, fixed]| Features { moving, fixed }),
             near,
             gap: (lower > 0.0).then_some(SolidGap { gap: lower }),
+            steps,
         }
     }
 }

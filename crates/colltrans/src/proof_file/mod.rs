@@ -15,14 +15,16 @@ mod words;
 use glam::DVec3;
 
 use crate::answer::{
-    CertificateError, Clearance, ContactRange, Depth, Outcome, OverlapAhead, WhyFree, Within,
+    CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, SolidSteps,
+    Steps, WhyFree, Within,
 };
 use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Pose};
 use crate::cast::{CaseError, Cast};
 use crate::free::{FreeDirections, FreeError};
 use crate::pair::Pair;
-use crate::pair::solid::DistanceCertificate;
+use crate::pair::solid::Unproven;
+use crate::setting::error::QueryError;
 use file::{Pieces, again};
 pub use scene::{SceneProof, SceneStatement};
 use statement::options;
@@ -124,7 +126,8 @@ impl ProofFile {
 
     /// Of an answer of [`Pair::depth`]; `pair` is the one that was asked.
     pub fn of_depth(pair: &Pair<'_>, depth: &Depth) -> Self {
-        Self::of_pair(pair, Statement::Depth(depth.clone()))
+        let depth = Depth { steps: Steps::default(), ..depth.clone() };
+        Self::of_pair(pair, Statement::Depth(depth))
     }
 
     fn of_pair(pair: &Pair<'_>, statement: Statement) -> Self {
@@ -150,7 +153,7 @@ impl ProofFile {
         Ok(Self { bodies, poses, along: Some(Along { direction, keep }), statement })
     }
 
-    /// Of the distance of solids, asked once more with its proof: of [`Pair::distance`], or of
+    /// Of the distance of solids, asked with its proof: of [`Pair::distance`], or of
     /// [`Pair::within`] a length, which may prove one bound alone. `pieces` as in [`Self::of_solids`].
     ///
     /// # Errors
@@ -160,20 +163,54 @@ impl ProofFile {
         pieces: [&[&Solid]; 2],
         within: Option<f64>,
     ) -> Result<Self, CaseError> {
-        let (made, of) = again(pieces, [pair.moving(), pair.fixed()])?;
+        Ok(match within {
+            None => Self::with_solid_distance(pair, pieces)?.1,
+            Some(length) => Self::with_solid_within(pair, pieces, length)?.1,
+        })
+    }
+
+    /// [`Pair::distance`] of solids, and its proof: of one search, unless a body's tree comes out otherwise from the
+    /// file, as it may of more than 4,096 facets; then the bodies of the file are asked as well. `pieces` as in
+    /// [`Self::of_solids`].
+    ///
+    /// # Errors
+    /// A body that its own facets do not make once more.
+    pub fn with_solid_distance(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+    ) -> Result<(Distance<Solid>, Self), CaseError> {
+        Self::of_search(pair, pieces, |pair| pair.distance_unproven())
+    }
+
+    /// The same of [`Pair::within`] a length.
+    ///
+    /// # Errors
+    /// As [`Self::with_solid_distance`]; a length that is negative or not a number.
+    pub fn with_solid_within(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+        length: f64,
+    ) -> Result<((Within<Solid>, SolidSteps), Self), CaseError> {
+        Self::of_search(pair, pieces, |pair| pair.within_unproven(length))
+    }
+
+    /// An answer about bodies, and its proof about those that the file has.
+    fn of_search<T>(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+        ask: impl Fn(&Pair<'_, Solid>) -> Result<(T, Unproven), QueryError>,
+    ) -> Result<(T, Self), CaseError> {
+        let bodies = [pair.moving(), pair.fixed()];
+        let (made, of) = again(pieces, bodies)?;
         let poses = [pair.moving_pose(), pair.fixed_pose()];
         let again = Pair::new(made[0].at(poses[0]), made[1].at(poses[1]))?;
-        let proof = match within {
-            None => again.certified_distance()?.1,
-            Some(length) => match again.certified_within(length)? {
-                (_, Some(proof)) => proof,
-                (Within::Closer(near), None) => DistanceCertificate::of_near(near),
-                (Within::Undecided(distance), None) => DistanceCertificate::of_near(distance.near),
-                (Within::Farther(_), None) => again.certified_distance()?.1,
-            },
-        };
+        let (answer, mut found) = ask(pair)?;
+        if !(bodies[0].has_tree_of(&made[0]) && bodies[1].has_tree_of(&made[1])) {
+            found = ask(&again)?.1;
+        }
+        let proof = again.prove(found)?;
         let (bodies, statement) = (Bodies::Solids { made, of }, Statement::SolidDistance(proof));
-        Ok(Self { bodies, poses, along: None, statement })
+        Ok((answer, Self { bodies, poses, along: None, statement }))
     }
 
     /// Of all free directions, asked once more of the bodies as a file has them. `pieces` as in [`Self::of_solids`].

@@ -1,7 +1,8 @@
 //! Choices of a query.
 
 use crate::answer::{
-    CentralCast, Contact, Grazing, NearPoints, OverlapAhead, PlaneGap, Separated, Solver, WhyFree,
+    CentralCast, Contact, Grazing, NearPoints, OverlapAhead, PlaneGap, Separated, Solver, Steps,
+    WhyFree,
 };
 use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::check_keep;
@@ -46,6 +47,7 @@ impl Body for ConvexPolyhedron {
     type Evidence = CentralCast;
     type Near = NearPoints;
     type Gap = PlaneGap;
+    type Steps = Steps;
 }
 
 impl Options {

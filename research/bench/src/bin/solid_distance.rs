@@ -8,6 +8,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
+use colltrans::solid::SolidSteps;
 use colltrans::{Pair, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::meshes::{MeshArguments, solid};
@@ -125,9 +126,10 @@ fn measure(
             let Ok(pair) = Pair::new(p.at(*s), q.at(*t)) else { continue };
             let (answer, time) = stopwatch.time(|| pair.distance());
             ours.add(time);
-            let steps = pair.distance_steps();
+            let (upper, steps) =
+                answer.map_or((f64::NAN, SolidSteps::default()), |of| (of.upper, of.steps));
             (nodes, leaves) = (nodes + u64::from(steps.nodes), leaves + u64::from(steps.leaves));
-            answers.push(answer.map_or(f64::NAN, |answer| answer.upper));
+            answers.push(upper);
         }
         for ([s, t], answer) in block.iter().zip(answers) {
             let setting = ParrySetting::placed([s, t], DVec3::Z);

@@ -265,6 +265,17 @@ impl Solid {
         spans
     }
 
+    /// Whether numbers of vertices, facets and nodes mean the same of another solid. What bounds a node may still
+    /// be rounded otherwise.
+    #[cfg(feature = "json")]
+    pub(crate) fn has_tree_of(&self, other: &Self) -> bool {
+        let place = |node: &Node| (node.skip, node.first, node.count);
+        self.vertices == other.vertices
+            && self.triangles == other.triangles
+            && self.kinds == other.kinds
+            && self.nodes.iter().map(place).eq(other.nodes.iter().map(place))
+    }
+
     /// The vertices in use, in the body frame.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices

@@ -160,6 +160,7 @@ impl Body for Solid {
     type Evidence = SolidMeeting;
     type Near = SolidNear;
     type Gap = SolidGap;
+    type Steps = SolidSteps;
 }
 
 impl Solid {
@@ -512,7 +513,7 @@ impl<'a> Cast<'a, Solid> {
         self.least_tolerance_counting(&mut SolidSteps::default())
     }
 
-    fn least_tolerance_counting(&self, steps: &mut SolidSteps) -> Option<f64> {
+    pub(crate) fn least_tolerance_counting(&self, steps: &mut SolidSteps) -> Option<f64> {
         let bare = self.scene(0.0);
         if overlap::find(&bare, steps).is_none() {
             return Some(0.0);

@@ -25,13 +25,15 @@ mod gjk;
 mod simplex;
 mod surround;
 
+use std::cell::Cell;
+
 use glam::DVec3;
 
 pub(crate) use self::depth::deepest;
 use self::gjk::{Goal, descend, unit};
 use self::simplex::{Corner, Simplex};
 pub(crate) use self::surround::surrounds;
-use crate::answer::{NearPoints, PlaneGap};
+use crate::answer::{NearPoints, PlaneGap, Steps};
 use crate::number::noise::Noise;
 use crate::number::plane::triangle_normal;
 use crate::number::real::{Real, Twice, Vector};
@@ -45,12 +47,20 @@ const NEAR: f64 = 4.0;
 pub(crate) struct Difference<'a> {
     pub(crate) bodies: &'a TwoBodies<'a>,
     pub(crate) noise: Noise,
+    /// How often a lowest point was asked for.
+    supports: Cell<u32>,
 }
 
 impl<'a> Difference<'a> {
     #[inline]
     pub(crate) fn new(bodies: &'a TwoBodies<'a>) -> Self {
-        Self { bodies, noise: bodies.noise() }
+        Self { bodies, noise: bodies.noise(), supports: Cell::new(0) }
+    }
+
+    /// The work done so far.
+    #[inline]
+    pub(crate) fn steps(&self) -> Steps {
+        Steps { supports: self.supports.get(), ..Steps::default() }
     }
 
     /// The point of a pair of vertices.
@@ -62,6 +72,7 @@ impl<'a> Difference<'a> {
     /// The lowest point along a normal, from a pair that may be near.
     #[inline]
     fn lowest(&self, normal: DVec3, near: Option<VertexPair>) -> Corner<f64> {
+        self.supports.set(self.supports.get() + 1);
         let bodies = self.bodies;
         let (in_moving, in_fixed) = (bodies.moving_normal(normal), -bodies.fixed_normal(normal));
         let (moving, fixed) = match near {
@@ -96,6 +107,10 @@ pub(crate) struct NearestPairs {
 }
 
 impl NearestPairs {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
     fn iter(&self) -> impl Iterator<Item = VertexPair> + '_ {
         self.pairs[..self.count].iter().copied()
     }

@@ -118,12 +118,8 @@ pub(crate) fn points_of(scene: &Scene, triangles: [u32; 2], weights: [DVec3; 2])
 }
 
 /// Where the bodies have a point in common, given how far their surfaces are apart at least.
-pub(crate) fn meeting(scene: &Scene, surfaces: f64) -> Option<Overlap> {
-    if surfaces > 0.0 {
-        overlap::nested(scene)
-    } else {
-        overlap::touch(scene, &mut SolidSteps::default())
-    }
+pub(crate) fn meeting(scene: &Scene, surfaces: f64, steps: &mut SolidSteps) -> Option<Overlap> {
+    if surfaces > 0.0 { overlap::nested(scene) } else { overlap::touch(scene, steps) }
 }
 
 /// A point that both bodies have, in the setting frame, each body's own to within rounding.

@@ -12,6 +12,7 @@ use super::triangle::{self, Corners, GAP, Nearest};
 use crate::answer::SolidSteps;
 use crate::solve::solid::scene::{Scene, Side};
 use crate::solve::solid::search::{self, children};
+use crate::work;
 
 /// How far, in noises, the limit is below the least length found.
 const SLACK: f64 = 3.0;
@@ -198,6 +199,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
 
     /// A pair with its bound, unless it is cut.
     fn judge(&mut self, views: [u32; 2]) -> Option<Entry> {
+        work::count(1);
         self.steps.nodes += 1;
         self.number += 1;
         let [i, j] = views;

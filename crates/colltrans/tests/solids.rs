@@ -2,14 +2,14 @@
 
 use colltrans::solid::{Overlap, SolidError, SolidOptions, SolidOverlap, StartOverlap};
 use colltrans::{
-    Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, InputFacet, Outcome, Pose,
+    Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, InputFacet, Outcome, Pair, Pose,
     QueryError, Solid,
 };
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DMat3, DQuat, DVec3};
 
-use self::common::{cuboid, solid};
+use self::common::{at, cuboid, solid};
 
 mod common;
 
@@ -143,6 +143,28 @@ fn what_was_ignored_at_the_start_is_told() {
     assert!(matches!(place(&block, &part), Some(Overlap::FixedInside(_))));
     let beside = cuboid([3.0, 0.0, 0.0], [4.0, 1.0, 1.0]);
     assert_eq!(place(&beside, &block), None);
+}
+
+/// A tolerance shrinks both by half of it. The cube of side 1 is nothing at 1, and still inside then, 2.5 from the
+/// sides of a block; 0.375 below its top, it is free at 0.375. Two triangles back to back are nothing to begin with.
+#[test]
+fn what_is_too_deep_inside_is_parted_by_no_tolerance() {
+    let (block, part) = (cuboid([-3.0; 3], [3.0; 3]), cuboid([-0.5; 3], [0.5; 3]));
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let two_sides = Solid::from_mesh(&corners, &[[0, 1, 2], [0, 2, 1]]).expect("closed");
+    let least = |moving: &Solid, z: f64| {
+        let pair =
+            Pair::new(moving.at(at(DVec3::Z * z)), block.at(Pose::IDENTITY)).expect("a pair");
+        let found = pair.overlap_depth().expect("an answer");
+        assert!(found.meets && found.steps.nodes > 0);
+        found.least_tolerance
+    };
+    for (moving, z) in [(&part, 0.0), (&part, 2.25), (&two_sides, 0.0), (&two_sides, 2.75)] {
+        assert_eq!(least(moving, z), None, "{z}");
+    }
+    let pressed = least(&part, 3.125).expect("a tolerance");
+    assert!((pressed - 0.375).abs() < 1e-9, "{pressed}");
+    assert_eq!(least(&two_sides, 3.0), Some(0.0));
 }
 
 #[test]

@@ -506,7 +506,8 @@ impl<'a> Cast<'a, Solid> {
     }
 
     /// The least tolerance with which the bodies do not overlap, from above: 0 if they do not, `None`
-    /// if there is none up to their size. Nor is there one where they overlap and one of them has open
+    /// if there is none that leaves something of both, as of one that lies deep inside the other. Nor is there one
+    /// where they overlap and one of them has open
     /// shells: less of a solid does not free a sheet that passes through it. How far convex bodies have to
     /// go back along a direction is another question: [`Cast::directional_depth`].
     pub fn least_tolerance(&self) -> Option<f64> {
@@ -521,9 +522,11 @@ impl<'a> Cast<'a, Solid> {
         if !(self.moving().is_closed() && self.fixed().is_closed()) {
             return None;
         }
+        // Shrunk by more than there is of it, a body is inside out.
+        let vanishes = |tolerance: f64| self.check_left(tolerance).is_err();
         let mut free = |tolerance: f64| {
             let half = tolerance / 2.0;
-            overlap::find(&bare.shrunk(half, half), steps).is_none()
+            vanishes(tolerance) || overlap::find(&bare.shrunk(half, half), steps).is_none()
         };
         let (mut low, mut high) = (0.0, bare.noise);
         while !free(high) {
@@ -539,7 +542,7 @@ impl<'a> Cast<'a, Solid> {
             }
             if free(middle) { high = middle } else { low = middle }
         }
-        Some(high)
+        (!vanishes(high)).then_some(high)
     }
 
     /// The translation after which the bodies, as they are, never meet again, in multiples of the

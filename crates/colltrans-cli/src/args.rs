@@ -222,18 +222,23 @@ pub(crate) enum Taken {
 }
 
 impl<'a> Sides<'a> {
-    /// Of the files of a command line.
-    fn of(meshes: &'a [PathBuf], from: &'a [PathBuf], taken: Taken) -> Result<Self, Failure> {
+    /// Of the files of a command line; `among`: which may ask about one body among many as well.
+    fn of(
+        meshes: &'a [PathBuf],
+        from: &'a [PathBuf],
+        taken: Taken,
+        among: bool,
+    ) -> Result<Self, Failure> {
         if let Some(list) = meshes.iter().chain(from).find(|file| is_list(file)) {
             let list = list.display();
-            let message = format!(
-                "{list}: no mesh; obstacles in such a file stand behind --among, `colltrans batch` takes queries"
-            );
+            let obstacles =
+                if among { "obstacles in such a file stand behind --among, " } else { "" };
+            let message = format!("{list}: no mesh; {obstacles}`colltrans batch` takes queries");
             return Err(Failure::new(Code::Usage, message));
         }
         let files = match (meshes, from) {
             ([_, _], []) => [&meshes[..1], &meshes[1..]],
-            (_, []) => return Err(Failure::new(Code::Usage, not_two(meshes))),
+            (_, []) => return Err(Failure::new(Code::Usage, not_two(meshes, among))),
             (moving, fixed) => [moving, fixed],
         };
         Ok(Self { files, taken })
@@ -241,18 +246,19 @@ impl<'a> Sides<'a> {
 }
 
 /// What to do with fewer or more meshes than two.
-fn not_two(meshes: &[PathBuf]) -> String {
+fn not_two(meshes: &[PathBuf], among: bool) -> String {
     if meshes.len() < 2 {
-        return "give the mesh that moves and the one that stays, or --from, or --among".into();
+        let or_among = if among { ", or --among" } else { "" };
+        return format!("give the mesh that moves and the one that stays, or --from{or_among}");
     }
     let [first, rest] = [&meshes[..1], &meshes[1..]].map(|files| {
         files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(" ")
     });
-    format!(
-        "{} meshes, not two: `{first} --among {rest}` asks about one body among many, `{first} --from {rest}` \
-         about all of the others as one body",
-        meshes.len()
-    )
+    let mut message = format!("{} meshes, not two: ", meshes.len());
+    if among {
+        message += &format!("`{first} --among {rest}` asks about one body among many, ");
+    }
+    message + &format!("`{first} --from {rest}` asks about all of the others as one body")
 }
 
 /// The one mesh before --among.
@@ -279,7 +285,7 @@ impl Taken {
 impl ClearanceArguments {
     /// Who moves, who stays, and as what.
     pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
-        Sides::of(&self.meshes, &self.from, self.taken()?)
+        Sides::of(&self.meshes, &self.from, self.taken()?, true)
     }
 
     /// As what meshes are taken.

@@ -60,7 +60,7 @@ impl WorkArguments {
 impl DirectionsArguments {
     /// The files of the moving and of the fixed body, as parts.
     pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
-        Sides::of(&self.meshes, &self.from, Taken::Parts)
+        Sides::of(&self.meshes, &self.from, Taken::Parts, false)
     }
 
     /// How the files of both bodies are read.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use colltrans::record::PairQuestion;
 use colltrans_mesh::body::BodyOptions;
 
 use super::{BodyArguments, HullArguments, PlaceArguments, Sides, Taken, UNCLEAN, one};
@@ -55,9 +56,9 @@ pub(crate) struct WithinArguments {
 }
 
 impl PlacedArguments {
-    /// Who is called moving, who fixed, and as what they are taken.
-    pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
-        Sides::of(&self.meshes, &self.from, self.taken()?)
+    /// Who is called moving, who fixed, and as what they are taken, for a question.
+    pub(crate) fn sides(&self, question: PairQuestion) -> Result<Sides<'_>, Failure> {
+        Sides::of(&self.meshes, &self.from, self.taken()?, question != PairQuestion::Depth)
     }
 
     /// The one mesh before --among.

@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &PlacedArguments, question: PairQuestion) -> Result
     if !arguments.among.is_empty() {
         return among::placed(arguments, question);
     }
-    let Sides { files, taken } = arguments.sides()?;
+    let Sides { files, taken } = arguments.sides(question)?;
     let inputs: Vec<&Path> = files.into_iter().flatten().map(AsRef::as_ref).collect();
     let picture = arguments.picture.as_deref();
     refuse_picture(picture, &inputs)?;

@@ -138,6 +138,20 @@ fn what_is_wrong_is_said() {
     let two = ["distance", "cube.off", "dent.off", "--among", "scene.jsonl"];
     refused(folder, &two, 2, &["one mesh before --among"]);
     refused(folder, &["distance", "cube.off", "scene.jsonl"], 2, &["behind --among"]);
+    // Where there are no others to be among, nothing is said of them.
+    for command in ["directions", "depth"] {
+        for bodies in
+            [&["cube.off"][..], &["a.off", "b.off", "c.off"], &["cube.off", "scene.jsonl"]]
+        {
+            let output = run(folder, &[&[command], bodies].concat());
+            assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+            let said = stderr(&output);
+            assert!(
+                !said.contains("--among") && said.contains("colltrans ") | said.contains("--from"),
+                "{said}"
+            );
+        }
+    }
     let over = among("distance", &["--save-proof", "scene.jsonl"]);
     refused(folder, &over, 3, &["is the same file"]);
     for (line, said) in [
